@@ -1,0 +1,167 @@
+# himc: a virtual timpanist for Pure Data. `make help` lists what can be made.
+
+# settings, to override on the command line: make ARCH=-march=native, make install PREFIX=/usr
+BUILD     ?= build
+PREFIX    ?= /usr/local
+PDEXTRA   ?= $(PREFIX)/lib/pd-externals
+UNITY_DIR ?= build/unity/src
+ARCH      ?=
+SANITIZE  ?=
+V         ?=
+JOBS      ?= $(shell nproc 2>/dev/null || echo 1)
+ifeq ($(origin CC),default)
+CC := gcc
+endif
+
+# what every C file is compiled with; CPPFLAGS, CFLAGS and LDFLAGS of the user come last
+OPTIMIZE = -O2 -g $(ARCH)
+WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wmissing-prototypes
+COMPILE  = $(CC) -std=c17 $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -ffp-contract=off -fPIC $(SANITIZE) \
+           -Ilib -MMD -MP $(CPPFLAGS) $(CFLAGS)
+LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
+UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
+LIBS     = -Wl,--as-needed -lode -llo -lsndfile -llapacke -llapack -lblas -lpthread -lm
+
+# what is built from what is there
+LIBRARY   := $(BUILD)/libhimc.a
+PROGRAM   := $(BUILD)/bin/himc
+EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
+LIB_O     := $(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/*.c))
+TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
+UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
+BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
+SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
+UNITY_O   := $(BUILD)/tests/unity.o
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] pd-externals/*.[ch] tests/*.[ch] tests/*/*.[ch])
+
+MAKEFLAGS += --no-builtin-rules --no-print-directory
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(JOBS)
+endif
+# several goals, as in `make demo test`, share a build: one after the other
+ifneq ($(word 2,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif
+.SUFFIXES:
+.DELETE_ON_ERROR:
+
+##@ Build
+all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) ## the library, the program and the externals (default)
+
+deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
+	@tools/deps.sh tools/deps.txt
+
+install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib
+	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
+	install -m 644 $(BUILD)/externals/himc/* $(DESTDIR)$(PDEXTRA)/himc
+
+uninstall: ## remove what `make install` put there
+	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+
+clean: ## remove all that was built
+	rm -rf build
+
+##@ Play
+demo: deps ## install, build, play the improvisation headless; leaves its sound and picture in build/demo
+	@$(MAKE) all
+	@tools/demo.sh
+
+##@ Test
+test: deps ## install, build, run all tests; the last line is `N passed, N failed`
+	@$(MAKE) check
+
+units: $(UNIT)
+
+check: all units ## the same without installing
+	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(SCRIPTS)
+
+test-long: deps ## all tests at full length, and those too slow for every day
+	@$(MAKE) check-long
+
+check-long: all $(UNIT) $(LONG)
+	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(SCRIPTS) $(LONG)
+
+test-asan: deps ## the tests in C under the address and undefined behaviour sanitizers
+	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
+
+check-asan: $(UNIT) $(if $(TOOL_O),$(PROGRAM))
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT)
+
+bench: deps ## what a step, a mode and a performer cost on this machine
+	@$(MAKE) check-bench
+
+check-bench: all $(BENCH)
+	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
+
+##@ Style
+lint: ## formatting, warnings as errors, cppcheck, the one-way order of the rooms
+	@tools/deps.sh tools/deps.txt tools/deps-lint.txt
+	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
+	@tools/lint.sh build/lint/libhimc.a $(SOURCES)
+
+format: ## let clang-format lay out all C files
+	@tools/deps.sh tools/deps-lint.txt
+	clang-format -i $(SOURCES)
+
+help: ## this list
+	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
+
+.PHONY: all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+        lint format help
+
+# one rule per kind; V=1 shows the whole commands
+Q   = $(if $(V),,@)
+say = @mkdir -p $(@D) $(if $(V),,&& echo "$(1) $@")
+
+$(LIBRARY): $(LIB_O)
+	$(call say,ar  )
+	$(Q)rm -f $@ && ar rcs $@ $^
+
+$(BUILD)/lib/%.o: lib/src/%.c
+	$(call say,cc  )
+	$(Q)$(COMPILE) -c $< -o $@
+
+$(BUILD)/tools/%.o: tools/%.c
+	$(call say,cc  )
+	$(Q)$(COMPILE) -c $< -o $@
+
+$(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
+	$(call say,cc  )
+	$(Q)$(COMPILE) -Ilib/src $(UNITY) -c $< -o $@
+
+$(UNITY_O): $(UNITY_DIR)/unity.c
+	$(call say,cc  )
+	$(Q)$(CC) -O2 $(SANITIZE) $(UNITY) -c $< -o $@
+
+$(PROGRAM): $(TOOL_O) $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+# a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD
+$(UNIT) $(LONG): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+$(BENCH): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+# Debian has no package of Unity's own; the source package cjson carries it
+build/unity/src/unity.c:
+	@echo "get  $@"
+	$(Q)tools/unity.sh build/unity
+
+# pd-lib-builder leaves its objects beside the sources, so it works on a copy (which make -n does not make)
+$(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
+	@echo "pd   $(EXTERNALS)"
+	$(Q)rm -rf $(BUILD)/externals && mkdir -p $(BUILD)/externals && cp -r pd-externals $(BUILD)/externals/work
+	$(Q)test ! -d $(BUILD)/externals/work || $(MAKE) -C $(BUILD)/externals/work install DESTDIR= PDLIBDIR=$(abspath $(BUILD)/externals) CC="$(CC)" \
+	    LIB=$(CURDIR)/lib ARCHIVE=$(abspath $(LIBRARY)) EXTRA_CFLAGS="$(ARCH) $(CFLAGS)" >$(BUILD)/externals.log
+	$(Q)rm -r $(BUILD)/externals/work
+	@! nm -D --undefined-only $(EXTERNALS) | grep ' himc_' || { echo "$(@D): lacks the above; Pd would not load it" >&2; false; }
+
+-include $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))

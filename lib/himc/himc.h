@@ -1,0 +1,51 @@
+/// himc.h: the whole of libhimc, in the order in which a stroke becomes sound.
+///
+///     score ┐
+///     take ─┴→ planner, track → task → controller (ik → invdyn) → character (ODE) → contact ⇄ membrane → samples
+///     command (Pd, OSC, file) ─────────────→ performance ←──────────────────────────────── drum
+///
+/// A percussionist of 20 segments and 57 degrees of freedom is driven, from nothing but the trajectories of its two
+/// drumstick tips, by Hybrid Inverse Motion Control (Bouënard, Gibet and Wanderley, The Visual Computer 28(4), 2012)
+/// inside every physics step; sticks and drumheads exchange forces sample by sample. To play, make a himc_performance, give
+/// it commands and ask it for samples; the headers below are its parts, each usable alone.
+#ifndef HIMC_H
+#define HIMC_H
+
+#define HIMC_VERSION "0.1.0"
+
+// what everything shares
+#include "himc/base.h"
+#include "himc/vec.h"
+#include "himc/quintic.h"
+
+// the body
+#include "himc/skeleton.h"
+#include "himc/pose.h"
+
+// what to play: written or captured
+#include "himc/command.h"
+#include "himc/score.h"
+#include "himc/take.h"
+#include "himc/body.h"
+#include "himc/planner.h"
+#include "himc/track.h"
+
+// how the body is made to do it: algorithm 2
+#include "himc/posture.h"
+#include "himc/ik.h"
+#include "himc/invdyn.h"
+#include "himc/controller.h"
+#include "himc/task.h"
+#include "himc/character.h"
+
+// what is struck
+#include "himc/modes.h"
+#include "himc/bank.h"
+#include "himc/membrane.h"
+#include "himc/contact.h"
+#include "himc/drum.h"
+
+// all of it together
+#include "himc/performance.h"
+
+#endif

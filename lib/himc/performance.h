@@ -1,0 +1,113 @@
+/// performance.h: the performer and its drums, clocked by the sample count: commands in, sound and strikes out.
+///
+/// Only this module knows all stages; its step is algorithm 2 of the 2012 paper. What it plays depends on nothing but
+/// the commands and the sample on which each arrived: not on block size, clock or thread.
+#ifndef HIMC_PERFORMANCE_H
+#define HIMC_PERFORMANCE_H
+
+#include "himc/controller.h"
+#include "himc/drum.h"
+#include "himc/take.h"
+
+typedef struct himc_performance_config {
+    double sample_rate;  ///< (Hz) 8000 .. 192000, default 48000
+    double physics_rate; ///< (Hz) 500 .. 48000, default 10000; never above sample_rate
+    double task_rate;    ///< (Hz) 50 .. 2000, default 250; never above physics_rate
+} himc_performance_config;
+
+himc_performance_config himc_performance_default(void);
+
+typedef struct himc_performance himc_performance;
+
+himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error);
+void himc_performance_free(himc_performance *performance);
+
+/// Takes a drum to play on (its own reference; its rate must be the performance's). Replaces one of the same name. The
+/// first drum is the one strokes without a drum go to; a performer without drums plays on a silent one.
+bool himc_performance_add_drum(himc_performance *performance, himc_drum *drum, himc_error *error);
+void himc_performance_remove_drum(himc_performance *performance, const char *name);
+/// Drum `index`, or NULL past the last. Borrowed.
+HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int index);
+
+/// Carries out a performer's command `delay` samples from now (0 .. 8192; commands that read files act at once). Files
+/// are opened by the name given: relative names and search paths are the caller's business.
+/// A score's lines for drums go to the drums of those names; with `make_drums` its `drum` lines make them.
+bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
+                              himc_error *error);
+void himc_performance_make_drums(himc_performance *performance, bool make_drums);
+/// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
+void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
+
+/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n), each may be NULL; the drums' sound is in
+/// their rings (himc_drum_read).
+HIMC_RT void himc_performance_process(himc_performance *performance, int n, double *const force[HIMC_HANDS]);
+/// Samples played since the last realign.
+HIMC_RT uint64_t himc_performance_time(const himc_performance *performance);
+/// Counts samples from 0 again, here and in all drums; the performance goes on.
+HIMC_RT void himc_performance_realign(himc_performance *performance);
+/// Another sample rate, here and in all drums.
+bool himc_performance_set_rate(himc_performance *performance, double sample_rate, himc_error *error);
+
+typedef enum himc_event_kind {
+    HIMC_EVENT_STRIKE, ///< a contact ended
+    HIMC_EVENT_BEAT,   ///< a whole beat began
+    HIMC_EVENT_DONE,   ///< everything has been played and has come to rest
+    HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach, a silent drum
+} himc_event_kind;
+
+typedef struct himc_strike {
+    double time; ///< first touch (s since play of the performance began, not realigned)
+    himc_hand hand;
+    char drum[HIMC_NAME_SIZE];
+    char nuance[HIMC_NAME_SIZE]; ///< "none" when no stroke of a score asked for it
+    double x, y;                 ///< on the head (m)
+    double velocity;             ///< downward (m/s)
+    double force;                ///< peak (N)
+    double impulse;              ///< (N s)
+    double duration;             ///< (s)
+    double planned_time;         ///< when the score wanted it (s), NaN if none did
+    double planned_x, planned_y; ///< and where (m)
+} himc_strike;
+
+typedef struct himc_event {
+    himc_event_kind kind;
+    himc_strike strike;
+    double beat;
+    char text[192];
+} himc_event;
+
+/// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and counted.
+HIMC_RT bool himc_performance_event(himc_performance *performance, himc_event *event);
+
+/// One row of motion at the task rate.
+typedef struct himc_motion_row {
+    double time;                              ///< (s)
+    himc_vec3 target[HIMC_HANDS];             ///< of the tips (m)
+    himc_vec3 tip[HIMC_HANDS];                ///< simulated (m)
+    double force[HIMC_HANDS];                 ///< largest since the last row (N)
+    himc_vec3 joint[HIMC_JOINTS];             ///< rotation vector from the zero pose, parent's frame (rad)
+    himc_vec3 elbow[HIMC_HANDS];              ///< position (m)
+} himc_motion_row;
+
+/// Calls `row` in himc_performance_process at each task tick; NULL stops it.
+void himc_performance_on_motion(himc_performance *performance, void (*row)(void *, const himc_motion_row *),
+                                void *user);
+
+typedef struct himc_performance_stats {
+    double seconds;         ///< played
+    int strokes;            ///< asked for by the score so far
+    int played;             ///< landed within 5 ms, on the drum asked for, within 2 cm of the spot
+    int missed;             ///< the rest
+    double tip_rms;         ///< distance of tip and target outside contact (m)
+    double stroke_height;   ///< mean over strokes, apex to contact (m)
+    double tip_rms_percent; ///< tip_rms / stroke_height (%)
+    double peak_force;      ///< (N)
+    long recoveries;        ///< times a non-finite state was met and the last good one restored
+} himc_performance_stats;
+
+HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *performance);
+
+/// Several lines about the state (mode, law, rates, drums, player, transport), for `info`.
+void himc_performance_describe(const himc_performance *performance, void (*line)(void *, const char *), void *user);
+
+#endif

@@ -1,0 +1,46 @@
+/// score.h: a score file: a Pure Data text file whose lines are commands, `;` ends a line.
+///
+/// Strokes and tempo changes have beats; everything else is done once, in order, when the score is loaded. A line that
+/// begins with a drum's name is for that drum. `tempo BPM [BEAT]` holds from that beat on (0 when not given).
+#ifndef HIMC_SCORE_H
+#define HIMC_SCORE_H
+
+#include "himc/command.h"
+
+typedef struct himc_tempo_change {
+    double beat; ///< from here on (beats)
+    double bpm;  ///< 40 .. 200 are what the nuances are made for; 1 .. 1000 are taken
+} himc_tempo_change;
+
+/// A line that is neither stroke nor tempo.
+typedef struct himc_score_line {
+    char drum[HIMC_NAME_SIZE]; ///< whom it is for; "" is the performer
+    himc_command command;
+    int line; ///< in the file, from 1
+} himc_score_line;
+
+/// Plain and readable; owned arrays. Strokes are sorted by beat (stable).
+typedef struct himc_score {
+    himc_stroke *strokes;
+    int stroke_count;
+    himc_tempo_change *tempi; ///< sorted by beat; at least one, at beat 0 (default 100 BPM)
+    int tempo_count;
+    himc_score_line *lines;
+    int line_count;
+} himc_score;
+
+/// Reads the file; NULL with "file:line: ..." if anything in it is wrong. Free with himc_score_free.
+himc_score *himc_score_load(const char *path, himc_error *error);
+
+/// The same from a string; `name` stands for the file in errors.
+himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
+
+void himc_score_free(himc_score *score);
+
+/// Seconds from beat 0 to `beat` through the tempo changes.
+HIMC_RT double himc_score_seconds(const himc_tempo_change *tempi, int count, double beat);
+
+/// The inverse of himc_score_seconds.
+HIMC_RT double himc_score_beat(const himc_tempo_change *tempi, int count, double seconds);
+
+#endif

@@ -1,0 +1,196 @@
+/// vec.h: vectors, quaternions (w, x, y, z) and 3x3 matrices; values, inline, HIMC_RT throughout.
+///
+/// A unit quaternion q turns the vector v by q v q^-1. Rotation vectors are axis times angle (rad): the log here is the
+/// full angle, twice the half-angle logarithm of the 2012 paper's algorithm 1.
+#ifndef HIMC_VEC_H
+#define HIMC_VEC_H
+
+#include "himc/base.h"
+
+#include <math.h>
+
+typedef struct himc_vec3 {
+    double x, y, z;
+} himc_vec3;
+
+typedef struct himc_quat {
+    double w, x, y, z;
+} himc_quat;
+
+/// Row by row.
+typedef struct himc_mat3 {
+    double m[3][3];
+} himc_mat3;
+
+static inline himc_vec3 himc_vec3_make(double x, double y, double z)
+{
+    return (himc_vec3){x, y, z};
+}
+
+static inline himc_vec3 himc_vec3_add(himc_vec3 a, himc_vec3 b)
+{
+    return (himc_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline himc_vec3 himc_vec3_sub(himc_vec3 a, himc_vec3 b)
+{
+    return (himc_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline himc_vec3 himc_vec3_scale(himc_vec3 a, double s)
+{
+    return (himc_vec3){a.x * s, a.y * s, a.z * s};
+}
+
+/// a + s b
+static inline himc_vec3 himc_vec3_madd(himc_vec3 a, double s, himc_vec3 b)
+{
+    return (himc_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+static inline double himc_vec3_dot(himc_vec3 a, himc_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline himc_vec3 himc_vec3_cross(himc_vec3 a, himc_vec3 b)
+{
+    return (himc_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline double himc_vec3_length(himc_vec3 a)
+{
+    return sqrt(himc_vec3_dot(a, a));
+}
+
+static inline bool himc_vec3_finite(himc_vec3 a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
+
+/// a / |a|; the zero vector stays zero.
+static inline himc_vec3 himc_vec3_unit(himc_vec3 a)
+{
+    double length = himc_vec3_length(a);
+    return length > 0 ? himc_vec3_scale(a, 1 / length) : a;
+}
+
+static inline himc_quat himc_quat_identity(void)
+{
+    return (himc_quat){1, 0, 0, 0};
+}
+
+static inline himc_quat himc_quat_conj(himc_quat q)
+{
+    return (himc_quat){q.w, -q.x, -q.y, -q.z};
+}
+
+static inline himc_quat himc_quat_mul(himc_quat a, himc_quat b)
+{
+    return (himc_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+                       a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                       a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                       a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+static inline double himc_quat_dot(himc_quat a, himc_quat b)
+{
+    return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline himc_quat himc_quat_scale(himc_quat q, double s)
+{
+    return (himc_quat){q.w * s, q.x * s, q.y * s, q.z * s};
+}
+
+static inline himc_quat himc_quat_unit(himc_quat q)
+{
+    return himc_quat_scale(q, 1 / sqrt(himc_quat_dot(q, q)));
+}
+
+static inline himc_vec3 himc_quat_vector(himc_quat q)
+{
+    return (himc_vec3){q.x, q.y, q.z};
+}
+
+/// q v q^-1
+static inline himc_vec3 himc_quat_rotate(himc_quat q, himc_vec3 v)
+{
+    himc_vec3 u = {q.x, q.y, q.z};
+    himc_vec3 t = himc_vec3_scale(himc_vec3_cross(u, v), 2);
+    return himc_vec3_add(himc_vec3_madd(v, q.w, t), himc_vec3_cross(u, t));
+}
+
+/// Rotation vector (rad) to unit quaternion.
+static inline himc_quat himc_quat_exp(himc_vec3 rotation)
+{
+    double angle = himc_vec3_length(rotation), half = 0.5 * angle;
+    double s = angle > 1e-9 ? sin(half) / angle : 0.5;
+    return (himc_quat){cos(half), rotation.x * s, rotation.y * s, rotation.z * s};
+}
+
+/// Unit quaternion to the rotation vector (rad) of the shorter way round, |result| <= pi.
+static inline himc_vec3 himc_quat_log(himc_quat q)
+{
+    double sign = q.w < 0 ? -1 : 1;
+    himc_vec3 v = {q.x * sign, q.y * sign, q.z * sign};
+    double length = himc_vec3_length(v);
+    double s = length > 1e-9 ? 2 * atan2(length, q.w * sign) / length : 2;
+    return himc_vec3_scale(v, s);
+}
+
+static inline himc_mat3 himc_mat3_from_quat(himc_quat q)
+{
+    double w = q.w, x = q.x, y = q.y, z = q.z;
+    return (himc_mat3){{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+}
+
+/// Rotation matrix to unit quaternion (Shepperd's choice of the largest component).
+himc_quat himc_quat_from_mat3(himc_mat3 a);
+
+/// The rotation whose columns are the given orthonormal, right-handed axes.
+static inline himc_mat3 himc_mat3_from_axes(himc_vec3 x, himc_vec3 y, himc_vec3 z)
+{
+    return (himc_mat3){{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+}
+
+static inline himc_vec3 himc_mat3_apply(const himc_mat3 *a, himc_vec3 v)
+{
+    return (himc_vec3){a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
+                       a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
+                       a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z};
+}
+
+/// Transpose of a, applied to v.
+static inline himc_vec3 himc_mat3_apply_transposed(const himc_mat3 *a, himc_vec3 v)
+{
+    return (himc_vec3){a->m[0][0] * v.x + a->m[1][0] * v.y + a->m[2][0] * v.z,
+                       a->m[0][1] * v.x + a->m[1][1] * v.y + a->m[2][1] * v.z,
+                       a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
+}
+
+static inline himc_mat3 himc_mat3_mul(const himc_mat3 *a, const himc_mat3 *b)
+{
+    himc_mat3 c;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            c.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j] + a->m[i][2] * b->m[2][j];
+    return c;
+}
+
+/// Inverse of a symmetric positive definite matrix by cofactors.
+static inline himc_mat3 himc_mat3_inverse_symmetric(const himc_mat3 *a)
+{
+    double c00 = a->m[1][1] * a->m[2][2] - a->m[1][2] * a->m[1][2];
+    double c01 = a->m[0][2] * a->m[1][2] - a->m[0][1] * a->m[2][2];
+    double c02 = a->m[0][1] * a->m[1][2] - a->m[0][2] * a->m[1][1];
+    double c11 = a->m[0][0] * a->m[2][2] - a->m[0][2] * a->m[0][2];
+    double c12 = a->m[0][1] * a->m[0][2] - a->m[0][0] * a->m[1][2];
+    double c22 = a->m[0][0] * a->m[1][1] - a->m[0][1] * a->m[0][1];
+    double s = 1 / (a->m[0][0] * c00 + a->m[0][1] * c01 + a->m[0][2] * c02);
+    return (himc_mat3){{{c00 * s, c01 * s, c02 * s}, {c01 * s, c11 * s, c12 * s}, {c02 * s, c12 * s, c22 * s}}};
+}
+
+#endif

@@ -1,0 +1,47 @@
+/// base.c: errors are text for a person; they are written once, where the trouble is seen.
+#include "himc/base.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+bool himc_error_set(himc_error *error, const char *format, ...)
+{
+    if (!error)
+        return false;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(error->text, sizeof error->text, format, args);
+    va_end(args);
+    return false;
+}
+
+bool himc_error_prefix(himc_error *error, const char *format, ...)
+{
+    if (!error)
+        return false;
+    char old[sizeof error->text];
+    memcpy(old, error->text, sizeof old);
+    va_list args;
+    va_start(args, format);
+    int used = vsnprintf(error->text, sizeof error->text, format, args);
+    va_end(args);
+    if (used >= 0 && (size_t)used < sizeof error->text)
+        snprintf(error->text + used, sizeof error->text - (size_t)used, ": %s", old);
+    return false;
+}
+
+bool himc_check_range(const char *name, double value, double low, double high, const char *unit,
+                      himc_error *error)
+{
+    if (isfinite(value) && value >= low && value <= high)
+        return true;
+    const char *space = unit[0] ? " " : "";
+    return himc_error_set(error, "%s: %g%s%s, allowed %g .. %g%s%s", name, value, space, unit, low, high, space,
+                          unit);
+}
+
+const char *himc_hand_name(himc_hand hand)
+{
+    return hand == HIMC_LEFT ? "left" : "right";
+}

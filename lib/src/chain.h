@@ -1,0 +1,72 @@
+/// chain.h: a queue of quintics: motion that is C2 from piece to piece.
+#ifndef HIMC_CHAIN_H
+#define HIMC_CHAIN_H
+
+#include "himc/quintic.h"
+
+typedef struct himc_piece {
+    double t0, t1; ///< (s)
+    himc_quintic q;
+} himc_piece;
+
+/// The piece that leads from one state at t0 to another at t1 > t0.
+static inline himc_piece himc_piece_make(double t0, const himc_target *from, double t1,
+                                         const himc_target *to)
+{
+    return (himc_piece){t0, t1, himc_quintic_make(from, to, t1 - t0)};
+}
+
+/// Its state at t; outside [t0, t1] that of the nearer end.
+static inline himc_target himc_piece_at(const himc_piece *piece, double t)
+{
+    return himc_quintic_at(&piece->q, fmin(fmax(t, piece->t0), piece->t1) - piece->t0);
+}
+
+#define HIMC_CHAIN_PIECES 64
+
+/// Pieces in the order of time, without gaps.
+typedef struct himc_chain {
+    himc_piece piece[HIMC_CHAIN_PIECES];
+    int count;
+} himc_chain;
+
+/// The state at t; a chain without pieces is at the origin and still.
+static inline himc_target himc_chain_at(const himc_chain *chain, double t)
+{
+    if (chain->count == 0)
+        return (himc_target){0};
+    int i = chain->count - 1;
+    while (i > 0 && chain->piece[i].t0 > t)
+        i--;
+    return himc_piece_at(&chain->piece[i], t);
+}
+
+/// Goes on from `from` at t0 to `to` at t1. There must be room.
+static inline void himc_chain_add(himc_chain *chain, double t0, const himc_target *from, double t1,
+                                  const himc_target *to)
+{
+    if (chain->count < HIMC_CHAIN_PIECES)
+        chain->piece[chain->count++] = himc_piece_make(t0, from, t1, to);
+}
+
+/// Forgets what comes after t.
+static inline void himc_chain_cut(himc_chain *chain, double t)
+{
+    while (chain->count > 1 && chain->piece[chain->count - 1].t0 >= t)
+        chain->count--;
+    if (chain->count > 0)
+        chain->piece[chain->count - 1].t1 = fmin(chain->piece[chain->count - 1].t1, t);
+}
+
+/// Forgets what ended before t.
+static inline void himc_chain_drop(himc_chain *chain, double t)
+{
+    int past = 0;
+    while (past + 1 < chain->count && chain->piece[past].t1 < t)
+        past++;
+    for (int i = past; past > 0 && i < chain->count; i++)
+        chain->piece[i - past] = chain->piece[i];
+    chain->count -= past;
+}
+
+#endif

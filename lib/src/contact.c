@@ -1,0 +1,176 @@
+/// contact.c: one sample of head and sticks.
+///
+/// All forces are constant over a sample of length h; the head's modes answer exactly (bank.c), a stick of mass M by
+/// x' = x + h v + h^2 (a - F/M)/2... as a free body does:
+///     free head and sticks: d_f, x_f;  c0 = d - x before;  b = (d_f - x_f) - c0;
+///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
+///     solve r = b - G F(r) (meeting.c);  push the head by -F, the sticks by F.
+///
+/// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own acceleration - losses of
+/// the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive body under constant force gains just force times
+/// displacement, and the forces' work on head and sticks together is -F r. No step size restricts it.
+///
+/// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the force of the motion F_m and
+/// the path of the stick. The head is then driven along that path by F_s = k_s c^alpha, c = d - x, k_s proportional to
+/// the largest F_m so far (2012 paper, equation 6). When the stick has left, F_m = 0 and F_s with it.
+#include "meeting.h"
+#include "spot.h"
+
+#include <math.h>
+
+// a stick near the head in this sample
+typedef struct near {
+    himc_stick *stick;
+    spot *spot;
+    double before; // displacement of the head there (m)
+} near;
+
+void himc_stick_fly(himc_stick *stick, double h)
+{
+    stick->height += h * (stick->velocity + 0.5 * h * stick->acceleration);
+    stick->velocity += h * stick->acceleration;
+    stick->force = 0;
+    stick->peak = 0;
+}
+
+static bool within_reach(const himc_stick *stick, double h)
+{
+    double next = stick->height + h * (stick->velocity + 0.5 * h * stick->acceleration);
+    return stick->touching || stick->height < HIMC_CONTACT_REACH || next < HIMC_CONTACT_REACH;
+}
+
+int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks, int count, int n)
+{
+    double h = 1 / himc_membrane_rate(membrane);
+    for (int i = 0; i < count; i++) {
+        const himc_stick *s = sticks[i];
+        // lowest it can get if both velocity and acceleration were downward all the time
+        double t = n * h;
+        double lowest = s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
+        for (; n > 0 && (s->touching || lowest < HIMC_CONTACT_REACH + 1e-6); n /= 2) {
+            t = n / 2 * h;
+            lowest = s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
+        }
+    }
+    return n;
+}
+
+// the free body's step under `force`, constant
+static void move(himc_stick *stick, double force, double h)
+{
+    double acceleration = stick->acceleration + force / stick->mass;
+    stick->height += h * (stick->velocity + 0.5 * h * acceleration);
+    stick->velocity += h * acceleration;
+    stick->force = force;
+    stick->peak = fmax(stick->peak, force);
+}
+
+// remembers the place of first touch, forgets it afterwards
+static void hold(himc_stick *stick, bool touching)
+{
+    if (touching && !stick->touching) {
+        stick->touch_x = stick->x;
+        stick->touch_y = stick->y;
+    }
+    if (!touching)
+        stick->peak = 0;
+    stick->touching = touching;
+}
+
+// the stick against a head at rest: its path and F_m
+static void strike_rigid(himc_stick *stick, double h)
+{
+    double g[1][MEETINGS] = {{0.5 * h * h / stick->mass}};
+    meeting m = {.k = stick->head.stiffness,
+                 .alpha = stick->head.exponent,
+                 .mu = stick->head.loss,
+                 .c0 = -stick->height,
+                 .b = -h * (stick->velocity + 0.5 * h * stick->acceleration),
+                 .guess = stick->force};
+    meetings_solve(&m, 1, g, h);
+    move(stick, m.force, h);
+    hold(stick, stick->height < 0);
+}
+
+// the equation of one stick on the head; a one-way stick has moved already, along `from` to its height
+static meeting meet(const himc_membrane *m, const near *n, double from, double h)
+{
+    const himc_stick *s = n->stick;
+    double to = s->one_way ? s->height : from + h * (s->velocity + 0.5 * h * s->acceleration);
+    double k = s->head.stiffness * (s->one_way ? s->peak / HIMC_ONE_WAY_FORCE : 1);
+    if (s->one_way && s->force == 0)
+        k = 0;
+    return (meeting){.k = k,
+                     .alpha = s->head.exponent,
+                     .mu = s->head.loss,
+                     .c0 = n->before - from,
+                     .b = spot_displacement(m, n->spot) - n->before - (to - from),
+                     .guess = s->one_way ? 0 : s->force};
+}
+
+static void compliances(const himc_membrane *m, const near *nears, int count, double (*g)[MEETINGS], double h)
+{
+    for (int i = 0; i < count; i++) {
+        const himc_stick *s = nears[i].stick;
+        // a hair more for one-way sticks keeps the matrix regular when two are at one place
+        double own = s->one_way ? 1e-12 * nears[i].spot->compliance + 1e-30 : 0.5 * h * h / s->mass;
+        g[i][i] = nears[i].spot->compliance + own;
+        for (int j = 0; j < i; j++)
+            g[i][j] = g[j][i] = spot_compliance(m, nears[i].spot, nears[j].spot);
+    }
+}
+
+static void step_near(himc_membrane *membrane, near *nears, int count, double h)
+{
+    meeting meetings[MEETINGS];
+    double g[MEETINGS][MEETINGS], from[MEETINGS];
+    bool apart = true;
+    for (int i = 0; i < count; i++) {
+        himc_stick *s = nears[i].stick;
+        from[i] = s->height;
+        if (s->one_way)
+            strike_rigid(s, h);
+        meetings[i] = meet(membrane, &nears[i], from[i], h);
+        apart = apart && meetings[i].c0 <= 0 && meetings[i].c0 + meetings[i].b <= 0;
+    }
+    if (!apart)
+        compliances(membrane, nears, count, g, h);
+    meetings_solve(meetings, count, g, h);
+    for (int i = 0; i < count; i++) {
+        himc_stick *s = nears[i].stick;
+        spot_apply(membrane, nears[i].spot, -meetings[i].force);
+        if (!s->one_way)
+            move(s, meetings[i].force, h);
+    }
+    for (int i = 0; i < count; i++)
+        if (!nears[i].stick->one_way)
+            hold(nears[i].stick, spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
+}
+
+void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
+{
+    double h = 1 / himc_membrane_rate(membrane);
+    near nears[MEETINGS];
+    int near_count = 0;
+    for (int i = 0; i < count && i < MEETINGS; i++) {
+        himc_stick *s = sticks[i];
+        if (!within_reach(s, h)) {
+            himc_stick_fly(s, h);
+            continue;
+        }
+        double x = s->touching ? s->touch_x : s->x, y = s->touching ? s->touch_y : s->y;
+        spot *place = membrane_spot(membrane, x, y);
+        nears[near_count++] = (near){s, place, spot_displacement(membrane, place)};
+    }
+    membrane_free_step(membrane);
+    if (near_count > 0)
+        step_near(membrane, nears, near_count, h);
+}
+
+double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick)
+{
+    double x = stick->touching ? stick->touch_x : stick->x, y = stick->touching ? stick->touch_y : stick->y;
+    double c = stick->one_way ? -stick->height : himc_membrane_displacement(membrane, x, y) - stick->height;
+    return 0.5 * stick->mass * stick->velocity * stick->velocity +
+           meeting_potential(stick->head.stiffness, stick->head.exponent, c);
+}

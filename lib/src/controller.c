@@ -1,0 +1,239 @@
+/// controller.c: two stages. Errors: for each joint what is missing in angle and rate, and the acceleration fed
+/// forward. Law: what torque that makes.
+///
+/// In `id` the errors are those to the joint targets. In `himc` an arm's come from its tip alone,
+///     dq = J+ (X_t - X),  q'_t = J+ X'_t,  q''_t = J+ (X''_t - J' q')       (equation 3 and its derivatives)
+/// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q', `feedforward`
+/// tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse
+/// dynamics. While a stick touches the head all three let go of the normal: the rebound is the physics'.
+#include "himc/controller.h"
+
+#define PD_STIFFER 3.0       // the default gains' frequencies above the table's
+#define LARGEST_STEP 0.05    // of the tip, one step of inverse kinematics (m)
+
+typedef struct errors {
+    himc_vec3 angle[HIMC_JOINTS];        // dq (rad)
+    himc_vec3 rate[HIMC_JOINTS];         // q'_t - q' (rad/s)
+    himc_vec3 acceleration[HIMC_JOINTS]; // q''_t (rad/s^2)
+} errors;
+
+static himc_vec3 relative_spin(const himc_skeleton *skeleton, const himc_body_state *s, int j)
+{
+    return himc_vec3_sub(s->spin[j + 1], s->spin[skeleton->segment[j + 1].parent]);
+}
+
+// errors to the joint targets, turned from the parent's frame into the world
+static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s, const himc_posture_motion *target,
+                         errors *e)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        int p = skeleton->segment[j + 1].parent;
+        himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+        himc_vec3 missing = himc_quat_log(himc_quat_mul(target->joint[j], himc_quat_conj(q)));
+        himc_vec3 wanted = himc_mat3_apply(&s->rotation[p], target->rate[j]);
+        e->angle[j] = himc_mat3_apply(&s->rotation[p], missing);
+        e->rate[j] = himc_vec3_sub(wanted, relative_spin(skeleton, s, j));
+        e->acceleration[j] = himc_vec3_add(himc_mat3_apply(&s->rotation[p], target->acceleration[j]),
+                                           himc_vec3_cross(s->spin[p], wanted));
+    }
+}
+
+static himc_vec3 clamp_length(himc_vec3 v, double most)
+{
+    double length = himc_vec3_length(v);
+    return length > most ? himc_vec3_scale(v, most / length) : v;
+}
+
+static void gather_arm(const himc_vec3 *all, himc_hand hand, himc_vec3 arm[HIMC_ARM_JOINTS])
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        arm[k] = all[himc_arm_joint(hand, k)];
+}
+
+static void scatter_arm(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand, himc_vec3 *all)
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        all[himc_arm_joint(hand, k)] = arm[k];
+}
+
+// the tip's demand through the Jacobian, the posture's in the null space; `demand` is linear in all of it
+static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jacobian, himc_hand hand, himc_vec3 demand,
+                         himc_vec3 *all)
+{
+    himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
+    gather_arm(all, hand, posture);
+    himc_ik_solve(jacobian, c->solver, c->damping, demand, solution);
+    himc_ik_add_null(jacobian, posture, solution);
+    scatter_arm(solution, hand, all);
+}
+
+// tip acceleration that the arm's joints must make: the target's, less what the state's spins and the trunk make already
+static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
+                                   const errors *e, himc_vec3 wanted)
+{
+    himc_vec3 others[HIMC_JOINTS];
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        others[j] = e->acceleration[j];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        others[himc_arm_joint(hand, k)] = himc_vec3_make(0, 0, 0);
+    return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
+}
+
+// equation 3: replaces the arm's joint errors by those that its tip asks for
+static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
+                       const himc_target *target, himc_hand hand, const himc_arm_jacobian *jacobian, errors *e)
+{
+    himc_vec3 missing = clamp_length(himc_vec3_sub(target->x, s->tip[hand]), LARGEST_STEP);
+    himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
+    himc_vec3 a = acceleration_left(skeleton, s, hand, e, target->a);
+    solve_demand(c, jacobian, hand, missing, e->angle);
+    solve_demand(c, jacobian, hand, slower, e->rate);
+    solve_demand(c, jacobian, hand, a, e->acceleration);
+}
+
+// in contact nothing is asked for along the normal: no error, no rate, no acceleration of the tip
+static void release_normal(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
+                           const himc_arm_jacobian *jacobian, himc_vec3 normal, errors *e)
+{
+    himc_vec3 arm[HIMC_ARM_JOINTS], *parts[2] = {e->angle, e->rate};
+    for (int i = 0; i < 2; i++) {
+        gather_arm(parts[i], hand, arm);
+        himc_ik_release(jacobian, normal, 0, arm);
+        scatter_arm(arm, hand, parts[i]);
+    }
+    double free = himc_vec3_dot(normal, acceleration_left(skeleton, s, hand, e, himc_vec3_make(0, 0, 0)));
+    gather_arm(e->acceleration, hand, arm);
+    himc_ik_release(jacobian, normal, free, arm);
+    scatter_arm(arm, hand, e->acceleration);
+}
+
+static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3 v)
+{
+    himc_vec3 local = himc_mat3_apply_transposed(rotation, v);
+    return himc_mat3_apply(rotation, himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
+}
+
+// equation 2, with the target's velocity and gravity fed forward or not
+static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
+                          const errors *e, himc_vec3 torque[HIMC_JOINTS])
+{
+    bool printed = c->law == HIMC_LAW_PRINTED;
+    if (printed)
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            torque[j] = himc_vec3_make(0, 0, 0);
+    else
+        himc_inverse_dynamics(skeleton, s, NULL, true, torque);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const himc_mat3 *r = &s->rotation[j + 1];
+        torque[j] = himc_vec3_add(torque[j], scale_axes(r, c->gain[j].stiffness, e->angle[j]));
+        torque[j] = himc_vec3_add(torque[j], scale_axes(r, c->gain[j].damping, e->rate[j]));
+    }
+}
+
+// w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over the inertia
+static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j, const errors *e)
+{
+    double w = 2 * HIMC_PI * c->bandwidth;
+    if (!c->gain_set[j])
+        return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
+    himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
+    const himc_mat3 *r = &s->rotation[j + 1];
+    himc_vec3 a = scale_axes(r, himc_vec3_make(ks.x / i.x, ks.y / i.y, ks.z / i.z), e->angle[j]);
+    return himc_vec3_add(a, scale_axes(r, himc_vec3_make(kd.x / i.x, kd.y / i.y, kd.z / i.z), e->rate[j]));
+}
+
+static void computed_torques(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
+                             const errors *e, himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_vec3 wanted[HIMC_JOINTS];
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
+    himc_inverse_dynamics(skeleton, s, wanted, false, torque);
+}
+
+// the printed law damps the rate itself, not its error
+static void forget_target_rates(const himc_skeleton *skeleton, const himc_body_state *s, errors *e)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        e->rate[j] = himc_vec3_scale(relative_spin(skeleton, s, j), -1);
+}
+
+void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
+                             const himc_reference *reference, himc_vec3 torque[HIMC_JOINTS])
+{
+    errors e;
+    himc_arm_jacobian jacobian[HIMC_HANDS];
+    joint_errors(skeleton, s, &reference->posture, &e);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_arm_jacobian_at(s, (himc_hand)hand, &jacobian[hand]);
+        if (c->mode == HIMC_PIPELINE_HIMC)
+            tip_errors(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian[hand], &e);
+    }
+    if (c->law == HIMC_LAW_PRINTED)
+        forget_target_rates(skeleton, s, &e);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (reference->released[hand])
+            release_normal(skeleton, s, (himc_hand)hand, &jacobian[hand], reference->normal[hand], &e);
+    if (c->law == HIMC_LAW_COMPUTED_TORQUE)
+        computed_torques(c, skeleton, s, &e, torque);
+    else
+        servo_torques(c, skeleton, s, &e, torque);
+}
+
+// inertia about a joint of everything that hangs on it, about the child's axes
+static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_state *s, int joint)
+{
+    double sum[3] = {0, 0, 0};
+    const himc_mat3 *axes = &s->rotation[joint + 1];
+    for (int i = joint + 1; i < HIMC_SEGMENTS; i++) {
+        int up = i;
+        while (up > joint + 1)
+            up = skeleton->segment[up].parent;
+        if (up != joint + 1)
+            continue;
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 c = himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], segment->center));
+        himc_vec3 r = himc_vec3_sub(c, s->origin[joint + 1]);
+        for (int k = 0; k < 3; k++) {
+            himc_vec3 axis = {axes->m[0][k], axes->m[1][k], axes->m[2][k]};
+            himc_vec3 own = himc_mat3_apply_transposed(&s->rotation[i], axis);
+            himc_vec3 arm = himc_vec3_cross(axis, r);
+            sum[k] += segment->mass * himc_vec3_dot(arm, arm) + segment->inertia.x * own.x * own.x +
+                      segment->inertia.y * own.y * own.y + segment->inertia.z * own.z * own.z;
+        }
+    }
+    return himc_vec3_make(sum[0], sum[1], sum[2]);
+}
+
+static double servo_frequency(int joint)
+{
+    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18};
+    int k = (joint - (HIMC_LEFT_UPPER_ARM - 1)) / 2;
+    bool is_arm = joint >= HIMC_LEFT_UPPER_ARM - 1 && k < HIMC_ARM_JOINTS;
+    return PD_STIFFER * (is_arm ? arm[k] : 5);
+}
+
+void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *posture)
+{
+    *c = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .bandwidth = 20};
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const himc_segment *segment = &skeleton->segment[j + 1];
+        himc_vec3 i = hanging_inertia(skeleton, posture, j);
+        // about its own length a segment meets its own small inertia first: explicit servos must respect it
+        if (fabs(segment->axis.z) > 0.5)
+            i.z = fmin(i.z, segment->inertia.z);
+        double w = 2 * HIMC_PI * servo_frequency(j);
+        c->inertia[j] = i;
+        c->gain[j].stiffness = himc_vec3_scale(i, w * w);
+        c->gain[j].damping = himc_vec3_scale(i, 2 * w);
+    }
+}
+
+void himc_controller_set_gain(himc_controller *c, int joint, double stiffness, double damping)
+{
+    himc_vec3 i = c->inertia[joint];
+    double flexion = i.y;
+    c->gain[joint].stiffness = himc_vec3_scale(i, stiffness / flexion);
+    c->gain[joint].damping = himc_vec3_scale(i, damping / flexion);
+    c->gain_set[joint] = true;
+}

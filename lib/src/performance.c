@@ -1,0 +1,268 @@
+/// performance.c: the sample clock and the physics step: algorithm 2 of the 2012 paper, with a drum in it.
+///
+/// Step k of the physics covers the samples from floor(k fs / F_S) to floor((k + 1) fs / F_S) counted from where the
+/// rates were last set: 4 or 5 samples of 48 kHz at 10 kHz, 24 in every 5 steps. A task tick comes every
+/// F_S / F_T steps. A step is simulated when its first sample is asked for, and its forces wait here; so what is played
+/// does not depend on how many samples are asked for at a time.
+#include "performance_state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+himc_performance_config himc_performance_default(void)
+{
+    return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
+}
+
+void performance_reset_clock(himc_performance *p)
+{
+    p->physics_rate = fmin(p->config.physics_rate, p->config.sample_rate);
+    p->step_origin = p->made;
+    p->step = 0;
+    p->replan = true;
+}
+
+static uint64_t step_begin(const himc_performance *p, uint64_t step)
+{
+    return p->step_origin + (uint64_t)floor((double)step * p->config.sample_rate / p->physics_rate);
+}
+
+// steps between task ticks, at least one
+static uint64_t steps_per_task(const himc_performance *p)
+{
+    double ratio = round(p->physics_rate / p->config.task_rate);
+    return ratio < 1 ? 1 : (uint64_t)ratio;
+}
+
+himc_target performance_target(const himc_performance *p, himc_hand hand, double t)
+{
+    if (p->track && himc_track_present(p->track, hand))
+        return himc_track_target(p->track, hand, t - p->track_start);
+    return himc_planner_target(p->planner, hand, t);
+}
+
+static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
+{
+    tick->time = t;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        tick->tip[hand] = performance_target(p, (himc_hand)hand, t);
+    himc_task_tick_complete(tick, &p->posture);
+}
+
+// Read task: the targets at the next tick, and at this one if the plan has changed since it was read
+static void read_task(himc_performance *p, double t)
+{
+    uint64_t period = steps_per_task(p), next = (p->step / period + 1) * period;
+    himc_planner_advance(p->planner, t);
+    if (p->replan)
+        fill_tick(p, &p->from, t);
+    else
+        p->from = p->to;
+    fill_tick(p, &p->to, (double)step_begin(p, next) / p->config.sample_rate);
+    p->replan = false;
+}
+
+// the body wherever it can be put at once: at rest, or back from a state that was not finite
+static void place_body(himc_performance *p)
+{
+    himc_pose pose;
+    memcpy(pose.joint, p->from.posture.joint, sizeof pose.joint);
+    himc_pose_to_state(&p->skeleton, &pose, p->from.posture.rate, &p->state);
+    himc_character_place(p->character, &p->state);
+    p->good = p->state;
+}
+
+bool performance_build_body(himc_performance *p, himc_error *error)
+{
+    himc_skeleton skeleton;
+    if (!himc_skeleton_init(&skeleton, &p->body, error))
+        return false;
+    himc_character *character = himc_character_new(&skeleton, error);
+    if (!character)
+        return false;
+    himc_character_free(p->character);
+    p->character = character;
+    p->skeleton = skeleton;
+    himc_posture_init(&p->posture, &skeleton, p->posture.level);
+    fill_tick(p, &p->from, step_time(p));
+    memcpy(p->reference.tip, p->from.tip, sizeof p->from.tip);
+    place_body(p);
+    himc_controller *c = &p->controller, old = *c;
+    himc_controller_init(c, &skeleton, &p->state);
+    c->mode = old.mode;
+    c->law = old.law;
+    c->solver = old.solver;
+    p->replan = true;
+    return true;
+}
+
+void performance_notice_drums(himc_performance *p)
+{
+    for (int i = 0; i < p->drums; i++) {
+        unsigned revision = himc_drum_revision(p->drum[i].drum);
+        if (revision == p->drum[i].revision)
+            continue;
+        const himc_place *place = himc_drum_place(p->drum[i].drum);
+        p->drum[i].revision = revision;
+        himc_planner_set_drum(p->planner, i, place);
+        if (i == 0)
+            p->posture.level = place->center.z + p->skeleton.mallet_radius;
+        p->replan = true;
+    }
+}
+
+// a state that is not finite is not passed on: the last good one is put back, and counted
+static void guard(himc_performance *p)
+{
+    double fastest = 0;
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        fastest = fmax(fastest, himc_vec3_dot(p->state.spin[i], p->state.spin[i]));
+    if (himc_body_state_finite(&p->state) && fastest < 1e7) {
+        p->good = p->state;
+        return;
+    }
+    p->recoveries++;
+    place_body(p);
+    performance_forget_touch(p);
+}
+
+// Inverse kinematics, inverse dynamics, forward dynamics; the contact is solved inside the same step
+static void step_dynamics(himc_performance *p, int n, double h)
+{
+    himc_vec3 tip_force[HIMC_HANDS];
+    himc_character_observe(p->character, &p->state);
+    guard(p);
+    performance_after_contact(p, step_time(p));
+    himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
+    performance_contact(p, n, tip_force);
+    performance_measure_step(p);
+    himc_character_step(p->character, p->torque, tip_force, h);
+}
+
+// the body shown as the joint targets have it; only the sticks' ends meet the head
+static void step_kinematics(himc_performance *p, int n)
+{
+    himc_pose pose;
+    himc_vec3 unused[HIMC_HANDS];
+    memcpy(pose.joint, p->reference.posture.joint, sizeof pose.joint);
+    himc_pose_to_state(&p->skeleton, &pose, p->reference.posture.rate, &p->state);
+    performance_after_contact(p, step_time(p));
+    performance_contact(p, n, unused);
+    performance_measure_step(p);
+}
+
+static void performance_step(himc_performance *p)
+{
+    performance_run_due_commands(p);
+    performance_notice_drums(p);
+    int n = (int)(step_begin(p, p->step + 1) - p->made);
+    double t = step_time(p);
+    bool tick = p->step % steps_per_task(p) == 0;
+    if (tick || p->replan)
+        read_task(p, t);
+    himc_task_between(&p->from, &p->to, t, &p->reference);
+    performance_release(p, t);
+    if (p->controller.mode == HIMC_PIPELINE_IK)
+        step_kinematics(p, n);
+    else
+        step_dynamics(p, n, n / p->config.sample_rate);
+    if (tick)
+        performance_motion_row(p, t);
+    performance_watch(p, t);
+    p->force_count = n;
+    p->made += (uint64_t)n;
+    p->step++;
+}
+
+void himc_performance_process(himc_performance *p, int n, double *const force[HIMC_HANDS])
+{
+    for (int done = 0; done < n;) {
+        if (p->sample == p->made)
+            performance_step(p);
+        int ready = (int)(p->made - p->sample), count = ready < n - done ? ready : n - done;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            if (force && force[hand])
+                memcpy(force[hand] + done, p->force[hand] + p->force_count - ready, (size_t)count * sizeof(double));
+        p->sample += (uint64_t)count;
+        done += count;
+    }
+}
+
+uint64_t himc_performance_time(const himc_performance *p)
+{
+    return p->sample - p->aligned;
+}
+
+void himc_performance_realign(himc_performance *p)
+{
+    p->aligned = p->sample;
+    for (int i = 0; i < p->drums; i++)
+        himc_drum_realign(p->drum[i].drum, (int)(p->made - p->sample));
+}
+
+bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_error *error)
+{
+    if (!himc_check_range("sample rate", sample_rate, 8000, 192000, "Hz", error))
+        return false;
+    if (sample_rate == p->config.sample_rate)
+        return true;
+    // the time that has passed stays the same in seconds
+    double t = step_time(p);
+    for (int i = 0; i < p->drums; i++)
+        if (!himc_drum_set_rate(p->drum[i].drum, sample_rate, error))
+            return false;
+    uint64_t ahead = p->made - p->sample, behind = p->sample - p->aligned;
+    p->config.sample_rate = sample_rate;
+    p->made = (uint64_t)ceil(t * sample_rate);
+    p->sample = p->made > ahead ? p->made - ahead : 0;
+    p->aligned = p->sample > behind ? p->sample - behind : 0;
+    performance_reset_clock(p);
+    return true;
+}
+
+static bool config_valid(const himc_performance_config *c, himc_error *error)
+{
+    return himc_check_range("sample rate", c->sample_rate, 8000, 192000, "Hz", error) &&
+           himc_check_range("physics rate", c->physics_rate, 500, 48000, "Hz", error) &&
+           himc_check_range("task rate", c->task_rate, 50, 2000, "Hz", error);
+}
+
+himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)
+{
+    if (!config_valid(config, error))
+        return NULL;
+    himc_performance *p = calloc(1, sizeof *p);
+    if (!p) {
+        himc_error_set(error, "performance: out of memory");
+        return NULL;
+    }
+    p->config = *config;
+    p->body = himc_skeleton_default();
+    p->controller.law = HIMC_LAW_COMPUTED_TORQUE;
+    p->take_options = himc_take_default();
+    p->track_start = p->end = INFINITY;
+    p->last_beat = -1;
+    himc_planner_config planning = himc_planner_default();
+    planning.mallet_radius = p->body.mallet_radius;
+    p->planner = himc_planner_new(&planning, error);
+    p->posture.level = planning.rest[HIMC_RIGHT].z - 0.12;
+    performance_forget_touch(p);
+    performance_reset_clock(p);
+    if (!p->planner || !performance_build_body(p, error)) {
+        himc_performance_free(p);
+        return NULL;
+    }
+    return p;
+}
+
+void himc_performance_free(himc_performance *p)
+{
+    if (!p)
+        return;
+    while (p->drums > 0)
+        himc_drum_release(p->drum[--p->drums].drum);
+    himc_character_free(p->character);
+    himc_planner_free(p->planner);
+    himc_track_free(p->track);
+    free(p);
+}

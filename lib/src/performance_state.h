@@ -1,0 +1,141 @@
+/// performance_state.h: what a performance holds, shared by the four files that are its rooms: performance.c (the step),
+/// performance_touch.c (sticks on heads), performance_command.c (what is asked), performance_report.c (what is told).
+#ifndef HIMC_PERFORMANCE_STATE_H
+#define HIMC_PERFORMANCE_STATE_H
+
+#include "himc/body.h"
+#include "himc/character.h"
+#include "himc/performance.h"
+#include "himc/task.h"
+#include "himc/track.h"
+
+#define LONGEST_STEP 512  // samples of one physics step
+#define WAITING_COMMANDS 64
+#define WAITING_EVENTS 1024
+#define PLAYED_TIME 0.005  // a stroke has landed if it touches within this of its time (s) ...
+#define PLAYED_PLACE 0.02  // ... and within this of its place (m)
+
+/// A drum the performer plays on; silent ones are its own, made for names nobody else has.
+typedef struct slot {
+    himc_drum *drum;
+    bool silent;
+    unsigned revision;
+} slot;
+
+/// What a hand's stick is doing on a head.
+typedef struct touch {
+    bool touching;      // from the first force to separation
+    bool released;      // control lets go of the normal
+    int drum;           // slot
+    himc_stick stick;   // in micro-contact
+    double offset;      // of the micro height from the body's own tip, while in contact (m)
+    double last_force;  // when force was last felt (s)
+    double peak_row;    // largest force since the last motion row (N)
+    himc_strike strike; // being made
+    double answered;    // planned time of the last stroke that has been struck, given up or counted (s)
+    double apex;        // highest target above the head since the last strike (m)
+} touch;
+
+/// The stroke a hand is on or comes to.
+typedef struct stroke_plan {
+    bool any;
+    double time;     // of contact (s)
+    int drum;        // slot
+    double x, y;     // on the head (m)
+    char nuance[HIMC_NAME_SIZE];
+} stroke_plan;
+
+typedef struct waiting_command {
+    uint64_t due; // sample
+    himc_command command;
+} waiting_command;
+
+struct himc_performance {
+    himc_performance_config config;
+    double physics_rate; // in force: never above the sample rate
+
+    // the body
+    himc_skeleton_config body;
+    himc_skeleton skeleton;
+    himc_posture posture;
+    himc_controller controller;
+    himc_character *character;
+    himc_body_state state, good; // now; when last known to be sound
+    himc_vec3 torque[HIMC_JOINTS];
+    himc_reference reference;
+    bool one_way;
+
+    // what to play
+    himc_planner *planner;
+    himc_track *track; // instead of the planner when a take is loaded
+    double track_start; // (s); infinite while stopped
+    himc_take_options take_options;
+    double piece_start, end; // of the piece being played (s)
+    bool playing;
+    long last_beat;
+
+    // the drums
+    slot drum[HIMC_DRUMS];
+    int drums;
+    bool make_drums;
+    touch touch[HIMC_HANDS];
+
+    // time
+    uint64_t sample;      // played since the performance was made
+    uint64_t aligned;     // sample 0 of himc_performance_time
+    uint64_t made;        // samples simulated: the next step begins here
+    uint64_t step_origin; // the sample at which step 0 began
+    uint64_t step;        // steps since then
+    double force[HIMC_HANDS][LONGEST_STEP]; // of the last step
+    int force_count;
+    himc_task_tick from, to;
+    bool replan;
+
+    // what came in and what goes out
+    waiting_command waiting[WAITING_COMMANDS];
+    int waiting_count;
+    himc_event event[WAITING_EVENTS];
+    int event_first, event_count;
+    long events_lost;
+    void (*on_motion)(void *, const himc_motion_row *);
+    void *motion_user;
+
+    // what is measured
+    double square_sum, height_sum;
+    long square_count, height_count;
+    int strokes, played;
+    double peak_force;
+    long recoveries;
+};
+
+/// Time of the next step (s since the performance was made).
+static inline double step_time(const himc_performance *p)
+{
+    return (double)p->made / p->config.sample_rate;
+}
+
+// performance.c
+bool performance_build_body(himc_performance *p, himc_error *error);
+void performance_reset_clock(himc_performance *p);
+void performance_notice_drums(himc_performance *p);
+himc_target performance_target(const himc_performance *p, himc_hand hand, double t);
+
+// performance_touch.c
+stroke_plan performance_plan(const himc_performance *p, himc_hand hand, double t);
+void performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS]);
+void performance_after_contact(himc_performance *p, double t);
+void performance_release(himc_performance *p, double t);
+void performance_forget_touch(himc_performance *p);
+
+// performance_command.c
+void performance_run_due_commands(himc_performance *p);
+bool performance_ensure_drum(himc_performance *p, const char *name, int *index, himc_error *error);
+
+// performance_report.c
+void performance_emit(himc_performance *p, const himc_event *event);
+void performance_note(himc_performance *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void performance_measure_step(himc_performance *p);
+void performance_watch(himc_performance *p, double t);
+void performance_motion_row(himc_performance *p, double t);
+
+#endif

@@ -1,0 +1,19 @@
+/// pickup.h: how loud each mode is to the ear.
+#ifndef HIMC_SRC_PICKUP_H
+#define HIMC_SRC_PICKUP_H
+
+#include "himc/membrane.h"
+
+/// Sound per unit of a mode's state; 1.0 as the pickup says.
+typedef struct hearing {
+    double displacement; ///< per metre of q
+    double velocity;     ///< per m/s of q'
+    double force;        ///< per newton of modal force phi f (N)
+} hearing;
+
+bool pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error);
+
+/// `point_shape` is the mode's shape at the pickup's point (not used by HIMC_PICKUP_AIR).
+hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode, double point_shape);
+
+#endif

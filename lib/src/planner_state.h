@@ -1,0 +1,78 @@
+/// planner_state.h: what the planner's files share.
+#ifndef HIMC_PLANNER_STATE_H
+#define HIMC_PLANNER_STATE_H
+
+#include "hand.h"
+
+#include "himc/planner.h"
+
+#define PLANNER_HITS 4
+#define PLANNER_TOUCHES 16
+#define PLANNER_NOTES 32
+/// Within this time of its touch a stroke is no longer changed (s).
+#define PLANNER_COMMIT 0.06
+/// Calls that carry no time change the plan from this long after the last advance (s).
+#define PLANNER_AHEAD 0.03
+
+typedef struct planner_stroke {
+    himc_stroke stroke;
+    int drum;
+} planner_stroke;
+
+/// A stroke that is planned; `goal.gesture` is how it will be played.
+typedef struct planner_touch {
+    himc_stroke stroke;
+    int drum;
+    int index;   ///< in the hand's score, -1 for a hit
+    bool parted; ///< the tip has left the head again
+    himc_goal goal;
+} planner_touch;
+
+typedef struct planner_hand {
+    planner_stroke *list; ///< owned, sorted by beat
+    int count, room;
+    int next; ///< first of the list that is not planned
+    planner_touch hit[PLANNER_HITS];
+    int hits; ///< that wait, sorted by time
+    planner_touch touch[PLANNER_TOUCHES];
+    int touches; ///< planned, and the last one past
+    himc_hand_plan plan;
+} planner_hand;
+
+/// What is said once only.
+typedef enum planner_kind {
+    PLANNER_SMALLER,
+    PLANNER_GIVEN_UP,
+    PLANNER_LATE,
+    PLANNER_CROWDED,
+    PLANNER_OUTSIDE
+} planner_kind;
+
+struct himc_planner {
+    himc_planner_config config;
+    himc_place place[HIMC_DRUMS];
+    planner_hand hand[HIMC_HANDS];
+    himc_tempo_change *tempi; ///< owned
+    int tempo_count;
+    bool playing;
+    double origin; ///< time of beat 0 while playing (s)
+    double beat;   ///< where play begins or began
+    double now;    ///< of the last advance (s)
+    himc_planner_note note[PLANNER_NOTES];
+    int note_first, note_count, note_lost;
+    unsigned said; ///< kinds
+};
+
+/// A note for the user, unless one of its kind has been given.
+HIMC_RT void planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+HIMC_RT double planner_time_of(const himc_planner *planner, double beat);
+HIMC_RT double planner_beat_at(const himc_planner *planner, double t);
+HIMC_RT himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t);
+/// Plans anew from t on; what is committed stays. With every hand, then extends.
+HIMC_RT void planner_replan(himc_planner *planner, double t);
+HIMC_RT void planner_cut(himc_planner *planner, himc_hand hand, double t);
+HIMC_RT void planner_extend(himc_planner *planner, himc_hand hand);
+
+#endif

@@ -1,0 +1,157 @@
+/// planner_transport.c: beats and seconds.
+///
+/// While playing, beat b is at time origin + S(b), S being the sum of 60/bpm over the tempo map. A change of tempo
+/// at beat b replaces what the map says up to b and moves the origin so that b stays where it is; the hands are then planned
+/// anew from there. Invariant: S grows strictly, so every time has one beat.
+#include "planner_state.h"
+
+#include <string.h>
+
+#define RETURN_TIME 2.5 // from the last touch to rest (s)
+
+double planner_time_of(const himc_planner *planner, double beat)
+{
+    return planner->origin + himc_score_seconds(planner->tempi, planner->tempo_count, beat);
+}
+
+double planner_beat_at(const himc_planner *planner, double t)
+{
+    return himc_score_beat(planner->tempi, planner->tempo_count, t - planner->origin);
+}
+
+static void seek_hand(planner_hand *h, double beat)
+{
+    int low = 0, high = h->count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (h->list[middle].stroke.beat < beat - 1e-9)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    h->next = low;
+}
+
+/// How much too late the hands would be for their first strokes (s).
+static double lateness(himc_planner *planner)
+{
+    double late = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planner_hand *h = &planner->hand[hand];
+        if (h->next >= h->count)
+            continue;
+        const planner_stroke *s = &h->list[h->next];
+        double at = planner_time_of(planner, s->stroke.beat);
+        himc_goal goal = planner_goal(planner, &s->stroke, s->drum, at);
+        late = fmax(late, h->plan.end + himc_hand_time(&h->plan, &goal) - at);
+    }
+    return late;
+}
+
+static void cut_both(himc_planner *planner, double t)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        planner_cut(planner, (himc_hand)hand, t);
+}
+
+/// Begins at planner->beat; the hands have been cut.
+static void start(himc_planner *planner, double t)
+{
+    planner->playing = true;
+    planner->origin = t - himc_score_seconds(planner->tempi, planner->tempo_count, planner->beat);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        seek_hand(&planner->hand[hand], planner->beat);
+    double late = lateness(planner);
+    planner->origin += late;
+    if (late > 0.001)
+        planner_say(planner, PLANNER_LATE, "beat %g is %.2g s late: the first stroke must be prepared",
+                    planner->beat, late);
+    planner_replan(planner, t);
+}
+
+static double last_beat(const himc_planner *planner)
+{
+    double beat = -1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        if (h->count > 0)
+            beat = fmax(beat, h->list[h->count - 1].stroke.beat);
+    }
+    return beat;
+}
+
+void himc_planner_play(himc_planner *planner, double t)
+{
+    if (!isfinite(t) || (planner->playing && t < himc_planner_end(planner)))
+        return;
+    if (planner->playing || planner->beat > last_beat(planner))
+        planner->beat = 0;
+    planner->said = 0;
+    cut_both(planner, t);
+    start(planner, t);
+}
+
+void himc_planner_stop(himc_planner *planner, double t)
+{
+    if (!isfinite(t) || !planner->playing)
+        return;
+    planner->beat = fmax(planner_beat_at(planner, t), planner->beat);
+    planner->playing = false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        planner->hand[hand].hits = 0;
+    cut_both(planner, t);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        planner->hand[hand].hits = 0;
+    planner_replan(planner, t);
+}
+
+void himc_planner_seek(himc_planner *planner, double t, double beat)
+{
+    if (!isfinite(t) || !isfinite(beat))
+        return;
+    planner->beat = fmax(beat, 0);
+    if (!planner->playing)
+        return;
+    cut_both(planner, t);
+    start(planner, t);
+}
+
+void himc_planner_tempo(himc_planner *planner, double t, double bpm)
+{
+    if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
+        return;
+    double beat = planner->playing ? planner_beat_at(planner, t) : planner->beat;
+    int past = 1;
+    while (past < planner->tempo_count && planner->tempi[past].beat <= beat)
+        past++;
+    planner->tempo_count -= past - 1;
+    memmove(planner->tempi + 1, planner->tempi + past,
+            (size_t)(planner->tempo_count - 1) * sizeof *planner->tempi);
+    planner->tempi[0] = (himc_tempo_change){0, bpm};
+    if (!planner->playing)
+        return;
+    planner->origin = t - himc_score_seconds(planner->tempi, planner->tempo_count, beat);
+    planner_replan(planner, t);
+}
+
+double himc_planner_beat(const himc_planner *planner, double t)
+{
+    return planner->playing ? fmax(planner_beat_at(planner, t), planner->beat) : -1;
+}
+
+double himc_planner_end(const himc_planner *planner)
+{
+    if (!planner->playing)
+        return HUGE_VAL;
+    double end = planner->origin;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        if (h->count > 0)
+            end = fmax(end, planner_time_of(planner, h->list[h->count - 1].stroke.beat) + RETURN_TIME);
+        for (int i = 0; i < h->hits; i++)
+            end = fmax(end, h->hit[i].goal.time + RETURN_TIME);
+        if (h->touches > 0)
+            end = fmax(end, h->touch[h->touches - 1].goal.time + RETURN_TIME);
+    }
+    return end;
+}

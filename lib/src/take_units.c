@@ -1,0 +1,200 @@
+/// take_units.c: how long is the file's unit? What the user or the file says, checked against the
+/// size of people.
+///
+/// A BVH never says. Its skeleton does: the longest way through the bones (toe to head, or hand to
+/// hand) of a grown player, sticks included, is 1.2 to 3.2 m, and the usual units (m, cm, mm, and
+/// CMU's 1/0.45 inch) are so far apart that at most one fits; a skeleton of arms alone may be 0.3
+/// m, but then only in m, cm or mm. Marker files do say, not always rightly: points that lie more
+/// than 8 m apart within one frame, or stay all in all within 2 cm, are read again in the one
+/// metric unit that makes them 0.2 .. 4 m, and a note says so; if none does, the file is refused.
+#include "take_data.h"
+#include "take_text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    double metres;
+} units[] = {{"m", 1},
+             {"cm", 0.01},
+             {"mm", 0.001},
+             {"CMU units of 0.056444 m", 0.0254 / 0.45},
+             {"meters", 1},
+             {"centimeters", 0.01},
+             {"millimeters", 0.001},
+             {"metres", 1},
+             {"centimetres", 0.01},
+             {"millimetres", 0.001},
+             {"meter", 1},
+             {"in", 0.0254},
+             {"inches", 0.0254},
+             {"ft", 0.3048},
+             {"um", 1e-6}};
+#define UNITS ((int)(sizeof units / sizeof units[0]))
+#define METRIC 3 // the first three: m, cm, mm
+#define GUESSED 4
+
+double himc_take_unit(const char *name)
+{
+    for (int i = 0; i < UNITS; i++)
+        if (himc_span_is((himc_span){name, strlen(name)}, units[i].name))
+            return units[i].metres;
+    return 0;
+}
+
+static double distance(himc_vec3 a, himc_vec3 b)
+{
+    return himc_vec3_length(himc_vec3_sub(a, b));
+}
+
+// the longest way along the bones between any two nodes (file units); -1 without memory
+static double skeleton_size(const himc_take *take)
+{
+    double *deepest = calloc((size_t)take->points, sizeof *deepest), size = 0;
+    if (!deepest)
+        return -1;
+    // children come after parents, so backwards every branch is complete before it joins
+    for (int i = take->points - 1; i > 0; i--) {
+        int parent = take->parents[i];
+        if (parent < 0)
+            continue;
+        double down = deepest[i] + himc_vec3_length(take->offsets[i]);
+        size = fmax(size, deepest[parent] + down);
+        deepest[parent] = fmax(deepest[parent], down);
+    }
+    free(deepest);
+    return size;
+}
+
+static double guess_unit(double size, double least, double most, int candidates)
+{
+    for (int i = 0; i < candidates; i++)
+        if (size * units[i].metres >= least && size * units[i].metres <= most)
+            return units[i].metres;
+    return 0;
+}
+
+typedef struct box {
+    himc_vec3 low, high;
+} box;
+
+static box box_empty(void)
+{
+    return (box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void box_add(box *b, himc_vec3 x)
+{
+    if (!himc_vec3_finite(x))
+        return;
+    b->low = himc_vec3_make(fmin(b->low.x, x.x), fmin(b->low.y, x.y), fmin(b->low.z, x.z));
+    b->high = himc_vec3_make(fmax(b->high.x, x.x), fmax(b->high.y, x.y), fmax(b->high.z, x.z));
+}
+
+static double box_size(const box *b)
+{
+    return b->high.x >= b->low.x ? distance(b->high, b->low) : 0;
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// of the points: how far apart in a typical frame (median), and the box of all frames (file units)
+static void marker_sizes(const himc_take *take, double *typical, double *all)
+{
+    double spread[201];
+    int count = 0, step = take->frames / 200 + 1;
+    box whole = box_empty();
+    for (int frame = 0; frame < take->frames; frame += step) {
+        box one = box_empty();
+        for (int i = 0; i < take->points; i++) {
+            box_add(&one, *himc_take_at(take, frame, i));
+            box_add(&whole, *himc_take_at(take, frame, i));
+        }
+        spread[count++] = box_size(&one);
+    }
+    qsort(spread, (size_t)count, sizeof spread[0], compare);
+    *typical = spread[count / 2];
+    *all = box_size(&whole);
+}
+
+static const char *unit_name(double metres, char text[32])
+{
+    for (int i = 0; i < UNITS; i++)
+        if (units[i].metres == metres)
+            return units[i].name;
+    snprintf(text, 32, "units of %g m", metres);
+    return text;
+}
+
+static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
+{
+    double size = skeleton_size(take);
+    if (size < 0)
+        return himc_error_set(error, "%s: no memory", take->file);
+    *unit = guess_unit(size, 1.2, 3.2, GUESSED);
+    if (*unit == 0)
+        *unit = guess_unit(size, 0.3, 3.2, METRIC);
+    char text[32];
+    if (*unit == 0)
+        return himc_error_set(
+            error,
+            "%s: skeleton: %.4g units through its bones is no player's size in m, cm, mm or CMU "
+            "units, allowed 0.3 .. 3.2 m",
+            take->file, size);
+    snprintf(take->units_text, sizeof take->units_text,
+             "%s, guessed from %.4g units through the skeleton's bones", unit_name(*unit, text),
+             size);
+    return true;
+}
+
+static bool settle_markers(himc_take *take, double *unit, himc_error *error)
+{
+    double typical, all, said = take->file_unit;
+    marker_sizes(take, &typical, &all);
+    char text[32], other[32];
+    bool fits =
+        said > 0 && typical * said <= 8 && (all * said >= 0.02 || take->frames == 1 || all == 0);
+    double size = typical > 0.05 * all ? typical : all;
+    *unit = fits ? said : guess_unit(size, 0.2, 4, METRIC);
+    if (*unit == 0)
+        return himc_error_set(
+            error,
+            "%s: points lie %.4g m apart in %s and no metric unit makes that 0.2 .. 4 m: "
+            "is this a player?",
+            take->file, size * (said > 0 ? said : 1), unit_name(said > 0 ? said : 1, text));
+    snprintf(take->units_text, sizeof take->units_text, "%s, %s", unit_name(*unit, text),
+             fits ? "as the file says" : "guessed from the distances of the points");
+    if (said > 0 && !fits)
+        himc_take_note(take, "units: read as %s, for in %s the points lie %.4g m apart",
+                       unit_name(*unit, text), unit_name(said, other), size * said);
+    return true;
+}
+
+static void scale(himc_take *take, double unit)
+{
+    size_t all = (size_t)take->frames * (size_t)take->points;
+    for (size_t i = 0; i < all; i++)
+        take->x[i] = himc_vec3_scale(take->x[i], unit);
+    for (int i = 0; i < take->points && take->offsets; i++)
+        take->offsets[i] = himc_vec3_scale(take->offsets[i], unit);
+}
+
+bool himc_take_settle_units(himc_take *take, const himc_take_options *options, himc_error *error)
+{
+    double unit = options->unit;
+    char text[32];
+    if (unit > 0)
+        snprintf(take->units_text, sizeof take->units_text, "%s, as asked for",
+                 unit_name(unit, text));
+    else if (!(take->parents ? settle_skeleton(take, &unit, error)
+                             : settle_markers(take, &unit, error)))
+        return false;
+    scale(take, unit);
+    return true;
+}

@@ -1,0 +1,138 @@
+/* drum-link.h: how [membrane~ NAME] and [himc~ NAME] meet, and what both do alike.
+
+A [membrane~] binds itself to the symbol "himc:NAME". [himc~] looks there, makes sure by class name, magic word and
+sizes that it found what it thinks, and takes the drum behind it. The two are separate binaries, each with its own
+hidden copy of libhimc: they share data through pointers, and no statics.
+
+Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The engine, a drum or
+a performance, counts in the same way; whoever comes first in a tick brings it forward, the other reads its ring. */
+#ifndef DRUM_LINK_H
+#define DRUM_LINK_H
+
+#include "himc/himc.h"
+#include "m_pd.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
+#define DRUM_LINK_CLASS "membrane~"
+
+/* What a drum's object shows, right behind its t_object. */
+typedef struct t_drum_link {
+    uint32_t l_magic;
+    uint32_t l_size;                 /* of this struct */
+    char l_version[HIMC_NAME_SIZE]; /* of the library that made the drum */
+    himc_drum *l_drum;
+    double l_rate; /* the drum runs at this sample rate; kept by whoever drives it (Hz) */
+} t_drum_link;
+
+static inline t_drum_link drum_link(himc_drum *drum, double rate)
+{
+    t_drum_link link = {DRUM_LINK_MAGIC, sizeof link, HIMC_VERSION, drum, rate};
+    return link;
+}
+
+static inline t_symbol *drum_link_symbol(const char *name)
+{
+    char text[HIMC_NAME_SIZE + 8];
+    snprintf(text, sizeof text, "himc:%s", name);
+    return gensym(text);
+}
+
+/* The link of [membrane~ NAME], or NULL: there is none, or one of another version of himc. */
+static inline t_drum_link *drum_link_find(const char *name)
+{
+    t_pd *thing = drum_link_symbol(name)->s_thing;
+    if (!thing || strcmp(class_getname(*thing), DRUM_LINK_CLASS) != 0)
+        return NULL;
+    t_drum_link *link = (t_drum_link *)((char *)thing + sizeof(t_object));
+    bool same = link->l_magic == DRUM_LINK_MAGIC && link->l_size == sizeof *link &&
+                strncmp(link->l_version, HIMC_VERSION, sizeof link->l_version) == 0;
+    return same ? link : NULL;
+}
+
+/* An object's place in the stream of samples. */
+typedef struct t_stream {
+    int s_length;     /* of a block (samples) */
+    double s_rate;    /* (Hz) */
+    uint64_t s_count; /* put out since the graph was built */
+    uint64_t s_lag;   /* the engine was ahead by so many samples when the last block began */
+    double s_start;   /* logical time at which the next block starts */
+} t_stream;
+
+/* Samples of logical time since the last block ended; 0 when DSP is off or the object switched off. */
+static inline double stream_offset(const t_stream *s)
+{
+    double limit = s->s_length > sys_getblksize() ? s->s_length : sys_getblksize();
+    double offset = clock_gettimesince(s->s_start) * 0.001 * s->s_rate;
+    return offset <= limit + 0.5 ? offset : 0;
+}
+
+/* Called from a dsp method: counts from 0 again. */
+static inline void stream_restart(t_stream *s, const t_signal *sp)
+{
+    s->s_length = sp->s_n;
+    s->s_rate = sp->s_sr;
+    s->s_count = s->s_lag = 0;
+    if (stream_offset(s) == 0)
+        s->s_start = clock_getlogicaltime();
+}
+
+/* Called first in a perform routine. After a time switched off, [switch~], the object rejoins the engine, which
+may have gone on without it, with the lag it had; otherwise it just goes on. */
+static inline void stream_begin(t_stream *s, uint64_t engine)
+{
+    bool away = clock_gettimesince(s->s_start) * 0.001 * s->s_rate > 1.5 * (s->s_length + sys_getblksize());
+    if (away && engine > s->s_count + s->s_lag)
+        s->s_count = engine - s->s_lag;
+    else if (engine >= s->s_count)
+        s->s_lag = engine - s->s_count;
+}
+
+/* Called last in a perform routine. */
+static inline void stream_end(t_stream *s)
+{
+    s->s_start = clock_getlogicaltime();
+}
+
+/* Samples from where the engine is to where a message that arrives now belongs (PD messages come between blocks
+but have a time of their own). An engine that was pulled ahead by a longer block can only take it at once. */
+static inline int stream_delay(const t_stream *s, uint64_t engine)
+{
+    double delay = (double)s->s_count + stream_offset(s) - (double)engine;
+    return delay > 0 ? (int)lround(delay) : 0;
+}
+
+/* A Pd message as a checked command. `list stroke ...` is taken as `stroke ...`. */
+static inline bool command_from_pd(himc_command *command, himc_receiver receiver, t_symbol *s, int argc,
+                                   const t_atom *argv, himc_error *error)
+{
+    himc_atom atom[2 * HIMC_COMMAND_ATOMS]; /* more than any command has: the parser says so */
+    int count = 0;
+    if (s == &s_list && argc > 0 && argv->a_type == A_SYMBOL) {
+        s = argv->a_w.w_symbol;
+        argc--, argv++;
+    }
+    for (; count < argc && count < 2 * HIMC_COMMAND_ATOMS; count++) {
+        const t_atom *a = argv + count;
+        if (a->a_type == A_FLOAT)
+            atom[count] = (himc_atom){HIMC_ATOM_NUMBER, a->a_w.w_float, NULL};
+        else
+            atom[count] = (himc_atom){HIMC_ATOM_SYMBOL, 0,
+                                      a->a_type == A_SYMBOL ? a->a_w.w_symbol->s_name : "(pointer)"};
+    }
+    return himc_command_parse(command, receiver, s->s_name, atom, count, error);
+}
+
+/* Sends `selector` and the words of `line` as one message. */
+static inline void outlet_words(t_outlet *outlet, const char *selector, const char *line)
+{
+    t_binbuf *words = binbuf_new();
+    binbuf_text(words, line, strlen(line));
+    outlet_anything(outlet, gensym(selector), binbuf_getnatom(words), binbuf_getvec(words));
+    binbuf_free(words);
+}
+
+#endif

@@ -1,0 +1,310 @@
+/* [himc~ DRUM ...]: the performer, a simulated percussionist who strikes the drums [membrane~ DRUM].
+
+inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h has the table)
+outlets  contact force of the left stick (N), of the right stick (N), messages:
+         strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
+         beat N   done   info ...
+
+Glue only: commands go to a himc_performance with the sample on which they arrived; each block brings it forward and puts
+out what the sticks felt. A [membrane~] that comes earlier in the tick asks for its sound first and so brings the
+performance forward itself (himc_tilde_advance), so the forces wait in a ring. Nothing is sent from perform: a clock does,
+at the start of the next tick. */
+#include "drum-link.h"
+
+#define FORCE_RING HIMC_DRUM_RING
+
+static t_class *himc_tilde_class;
+
+typedef struct t_himc_drum {
+    const char *d_name;
+    himc_drum *d_drum; /* borrowed from the performance; NULL before the first look-up */
+    bool d_silent;     /* made here, for want of a [membrane~] */
+    bool d_told;       /* and the user knows */
+} t_himc_drum;
+
+typedef struct t_himc {
+    t_object x_obj;
+    t_canvas *x_canvas;
+    t_clock *x_clock;
+    t_outlet *x_messages;
+
+    himc_performance *x_performance;
+    double x_rate; /* of the performance (Hz) */
+    int x_count;
+    t_himc_drum x_drum[HIMC_DRUMS];
+
+    t_stream x_stream;
+    t_sample *x_out[HIMC_HANDS];
+    double x_force[HIMC_HANDS][FORCE_RING];
+
+    bool x_waiting; /* x_event is to be sent */
+    himc_event x_event;
+} t_himc;
+
+/* Brings the performance to sample `time`, whoever needs it: x's perform or that of one of its drums. */
+static void himc_tilde_advance(void *object, uint64_t time)
+{
+    t_himc *x = object;
+    for (uint64_t now; (now = himc_performance_time(x->x_performance)) < time;) {
+        uint64_t at = now % FORCE_RING;
+        uint64_t n = time - now < FORCE_RING - at ? time - now : FORCE_RING - at;
+        double *force[HIMC_HANDS] = {x->x_force[HIMC_LEFT] + at, x->x_force[HIMC_RIGHT] + at};
+        himc_performance_process(x->x_performance, (int)n, force);
+    }
+    if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
+        x->x_waiting = true;
+        clock_delay(x->x_clock, 0);
+    }
+}
+
+static t_int *himc_tilde_perform(t_int *w)
+{
+    t_himc *x = (t_himc *)w[1];
+    t_stream *s = &x->x_stream;
+    stream_begin(s, himc_performance_time(x->x_performance));
+    himc_tilde_advance(x, s->s_count + (uint64_t)s->s_length);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < s->s_length; i++)
+            x->x_out[hand][i] = (t_sample)x->x_force[hand][(s->s_count + (uint64_t)i) % FORCE_RING];
+    s->s_count += (uint64_t)s->s_length;
+    stream_end(s);
+    return w + 2;
+}
+
+static void himc_tilde_let_go(t_himc *x, const t_himc_drum *d)
+{
+    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == x)
+        himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
+}
+
+/* Puts `drum` where another of its name was. */
+static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_error *error)
+{
+    if (!himc_performance_add_drum(x->x_performance, drum, error))
+        return false;
+    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, x});
+    d->d_drum = drum;
+    return true;
+}
+
+/* The drum of [membrane~ NAME] at the performance's rate, or NULL and why not. */
+static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error)
+{
+    t_drum_link *link = drum_link_find(name);
+    if (!link) {
+        himc_error_set(error, "no [membrane~ %s]", name);
+        return NULL;
+    }
+    void *performer = himc_drum_get_driver(link->l_drum).performer;
+    if (performer && performer != x) {
+        himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);
+        return NULL;
+    }
+    if (link->l_rate != x->x_rate && !himc_drum_set_rate(link->l_drum, x->x_rate, error))
+        return NULL;
+    link->l_rate = x->x_rate;
+    return link->l_drum;
+}
+
+/* Finds each drum by name, as [delread~] does; changes nothing where nothing has changed. */
+static void himc_tilde_resolve(t_himc *x, bool tell)
+{
+    for (t_himc_drum *d = x->x_drum; d < x->x_drum + x->x_count; d++) {
+        himc_error error = {""};
+        himc_drum *drum = himc_tilde_find(x, d->d_name, &error);
+        if (drum && drum != d->d_drum) {
+            himc_tilde_let_go(x, d);
+            if (himc_tilde_take(x, d, drum, &error))
+                d->d_silent = d->d_told = false;
+            else
+                drum = NULL;
+        }
+        if (!drum && !d->d_silent) {
+            himc_error ignored;
+            himc_drum *silent = himc_drum_new(d->d_name, 23, x->x_rate, &ignored);
+            himc_tilde_let_go(x, d);
+            d->d_silent = silent && himc_tilde_take(x, d, silent, &ignored);
+            himc_drum_release(silent);
+        }
+        if (!drum && tell && !d->d_told) {
+            pd_error(x, "himc~: %s: playing on a silent one", error.text);
+            d->d_told = true;
+        }
+    }
+}
+
+static void himc_tilde_dsp(t_himc *x, t_signal **sp)
+{
+    himc_error error;
+    if (sp[0]->s_n > FORCE_RING) {
+        pd_error(x, "himc~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, FORCE_RING);
+    } else if (sp[0]->s_sr != x->x_rate && !himc_performance_set_rate(x->x_performance, sp[0]->s_sr, &error)) {
+        pd_error(x, "himc~: %s", error.text);
+    } else {
+        x->x_rate = sp[0]->s_sr;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            x->x_out[hand] = sp[hand]->s_vec;
+        stream_restart(&x->x_stream, sp[0]);
+        himc_tilde_resolve(x, true);
+        himc_performance_realign(x->x_performance);
+        dsp_add(himc_tilde_perform, 1, x);
+        return;
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        dsp_add_zero(sp[hand]->s_vec, sp[hand]->s_n);
+}
+
+static void himc_tilde_send(t_himc *x, const himc_event *event)
+{
+    const himc_strike *strike = &event->strike;
+    t_atom atom[8];
+    switch (event->kind) {
+    case HIMC_EVENT_STRIKE:
+        SETFLOAT(atom, (t_float)strike->time);
+        SETSYMBOL(atom + 1, gensym(himc_hand_name(strike->hand)));
+        SETSYMBOL(atom + 2, gensym(strike->drum));
+        SETFLOAT(atom + 3, (t_float)strike->x);
+        SETFLOAT(atom + 4, (t_float)strike->y);
+        SETFLOAT(atom + 5, (t_float)strike->velocity);
+        SETFLOAT(atom + 6, (t_float)strike->force);
+        SETFLOAT(atom + 7, (t_float)strike->duration);
+        outlet_anything(x->x_messages, gensym("strike"), 8, atom);
+        break;
+    case HIMC_EVENT_BEAT:
+        SETFLOAT(atom, (t_float)event->beat);
+        outlet_anything(x->x_messages, gensym("beat"), 1, atom);
+        break;
+    case HIMC_EVENT_DONE:
+        outlet_anything(x->x_messages, gensym("done"), 0, NULL);
+        break;
+    case HIMC_EVENT_NOTE:
+        logpost(x, PD_NORMAL, "himc~: %s", event->text);
+        break;
+    }
+}
+
+static void himc_tilde_tick(t_himc *x)
+{
+    while (x->x_waiting) {
+        /* what is sent may come back as a command, so the state is written first */
+        himc_event event = x->x_event;
+        x->x_waiting = himc_performance_event(x->x_performance, &x->x_event);
+        himc_tilde_send(x, &event);
+    }
+}
+
+/* Pd's own way to a file: absolute, beside the patch, or along its search path. */
+static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size, himc_error *error)
+{
+    char folder[MAXPDSTRING], *base;
+    int file = canvas_open(x->x_canvas, name, "", folder, &base, MAXPDSTRING, 0);
+    if (file < 0)
+        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path", name);
+    sys_close(file);
+    if ((size_t)snprintf(path, size, "%s/%s", folder, base) >= size)
+        return himc_error_set(error, "%s: its full name is longer than %zu characters", name, size - 1);
+    return true;
+}
+
+static void himc_tilde_line(void *object, const char *line)
+{
+    outlet_words(((t_himc *)object)->x_messages, "info", line);
+}
+
+static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
+{
+    himc_command command;
+    if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
+        return false;
+    if (command.id == HIMC_COMMAND_INFO) {
+        himc_performance_describe(x->x_performance, himc_tilde_line, x);
+        return true;
+    }
+    if (command.id == HIMC_COMMAND_SCORE || command.id == HIMC_COMMAND_TAKE) {
+        char path[HIMC_PATH_SIZE];
+        if (!himc_tilde_locate(x, command.atom[0].symbol, path, sizeof path, error))
+            return himc_error_prefix(error, "%s", command.id == HIMC_COMMAND_SCORE ? "score" : "take");
+        himc_atom atom = {HIMC_ATOM_SYMBOL, 0, path};
+        const char *name = command.id == HIMC_COMMAND_SCORE ? "score" : "take";
+        if (!himc_command_parse(&command, HIMC_PERFORMER, name, &atom, 1, error))
+            return false;
+    }
+    /* a command may come before DSP is on, and its drums should be there */
+    himc_tilde_resolve(x, false);
+    int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
+    return himc_performance_command(x->x_performance, &command, delay, error);
+}
+
+static void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)
+{
+    himc_error error;
+    if (!himc_tilde_command(x, s, argc, argv, &error))
+        pd_error(x, "himc~: %s", error.text);
+}
+
+/* Checks the names of the drums; nothing has been made yet. */
+static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error)
+{
+    if (argc > HIMC_DRUMS)
+        return himc_error_set(error, "%d drums, allowed 0 .. %d", argc, HIMC_DRUMS);
+    for (int i = 0; i < argc; i++) {
+        char text[80];
+        atom_string(argv + i, text, sizeof text);
+        if (argv[i].a_type != A_SYMBOL || strlen(text) >= HIMC_NAME_SIZE)
+            return himc_error_set(error, "argument %d: %s, allowed: a drum's name of up to %d characters", i + 1, text,
+                                  HIMC_NAME_SIZE - 1);
+        for (int k = 0; k < i; k++)
+            if (argv[k].a_w.w_symbol == argv[i].a_w.w_symbol)
+                return himc_error_set(error, "argument %d: %s is named twice", i + 1, text);
+    }
+    return true;
+}
+
+static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
+{
+    (void)s;
+    himc_error error;
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = sys_getsr();
+    himc_performance *performance = NULL;
+    if (himc_tilde_arguments(argc, argv, &error))
+        performance = himc_performance_new(&config, &error);
+    if (!performance) {
+        pd_error(NULL, "himc~: %s", error.text);
+        return NULL;
+    }
+    t_himc *x = (t_himc *)pd_new(himc_tilde_class);
+    x->x_canvas = canvas_getcurrent();
+    x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
+    x->x_performance = performance;
+    x->x_rate = config.sample_rate;
+    x->x_count = argc;
+    for (int i = 0; i < argc; i++)
+        x->x_drum[i].d_name = argv[i].a_w.w_symbol->s_name;
+    outlet_new(&x->x_obj, &s_signal);
+    outlet_new(&x->x_obj, &s_signal);
+    x->x_messages = outlet_new(&x->x_obj, NULL);
+    return x;
+}
+
+static void himc_tilde_free(t_himc *x)
+{
+    for (int i = 0; i < x->x_count; i++)
+        himc_tilde_let_go(x, x->x_drum + i);
+    himc_performance_free(x->x_performance);
+    clock_free(x->x_clock);
+}
+
+/* the one symbol this binary exports */
+__attribute__((visibility("default"))) void himc_tilde_setup(void);
+
+void himc_tilde_setup(void)
+{
+    himc_tilde_class = class_new(gensym("himc~"), (t_newmethod)himc_tilde_new, (t_method)himc_tilde_free,
+                                 sizeof(t_himc), CLASS_DEFAULT, A_GIMME, A_NULL);
+    if (!himc_tilde_class)
+        return; /* a Pd of another float size has refused it and said so */
+    class_addmethod(himc_tilde_class, (t_method)himc_tilde_dsp, gensym("dsp"), A_CANT, A_NULL);
+    class_addanything(himc_tilde_class, (t_method)himc_tilde_anything);
+    post("himc~ " HIMC_VERSION);
+}

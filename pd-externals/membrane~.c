@@ -1,0 +1,317 @@
+/* [membrane~ NAME [INCHES]]: a drum: a modal membrane that [himc~ NAME] strikes, or a force signal, or messages.
+
+inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ... (himc/command.h has the
+         table); x and y of the spot (m from the head's centre, x away from the performer, signal or float)
+outlets  sound, displacement under the spot (m), messages:
+         strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
+         info ...
+
+Glue only. Without a performer the object advances its drum itself. With one, the performer steps head and sticks together,
+and may have done so before the inlet's force for those samples is known; so that force plays on a second head of the
+same make (the layer). A membrane is linear: the sum is the sound of both, except that sticks do not feel the inlet. */
+#include "drum-link.h"
+
+#define CHUNK 64 /* samples at a time, on the stack of the perform routine */
+
+static t_class *membrane_class;
+
+typedef struct t_membrane {
+    t_object x_obj;
+    t_drum_link x_link; /* must follow: [himc~] looks for it here */
+    t_float x_force;    /* the force inlet's value when nothing is connected */
+    t_symbol *x_symbol; /* that the object is bound to; NULL if it has no name */
+    t_clock *x_clock;
+    t_outlet *x_messages;
+
+    himc_membrane *x_layer; /* plays the inlet's force while a performer plays the drum */
+    bool x_layer_sounds;    /* it has felt a force */
+
+    t_stream x_stream;
+    t_sample *x_in[3];
+    t_sample *x_out[2];
+
+    bool x_waiting; /* x_report is to be sent */
+    himc_contact_report x_report;
+    long x_refused; /* samples of force or place that were not numbers */
+    bool x_apart;   /* runs at another sample rate than its performer */
+    bool x_told;    /* of either, since the graph was built */
+} t_membrane;
+
+/* What is not a number counts as 0, and is counted. */
+static double membrane_number(t_membrane *x, t_sample value)
+{
+    if (isfinite(value))
+        return value;
+    x->x_refused++;
+    return 0;
+}
+
+/* Adds what the force from the inlet makes of the layer. */
+static void membrane_layer(t_membrane *x, int n, double in[3][CHUNK], double out[2][CHUNK])
+{
+    double heard[CHUNK], seen[CHUNK];
+    for (int i = 0; i < n && !x->x_layer_sounds; i++)
+        x->x_layer_sounds = in[0][i] != 0;
+    if (!x->x_layer_sounds)
+        return;
+    himc_membrane_watch(x->x_layer, in[1][0], in[2][0]);
+    for (int i = 0, run; i < n; i += run) {
+        for (run = 1; i + run < n && in[0][i + run] == 0;)
+            run++;
+        if (in[0][i] != 0)
+            himc_membrane_push(x->x_layer, in[1][i], in[2][i], in[0][i]);
+        himc_membrane_run(x->x_layer, run, heard + i, seen + i);
+    }
+    for (int i = 0; i < n; i++) {
+        out[0][i] += heard[i];
+        out[1][i] += seen[i];
+    }
+}
+
+/* Whether the layer is made and heard as the drum is. */
+static bool membrane_layer_fits(const t_membrane *x)
+{
+    himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    const himc_head *a = himc_membrane_head(drum), *b = himc_membrane_head(x->x_layer);
+    const himc_pickup *p = himc_membrane_pickup(drum), *q = himc_membrane_pickup(x->x_layer);
+    return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
+           a->decay_constant == b->decay_constant && a->decay_square == b->decay_square && a->modes == b->modes &&
+           p->kind == q->kind && p->x == q->x && p->y == q->y && p->azimuth == q->azimuth &&
+           p->elevation == q->elevation && p->distance == q->distance;
+}
+
+/* Setting a head may allocate: from a clock, never from perform. */
+static void membrane_fit_layer(t_membrane *x)
+{
+    himc_error error;
+    himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    if (!himc_membrane_set_head(x->x_layer, himc_membrane_head(drum), &error) ||
+        !himc_membrane_set_pickup(x->x_layer, himc_membrane_pickup(drum), &error))
+        pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
+}
+
+static void membrane_play(t_membrane *x, int n, double in[3][CHUNK], double out[2][CHUNK])
+{
+    himc_drum *drum = x->x_link.l_drum;
+    himc_drum_driver driver = himc_drum_get_driver(drum);
+    x->x_apart = x->x_link.l_rate != x->x_stream.s_rate;
+    if (x->x_apart) {
+        memset(out, 0, 2 * sizeof *out);
+    } else if (driver.performer) {
+        himc_membrane_watch(himc_drum_membrane(drum), in[1][0], in[2][0]);
+        driver.advance_to(driver.performer, x->x_stream.s_count + (uint64_t)n);
+        himc_drum_read(drum, x->x_stream.s_count, n, out[0], out[1]);
+        membrane_layer(x, n, in, out);
+    } else {
+        himc_drum_advance(drum, n, NULL, 0, NULL, in[0], in[1], in[2]);
+        himc_drum_read(drum, x->x_stream.s_count, n, out[0], out[1]);
+    }
+    x->x_stream.s_count += (uint64_t)n;
+}
+
+/* Something happened in perform that the user does not know yet. */
+static bool membrane_troubled(const t_membrane *x)
+{
+    return (x->x_refused || x->x_apart) && !x->x_told;
+}
+
+static t_int *membrane_perform(t_int *w)
+{
+    t_membrane *x = (t_membrane *)w[1];
+    double in[3][CHUNK], out[2][CHUNK];
+    stream_begin(&x->x_stream, himc_drum_time(x->x_link.l_drum));
+    for (int done = 0, n; done < x->x_stream.s_length; done += n) {
+        n = x->x_stream.s_length - done < CHUNK ? x->x_stream.s_length - done : CHUNK;
+        /* all inlets are read before an outlet is written: they may be the same memory */
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < n; i++)
+                in[k][i] = membrane_number(x, x->x_in[k][done + i]);
+        membrane_play(x, n, in, out);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < n; i++)
+                x->x_out[k][done + i] = (t_sample)out[k][i];
+    }
+    stream_end(&x->x_stream);
+    if (!x->x_waiting)
+        x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
+    if (x->x_waiting || membrane_troubled(x) || !membrane_layer_fits(x))
+        clock_delay(x->x_clock, 0);
+    return w + 2;
+}
+
+static void membrane_dsp(t_membrane *x, t_signal **sp)
+{
+    himc_error error;
+    bool driven = himc_drum_get_driver(x->x_link.l_drum).performer != NULL;
+    if (sp[0]->s_n > HIMC_DRUM_RING) {
+        pd_error(x, "membrane~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, HIMC_DRUM_RING);
+    } else if (!himc_membrane_set_rate(x->x_layer, sp[0]->s_sr, &error) ||
+               (!driven && !himc_drum_set_rate(x->x_link.l_drum, sp[0]->s_sr, &error))) {
+        pd_error(x, "membrane~: %s", error.text);
+    } else {
+        for (int k = 0; k < 3; k++)
+            x->x_in[k] = sp[k]->s_vec;
+        for (int k = 0; k < 2; k++)
+            x->x_out[k] = sp[3 + k]->s_vec;
+        stream_restart(&x->x_stream, sp[0]);
+        if (!driven) {
+            x->x_link.l_rate = sp[0]->s_sr;
+            himc_drum_realign(x->x_link.l_drum, 0);
+        }
+        x->x_told = false;
+        dsp_add(membrane_perform, 1, x);
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        dsp_add_zero(sp[3 + k]->s_vec, sp[3 + k]->s_n);
+}
+
+static void membrane_send(t_membrane *x, const himc_contact_report *report)
+{
+    const double value[] = {report->time, report->x, report->y, report->velocity, report->force, report->duration};
+    t_atom atom[6];
+    for (int i = 0; i < 6; i++)
+        SETFLOAT(atom + i, (t_float)value[i]);
+    outlet_anything(x->x_messages, gensym("strike"), 6, atom);
+}
+
+static void membrane_tick(t_membrane *x)
+{
+    const char *name = himc_drum_name(x->x_link.l_drum);
+    if (membrane_troubled(x) && x->x_apart)
+        pd_error(x, "membrane~: %s: silent at %g Hz, for [himc~] plays it at %g Hz", name, x->x_stream.s_rate,
+                 x->x_link.l_rate);
+    else if (membrane_troubled(x))
+        pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0", name);
+    x->x_told |= membrane_troubled(x);
+    if (!membrane_layer_fits(x))
+        membrane_fit_layer(x);
+    while (x->x_waiting) {
+        /* what is sent may come back as a command, so the state is written first */
+        himc_contact_report report = x->x_report;
+        x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
+        membrane_send(x, &report);
+    }
+}
+
+static void membrane_info(t_membrane *x)
+{
+    char text[512];
+    himc_drum_describe(x->x_link.l_drum, text, sizeof text);
+    outlet_words(x->x_messages, "info", text);
+    if (x->x_refused) {
+        snprintf(text, sizeof text, "refused %ld samples", x->x_refused);
+        outlet_words(x->x_messages, "info", text);
+    }
+}
+
+static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
+{
+    himc_command command;
+    himc_drum *drum = x->x_link.l_drum;
+    if (!command_from_pd(&command, HIMC_DRUM, s, argc, argv, error))
+        return false;
+    if (command.id == HIMC_COMMAND_STRIKE) {
+        int delay = stream_delay(&x->x_stream, himc_drum_time(drum));
+        return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
+                                   command.atom[2].number, error);
+    }
+    return himc_drum_command(drum, &command, error);
+}
+
+static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
+{
+    himc_error error;
+    if (s == gensym("info") && argc == 0)
+        membrane_info(x);
+    else if (!membrane_command(x, s, argc, argv, &error))
+        pd_error(x, "membrane~: %s", error.text);
+}
+
+/* NAME and INCHES, both optional: without a name no performer finds it. */
+static bool membrane_arguments(int argc, const t_atom *argv, const char **name, double *inches, himc_error *error)
+{
+    char text[80] = "";
+    if (argc > 0)
+        atom_string(argv, text, sizeof text);
+    if (argc > 0 && argv[0].a_type != A_SYMBOL)
+        return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 23]", text);
+    if (argc > 0)
+        *name = argv[0].a_w.w_symbol->s_name;
+    if (argc > 1)
+        atom_string(argv + 1, text, sizeof text);
+    if (argc > 1 && argv[1].a_type != A_FLOAT)
+        return himc_error_set(error, "argument 2: %s, allowed: a diameter in inches", text);
+    if (argc > 1)
+        *inches = argv[1].a_w.w_float;
+    return argc <= 2 || himc_error_set(error, "%d arguments, allowed: NAME [INCHES]", argc);
+}
+
+static void membrane_bind(t_membrane *x, const char *name)
+{
+    t_symbol *symbol = drum_link_symbol(name);
+    if (symbol->s_thing) {
+        pd_error(x, "membrane~: %s: there is one of this name already: no [himc~] will find this one", name);
+        return;
+    }
+    pd_bind(&x->x_obj.ob_pd, symbol);
+    x->x_symbol = symbol;
+}
+
+static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
+{
+    (void)s;
+    himc_error error;
+    const char *name = NULL;
+    double inches = 23, rate = sys_getsr();
+    himc_drum *drum = NULL;
+    himc_membrane *layer = NULL;
+    if (membrane_arguments(argc, argv, &name, &inches, &error))
+        drum = himc_drum_new(name ? name : "nameless", inches, rate, &error);
+    if (drum)
+        layer = himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, &error);
+    if (!layer) {
+        himc_drum_release(drum);
+        pd_error(NULL, "membrane~: %s", error.text);
+        return NULL;
+    }
+    t_membrane *x = (t_membrane *)pd_new(membrane_class);
+    x->x_link = drum_link(drum, rate);
+    x->x_layer = layer;
+    x->x_clock = clock_new(x, (t_method)membrane_tick);
+    himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
+    double spot_x, spot_y;
+    himc_stroke_spot(&normal, himc_drum_place(drum)->radius, &spot_x, &spot_y);
+    signalinlet_new(&x->x_obj, (t_float)spot_x);
+    signalinlet_new(&x->x_obj, 0);
+    outlet_new(&x->x_obj, &s_signal);
+    outlet_new(&x->x_obj, &s_signal);
+    x->x_messages = outlet_new(&x->x_obj, NULL);
+    if (name)
+        membrane_bind(x, name);
+    return x;
+}
+
+static void membrane_free(t_membrane *x)
+{
+    if (x->x_symbol)
+        pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
+    /* a performer that plays it keeps it until the graph is built anew */
+    himc_drum_release(x->x_link.l_drum);
+    himc_membrane_free(x->x_layer);
+    clock_free(x->x_clock);
+}
+
+/* the one symbol this binary exports */
+__attribute__((visibility("default"))) void membrane_tilde_setup(void);
+
+void membrane_tilde_setup(void)
+{
+    membrane_class = class_new(gensym(DRUM_LINK_CLASS), (t_newmethod)membrane_new, (t_method)membrane_free,
+                               sizeof(t_membrane), CLASS_DEFAULT, A_GIMME, A_NULL);
+    if (!membrane_class)
+        return; /* a Pd of another float size has refused it and said so */
+    CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);
+    class_addmethod(membrane_class, (t_method)membrane_dsp, gensym("dsp"), A_CANT, A_NULL);
+    class_addanything(membrane_class, (t_method)membrane_anything);
+}

@@ -1,0 +1,48 @@
+/// take_files.h: small take files made in memory, for the tests of the readers; each test program has its own copy.
+#ifndef HIMC_TESTS_TAKE_FILES_H
+#define HIMC_TESTS_TAKE_FILES_H
+
+#include "himc/take.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// A file under ../shared/mocap (HIMC_SHARED overrides ../shared), or NULL if it is not there; one static buffer.
+static inline const char *shared_capture(const char *name)
+{
+    static char path[512];
+    const char *shared = getenv("HIMC_SHARED");
+    snprintf(path, sizeof path, "%s/mocap/%s", shared ? shared : "../shared", name);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return NULL;
+    fclose(file);
+    return path;
+}
+
+/// All of a file, to be freed.
+static inline char *read_all(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return NULL;
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*size + 1);
+    *size = fread(bytes, 1, *size, file);
+    bytes[*size] = 0;
+    fclose(file);
+    return bytes;
+}
+
+/// Reads a text as a take; NULL with error.text.
+static inline himc_take *read_text(const char *text, const char *name, const himc_take_options *options,
+                                   himc_error *error)
+{
+    error->text[0] = 0;
+    return himc_take_read(text, strlen(text), name, options, error);
+}
+
+#endif

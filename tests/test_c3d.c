@@ -1,0 +1,584 @@
+/// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte from the format's
+/// description, and a real one beside the same trial exported as text.
+#include "c3d_parameters.h"
+#include "take_files.h"
+#include "unity.h"
+
+static himc_error error;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+typedef struct maker {
+    c3d_processor processor;
+    bool floats;
+    int points, frames, first, analog;
+    double rate, scale; // mm per integer step
+    const char *units, *x_screen, *y_screen;
+    bool long_frames;   // the count goes to TRIAL and the header says 65535
+    int events;         // 0, or 2 in the group EVENT
+    int header_events;
+    unsigned char *bytes;
+    size_t size;
+} maker;
+
+static maker maker_default(c3d_processor processor, bool floats)
+{
+    return (maker){.processor = processor, .floats = floats, .points = 3, .frames = 5, .first = 1, .analog = 4,
+                   .rate = 250, .scale = 0.1, .units = "mm", .x_screen = "+X", .y_screen = "+Z"};
+}
+
+// what a file's point i is in frame f (mm); multiples of 0.1, so that integers hold it too
+static double coordinate(int f, int i, int axis)
+{
+    return 0.1 * (axis == 0 ? 3000 + 7 * f : axis == 1 ? -1234 + 2110 * i : 9000 - 13 * f + 17 * i);
+}
+
+static void put_word(const maker *m, unsigned char *at, int value)
+{
+    unsigned char low = (unsigned char)(value & 255), high = (unsigned char)(value >> 8 & 255);
+    at[0] = m->processor == C3D_MIPS ? high : low;
+    at[1] = m->processor == C3D_MIPS ? low : high;
+}
+
+static unsigned char *put_name(unsigned char *at, int group, const char *name)
+{
+    size_t n = strlen(name);
+    at[0] = (unsigned char)n;
+    at[1] = (unsigned char)group;
+    memcpy(at + 2, name, n);
+    return at + 2 + n;
+}
+
+static unsigned char *put_group(const maker *m, unsigned char *at, int number, const char *name)
+{
+    at = put_name(at, -number, name);
+    put_word(m, at, 3);
+    at[2] = 0;
+    return at + 3;
+}
+
+// `data` has a * b elements of |type| bytes; a = 0 for a scalar, b = 0 for one dimension
+static unsigned char *put(const maker *m, unsigned char *at, int group, const char *name, int type, int a, int b,
+                          const unsigned char *data)
+{
+    int dimensions = (a > 0) + (b > 0), bytes = abs(type) * (a ? a : 1) * (b ? b : 1);
+    at = put_name(at, group, name);
+    put_word(m, at, 2 + 2 + dimensions + bytes + 1);
+    at[2] = (unsigned char)type;
+    at[3] = (unsigned char)dimensions;
+    at += 4;
+    if (a > 0)
+        *at++ = (unsigned char)a;
+    if (b > 0)
+        *at++ = (unsigned char)b;
+    memcpy(at, data, (size_t)bytes);
+    at += bytes;
+    *at++ = 0;
+    return at;
+}
+
+static unsigned char *put_real(const maker *m, unsigned char *at, int group, const char *name, double value)
+{
+    unsigned char data[4];
+    himc_c3d_put_real(m->processor, value, data);
+    return put(m, at, group, name, 4, 0, 0, data);
+}
+
+static unsigned char *put_integer(const maker *m, unsigned char *at, int group, const char *name, int value)
+{
+    unsigned char data[2];
+    put_word(m, data, value);
+    return put(m, at, group, name, 2, 0, 0, data);
+}
+
+static unsigned char *put_text(const maker *m, unsigned char *at, int group, const char *name, const char *text)
+{
+    return put(m, at, group, name, -1, (int)strlen(text), 0, (const unsigned char *)text);
+}
+
+static unsigned char *put_field(const maker *m, unsigned char *at, const char *name, int value)
+{
+    unsigned char data[4];
+    put_word(m, data, value & 65535);
+    put_word(m, data + 2, value >> 16);
+    return put(m, at, 3, name, 2, 2, 0, data);
+}
+
+static unsigned char *put_events(const maker *m, unsigned char *at)
+{
+    unsigned char times[16];
+    himc_c3d_put_real(m->processor, 0, times);
+    himc_c3d_put_real(m->processor, 0.5, times + 4);
+    himc_c3d_put_real(m->processor, 1, times + 8);
+    himc_c3d_put_real(m->processor, 2.25, times + 12);
+    at = put_group(m, at, 2, "EVENT");
+    at = put_integer(m, at, 2, "USED", 2);
+    at = put(m, at, 2, "TIMES", 4, 2, 2, times);
+    at = put(m, at, 2, "LABELS", -1, 6, 2, (const unsigned char *)"StrikeApex  ");
+    return put(m, at, 2, "CONTEXTS", -1, 5, 2, (const unsigned char *)"RightLeft ");
+}
+
+static void put_parameters(const maker *m, unsigned char *at)
+{
+    static const char labels[] = "LTIP  RTIP  HEAD  ";
+    at[0] = 1;
+    at[1] = 0x50;
+    at[2] = 4;
+    at[3] = (unsigned char)m->processor;
+    at += 4;
+    // a parameter before its group, as is allowed
+    at = put_integer(m, at, 1, "USED", m->points);
+    at = put_group(m, at, 1, "POINT");
+    at = put_real(m, at, 1, "SCALE", m->floats ? -m->scale : m->scale);
+    at = put_real(m, at, 1, "RATE", m->rate);
+    at = put_text(m, at, 1, "UNITS", m->units);
+    at = put(m, at, 1, "labels", -1, 6, m->points < 2 ? m->points : 2, (const unsigned char *)labels);
+    at = put(m, at, 1, "LABELS2", -1, 6, 1, (const unsigned char *)labels + 12);
+    at = put_text(m, at, 1, "X_SCREEN", m->x_screen);
+    at = put_text(m, at, 1, "Y_SCREEN", m->y_screen);
+    if (m->events)
+        at = put_events(m, at);
+    if (m->long_frames) {
+        at = put_group(m, at, 3, "TRIAL");
+        at = put_field(m, at, "ACTUAL_START_FIELD", m->first);
+        at = put_field(m, at, "ACTUAL_END_FIELD", m->first + m->frames - 1);
+    }
+    at[0] = 0;
+    at[1] = 0;
+}
+
+static void put_header(const maker *m, unsigned char *at)
+{
+    int last = m->first + m->frames - 1;
+    at[0] = 2;
+    at[1] = 0x50;
+    put_word(m, at + 2, m->points);
+    put_word(m, at + 4, m->analog);
+    put_word(m, at + 6, m->long_frames ? 1 : m->first);
+    put_word(m, at + 8, m->long_frames ? 65535 : last);
+    himc_c3d_put_real(m->processor, m->floats ? -m->scale : m->scale, at + 12);
+    put_word(m, at + 16, 6);
+    put_word(m, at + 18, 2);
+    himc_c3d_put_real(m->processor, m->rate, at + 20);
+    if (m->header_events) {
+        put_word(m, at + 298, 12345);
+        put_word(m, at + 300, m->header_events);
+        himc_c3d_put_real(m->processor, 0.25, at + 304);
+        memcpy(at + 396, "RFS ", 4);
+    }
+}
+
+static void put_frame(const maker *m, unsigned char *at, int f)
+{
+    for (int i = 0; i < m->points; i++)
+        for (int k = 0; k < 4; k++) {
+            // point 1 is lost in frame 3: zeros with residual -1
+            bool lost = i == 1 && f == 3;
+            double v = k == 3 ? (lost ? -1 : 0) : lost ? 0 : coordinate(f, i, k);
+            int n = 4 * i + k;
+            if (m->floats)
+                himc_c3d_put_real(m->processor, v, at + 4 * n);
+            else
+                put_word(m, at + 2 * n, k == 3 ? (int)v : (int)lround(v / m->scale));
+        }
+    // analog samples are noise to the reader: NaNs and odd numbers
+    size_t width = m->floats ? 4 : 2;
+    memset(at + width * 4 * (size_t)m->points, 0xFF, width * (size_t)m->analog);
+}
+
+static void make(maker *m)
+{
+    size_t stride = (m->floats ? 4u : 2u) * (4 * (size_t)m->points + (size_t)m->analog);
+    m->size = 512 * 5 + stride * (size_t)m->frames;
+    m->bytes = calloc(1, m->size);
+    put_header(m, m->bytes);
+    put_parameters(m, m->bytes + 512);
+    for (int f = 0; f < m->frames; f++)
+        put_frame(m, m->bytes + 512 * 5 + stride * (size_t)f, f);
+}
+
+static himc_take *read_made(const maker *m)
+{
+    himc_take *take = himc_take_read(m->bytes, m->size, "made.c3d", NULL, &error);
+    return take;
+}
+
+static himc_take *read_maker(maker m)
+{
+    make(&m);
+    himc_take *take = read_made(&m);
+    free(m.bytes);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    return take;
+}
+
+// left tip is not left of the right one, so the take is turned half round: x and y change sign
+static void check_places(const himc_take *take, int frames, double tolerance)
+{
+    TEST_ASSERT_EQUAL_INT(frames, himc_take_frames(take));
+    TEST_ASSERT_EQUAL_INT(3, himc_take_points(take));
+    for (int f = 0; f < frames; f++)
+        for (int i = 0; i < 3; i++) {
+            himc_vec3 p = himc_take_point(take, f, i);
+            TEST_ASSERT_EQUAL(!(i == 1 && f == 3), himc_vec3_finite(p));
+            if (!himc_vec3_finite(p))
+                continue;
+            TEST_ASSERT_DOUBLE_WITHIN(tolerance, -0.001 * coordinate(f, i, 0), p.x);
+            TEST_ASSERT_DOUBLE_WITHIN(tolerance, -0.001 * coordinate(f, i, 1), p.y);
+            TEST_ASSERT_DOUBLE_WITHIN(tolerance, 0.001 * coordinate(f, i, 2), p.z);
+        }
+}
+
+static void check_flavour(c3d_processor processor, bool floats)
+{
+    himc_take *take = read_maker(maker_default(processor, floats));
+    check_places(take, 5, 1e-7);
+    TEST_ASSERT_EQUAL_DOUBLE(250, himc_take_rate(take));
+    TEST_ASSERT_EQUAL_STRING("LTIP", himc_take_point_name(take, 0));
+    TEST_ASSERT_EQUAL_STRING("RTIP", himc_take_point_name(take, 1));
+    TEST_ASSERT_EQUAL_STRING("HEAD", himc_take_point_name(take, 2));
+    TEST_ASSERT_EQUAL_INT(1, himc_take_missing(take, 1));
+    himc_take_free(take);
+}
+
+static void test_intel_floats_are_read(void)
+{
+    check_flavour(C3D_INTEL, true);
+}
+
+static void test_intel_integers_are_read(void)
+{
+    check_flavour(C3D_INTEL, false);
+}
+
+static void test_dec_floats_are_read(void)
+{
+    check_flavour(C3D_DEC, true);
+}
+
+static void test_dec_integers_are_read(void)
+{
+    check_flavour(C3D_DEC, false);
+}
+
+static void test_mips_floats_are_read(void)
+{
+    check_flavour(C3D_MIPS, true);
+}
+
+static void test_mips_integers_are_read(void)
+{
+    check_flavour(C3D_MIPS, false);
+}
+
+static void test_dec_numbers_have_the_documented_bytes(void)
+{
+    // 1.0 is 0x4080 0000 in VAX F; its first word comes first, low byte first
+    static const unsigned char one[4] = {0x80, 0x40, 0, 0}, minus[4] = {0xC0, 0xC1, 0, 0}, zero[4] = {0, 0, 0, 0};
+    unsigned char bytes[4];
+    TEST_ASSERT_EQUAL_DOUBLE(1, himc_c3d_real(C3D_DEC, one));
+    TEST_ASSERT_EQUAL_DOUBLE(-6, himc_c3d_real(C3D_DEC, minus));
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_c3d_real(C3D_DEC, zero));
+    himc_c3d_put_real(C3D_DEC, -6, bytes);
+    TEST_ASSERT_EQUAL_MEMORY(minus, bytes, 4);
+    static const unsigned char reserved[4] = {0, 0x80, 1, 0};
+    TEST_ASSERT_TRUE(isnan(himc_c3d_real(C3D_DEC, reserved)));
+}
+
+static void test_numbers_survive_writing_and_reading_on_every_processor(void)
+{
+    for (c3d_processor p = C3D_INTEL; p <= C3D_MIPS; p++)
+        for (double v = 1e-30; v < 1e30; v *= -7.3) {
+            unsigned char bytes[4];
+            himc_c3d_put_real(p, v, bytes);
+            TEST_ASSERT_EQUAL_DOUBLE((double)(float)v, himc_c3d_real(p, bytes));
+        }
+}
+
+static void test_more_than_65535_frames_come_from_the_trial_fields(void)
+{
+    maker m = maker_default(C3D_MIPS, false);
+    m.frames = 70001;
+    m.first = 100;
+    m.analog = 0;
+    m.long_frames = true;
+    // the falling point would leave the integers' range
+    make(&m);
+    himc_take *take = read_made(&m);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(70001, himc_take_frames(take));
+    TEST_ASSERT_EQUAL_INT(100, himc_take_first_frame(take));
+    himc_take_free(take);
+    free(m.bytes);
+}
+
+static void test_events_count_from_frame_one_and_carry_their_context(void)
+{
+    maker m = maker_default(C3D_DEC, true);
+    m.events = 2;
+    m.first = 26; // 0.1 s
+    himc_take *take = read_maker(m);
+    TEST_ASSERT_EQUAL_INT(2, himc_take_events(take));
+    TEST_ASSERT_EQUAL_STRING("Right Strike", himc_take_event_at(take, 0)->label);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.4, himc_take_event_at(take, 0)->time);
+    TEST_ASSERT_EQUAL_STRING("Left Apex", himc_take_event_at(take, 1)->label);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 62.15, himc_take_event_at(take, 1)->time);
+    himc_take_free(take);
+}
+
+static void test_header_events_are_read_where_there_is_no_group(void)
+{
+    maker m = maker_default(C3D_MIPS, true);
+    m.header_events = 1;
+    himc_take *take = read_maker(m);
+    TEST_ASSERT_EQUAL_INT(1, himc_take_events(take));
+    TEST_ASSERT_EQUAL_STRING("RFS", himc_take_event_at(take, 0)->label);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.25, himc_take_event_at(take, 0)->time);
+    himc_take_free(take);
+}
+
+static void test_screen_axes_say_which_way_is_up(void)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    m.y_screen = "+Y";
+    himc_take *take = read_maker(m);
+    // y up: (x, -z, y); RTIP is then right of LTIP, so nothing is turned
+    himc_vec3 p = himc_take_point(take, 0, 2);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.001 * coordinate(0, 2, 1), p.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.001 * coordinate(0, 2, 2), p.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.001 * coordinate(0, 2, 0), p.x);
+    himc_take_free(take);
+}
+
+// makes a good file, lets `spoil` change it, and expects the reason
+static void refuses(void (*spoil)(maker *), const char *reason)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    make(&m);
+    spoil(&m);
+    himc_take *take = read_made(&m);
+    free(m.bytes);
+    TEST_ASSERT_NULL_MESSAGE(take, reason);
+    TEST_ASSERT_EQUAL_STRING(reason, error.text);
+}
+
+static void cut_header(maker *m)
+{
+    m->size = 100;
+}
+
+static void spoil_key(maker *m)
+{
+    m->bytes[1] = 7;
+}
+
+static void spoil_processor(maker *m)
+{
+    m->bytes[515] = 99;
+}
+
+static void spoil_points(maker *m)
+{
+    m->bytes[2] = 9;
+}
+
+static void spoil_frames(maker *m)
+{
+    m->bytes[8] = 0;
+}
+
+static void add_frames(maker *m)
+{
+    m->bytes[8] = 90;
+}
+
+static void spoil_start(maker *m)
+{
+    m->bytes[17] = 80;
+}
+
+static void test_broken_headers_are_refused_with_the_reason(void)
+{
+    refuses(cut_header, "made.c3d: 100 bytes, allowed at least a header of 512");
+    refuses(spoil_key, "made.c3d: begins with bytes 2 7, allowed for C3D: 2 .. 255 and 80");
+    refuses(spoil_processor, "made.c3d: processor is 99, allowed 84 (Intel), 85 (DEC), 86 (MIPS)");
+    refuses(spoil_points, "made.c3d: the header says 9 points, POINT:USED 3, allowed is the same");
+    refuses(spoil_frames, "made.c3d: 0 frames, allowed 1 .. 1000000");
+    refuses(add_frames, "made.c3d: the header says 90 frames of 64 bytes, the file has 5");
+    refuses(spoil_start, "made.c3d: its frames begin at block 20486, the file has 6");
+}
+
+static void test_rates_of_1_hz_are_refused_and_2_khz_is_read(void)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    m.rate = 1;
+    make(&m);
+    TEST_ASSERT_NULL(read_made(&m));
+    TEST_ASSERT_EQUAL_STRING("made.c3d: rate: 1 Hz, allowed 20 .. 10000 Hz", error.text);
+    free(m.bytes);
+    m.rate = 2000;
+    himc_take *take = read_maker(m);
+    TEST_ASSERT_EQUAL_DOUBLE(2000, himc_take_rate(take));
+    himc_take_free(take);
+}
+
+static void test_units_in_metres_and_unknown_units(void)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    m.units = "furlong";
+    make(&m);
+    TEST_ASSERT_NULL(read_made(&m));
+    TEST_ASSERT_EQUAL_STRING("made.c3d: POINT:UNITS is \"furlong\", allowed mm, cm, m, in or ft", error.text);
+    free(m.bytes);
+}
+
+static void test_non_finite_coordinates_are_gaps(void)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    make(&m);
+    memset(m.bytes + 512 * 5 + 4, 0xFF, 4);
+    himc_take *take = read_made(&m);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(1, himc_take_missing(take, 0));
+    TEST_ASSERT_FALSE(himc_vec3_finite(himc_take_point(take, 0, 0)));
+    himc_take_free(take);
+    free(m.bytes);
+}
+
+static void test_every_prefix_and_every_byte_changed_is_survived(void)
+{
+    for (int flavour = 0; flavour < 6; flavour++) {
+        maker m = maker_default((c3d_processor)(C3D_INTEL + flavour / 2), flavour % 2);
+        m.events = 2;
+        make(&m);
+        for (size_t size = 0; size < m.size; size++) {
+            unsigned char *cut = malloc(size + (size == 0));
+            memcpy(cut, m.bytes, size);
+            TEST_ASSERT_NULL(himc_take_read(cut, size, "cut.c3d", NULL, &error));
+            free(cut);
+        }
+        for (size_t i = 0; i < m.size; i++)
+            for (int k = 0; k < 3; k++) {
+                unsigned char old = m.bytes[i];
+                m.bytes[i] = k == 0 ? 0 : k == 1 ? 255 : (unsigned char)(old ^ 0x80);
+                himc_take_free(read_made(&m));
+                m.bytes[i] = old;
+            }
+        free(m.bytes);
+    }
+}
+
+static himc_take *load_trial(void)
+{
+    const char *path = shared_capture("upperlimb_pyomeca_100hz/markers_analogs.c3d");
+    if (!path)
+        TEST_IGNORE_MESSAGE("../shared/mocap is absent");
+    himc_take *take = himc_take_load(path, NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    return take;
+}
+
+static void test_real_file_has_the_gaps_its_source_counts(void)
+{
+    himc_take *take = load_trial();
+    TEST_ASSERT_EQUAL_INT(580, himc_take_frames(take));
+    TEST_ASSERT_EQUAL_DOUBLE(100, himc_take_rate(take));
+    TEST_ASSERT_EQUAL_INT(51, himc_take_points(take));
+    static const struct {
+        const char *name;
+        int frames;
+    } gaps[] = {{"SCAP_CP", 92}, {"LARMl", 49}, {"STERr", 32}, {"STERl", 31}, {"STYLu", 29}, {"LASTC", 23}, {"MEDH", 22}};
+    for (size_t i = 0; i < sizeof gaps / sizeof gaps[0]; i++)
+        TEST_ASSERT_EQUAL_INT(gaps[i].frames, himc_take_missing(take, himc_take_find(take, gaps[i].name)));
+    himc_take_free(take);
+}
+
+// the exported text: after five lines, frame, sub frame, then x, y, z (mm) of each point; empty cells are gaps
+static void read_export(himc_vec3 *x, int frames, int points)
+{
+    FILE *file = fopen(shared_capture("upperlimb_pyomeca_100hz/markers.csv"), "r");
+    TEST_ASSERT_NOT_NULL(file);
+    static char row[8192];
+    for (int frame = -5; frame < frames; frame++) {
+        TEST_ASSERT_NOT_NULL(fgets(row, sizeof row, file));
+        char *at = row;
+        for (int column = -2; frame >= 0 && column < 3 * points; column++) {
+            char *end = at + strcspn(at, ",\r\n");
+            double v = end > at ? atof(at) : NAN;
+            himc_vec3 *p = &x[frame * points + (column < 0 ? 0 : column / 3)];
+            if (column >= 0)
+                *(column % 3 == 0 ? &p->x : column % 3 == 1 ? &p->y : &p->z) = v;
+            at = *end == ',' ? end + 1 : end;
+        }
+    }
+    fclose(file);
+}
+
+static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
+{
+    himc_take *take = load_trial();
+    int frames = himc_take_frames(take), points = himc_take_points(take), compared = 0;
+    himc_vec3 *known = calloc((size_t)(frames * points), sizeof *known);
+    read_export(known, frames, points);
+    // the take is turned to the body's heading: the best turn about the vertical, by least squares
+    double cosine = 0, sine = 0, worst = 0, worst_far = 0;
+    for (int i = 0; i < frames * points; i++) {
+        himc_vec3 p = himc_take_point(take, i / points, i % points), q = known[i];
+        TEST_ASSERT_EQUAL(himc_vec3_finite(q), himc_vec3_finite(p));
+        if (himc_vec3_finite(p)) {
+            cosine += q.x * p.x + q.y * p.y;
+            sine += q.x * p.y - q.y * p.x;
+        }
+    }
+    double turn = atan2(sine, cosine);
+    for (int i = 0; i < frames * points; i++) {
+        himc_vec3 p = himc_vec3_scale(himc_take_point(take, i / points, i % points), 1000), q = known[i];
+        if (!himc_vec3_finite(p))
+            continue;
+        himc_vec3 back = {p.x * cos(turn) + p.y * sin(turn), p.y * cos(turn) - p.x * sin(turn), p.z};
+        himc_vec3 d = himc_vec3_sub(back, q);
+        double most = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
+        // the text has six digits: 0.001 mm below 1 m, 0.01 mm beyond
+        bool far = fmax(fabs(q.x), fmax(fabs(q.y), fabs(q.z))) >= 1000;
+        worst = far ? worst : fmax(worst, most);
+        worst_far = far ? fmax(worst_far, most) : worst_far;
+        compared++;
+    }
+    printf("c3d and csv: %d places, worst %.3g mm, beyond 1 m %.3g mm\n", compared, worst, worst_far);
+    TEST_ASSERT_EQUAL_INT(580 * 51 - 305, compared);
+    TEST_ASSERT_TRUE(worst < 1e-3);
+    TEST_ASSERT_TRUE(worst_far < 6e-3);
+    free(known);
+    himc_take_free(take);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_intel_floats_are_read);
+    RUN_TEST(test_intel_integers_are_read);
+    RUN_TEST(test_dec_floats_are_read);
+    RUN_TEST(test_dec_integers_are_read);
+    RUN_TEST(test_mips_floats_are_read);
+    RUN_TEST(test_mips_integers_are_read);
+    RUN_TEST(test_dec_numbers_have_the_documented_bytes);
+    RUN_TEST(test_numbers_survive_writing_and_reading_on_every_processor);
+    RUN_TEST(test_more_than_65535_frames_come_from_the_trial_fields);
+    RUN_TEST(test_events_count_from_frame_one_and_carry_their_context);
+    RUN_TEST(test_header_events_are_read_where_there_is_no_group);
+    RUN_TEST(test_screen_axes_say_which_way_is_up);
+    RUN_TEST(test_broken_headers_are_refused_with_the_reason);
+    RUN_TEST(test_rates_of_1_hz_are_refused_and_2_khz_is_read);
+    RUN_TEST(test_units_in_metres_and_unknown_units);
+    RUN_TEST(test_non_finite_coordinates_are_gaps);
+    RUN_TEST(test_every_prefix_and_every_byte_changed_is_survived);
+    RUN_TEST(test_real_file_has_the_gaps_its_source_counts);
+    RUN_TEST(test_real_file_equals_its_export_as_text_to_a_micrometre);
+    return UNITY_END();
+}

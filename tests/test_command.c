@@ -1,0 +1,236 @@
+/// The vocabulary: every row parses, every fault is one line that changes nothing.
+#include "unity.h"
+
+#include "himc/command.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static himc_command command;
+static himc_error error;
+
+void setUp(void)
+{
+    memset(&command, 0, sizeof command);
+    error.text[0] = '\0';
+}
+
+void tearDown(void)
+{
+}
+
+static bool perform(const char *text)
+{
+    return himc_command_parse_text(&command, HIMC_PERFORMER, text, &error);
+}
+
+static bool drum(const char *text)
+{
+    return himc_command_parse_text(&command, HIMC_DRUM, text, &error);
+}
+
+static void refused(bool good, const char *text)
+{
+    TEST_ASSERT_FALSE(good);
+    TEST_ASSERT_EQUAL_STRING(text, error.text);
+}
+
+static void test_table_is_complete_and_in_order_of_the_ids(void)
+{
+    for (int i = 0; i < HIMC_COMMANDS; i++)
+        TEST_ASSERT_EQUAL_INT(i, himc_command_table(i)->id);
+    TEST_ASSERT_NULL(himc_command_table(HIMC_COMMANDS));
+    TEST_ASSERT_NULL(himc_command_table(-1));
+}
+
+static void test_stroke_is_read_with_word_and_number_forms(void)
+{
+    TEST_ASSERT_TRUE(perform("stroke 2 right accent f rim kettle"));
+    TEST_ASSERT_EQUAL_INT(HIMC_COMMAND_STROKE, command.id);
+    TEST_ASSERT_EQUAL_DOUBLE(2, command.stroke.beat);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, command.stroke.hand);
+    TEST_ASSERT_EQUAL_INT(HIMC_ACCENT, command.stroke.nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(5 / 7.0, command.stroke.dynamic);
+    TEST_ASSERT_EQUAL_INT(HIMC_SPOT_RIM, command.stroke.spot);
+    TEST_ASSERT_EQUAL_STRING("kettle", command.stroke.drum);
+    TEST_ASSERT_TRUE(perform("stroke .5 left vertical-accent 0.25 -0.125 0.0625"));
+    TEST_ASSERT_EQUAL_INT(HIMC_VERTICAL_ACCENT, command.stroke.nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(0.25, command.stroke.dynamic);
+    TEST_ASSERT_EQUAL_INT(HIMC_SPOT_XY, command.stroke.spot);
+    TEST_ASSERT_EQUAL_DOUBLE(-0.125, command.stroke.x);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0625, command.stroke.y);
+    TEST_ASSERT_EQUAL_STRING("", command.stroke.drum);
+    TEST_ASSERT_TRUE(perform("stroke 0 left legato ppp low"));
+    TEST_ASSERT_EQUAL_INT(HIMC_SPOT_NORMAL, command.stroke.spot);
+    TEST_ASSERT_EQUAL_STRING("low", command.stroke.drum);
+    TEST_ASSERT_EQUAL_DOUBLE(0, command.stroke.dynamic);
+}
+
+static void test_every_form_of_every_command_is_accepted(void)
+{
+    static const char *const performer[] = {
+        "hit left staccato fff", "tempo 90", "tempo 90 16", "clear", "play", "stop", "seek 4",
+        "score a.txt", "take b.bvh", "target left 0.5 0.1 1", "mode id", "solver transpose",
+        "damping 0.01", "law computed-torque", "gain wrist 40 1", "gain reset", "rate physics 10000",
+        "rate task 250", "coupling one-way", "player 1.75 75", "info", "reset", "drum low",
+        "drum low 29"};
+    static const char *const head[] = {
+        "radius 0.29", "tension 4000", "density 0.26", "tune 110", "tune A2", "tune f#3", "modes 200",
+        "decay 1.5", "decay 0.5 0.01", "mallet soft", "mallet 1.6e8 2.54 0.028", "place 0.7 0 0.85",
+        "place 0.7 0 0.85 0.1", "pickup 0.1 0", "pickup air 0 0.5 2", "strike 0.1 0 3"};
+    for (size_t i = 0; i < sizeof performer / sizeof *performer; i++)
+        TEST_ASSERT_TRUE_MESSAGE(perform(performer[i]), performer[i]);
+    for (size_t i = 0; i < sizeof head / sizeof *head; i++)
+        TEST_ASSERT_TRUE_MESSAGE(drum(head[i]), head[i]);
+}
+
+static void test_faults_name_what_value_and_what_is_allowed(void)
+{
+    refused(perform("stroke 1 left legato 1.7"),
+            "stroke: DYNAMIC: 1.7, allowed ppp pp p mp mf f ff fff or 0 .. 1");
+    refused(perform("stroke 1 left legatto f"),
+            "stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
+    refused(perform("stroke 1 left"),
+            "stroke: NUANCE missing, allowed stroke BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]");
+    refused(perform("stroke 1 left legato f 0.1"),
+            "stroke: SPOT: 0.1, allowed center normal rim or X Y, both -1 .. 1 m");
+    refused(perform("stroke x left legato f"), "stroke: BEAT: x, allowed 0 .. 1e+06");
+    refused(perform("mode idd"), "mode: idd, allowed himc id ik");
+    refused(perform("tempo 90 1 2"), "tempo: 2 is one atom too many, allowed tempo BPM [BEAT]");
+    refused(perform("play 1"), "play: 1 is one atom too many, allowed play");
+    refused(perform("rate task 5"), "rate: HZ: 5, allowed 50 .. 2000 Hz");
+    refused(drum("radius 0"), "radius: RADIUS: 0, allowed 0.05 .. 1 m");
+    refused(drum("modes 2.5"), "modes: COUNT: 2.5, allowed 1 .. 2000, whole");
+    refused(drum("tune 5"), "tune: 5, allowed 20 .. 2000 Hz or a note from E0 to B6 such as A2 or f#3");
+    refused(drum("mallet 5"), "mallet: 5, allowed soft medium hard wood");
+    refused(drum("mallet 1e6 2.5"),
+            "mallet: MASS missing, allowed mallet soft|medium|hard|wood | K ALPHA MASS");
+    refused(drum("pickup air 0 0"),
+            "pickup: DISTANCE missing, allowed pickup air AZIMUTH ELEVATION DISTANCE | X Y");
+}
+
+static void test_unknown_commands_are_answered_with_the_nearest_name(void)
+{
+    TEST_ASSERT_FALSE(perform("strok 1"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "strok: unknown command, did you mean stroke? allowed stroke hit"));
+    TEST_ASSERT_FALSE(perform("xylophone"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "xylophone: unknown command, allowed stroke hit"));
+    refused(perform("tune 110"), "tune: a command for a drum, not for the performer");
+    refused(drum("play"), "play: a command for the performer, not for a drum");
+    TEST_ASSERT_FALSE(perform("a\001b"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "a?b"));
+}
+
+static void test_numbers_that_are_not_finite_are_refused(void)
+{
+    himc_atom atom = {HIMC_ATOM_NUMBER, NAN, NULL};
+    TEST_ASSERT_FALSE(himc_command_parse(&command, HIMC_PERFORMER, "tempo", &atom, 1, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "nan is not a finite number, allowed 1 .. 1000"));
+    atom.number = HUGE_VAL;
+    TEST_ASSERT_FALSE(himc_command_parse(&command, HIMC_PERFORMER, "tempo", &atom, 1, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "inf is not a finite number"));
+    TEST_ASSERT_FALSE(perform("tempo nan"));
+    TEST_ASSERT_FALSE(perform("tempo 0x50"));
+}
+
+static void test_refused_command_leaves_the_result_untouched(void)
+{
+    himc_command before;
+    TEST_ASSERT_TRUE(perform("tempo 90"));
+    memcpy(&before, &command, sizeof before);
+    TEST_ASSERT_FALSE(perform("tempo 90000"));
+    TEST_ASSERT_FALSE(perform("score a b"));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &command, sizeof before);
+}
+
+static void test_note_names_arrive_as_frequencies(void)
+{
+    TEST_ASSERT_TRUE(drum("tune A2"));
+    TEST_ASSERT_EQUAL_INT(HIMC_ATOM_NUMBER, command.atom[0].kind);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 110, command.atom[0].number);
+    TEST_ASSERT_TRUE(drum("tune f#3"));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 184.997211, command.atom[0].number);
+    TEST_ASSERT_TRUE(drum("tune Bb1"));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 58.270470, command.atom[0].number);
+    TEST_ASSERT_FALSE(drum("tune H2"));
+}
+
+static void test_text_and_atoms_give_the_same_bits(void)
+{
+    himc_command other;
+    himc_atom atoms[] = {{HIMC_ATOM_NUMBER, (double)0.1f, NULL}};
+    TEST_ASSERT_TRUE(himc_command_parse(&other, HIMC_PERFORMER, "damping", atoms, 1, &error));
+    TEST_ASSERT_TRUE(perform("damping 0.1"));
+    TEST_ASSERT_EQUAL_MEMORY(&other.atom[0].number, &command.atom[0].number, sizeof(double));
+}
+
+static void test_backslash_keeps_a_space_in_a_file_name(void)
+{
+    TEST_ASSERT_TRUE(perform("score my\\ score.txt;"));
+    TEST_ASSERT_EQUAL_STRING("my score.txt", command.atom[0].symbol);
+}
+
+static void test_copy_points_into_itself(void)
+{
+    himc_command copy;
+    TEST_ASSERT_TRUE(perform("gain wrist 40 1"));
+    himc_command_copy(&copy, &command);
+    memset(&command, 0, sizeof command);
+    TEST_ASSERT_EQUAL_STRING("wrist", copy.atom[0].symbol);
+    TEST_ASSERT_TRUE(copy.atom[0].symbol == copy.storage);
+}
+
+static void test_names_of_drums_cannot_be_taken_for_anything_else(void)
+{
+    TEST_ASSERT_FALSE(perform("drum rim"));
+    TEST_ASSERT_FALSE(perform("drum stroke"));
+    TEST_ASSERT_FALSE(perform("drum a/b"));
+    TEST_ASSERT_FALSE(perform("drum 12345678901234567890123456789012x"));
+    TEST_ASSERT_TRUE(perform("drum kettle-23"));
+}
+
+static void test_random_atoms_never_break_the_parser(void)
+{
+    static const char *const word[] = {"left", "right", "legato", "f", "rim", "reset", "air", "", "x",
+                                       "physics", "A2", "soft", "\n", "a very long word indeed, longer "
+                                       "than anything the table would ever ask for, to be cut"};
+    unsigned seed = 1;
+    int good = 0;
+    for (int k = 0; k < 100000; k++) {
+        himc_atom atom[10];
+        int count = (int)((seed = seed * 1664525u + 1013904223u) >> 16) % 10;
+        for (int i = 0; i < count; i++) {
+            unsigned r = (seed = seed * 1664525u + 1013904223u) >> 12;
+            atom[i] = (himc_atom){r & 1 ? HIMC_ATOM_SYMBOL : HIMC_ATOM_NUMBER,
+                                  r % 7 == 0 ? NAN : r % 1000 / 100.0, word[(r >> 3) % 14]};
+        }
+        const himc_command_row *row = himc_command_table((int)((seed >> 10) % HIMC_COMMANDS));
+        error.text[0] = '\0';
+        bool parsed = himc_command_parse(&command, row->receiver, row->name, atom, count, &error);
+        good += parsed;
+        TEST_ASSERT_TRUE(parsed || (error.text[0] && !strchr(error.text, '\n')));
+        for (int i = 0; parsed && i < command.count; i++)
+            TEST_ASSERT_TRUE(command.atom[i].kind == HIMC_ATOM_SYMBOL || isfinite(command.atom[i].number));
+    }
+    TEST_ASSERT_TRUE(good > 100);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_table_is_complete_and_in_order_of_the_ids);
+    RUN_TEST(test_stroke_is_read_with_word_and_number_forms);
+    RUN_TEST(test_every_form_of_every_command_is_accepted);
+    RUN_TEST(test_faults_name_what_value_and_what_is_allowed);
+    RUN_TEST(test_unknown_commands_are_answered_with_the_nearest_name);
+    RUN_TEST(test_numbers_that_are_not_finite_are_refused);
+    RUN_TEST(test_refused_command_leaves_the_result_untouched);
+    RUN_TEST(test_note_names_arrive_as_frequencies);
+    RUN_TEST(test_text_and_atoms_give_the_same_bits);
+    RUN_TEST(test_backslash_keeps_a_space_in_a_file_name);
+    RUN_TEST(test_copy_points_into_itself);
+    RUN_TEST(test_names_of_drums_cannot_be_taken_for_anything_else);
+    RUN_TEST(test_random_atoms_never_break_the_parser);
+    return UNITY_END();
+}

@@ -1,0 +1,392 @@
+/// test_performance.c: the whole path from commands to forces and sound.
+#define _GNU_SOURCE
+#include "himc/himc.h"
+
+#include "unity.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define PIECE "tempo 120; drum kettle; " \
+              "stroke 2 right legato mf; stroke 3 left tenuto f; stroke 4 right accent f; " \
+              "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; stroke 7 left legato pp;"
+
+static himc_error error;
+
+void setUp(void)
+{
+    error.text[0] = 0;
+}
+
+void tearDown(void)
+{
+}
+
+// allocations made while `watching`
+static long allocations;
+static bool watching;
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *old, size_t size);
+
+void *malloc(size_t size)
+{
+    allocations += watching;
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size)
+{
+    allocations += watching;
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *old, size_t size)
+{
+    allocations += watching;
+    return __libc_realloc(old, size);
+}
+
+static bool try_command(himc_performance *p, const char *text)
+{
+    himc_command c;
+    return himc_command_parse_text(&c, HIMC_PERFORMER, text, &error) && himc_performance_command(p, &c, 0, &error);
+}
+
+static void command(himc_performance *p, const char *text)
+{
+    TEST_ASSERT_TRUE_MESSAGE(try_command(p, text), error.text);
+}
+
+static himc_performance *new_performance(void)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(p, error.text);
+    himc_performance_make_drums(p, true);
+    return p;
+}
+
+// a performance with a score loaded from a temporary file
+static himc_performance *with_score(const char *text)
+{
+    char path[] = "/tmp/himc-test-XXXXXX", line[64];
+    int file = mkstemp(path);
+    TEST_ASSERT_TRUE(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    himc_performance *p = new_performance();
+    snprintf(line, sizeof line, "score %s", path);
+    bool ok = try_command(p, line);
+    unlink(path);
+    TEST_ASSERT_TRUE_MESSAGE(ok, error.text);
+    return p;
+}
+
+// FNV-1a over the bytes of doubles
+static uint64_t hash_doubles(uint64_t hash, const double *x, int n)
+{
+    const unsigned char *bytes = (const unsigned char *)x;
+    for (size_t i = 0; i < (size_t)n * sizeof *x; i++)
+        hash = (hash ^ bytes[i]) * 1099511628211u;
+    return hash;
+}
+
+static uint64_t play_hashed(himc_performance *p, int samples, int block)
+{
+    static double left[1024], right[1024], sound[1024];
+    double *force[HIMC_HANDS] = {left, right};
+    uint64_t hash = 14695981039346656037u, at = 0;
+    uint64_t hashes[3] = {hash, hash, hash};
+    while (samples > 0) {
+        int n = block < samples ? block : samples;
+        himc_performance_process(p, n, force);
+        himc_drum_read(himc_performance_drum(p, 0), at, n, sound, NULL);
+        hashes[0] = hash_doubles(hashes[0], left, n);
+        hashes[1] = hash_doubles(hashes[1], right, n);
+        hashes[2] = hash_doubles(hashes[2], sound, n);
+        at += (uint64_t)n;
+        samples -= n;
+    }
+    return hashes[0] ^ (hashes[1] * 3) ^ (hashes[2] * 5);
+}
+
+static uint64_t hash_of_piece(int block)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, "play");
+    uint64_t hash = play_hashed(p, 3 * 48000, block);
+    himc_performance_free(p);
+    return hash;
+}
+
+static himc_performance_stats play(himc_performance *p, double seconds)
+{
+    for (int i = 0; i < (int)(seconds * 48000); i += 480)
+        himc_performance_process(p, 480, NULL);
+    return himc_performance_measure(p);
+}
+
+static void test_performance_is_the_same_twice_and_at_any_block_size(void)
+{
+    uint64_t first = hash_of_piece(64);
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(64));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(1));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(1024));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(333));
+}
+
+static void test_all_five_nuances_land_on_time_and_place(void)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, "play");
+    himc_performance_stats s = play(p, 5);
+    TEST_ASSERT_EQUAL_INT(6, s.strokes);
+    TEST_ASSERT_EQUAL_INT(6, s.played);
+    TEST_ASSERT_EQUAL_INT(0, s.missed);
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    himc_performance_free(p);
+}
+
+static void test_default_law_keeps_tips_within_0_3_percent_of_height(void)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, "play");
+    himc_performance_stats s = play(p, 5);
+    TEST_ASSERT_TRUE(s.stroke_height > 0.1);
+    TEST_ASSERT_TRUE(s.tip_rms_percent < 0.3);
+    himc_performance_free(p);
+}
+
+static void play_mode_and_expect_strokes(const char *mode, const char *law)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, mode);
+    command(p, law);
+    command(p, "play");
+    himc_performance_stats s = play(p, 5);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(6, s.strokes, mode);
+    TEST_ASSERT_TRUE_MESSAGE(s.peak_force > 10, law);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, s.recoveries, law);
+    himc_performance_free(p);
+}
+
+static void test_every_mode_and_law_strikes_the_drum(void)
+{
+    static const char *const modes[] = {"mode himc", "mode id", "mode ik"};
+    static const char *const laws[] = {"law printed", "law feedforward", "law computed-torque"};
+    for (int m = 0; m < 3; m++)
+        for (int l = 0; l < 3; l++)
+            play_mode_and_expect_strokes(modes[m], laws[l]);
+}
+
+static void test_one_way_coupling_also_sounds(void)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, "coupling one-way");
+    command(p, "play");
+    himc_performance_stats s = play(p, 5);
+    TEST_ASSERT_EQUAL_INT(6, s.played);
+    TEST_ASSERT_TRUE(s.peak_force > 10);
+    himc_performance_free(p);
+}
+
+static void test_strikes_are_reported_as_they_were_asked_for(void)
+{
+    himc_performance *p = with_score("tempo 60; drum kettle; stroke 1 left accent f 0.05 -0.1;");
+    himc_event event;
+    int strikes = 0, done = 0, beats = 0;
+    command(p, "play");
+    play(p, 4);
+    while (himc_performance_event(p, &event)) {
+        done += event.kind == HIMC_EVENT_DONE;
+        beats += event.kind == HIMC_EVENT_BEAT;
+        if (event.kind != HIMC_EVENT_STRIKE)
+            continue;
+        strikes++;
+        TEST_ASSERT_EQUAL_INT(HIMC_LEFT, event.strike.hand);
+        TEST_ASSERT_EQUAL_STRING("kettle", event.strike.drum);
+        TEST_ASSERT_EQUAL_STRING("accent", event.strike.nuance);
+        TEST_ASSERT_DOUBLE_WITHIN(0.002, 1, event.strike.time);
+        TEST_ASSERT_DOUBLE_WITHIN(0.002, 0.05, event.strike.x);
+        TEST_ASSERT_DOUBLE_WITHIN(0.002, -0.1, event.strike.y);
+        TEST_ASSERT_TRUE(event.strike.velocity > 2 && event.strike.velocity < 8);
+        TEST_ASSERT_TRUE(event.strike.duration > 0.003 && event.strike.duration < 0.015);
+    }
+    TEST_ASSERT_EQUAL_INT(1, strikes);
+    TEST_ASSERT_EQUAL_INT(1, done);
+    TEST_ASSERT_TRUE(beats >= 1);
+    himc_performance_free(p);
+}
+
+static void test_process_never_allocates_after_the_first_stroke(void)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, "play");
+    play(p, 1.2);
+    watching = true;
+    play(p, 3);
+    watching = false;
+    himc_performance_free(p);
+    TEST_ASSERT_EQUAL_INT(0, allocations);
+}
+
+static void test_bad_commands_change_nothing_and_name_what_is_allowed(void)
+{
+    himc_performance *p = with_score(PIECE);
+    static const char *const bad[][2] = {{"gain knuckle 1 1", "left-wrist"},
+                                         {"rate physics 1", "rate"},
+                                         {"score /no/such/file.txt", "/no/such/file.txt"},
+                                         {"take /no/such/file.trc", "/no/such/file.trc"},
+                                         {"player 17 75", "HEIGHT"},
+                                         {"mode fly", "himc"},
+                                         {"tempo nan", "tempo"}};
+    command(p, "play");
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        TEST_ASSERT_FALSE_MESSAGE(try_command(p, bad[i][0]), bad[i][0]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, bad[i][1]), error.text);
+        TEST_ASSERT_NULL(strchr(error.text, '\n'));
+    }
+    TEST_ASSERT_EQUAL_INT(6, play(p, 5).played);
+    himc_performance_free(p);
+}
+
+static void test_target_out_of_reach_is_clamped_with_one_line(void)
+{
+    himc_performance *p = new_performance();
+    himc_event event;
+    int lines = 0;
+    command(p, "target right 2.5 0 2");
+    himc_performance_stats s = play(p, 2);
+    while (himc_performance_event(p, &event))
+        lines += event.kind == HIMC_EVENT_NOTE && strstr(event.text, "out of reach");
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    himc_performance_free(p);
+}
+
+static void test_drum_that_nobody_has_is_silent_and_said_once(void)
+{
+    himc_performance *p = new_performance();
+    himc_event event;
+    int lines = 0;
+    command(p, "stroke 1 right legato mf normal tabla");
+    command(p, "stroke 2 right legato mf normal tabla");
+    command(p, "play");
+    TEST_ASSERT_EQUAL_INT(2, play(p, 4).strokes);
+    while (himc_performance_event(p, &event))
+        lines += event.kind == HIMC_EVENT_NOTE && strstr(event.text, "tabla");
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    himc_performance_free(p);
+}
+
+static void test_commands_wait_for_their_sample(void)
+{
+    himc_performance *p = with_score("tempo 120; drum kettle; stroke 2 right accent f;");
+    himc_command c;
+    himc_event event = {.kind = HIMC_EVENT_NOTE};
+    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_PERFORMER, "play", &error));
+    TEST_ASSERT_TRUE(himc_performance_command(p, &c, 4800, &error));
+    play(p, 3);
+    while (event.kind != HIMC_EVENT_STRIKE)
+        TEST_ASSERT_TRUE(himc_performance_event(p, &event));
+    TEST_ASSERT_DOUBLE_WITHIN(0.001, 1.1, event.strike.time);
+    himc_performance_free(p);
+}
+
+static void test_any_gain_stays_finite_and_recovers(void)
+{
+    static const char *const gains[] = {"gain left-shoulder 7440 296", "gain right-wrist 4.8 0.11",
+                                        "gain right-grip 200 3.6", "gain left-elbow 35800 1140"};
+    static const char *const laws[] = {"law printed", "law feedforward", "law computed-torque"};
+    for (int l = 0; l < 3; l++)
+        for (size_t g = 0; g < sizeof gains / sizeof gains[0]; g++) {
+            himc_performance *p = with_score(PIECE);
+            command(p, laws[l]);
+            command(p, gains[g]);
+            command(p, "play");
+            himc_performance_stats s = play(p, 3);
+            TEST_ASSERT_TRUE(isfinite(s.tip_rms) && isfinite(s.peak_force));
+            himc_performance_free(p);
+        }
+}
+
+static void test_sample_rate_changes_while_playing(void)
+{
+    himc_performance *p = with_score(PIECE);
+    command(p, "play");
+    play(p, 1.2);
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_set_rate(p, 44100, &error), error.text);
+    TEST_ASSERT_FALSE(himc_performance_set_rate(p, NAN, &error));
+    himc_performance_stats s = play(p, 4);
+    TEST_ASSERT_EQUAL_INT(6, s.played);
+    himc_performance_free(p);
+}
+
+static void test_realign_does_not_disturb_the_sound(void)
+{
+    static double plain[9600], cut[9600];
+    himc_performance *a = with_score(PIECE), *b = with_score(PIECE);
+    command(a, "play");
+    command(b, "play");
+    play(a, 1.01);
+    play(b, 1.01);
+    uint64_t at = himc_performance_time(a);
+    himc_performance_realign(b);
+    TEST_ASSERT_EQUAL_UINT64(0, himc_performance_time(b));
+    himc_performance_process(a, 9600, NULL);
+    himc_performance_process(b, 9600, NULL);
+    himc_drum_read(himc_performance_drum(a, 0), at, 9600, plain, NULL);
+    himc_drum_read(himc_performance_drum(b, 0), 0, 9600, cut, NULL);
+    TEST_ASSERT_EQUAL_MEMORY(plain, cut, sizeof plain);
+    himc_performance_free(a);
+    himc_performance_free(b);
+}
+
+static void test_real_stroke_strikes_the_drum_from_its_bead_alone(void)
+{
+    const char *shared = getenv("HIMC_SHARED");
+    char line[512], path[400];
+    snprintf(path, sizeof path, "%s/mocap/drumstroke_pearl_240hz/stroke.trc", shared ? shared : "../shared");
+    if (access(path, R_OK) != 0)
+        TEST_IGNORE_MESSAGE("no captures here");
+    himc_performance *p = new_performance();
+    himc_event event;
+    int strikes = 0;
+    snprintf(line, sizeof line, "take %s", path);
+    command(p, line);
+    command(p, "play");
+    himc_performance_stats s = play(p, 3);
+    while (himc_performance_event(p, &event)) {
+        if (event.kind != HIMC_EVENT_STRIKE)
+            continue;
+        strikes++;
+        TEST_ASSERT_DOUBLE_WITHIN(0.8, 10, event.strike.velocity);
+    }
+    TEST_ASSERT_EQUAL_INT(1, strikes);
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    TEST_ASSERT_TRUE(s.tip_rms_percent < 1);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_performance_is_the_same_twice_and_at_any_block_size);
+    RUN_TEST(test_all_five_nuances_land_on_time_and_place);
+    RUN_TEST(test_default_law_keeps_tips_within_0_3_percent_of_height);
+    RUN_TEST(test_every_mode_and_law_strikes_the_drum);
+    RUN_TEST(test_one_way_coupling_also_sounds);
+    RUN_TEST(test_strikes_are_reported_as_they_were_asked_for);
+    RUN_TEST(test_process_never_allocates_after_the_first_stroke);
+    RUN_TEST(test_bad_commands_change_nothing_and_name_what_is_allowed);
+    RUN_TEST(test_target_out_of_reach_is_clamped_with_one_line);
+    RUN_TEST(test_drum_that_nobody_has_is_silent_and_said_once);
+    RUN_TEST(test_commands_wait_for_their_sample);
+    RUN_TEST(test_any_gain_stays_finite_and_recovers);
+    RUN_TEST(test_sample_rate_changes_while_playing);
+    RUN_TEST(test_realign_does_not_disturb_the_sound);
+    RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
+    return UNITY_END();
+}

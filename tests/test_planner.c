@@ -1,0 +1,637 @@
+/// Tips' trajectories: on time, smooth, as the nuances ask, whatever happens.
+#include "unity.h"
+
+#include "himc/planner.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define PLANE 0.87 // of the tip at a touch, mallet's radius included (m)
+
+static himc_planner *planner;
+static himc_error error;
+static long allocations;
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#define COUNTS_ALLOCATIONS 1
+void *__libc_malloc(size_t size);
+void *__libc_realloc(void *p, size_t size);
+void *__libc_calloc(size_t n, size_t size);
+void *malloc(size_t size)
+{
+    allocations++;
+    return __libc_malloc(size);
+}
+void *realloc(void *p, size_t size)
+{
+    allocations++;
+    return __libc_realloc(p, size);
+}
+void *calloc(size_t n, size_t size)
+{
+    allocations++;
+    return __libc_calloc(n, size);
+}
+#endif
+
+static himc_planner *make(double bpm)
+{
+    himc_planner_config config = himc_planner_default();
+    himc_planner *p = himc_planner_new(&config, &error);
+    himc_tempo_change tempo = {0, bpm};
+    TEST_ASSERT_NOT_NULL(p);
+    TEST_ASSERT_TRUE(himc_planner_set_tempi(p, &tempo, 1, &error));
+    himc_planner_set_drum(p, 0, &(himc_place){{0.75, 0, 0.85}, 0, 0.3});
+    himc_planner_set_drum(p, 1, &(himc_place){{0.7, 0.65, 0.8}, 0.15, 0.33});
+    return p;
+}
+
+static void add(himc_planner *p, double beat, himc_hand hand, himc_nuance nuance, double dynamic)
+{
+    himc_stroke s = {.beat = beat, .hand = hand, .nuance = nuance, .dynamic = dynamic,
+                     .spot = HIMC_SPOT_NORMAL};
+    TEST_ASSERT_TRUE_MESSAGE(himc_planner_add(p, &s, 0, &error), error.text);
+}
+
+static himc_target at(himc_planner *p, himc_hand hand, double t)
+{
+    himc_planner_advance(p, t);
+    return himc_planner_target(p, hand, t);
+}
+
+void setUp(void)
+{
+    planner = make(120);
+}
+
+void tearDown(void)
+{
+    himc_planner_free(planner);
+    planner = NULL;
+}
+
+static void use(double bpm)
+{
+    himc_planner_free(planner);
+    planner = make(bpm);
+}
+
+static void same_state(himc_target a, himc_target b)
+{
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(a.x, b.x)) < 1e-9);
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(a.v, b.v)) < 1e-7);
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(a.a, b.a)) < 1e-4);
+}
+
+/// The time at which the hand's first touch is planned.
+static double first_touch(himc_hand hand)
+{
+    himc_stroke s;
+    int drum;
+    double touch = -1;
+    TEST_ASSERT_TRUE(himc_planner_current(planner, hand, 0, &s, &drum, &touch));
+    return touch;
+}
+
+static void test_tips_touch_on_time_with_no_acceleration_at_any_tempo(void)
+{
+    for (double bpm = 40; bpm <= 200; bpm += 20)
+        for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
+            use(bpm);
+            for (int i = 0; i < 12; i++)
+                add(planner, 2 + 0.5 * i, HIMC_RIGHT, (himc_nuance)nuance, i % 8 / 7.0);
+            himc_planner_play(planner, 0);
+            double start = first_touch(HIMC_RIGHT), worst = 0;
+            for (int i = 0; i < 12; i++) {
+                double t = start + i * 30 / bpm;
+                for (double u = t - 0.05; u < t; u += 0.01)
+                    himc_planner_advance(planner, u);
+                himc_target s = at(planner, HIMC_RIGHT, t - 1e-12);
+                TEST_ASSERT_TRUE(s.v.z < -0.15);
+                // the touch is where the height crosses 0
+                worst = fmax(worst, fabs((s.x.z - PLANE) / s.v.z));
+                TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, s.a.z);
+                TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.75 - 0.225, s.x.x);
+                TEST_ASSERT_DOUBLE_WITHIN(1e-9, -0.015, s.x.y);
+                TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, s.v.x);
+            }
+            TEST_ASSERT_TRUE_MESSAGE(worst < 1e-9, "a touch is off by a nanosecond");
+        }
+}
+
+static void test_impact_speeds_are_the_nuances_own_when_there_is_time(void)
+{
+    static const double forte[HIMC_NUANCES] = {4.3, 4.2, 4.5, 7.5, 2.8};
+    for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
+        use(60);
+        add(planner, 2, HIMC_LEFT, (himc_nuance)nuance, 5 / 7.0);
+        add(planner, 3, HIMC_LEFT, (himc_nuance)nuance, 1);
+        add(planner, 4, HIMC_LEFT, (himc_nuance)nuance, 0);
+        himc_planner_play(planner, 0);
+        himc_planner_advance(planner, 1.9);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -forte[nuance], at(planner, HIMC_LEFT, 2 - 1e-9).v.z);
+        himc_planner_advance(planner, 2.9);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1.39 * forte[nuance], at(planner, HIMC_LEFT, 3 - 1e-9).v.z);
+        himc_planner_advance(planner, 3.9);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -forte[nuance] / 6.5, at(planner, HIMC_LEFT, 4 - 1e-9).v.z);
+    }
+}
+
+/// What a stroke looks like, from the samples before its touch.
+typedef struct shape {
+    double apex, depth, up;
+} shape;
+
+static shape shape_of(himc_nuance nuance, double dynamic)
+{
+    shape s = {0, 0, 0};
+    use(100);
+    for (int i = 0; i < 4; i++)
+        add(planner, 2 + i, HIMC_RIGHT, nuance, dynamic);
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < 3; t += 1e-3) {
+        himc_target x = at(planner, HIMC_RIGHT, t);
+        if (t > 1.81 && t < 2.4) {
+            s.apex = fmax(s.apex, x.x.z - PLANE);
+            s.depth = fmax(s.depth, 0.525 - x.x.x);
+            if (t < 1.87)
+                s.up = fmax(s.up, x.v.z);
+        }
+    }
+    return s;
+}
+
+static void test_nuances_keep_their_order_of_height_and_depth_at_every_dynamic(void)
+{
+    for (int k = 0; k < 8; k++) {
+        shape s[HIMC_NUANCES];
+        for (int nuance = 0; nuance < HIMC_NUANCES; nuance++)
+            s[nuance] = shape_of((himc_nuance)nuance, k / 7.0);
+        for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
+            TEST_ASSERT_TRUE(nuance == HIMC_ACCENT || s[nuance].apex < s[HIMC_ACCENT].apex);
+            TEST_ASSERT_TRUE(nuance == HIMC_ACCENT || s[nuance].depth > s[HIMC_ACCENT].depth);
+            TEST_ASSERT_TRUE(s[nuance].apex > 0.03 && s[nuance].apex < 0.8);
+        }
+        TEST_ASSERT_TRUE(s[HIMC_VERTICAL_ACCENT].depth > 1.5 * s[HIMC_LEGATO].depth);
+        TEST_ASSERT_TRUE(s[HIMC_STACCATO].depth > 1.2 * s[HIMC_LEGATO].depth);
+    }
+}
+
+static void test_staccato_is_pulled_off_faster_than_it_strikes(void)
+{
+    TEST_ASSERT_TRUE(shape_of(HIMC_STACCATO, 5 / 7.0).up > 1.15 * 2.8);
+    TEST_ASSERT_TRUE(shape_of(HIMC_TENUTO, 5 / 7.0).up < 0.9 * 4.2);
+}
+
+static void test_stroke_before_an_accent_is_lifted_higher(void)
+{
+    use(100);
+    add(planner, 2, HIMC_RIGHT, HIMC_LEGATO, 0.5);
+    add(planner, 3, HIMC_RIGHT, HIMC_LEGATO, 0.5);
+    add(planner, 4, HIMC_RIGHT, HIMC_ACCENT, 0.5);
+    himc_planner_play(planner, 0);
+    double legato = 0, accent = 0;
+    for (double t = 0; t < 2.4; t += 1e-3) {
+        double h = at(planner, HIMC_RIGHT, t).x.z - PLANE;
+        if (t > 1.25 && t < 1.8)
+            legato = fmax(legato, h);
+        if (t > 1.85)
+            accent = fmax(accent, h);
+    }
+    TEST_ASSERT_TRUE(accent > 1.3 * legato);
+}
+
+static void test_downstroke_only_falls(void)
+{
+    for (int nuance = 0; nuance < HIMC_NUANCES; nuance++)
+        for (double step = 0.15; step < 2; step *= 1.4) {
+            use(60);
+            for (int i = 0; i < 6; i++)
+                add(planner, 2 + step * i, HIMC_RIGHT, (himc_nuance)nuance, i / 5.0);
+            himc_planner_play(planner, 0);
+            bool falling = false;
+            double before = 0;
+            for (double t = 0; t < 2 + 5 * step; t += 5e-4) {
+                himc_target s = at(planner, HIMC_RIGHT, t);
+                double to_next = fmod(2 - t + 20 * step, step);
+                if (t < 2)
+                    to_next = 2 - t;
+                if (s.v.z < -0.3 && to_next < 0.1)
+                    falling = true;
+                if (to_next < 1e-3 || to_next > 0.1)
+                    falling = false;
+                TEST_ASSERT_TRUE(!falling || s.x.z <= before);
+                before = s.x.z;
+            }
+        }
+}
+
+static void test_tip_stays_between_head_and_one_metre_above_it(void)
+{
+    srand(5);
+    for (int trial = 0; trial < 40; trial++) {
+        double bpm = 40 + rand() % 161, beat = 2, touch[64];
+        use(bpm);
+        for (int i = 0; i < 40; i++) {
+            add(planner, beat, HIMC_LEFT, (himc_nuance)(rand() % 5), rand() % 8 / 7.0);
+            touch[i] = beat * 60 / bpm;
+            beat += fmax(0.25 * (1 + rand() % 8), 0.15 * bpm / 60);
+        }
+        himc_planner_play(planner, 0);
+        double shift = first_touch(HIMC_LEFT) - touch[0];
+        int next = 0;
+        for (double t = 0; t < touch[39] + shift + 3; t += 1e-3) {
+            double h = at(planner, HIMC_LEFT, t).x.z - PLANE;
+            if (next < 40 && t > touch[next] + shift + 0.0071)
+                next++;
+            bool contact = next < 40 && t > touch[next] + shift;
+            TEST_ASSERT_TRUE(contact || h > -1e-9);
+            TEST_ASSERT_TRUE(h > -0.05 && h < 1);
+        }
+    }
+}
+
+static double normal_of(himc_vec3 a)
+{
+    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+}
+
+static void test_acceleration_has_no_jumps_even_when_the_tempo_changes(void)
+{
+    srand(11);
+    add(planner, 1, HIMC_RIGHT, HIMC_LEGATO, 0.7);
+    for (int i = 0; i < 30; i++)
+        add(planner, 2 + i * 0.75, HIMC_RIGHT, (himc_nuance)(i % 5), rand() % 8 / 7.0);
+    himc_planner_play(planner, 0);
+    double range = 0, jump = 0;
+    himc_target before = at(planner, HIMC_RIGHT, 0);
+    for (int k = 1; k < 100000; k++) {
+        double t = k * 1e-4, touch;
+        himc_stroke s;
+        int drum;
+        if (k % 3701 == 0)
+            himc_planner_tempo(planner, t, 60 + rand() % 120);
+        himc_target now = at(planner, HIMC_RIGHT, t);
+        // inside a contact the acceleration is meant to change fast
+        bool any = himc_planner_current(planner, HIMC_RIGHT, t, &s, &drum, &touch);
+        if (!any || t < touch - 1e-4 || t > touch + 0.0072) {
+            range = fmax(range, normal_of(now.a));
+            jump = fmax(jump, normal_of(himc_vec3_sub(now.a, before.a)));
+        }
+        before = now;
+    }
+    TEST_ASSERT_TRUE(range < 600);
+    TEST_ASSERT_TRUE_MESSAGE(jump < 0.02 * range, "acceleration jumps by 1 % of its range or more");
+}
+
+static void test_state_is_continuous_through_every_command(void)
+{
+    srand(3);
+    for (int i = 0; i < 60; i++)
+        add(planner, 1 + i * 0.5, HIMC_LEFT, (himc_nuance)(i % 5), i % 8 / 7.0);
+    for (int k = 0; k < 400; k++) {
+        double t = k * 0.037;
+        himc_target before = at(planner, HIMC_LEFT, t);
+        switch (rand() % 6) {
+        case 0: himc_planner_tempo(planner, t, 40 + rand() % 160); break;
+        case 1: himc_planner_stop(planner, t); break;
+        case 2: himc_planner_play(planner, t); break;
+        case 3: himc_planner_seek(planner, t, rand() % 30); break;
+        case 4:
+            himc_planner_hit(planner, t, &(himc_stroke){.hand = HIMC_LEFT, .dynamic = 0.5}, 1);
+            break;
+        default:
+            himc_planner_reach(planner, t, HIMC_LEFT, himc_vec3_make(0.5, 0.2, 1.1));
+        }
+        same_state(before, himc_planner_target(planner, HIMC_LEFT, t));
+    }
+}
+
+static void test_plan_goes_on_from_the_measured_state_at_separation(void)
+{
+    for (int i = 0; i < 10; i++)
+        add(planner, 2 + i, HIMC_RIGHT, (himc_nuance)(i % 5), 0.7);
+    himc_planner_play(planner, 0);
+    for (int i = 0; i < 9; i++) {
+        double t = 1 + 0.5 * i + 0.004 + 0.001 * i;
+        himc_target s = at(planner, HIMC_RIGHT, t);
+        s.x = himc_vec3_make(0.523, -0.012, 0.872);
+        s.v = himc_vec3_make(0.1, -0.05, 2 + 0.2 * i);
+        s.a = himc_vec3_make(5, 3, 100 - 50 * i);
+        himc_planner_separated(planner, HIMC_RIGHT, t, &s);
+        same_state(s, himc_planner_target(planner, HIMC_RIGHT, t));
+        // and the next touch is on time
+        himc_target next = {0};
+        for (double u = t; u < 1.5 + 0.5 * i; u += 1e-3) {
+            himc_target x = at(planner, HIMC_RIGHT, u);
+            TEST_ASSERT_TRUE(x.x.z > PLANE - 1e-9);
+            TEST_ASSERT_TRUE(normal_of(x.a) < 500);
+        }
+        next = at(planner, HIMC_RIGHT, 1.5 + 0.5 * i);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, next.x.z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.525, next.x.x);
+    }
+}
+
+static void test_current_names_the_stroke_until_its_touch_is_over(void)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    add(planner, 2, HIMC_LEFT, HIMC_TENUTO, 0.5);
+    add(planner, 4, HIMC_LEFT, HIMC_ACCENT, 0.5);
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 0.9);
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.02, &s, &drum, &touch));
+    TEST_ASSERT_EQUAL_INT(HIMC_TENUTO, s.nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(1, touch);
+    himc_planner_advance(planner, 1.1);
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.1, &s, &drum, &touch));
+    TEST_ASSERT_EQUAL_INT(HIMC_ACCENT, s.nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(2, touch);
+    himc_planner_advance(planner, 3);
+    TEST_ASSERT_FALSE(himc_planner_current(planner, HIMC_LEFT, 3, &s, &drum, &touch));
+    TEST_ASSERT_FALSE(himc_planner_current(planner, HIMC_RIGHT, 3, &s, &drum, &touch));
+}
+
+static void test_tip_lands_on_the_other_drum_along_its_normal(void)
+{
+    himc_place place = {{0.7, 0.65, 0.8}, 0.15, 0.33};
+    himc_stroke s = {.beat = 3, .hand = HIMC_LEFT, .dynamic = 0.7, .spot = HIMC_SPOT_XY, .x = -0.1};
+    add(planner, 2, HIMC_LEFT, HIMC_LEGATO, 0.7);
+    TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 1, &error));
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 1.4);
+    himc_target x = at(planner, HIMC_LEFT, 1.5 - 1e-10);
+    himc_vec3 p = himc_place_from_world(&place, x.x), n = himc_place_normal(&place);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.1, p.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0, p.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.02, p.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, himc_vec3_length(x.v), -himc_vec3_dot(x.v, n));
+}
+
+static void test_first_stroke_too_early_moves_the_beginning_and_says_so(void)
+{
+    himc_planner_note note;
+    add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 1);
+    double touch = first_touch(HIMC_RIGHT);
+    TEST_ASSERT_TRUE(touch > 1.3 && touch < 1.8);
+    TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_NOT_NULL(strstr(note.text, "late: the first stroke must be prepared"));
+    TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_planner_beat(planner, 1));
+}
+
+static void test_fast_strokes_are_smaller_and_said_once(void)
+{
+    himc_planner_note note;
+    use(200);
+    for (int i = 0; i < 40; i++)
+        add(planner, 4 + 0.5 * i, HIMC_RIGHT, HIMC_LEGATO, 0.7);
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < 8; t += 0.01)
+        himc_planner_advance(planner, t);
+    TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 4.5 right: 0.15 s after the last, played 0.079 m high",
+                             note.text);
+    TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
+}
+
+static void test_notes_are_bounded_and_what_is_lost_is_counted(void)
+{
+    himc_planner_note note, last = {""};
+    int count = 0;
+    for (int i = 0; i < 40; i++) {
+        himc_planner_seek(planner, 0, 0);
+        himc_planner_clear(planner);
+        add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
+        himc_planner_play(planner, 0);
+    }
+    while (himc_planner_note_next(planner, &note)) {
+        last = note;
+        count++;
+    }
+    TEST_ASSERT_EQUAL_INT(32, count);
+    TEST_ASSERT_NOT_NULL(strstr(last.text, "more notes were lost"));
+}
+
+static void test_tempo_change_keeps_the_beat_and_moves_what_is_not_begun(void)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    for (int i = 0; i < 8; i++)
+        add(planner, 1 + i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < 1.25; t += 0.004)
+        himc_planner_advance(planner, t);
+    double beat = himc_planner_beat(planner, 1.25);
+    himc_planner_tempo(planner, 1.25, 60);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, beat, himc_planner_beat(planner, 1.25));
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.25, &s, &drum, &touch));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.75, touch);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, 1.75).x.z);
+}
+
+static void test_stop_brings_the_tip_to_rest_and_play_resumes(void)
+{
+    for (int i = 0; i < 8; i++)
+        add(planner, 1 + i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 1.3);
+    himc_planner_stop(planner, 1.3);
+    TEST_ASSERT_TRUE(himc_planner_beat(planner, 1.4) < 0);
+    TEST_ASSERT_TRUE(isinf(himc_planner_end(planner)));
+    himc_target s = at(planner, HIMC_LEFT, 4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.48, s.x.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(s.v));
+    himc_planner_play(planner, 4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.6, himc_planner_beat(planner, 4));
+    double end = himc_planner_end(planner);
+    s = at(planner, HIMC_LEFT, end);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(s.v));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, s.x.z);
+}
+
+static void test_hit_comes_within_a_quarter_second_from_rest(void)
+{
+    himc_stroke s = {.hand = HIMC_LEFT, .nuance = HIMC_LEGATO, .dynamic = 4 / 7.0,
+                     .spot = HIMC_SPOT_NORMAL};
+    himc_planner_advance(planner, 1);
+    double t = himc_planner_hit(planner, 1, &s, 0);
+    TEST_ASSERT_TRUE(t > 1 && t <= 1.25);
+    himc_target x = at(planner, HIMC_LEFT, t - 1e-12);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, x.x.z);
+    TEST_ASSERT_TRUE(x.v.z < -1.5);
+    himc_planner_advance(planner, 4);
+    himc_planner_reach(planner, 4, HIMC_LEFT, himc_vec3_make(0.525, 0.015, 1.15));
+    himc_planner_advance(planner, 5);
+    t = himc_planner_hit(planner, 5, &s, 0);
+    TEST_ASSERT_TRUE(t <= 5.12);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, t).x.z);
+}
+
+static void test_reach_arrives_and_stays(void)
+{
+    himc_vec3 goal = {0.6, 0.2, 1.2};
+    himc_planner_reach(planner, 0, HIMC_RIGHT, goal);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0,
+                              himc_vec3_length(himc_vec3_sub(goal, at(planner, HIMC_RIGHT, 1).x)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0,
+                              himc_vec3_length(himc_vec3_sub(goal, at(planner, HIMC_RIGHT, 9).x)));
+}
+
+static void test_strokes_that_nobody_can_play_are_refused(void)
+{
+    himc_stroke s = {.beat = 1.05, .hand = HIMC_LEFT};
+    add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    TEST_ASSERT_FALSE(himc_planner_add(planner, &s, 0, &error));
+    TEST_ASSERT_EQUAL_STRING("stroke: BEAT: 1.05 is 0.025 s from another stroke of the left hand, "
+                             "allowed 0.04 s or more",
+                             error.text);
+    s.hand = HIMC_RIGHT;
+    TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 0, &error));
+    TEST_ASSERT_FALSE(himc_planner_add(planner, &s, 99, &error));
+}
+
+static void test_stroke_added_while_playing_is_played(void)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    add(planner, 20, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 3);
+    add(planner, 8, HIMC_LEFT, HIMC_ACCENT, 0.5);
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 3, &s, &drum, &touch));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4, touch);
+    himc_planner_advance(planner, 3.9);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, 4).x.z);
+}
+
+/// A storm of everything; returns a digest of the motion.
+static double storm(unsigned seed, int commands)
+{
+    double digest = 0, t = 0;
+    srand(seed);
+    use(120);
+    for (int k = 0; k < commands; k++) {
+        himc_stroke s = {.beat = rand() % 400 / 4.0, .hand = (himc_hand)(rand() % 2),
+                         .nuance = (himc_nuance)(rand() % 5), .dynamic = rand() % 8 / 7.0,
+                         .spot = (himc_spot)(rand() % 3)};
+        himc_target m = himc_planner_target(planner, s.hand, t);
+        m.v.z = fabs(m.v.z) + rand() % 5;
+        m.a.z = rand() % 2000 - 1000;
+        switch (rand() % 11) {
+        case 0: himc_planner_tempo(planner, t, 1 + rand() % 1000); break;
+        case 1: himc_planner_stop(planner, t); break;
+        case 2:
+        case 3: himc_planner_play(planner, t); break;
+        case 4: himc_planner_seek(planner, t, rand() % 100); break;
+        case 5: himc_planner_hit(planner, t, &s, rand() % 3); break;
+        case 6: himc_planner_reach(planner, t, s.hand, himc_vec3_make(rand() % 7 * 0.1, 0.3, 1.1)); break;
+        case 7: himc_planner_separated(planner, s.hand, t, &m); break;
+        case 8: himc_planner_set_drum(planner, 0, &(himc_place){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3}); break;
+        case 9:
+            if (rand() % 40 == 0)
+                himc_planner_clear(planner);
+            break;
+        default: himc_planner_add(planner, &s, rand() % 2, &error);
+        }
+        t += rand() % 50 * 1e-3;
+        himc_planner_advance(planner, t);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_target x = himc_planner_target(planner, (himc_hand)hand, t);
+            TEST_ASSERT_TRUE(himc_vec3_finite(x.x) && himc_vec3_finite(x.v) && himc_vec3_finite(x.a));
+            TEST_ASSERT_TRUE(himc_vec3_length(x.x) < 3);
+            digest = digest * 0.99 + x.x.x + 2 * x.x.z + x.v.y;
+        }
+    }
+    return digest;
+}
+
+static void test_ten_thousand_random_commands_keep_the_motion_finite_and_near(void)
+{
+    storm(1, 10000);
+}
+
+static void test_the_same_commands_give_the_same_bits(void)
+{
+    double a = storm(9, 2000), b = storm(9, 2000);
+    TEST_ASSERT_EQUAL_MEMORY(&a, &b, sizeof a);
+}
+
+static void test_values_that_are_not_finite_change_nothing(void)
+{
+    himc_target bad = {{NAN, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    himc_target before = at(planner, HIMC_LEFT, 1);
+    himc_planner_separated(planner, HIMC_LEFT, 1, &bad);
+    himc_planner_reach(planner, 1, HIMC_LEFT, bad.x);
+    himc_planner_tempo(planner, 1, NAN);
+    himc_planner_seek(planner, 1, NAN);
+    TEST_ASSERT_FALSE(himc_planner_set_drum(planner, 0, &(himc_place){{NAN, 0, 0}, 0, 0.3}));
+    same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
+}
+
+static void test_nothing_is_allocated_while_playing(void)
+{
+#ifdef COUNTS_ALLOCATIONS
+    for (int i = 0; i < 200; i++)
+        add(planner, i * 0.25, (himc_hand)(i & 1), (himc_nuance)(i % 5), 0.6);
+    himc_stroke s = {.hand = HIMC_LEFT, .dynamic = 0.5};
+    himc_planner_note note;
+    long before = allocations;
+    himc_planner_play(planner, 0);
+    for (int k = 0; k < 5000; k++) {
+        double t = k * 0.004;
+        himc_planner_advance(planner, t);
+        himc_target x = himc_planner_target(planner, HIMC_LEFT, t);
+        if (k % 100 == 0)
+            himc_planner_separated(planner, HIMC_LEFT, t, &x);
+        if (k % 70 == 0)
+            himc_planner_hit(planner, t, &s, 0);
+        if (k % 300 == 0)
+            himc_planner_tempo(planner, t, 60 + k % 100);
+        if (k % 900 == 0)
+            himc_planner_seek(planner, t, 3);
+        if (k % 1000 == 999)
+            himc_planner_stop(planner, t), himc_planner_play(planner, t);
+        himc_planner_note_next(planner, &note);
+    }
+    TEST_ASSERT_EQUAL_INT(before, allocations);
+#else
+    TEST_IGNORE_MESSAGE("allocations cannot be counted here");
+#endif
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_tips_touch_on_time_with_no_acceleration_at_any_tempo);
+    RUN_TEST(test_impact_speeds_are_the_nuances_own_when_there_is_time);
+    RUN_TEST(test_nuances_keep_their_order_of_height_and_depth_at_every_dynamic);
+    RUN_TEST(test_staccato_is_pulled_off_faster_than_it_strikes);
+    RUN_TEST(test_stroke_before_an_accent_is_lifted_higher);
+    RUN_TEST(test_downstroke_only_falls);
+    RUN_TEST(test_tip_stays_between_head_and_one_metre_above_it);
+    RUN_TEST(test_acceleration_has_no_jumps_even_when_the_tempo_changes);
+    RUN_TEST(test_state_is_continuous_through_every_command);
+    RUN_TEST(test_plan_goes_on_from_the_measured_state_at_separation);
+    RUN_TEST(test_current_names_the_stroke_until_its_touch_is_over);
+    RUN_TEST(test_tip_lands_on_the_other_drum_along_its_normal);
+    RUN_TEST(test_first_stroke_too_early_moves_the_beginning_and_says_so);
+    RUN_TEST(test_fast_strokes_are_smaller_and_said_once);
+    RUN_TEST(test_notes_are_bounded_and_what_is_lost_is_counted);
+    RUN_TEST(test_tempo_change_keeps_the_beat_and_moves_what_is_not_begun);
+    RUN_TEST(test_stop_brings_the_tip_to_rest_and_play_resumes);
+    RUN_TEST(test_hit_comes_within_a_quarter_second_from_rest);
+    RUN_TEST(test_reach_arrives_and_stays);
+    RUN_TEST(test_strokes_that_nobody_can_play_are_refused);
+    RUN_TEST(test_stroke_added_while_playing_is_played);
+    RUN_TEST(test_ten_thousand_random_commands_keep_the_motion_finite_and_near);
+    RUN_TEST(test_the_same_commands_give_the_same_bits);
+    RUN_TEST(test_values_that_are_not_finite_change_nothing);
+    RUN_TEST(test_nothing_is_allocated_while_playing);
+    return UNITY_END();
+}

@@ -1,0 +1,149 @@
+/// Score files.
+#include "unity.h"
+
+#include "himc/score.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static himc_error error;
+
+void setUp(void)
+{
+    error.text[0] = '\0';
+}
+
+void tearDown(void)
+{
+}
+
+static himc_score *parse(const char *text)
+{
+    return himc_score_parse(text, "s.txt", &error);
+}
+
+static void refused(const char *text, const char *expected)
+{
+    TEST_ASSERT_NULL(parse(text));
+    TEST_ASSERT_EQUAL_STRING(expected, error.text);
+}
+
+static void test_score_sorts_strokes_and_keeps_other_lines_in_order(void)
+{
+    himc_score *s = parse("comment a; b 1 2;\ndrum kettle 26;\nkettle tune 110;\nkettle place 0.7 0 0.85;\n"
+                          "b2 tune 120;");
+    TEST_ASSERT_NULL(s); // "b 1 2" is no command
+    s = parse("comment anything (at) all;\ndrum kettle 26;\nkettle tune 110;\n"
+              "stroke 3 left legato f;\nstroke 1\n  right accent p rim kettle;\nmode himc;\n"
+              "tempo 120; tempo 60 2;\nstroke 1 left tenuto mf");
+    TEST_ASSERT_NOT_NULL_MESSAGE(s, error.text);
+    TEST_ASSERT_EQUAL_INT(3, s->stroke_count);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, s->strokes[0].hand); // stable among equal beats
+    TEST_ASSERT_EQUAL_INT(HIMC_LEFT, s->strokes[1].hand);
+    TEST_ASSERT_EQUAL_DOUBLE(3, s->strokes[2].beat);
+    TEST_ASSERT_EQUAL_INT(2, s->tempo_count);
+    TEST_ASSERT_EQUAL_DOUBLE(120, s->tempi[0].bpm);
+    TEST_ASSERT_EQUAL_INT(3, s->line_count);
+    TEST_ASSERT_EQUAL_STRING("kettle", s->lines[1].drum);
+    TEST_ASSERT_EQUAL_INT(HIMC_COMMAND_TUNE, s->lines[1].command.id);
+    TEST_ASSERT_EQUAL_INT(3, s->lines[1].line);
+    TEST_ASSERT_EQUAL_STRING("kettle", s->lines[0].command.atom[0].symbol);
+    TEST_ASSERT_EQUAL_INT(7, s->lines[2].line);
+    himc_score_free(s);
+}
+
+static void test_empty_score_has_the_default_tempo(void)
+{
+    himc_score *s = parse("");
+    TEST_ASSERT_NOT_NULL(s);
+    TEST_ASSERT_EQUAL_INT(0, s->stroke_count);
+    TEST_ASSERT_EQUAL_DOUBLE(100, s->tempi[0].bpm);
+    himc_score_free(s);
+}
+
+static void test_faults_are_told_with_file_and_line(void)
+{
+    refused("play;\nstroke 1 left legatto f;",
+            "s.txt:2: stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
+    refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
+    refused("drum kettle;\n\nkettle radius 0;",
+            "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");
+    refused("score other.txt;", "s.txt:1: score: a score cannot load another");
+    refused("stroke 1 left legato f;\nstroke 1.01 left legato f;",
+            "s.txt:2: stroke: BEAT: 1.01 is 0.006 s after the last stroke of the left hand, allowed "
+            "0.04 s or more");
+    TEST_ASSERT_NULL(parse("\nstrok 1 left legato f;"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "s.txt:2: strok: unknown command, did you mean stroke?"));
+    TEST_ASSERT_NULL(parse("drum kettle; kettle tun 110;"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "s.txt:1: kettle: tun: unknown command, did you mean tune?"));
+    TEST_ASSERT_NULL(himc_score_load("/no/such/file.txt", &error));
+    TEST_ASSERT_EQUAL_STRING("/no/such/file.txt: No such file or directory", error.text);
+    TEST_ASSERT_NULL(himc_score_load("tests", &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
+}
+
+static void test_seconds_and_beat_are_inverse_through_tempo_changes(void)
+{
+    himc_tempo_change map[] = {{0, 120}, {4, 60}, {8, 180}};
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2, himc_score_seconds(map, 3, 4));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 6, himc_score_seconds(map, 3, 8));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 7, himc_score_seconds(map, 3, 11));
+    for (double beat = -3; beat < 20; beat += 0.37)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, beat,
+                                  himc_score_beat(map, 3, himc_score_seconds(map, 3, beat)));
+}
+
+static char *long_score(int strokes)
+{
+    char *text = malloc((size_t)strokes * 48 + 1), *s = text;
+    for (int i = 0; i < strokes; i++)
+        s += sprintf(s, "stroke %d %s legato mf normal;\n", i / 2, i & 1 ? "left" : "right");
+    return text;
+}
+
+static void test_long_scores_are_read_fast_and_too_long_ones_refused(void)
+{
+    char *text = long_score(4000);
+    clock_t start = clock();
+    himc_score *s = parse(text);
+    double ms = 1e3 * (double)(clock() - start) / CLOCKS_PER_SEC;
+    TEST_ASSERT_NOT_NULL(s);
+    TEST_ASSERT_EQUAL_INT(4000, s->stroke_count);
+    TEST_ASSERT_TRUE_MESSAGE(ms < 50, "4000 strokes take 50 ms or more");
+    himc_score_free(s);
+    free(text);
+    text = long_score(200001);
+    refused(text, "s.txt:200001: stroke: one too many, allowed 200000 strokes");
+    free(text);
+}
+
+static void test_random_text_never_breaks_the_reader(void)
+{
+    static const char alphabet[] = "stroke left legato f drum tune 0123456789 .-e;;\n\\ #,";
+    char text[400];
+    unsigned seed = 7;
+    for (int k = 0; k < 20000; k++) {
+        size_t n = (seed = seed * 1664525u + 1013904223u) >> 24;
+        for (size_t i = 0; i < n; i++)
+            text[i] = alphabet[((seed = seed * 1664525u + 1013904223u) >> 10) % (sizeof alphabet - 1)];
+        text[n] = '\0';
+        error.text[0] = '\0';
+        himc_score *s = parse(text);
+        TEST_ASSERT_TRUE(s || (strncmp(error.text, "s.txt:", 6) == 0 && !strchr(error.text, '\n')));
+        himc_score_free(s);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_score_sorts_strokes_and_keeps_other_lines_in_order);
+    RUN_TEST(test_empty_score_has_the_default_tempo);
+    RUN_TEST(test_faults_are_told_with_file_and_line);
+    RUN_TEST(test_seconds_and_beat_are_inverse_through_tempo_changes);
+    RUN_TEST(test_long_scores_are_read_fast_and_too_long_ones_refused);
+    RUN_TEST(test_random_text_never_breaks_the_reader);
+    return UNITY_END();
+}

@@ -1,0 +1,190 @@
+/// cli.c: one table of options per call serves the parser, its error lines and --help, so they cannot disagree.
+///
+/// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that names the call, what
+/// was wrong and what is allowed. All options take a value; given twice, the last counts, as POSIX tools do.
+#include "cli.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/// getopt's return value of option i, out of the way of letters and of its own '?' and ':'.
+#define OPTION_BASE 1000
+#define OPTION_HELP 999
+
+static void fill_getopt(const cli_option *options, struct option *wide, char *letters)
+{
+    *letters++ = ':';
+    int count = 0;
+    for (; options[count].name; count++) {
+        wide[count] =
+            (struct option){options[count].name, required_argument, NULL, OPTION_BASE + count};
+        if (options[count].letter) {
+            *letters++ = options[count].letter;
+            *letters++ = ':';
+        }
+    }
+    *letters++ = 'h';
+    *letters = '\0';
+    wide[count] = (struct option){"help", no_argument, NULL, OPTION_HELP};
+    wide[count + 1] = (struct option){NULL, 0, NULL, 0};
+}
+
+/// "-o --rate --block ... --help"
+static void list_options(const cli_option *options, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (; options->name && used < size; options++) {
+        if (options->letter)
+            used += (size_t)snprintf(text + used, size - used, "-%c ", options->letter);
+        else
+            used += (size_t)snprintf(text + used, size - used, "--%s ", options->name);
+    }
+    if (used < size)
+        snprintf(text + used, size - used, "--help");
+}
+
+static int find_letter(const cli_option *options, int letter)
+{
+    for (int i = 0; options[i].name; i++)
+        if (options[i].letter == letter)
+            return i;
+    return -1;
+}
+
+bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error)
+{
+    struct option wide[CLI_OPTIONS + 2];
+    char letters[2 * CLI_OPTIONS + 3], allowed[256];
+    fill_getopt(call->options, wide, letters);
+    list_options(call->options, allowed, sizeof allowed);
+    *out = (cli_arguments){0};
+    opterr = 0;
+    int found;
+    while ((found = getopt_long(argc, argv, letters, wide, NULL)) != -1) {
+        if (found == OPTION_HELP || found == 'h')
+            return out->help = true;
+        if (found == ':')
+            return himc_error_set(error, "%s needs a value after it (himc %s --help)",
+                                  argv[optind - 1], call->name);
+        int index = found >= OPTION_BASE ? found - OPTION_BASE : find_letter(call->options, found);
+        if (found == '?' && optopt > 0 && optopt < OPTION_HELP)
+            return himc_error_set(error, "unknown option -%c, allowed: %s", optopt, allowed);
+        if (found == '?' || index < 0)
+            return himc_error_set(error, "unknown option %s, allowed: %s", argv[optind - 1],
+                                  allowed);
+        out->value[index] = optarg;
+    }
+    if (argc - optind > 1)
+        return himc_error_set(error, "one %s at a time: \"%s\" is one too many", call->operand,
+                              argv[optind + 1]);
+    out->operand = argv[optind];
+    if (!out->operand && call->operand[0] != '[')
+        return himc_error_set(error, "no %s given (himc %s --help)", call->operand, call->name);
+    return true;
+}
+
+void cli_help(const cli_call *call)
+{
+    bool any = call->options[0].name;
+    printf("usage: himc %s %s%s%s\n\n%s\n", call->name, call->operand, call->needs,
+           any ? " [OPTION...]" : "", call->does);
+    if (call->more[0])
+        printf("\n%s\n", call->more);
+    if (any)
+        printf("\n");
+    for (const cli_option *option = call->options; option->name; option++) {
+        char left[64], letter[8] = "    ";
+        if (option->letter)
+            snprintf(letter, sizeof letter, "-%c, ", option->letter);
+        snprintf(left, sizeof left, "%s--%s %s", letter, option->name, option->value);
+        printf("  %-24s %s\n", left, option->does);
+    }
+}
+
+int cli_fail(const cli_call *call, const char *format, ...)
+{
+    fflush(stdout);
+    fprintf(stderr, "himc %s: ", call->name);
+    va_list args;
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fputc('\n', stderr);
+    return 1;
+}
+
+int cli_finish(const cli_call *call)
+{
+    errno = 0;
+    if (fflush(stdout) || ferror(stdout))
+        return cli_fail(call, "standard output: %s", errno ? strerror(errno) : "write error");
+    return 0;
+}
+
+bool cli_number(const char *name, const char *text, double low, double high, const char *unit,
+                double *out, himc_error *error)
+{
+    if (!text)
+        return true;
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end)
+        return himc_error_set(error, "%s: \"%s\" is not a number, allowed %g .. %g%s%s", name, text,
+                              low, high, unit[0] ? " " : "", unit);
+    if (!himc_check_range(name, value, low, high, unit, error))
+        return false;
+    *out = value;
+    return true;
+}
+
+bool cli_count(const char *name, const char *text, int low, int high, int *out, himc_error *error)
+{
+    double value = *out;
+    if (!cli_number(name, text, low, high, "", &value, error))
+        return false;
+    if (value != floor(value))
+        return himc_error_set(error, "%s: %s is not a whole number, allowed %d .. %d", name, text,
+                              low, high);
+    *out = (int)value;
+    return true;
+}
+
+const himc_score_line *cli_first_drum(const himc_score *score)
+{
+    for (int i = 0; i < score->line_count; i++)
+        if (score->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM)
+            return &score->lines[i];
+    return NULL;
+}
+
+double cli_drum_inches(const himc_score_line *line)
+{
+    return line && line->command.count > 1 ? line->command.atom[1].number : CLI_INCHES;
+}
+
+bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
+                      himc_take_options *out, himc_error *error)
+{
+    *out = himc_take_default();
+    out->left_tip = left_tip;
+    out->right_tip = right_tip;
+    if (!up)
+        return true;
+    if (strcmp(up, "y") && strcmp(up, "z"))
+        return himc_error_set(error, "--up: \"%s\", allowed y or z", up);
+    out->up = up[0] == 'y' ? HIMC_UP_Y : HIMC_UP_Z;
+    return true;
+}
+
+bool cli_is_take(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot &&
+           (!strcasecmp(dot, ".bvh") || !strcasecmp(dot, ".c3d") || !strcasecmp(dot, ".trc"));
+}

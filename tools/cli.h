@@ -1,0 +1,93 @@
+/// cli.h: what the calls of the program share: how options are read, how a call fails, how files are written.
+#ifndef CLI_H
+#define CLI_H
+
+#include "himc/score.h"
+#include "himc/take.h"
+
+#include <stdio.h>
+
+/// One option; the table of these is the parser's and the help's.
+typedef struct cli_option {
+    const char *name;  ///< "rate" is --rate
+    char letter;       ///< 'o' is -o; 0 for none
+    const char *value; ///< what follows it, "HZ"
+    const char *does;
+} cli_option;
+
+#define CLI_OPTIONS 16
+
+/// What was given: one operand at most, and each option's value or NULL, in the table's order.
+typedef struct cli_arguments {
+    const char *operand;
+    const char *value[CLI_OPTIONS];
+    bool help;
+} cli_arguments;
+
+/// One call of the program: `himc NAME ...`.
+typedef struct cli_call {
+    const char *name;
+    const char *operand;       ///< "SOURCE", or "[SCORE]" when it may be left out
+    const char *needs;         ///< options that must be given, for the usage line: " -o OUT.wav"
+    const char *does;          ///< one line
+    const char *more;          ///< what else --help says; "" for nothing
+    const cli_option *options; ///< ends with a name of NULL
+    int (*run)(const cli_arguments *arguments); ///< the exit status
+} cli_call;
+
+extern const cli_call cli_render, cli_info, cli_modes;
+
+/// Reads the arguments after the call's name; false with one line that says what is wrong and what is allowed.
+bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error);
+
+/// Prints usage and options.
+void cli_help(const cli_call *call);
+
+/// One line on stderr, "himc NAME: ..."; returns the exit status 1.
+int cli_fail(const cli_call *call, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/// Returns 0, or fails if what was printed did not reach stdout (a full disk).
+int cli_finish(const cli_call *call);
+
+/// The number after option `name`, which must lie in [low, high]; left as it is if `text` is NULL.
+bool cli_number(const char *name, const char *text, double low, double high, const char *unit,
+                double *out, himc_error *error);
+/// The same for a whole number.
+bool cli_count(const char *name, const char *text, int low, int high, int *out, himc_error *error);
+
+/// A file that appears under its name complete or not at all: it is written beside it and renamed in the end. What is
+/// no regular file (/dev/null, a pipe) is written directly.
+typedef struct cli_file {
+    char path[4096]; ///< "" when not wanted
+    char temp[4096]; ///< where it is written until kept; "" when written directly
+    FILE *stream;    ///< NULL when closed
+} cli_file;
+
+/// Opens for writing; does nothing if `path` is NULL.
+bool cli_file_open(cli_file *file, const char *path, himc_error *error);
+/// Brings all to the disk and closes; false, and the temporary file removed, if something did not arrive.
+bool cli_file_close(cli_file *file, himc_error *error);
+/// Gives a closed file its name.
+bool cli_file_keep(cli_file *file, himc_error *error);
+/// Closes and removes what is not kept. Safe on a file in any state, also one that is all zero.
+void cli_file_drop(cli_file *file);
+/// True if both names are one existing file, or spelled alike.
+bool cli_same_file(const char *a, const char *b);
+
+/// The drum that is there when a score makes none.
+#define CLI_DRUM "kettle"
+#define CLI_INCHES 23.0
+
+/// The first `drum` line of a score, or NULL.
+const himc_score_line *cli_first_drum(const himc_score *score);
+/// The size a `drum` line asks for (inches).
+double cli_drum_inches(const himc_score_line *line);
+
+/// How a take is to be read, from the values of --left-tip, --right-tip and --up (each may be NULL).
+bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
+                      himc_take_options *out, himc_error *error);
+
+/// True if the name ends as a motion capture's does: .bvh .c3d .trc, in any case.
+bool cli_is_take(const char *path);
+
+#endif

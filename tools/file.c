@@ -1,0 +1,152 @@
+/// file.c: a file that appears complete or not at all.
+///
+/// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system and is atomic. An
+/// interrupted run removes what it had begun. Symbolic links are followed, so that the link stays and its file changes.
+#define _XOPEN_SOURCE 700
+#include "cli.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/// The temporary names an interrupt must remove; written before, cleared after the file exists.
+#define FILES_OPEN 8
+static const char *volatile unfinished[FILES_OPEN];
+
+static void remove_unfinished(int signal_number)
+{
+    for (int i = 0; i < FILES_OPEN; i++)
+        if (unfinished[i])
+            unlink(unfinished[i]);
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+}
+
+static void remember(const char *temp)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    int free_slot = 0;
+    while (free_slot < FILES_OPEN - 1 && unfinished[free_slot])
+        free_slot++;
+    unfinished[free_slot] = temp;
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
+        if (signal(signals[i], remove_unfinished) == SIG_IGN)
+            signal(signals[i], SIG_IGN); // nohup stays in force
+}
+
+static void forget(const char *temp)
+{
+    for (int i = 0; i < FILES_OPEN; i++)
+        if (unfinished[i] == temp)
+            unfinished[i] = NULL;
+}
+
+static bool file_error(const char *path, himc_error *error)
+{
+    return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
+}
+
+/// A new file beside the final one, with the permissions the final one has or would get.
+static int open_beside(cli_file *file, mode_t mode)
+{
+    size_t length = strlen(file->path);
+    if (length + sizeof ".XXXXXX" > sizeof file->temp) {
+        errno = ENAMETOOLONG;
+        return -1;
+    }
+    memcpy(file->temp, file->path, length);
+    memcpy(file->temp + length, ".XXXXXX", sizeof ".XXXXXX");
+    int descriptor = mkstemp(file->temp);
+    if (descriptor < 0) {
+        file->temp[0] = '\0';
+        return -1;
+    }
+    remember(file->temp);
+    fchmod(descriptor, mode & 07777);
+    return descriptor;
+}
+
+bool cli_file_open(cli_file *file, const char *path, himc_error *error)
+{
+    *file = (cli_file){0};
+    if (!path)
+        return true;
+    struct stat status;
+    bool exists = !stat(path, &status);
+    mode_t mask = umask(0);
+    umask(mask);
+    char *real = exists ? realpath(path, NULL) : NULL;
+    int length = snprintf(file->path, sizeof file->path, "%s", real ? real : path);
+    free(real);
+    if (length >= (int)sizeof file->path)
+        return himc_error_set(error, "%.64s...: the name is too long, allowed %zu bytes", path,
+                              sizeof file->path - 1);
+    if (exists && S_ISREG(status.st_mode) && access(file->path, W_OK))
+        return file_error(path, error);
+    if (exists && !S_ISREG(status.st_mode)) {
+        file->stream = fopen(file->path, "wb");
+        return file->stream || file_error(path, error);
+    }
+    int descriptor = open_beside(file, exists ? status.st_mode : 0666 & ~mask);
+    if (descriptor < 0)
+        return file_error(path, error);
+    file->stream = fdopen(descriptor, "wb");
+    return file->stream || file_error(path, error);
+}
+
+bool cli_file_close(cli_file *file, himc_error *error)
+{
+    if (!file->stream)
+        return true;
+    errno = 0;
+    bool bad = fflush(file->stream) || ferror(file->stream);
+    bad |= fclose(file->stream) != 0;
+    file->stream = NULL;
+    if (!bad)
+        return true;
+    if (!errno)
+        errno = EIO;
+    file_error(file->path, error);
+    cli_file_drop(file);
+    return false;
+}
+
+bool cli_file_keep(cli_file *file, himc_error *error)
+{
+    if (!file->temp[0])
+        return true;
+    if (rename(file->temp, file->path)) {
+        file_error(file->path, error);
+        cli_file_drop(file);
+        return false;
+    }
+    forget(file->temp);
+    file->temp[0] = '\0';
+    return true;
+}
+
+void cli_file_drop(cli_file *file)
+{
+    if (file->stream)
+        fclose(file->stream);
+    file->stream = NULL;
+    if (!file->temp[0])
+        return;
+    unlink(file->temp);
+    forget(file->temp);
+    file->temp[0] = '\0';
+}
+
+bool cli_same_file(const char *a, const char *b)
+{
+    struct stat first, second;
+    if (!a || !b)
+        return false;
+    if (!strcmp(a, b))
+        return true;
+    return !stat(a, &first) && !stat(b, &second) && S_ISREG(first.st_mode) &&
+           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}

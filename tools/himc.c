@@ -1,0 +1,72 @@
+/// himc.c: the command line: `himc CALL ...`; each call is a file of its own beside this one.
+///
+/// Exit status 0, or 1 with one line on stderr that says what was wrong, where, and what is allowed.
+#include "cli.h"
+#include "himc/himc.h"
+
+#include <string.h>
+
+static const cli_call *const calls[] = {&cli_render, &cli_info, &cli_modes};
+#define CALLS (sizeof calls / sizeof *calls)
+
+static void print_help(void)
+{
+    printf("himc %s: a virtual timpanist\n\nusage: himc CALL ...\n\n", HIMC_VERSION);
+    for (size_t i = 0; i < CALLS; i++)
+        printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
+    printf("\nhimc CALL --help says more; himc --version prints the version.\n");
+}
+
+static const cli_call *find_call(const char *name)
+{
+    for (size_t i = 0; i < CALLS; i++)
+        if (!strcmp(calls[i]->name, name))
+            return calls[i];
+    return NULL;
+}
+
+/// "render, info, modes"
+static void print_names(FILE *stream)
+{
+    for (size_t i = 0; i < CALLS; i++)
+        fprintf(stream, "%s%s", i ? ", " : "", calls[i]->name);
+}
+
+static int refuse(const char *what, const char *name)
+{
+    fprintf(stderr, "himc: %s%s%s%s, allowed: ", what, name ? " \"" : "", name ? name : "",
+            name ? "\"" : "");
+    print_names(stderr);
+    fprintf(stderr, ", --help, --version\n");
+    return 1;
+}
+
+static int run_call(const cli_call *call, int argc, char **argv)
+{
+    cli_arguments arguments;
+    himc_error error;
+    if (!cli_read(call, argc, argv, &arguments, &error))
+        return cli_fail(call, "%s", error.text);
+    if (arguments.help) {
+        cli_help(call);
+        return cli_finish(call);
+    }
+    return call->run(&arguments);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2)
+        return refuse("no call given", NULL);
+    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
+        print_help();
+    else if (!strcmp(argv[1], "--version"))
+        printf("himc %s\n", HIMC_VERSION);
+    else {
+        const cli_call *call = find_call(argv[1]);
+        if (!call)
+            return refuse(argv[1][0] == '-' ? "unknown option" : "unknown call", argv[1]);
+        return run_call(call, argc - 1, argv + 1);
+    }
+    return fflush(stdout) || ferror(stdout) ? refuse("standard output cannot be written", NULL) : 0;
+}

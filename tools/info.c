@@ -1,0 +1,123 @@
+/// info.c: `himc info`: what is in a take or a score, in a few lines.
+#include "cli.h"
+
+static void print_line(void *user, const char *line)
+{
+    (void)user;
+    puts(line);
+}
+
+/// "7 legato, 5 tenuto, 2 accent"
+static void count_nuances(const himc_score *score, int hand, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
+        int count = 0;
+        for (int i = 0; i < score->stroke_count; i++)
+            count += (int)score->strokes[i].hand == hand && (int)score->strokes[i].nuance == nuance;
+        if (count && used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%d %s", used ? ", " : "", count,
+                                     himc_nuance_name((himc_nuance)nuance));
+    }
+}
+
+static void print_strokes(const himc_score *score)
+{
+    printf("strokes %d\n", score->stroke_count);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        char text[160];
+        count_nuances(score, hand, text, sizeof text);
+        printf("%-7s %s\n", himc_hand_name((himc_hand)hand), text[0] ? text : "nothing");
+    }
+}
+
+/// From the first stroke to the last, in beats and through the tempo changes in seconds.
+static void print_length(const himc_score *score)
+{
+    if (!score->stroke_count)
+        return;
+    double first = score->strokes[0].beat, last = score->strokes[score->stroke_count - 1].beat;
+    double seconds = himc_score_seconds(score->tempi, score->tempo_count, last) -
+                     himc_score_seconds(score->tempi, score->tempo_count, first);
+    printf("beats   %g to %g\nlength  %.3f s from the first stroke to the last\n", first, last,
+           seconds);
+}
+
+static void print_tempo(const himc_score *score)
+{
+    printf("tempo   ");
+    for (int i = 0; i < score->tempo_count; i++) {
+        if (i)
+            printf(", from beat %g ", score->tempi[i].beat);
+        printf("%g", score->tempi[i].bpm);
+    }
+    printf(" BPM\n");
+}
+
+static void print_drums(const himc_score *score)
+{
+    int drums = 0;
+    printf("drums   ");
+    for (int i = 0; i < score->line_count; i++)
+        if (score->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM)
+            printf("%s%s %g inches", drums++ ? ", " : "", score->lines[i].command.atom[0].symbol,
+                   cli_drum_inches(&score->lines[i]));
+    if (!drums)
+        printf("%s %g inches (none named)", CLI_DRUM, CLI_INCHES);
+    printf("\n");
+}
+
+static bool describe_score(const char *path, himc_error *error)
+{
+    himc_score *score = himc_score_load(path, error);
+    if (!score)
+        return false;
+    print_strokes(score);
+    print_length(score);
+    print_tempo(score);
+    print_drums(score);
+    himc_score_free(score);
+    return true;
+}
+
+enum { LEFT_TIP, RIGHT_TIP, UP };
+
+static const cli_option options[] = {
+    {"left-tip", 0, "NAME", "the take's point at the left stick's tip (else looked for by name)"},
+    {"right-tip", 0, "NAME", "the same, right"},
+    {"up", 0, "z|y", "the take's upward axis (else as the file says)"},
+    {0},
+};
+
+static bool describe_take(const cli_arguments *arguments, himc_error *error)
+{
+    himc_take_options take_options;
+    if (!cli_take_options(arguments->value[LEFT_TIP], arguments->value[RIGHT_TIP],
+                          arguments->value[UP], &take_options, error))
+        return false;
+    himc_take *take = himc_take_load(arguments->operand, &take_options, error);
+    if (!take)
+        return false;
+    himc_take_describe(take, &take_options, print_line, NULL);
+    himc_take_free(take);
+    return true;
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    bool good = cli_is_take(arguments->operand) ? describe_take(arguments, &error)
+                                                : describe_score(arguments->operand, &error);
+    return good ? cli_finish(&cli_info) : cli_fail(&cli_info, "%s", error.text);
+}
+
+const cli_call cli_info = {
+    "info",
+    "FILE",
+    "",
+    "says what is in a score, or in a take (.bvh .c3d .trc)",
+    "Of a take: rate, length, points, gaps, the strikes found in it and where the drumhead is placed.",
+    options,
+    run,
+};

@@ -1,0 +1,92 @@
+/// modes.c: `himc modes`: the frequencies and decays of a drum, as a score has it tuned before its first stroke.
+///
+/// The two members of a pair (cosine and sine) sound alike and are one row. T60 is the time in which a mode falls by
+/// 60 dB: ln(1000) over its decay rate.
+#include "cli.h"
+#include "himc/drum.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Modes do not depend on it, but a drum has one.
+#define RATE 48000.0
+
+/// Carries out the score's lines for this drum.
+static bool tune(himc_drum *drum, const himc_score *score, const char *path, himc_error *error)
+{
+    for (int i = 0; i < score->line_count; i++) {
+        const himc_score_line *line = &score->lines[i];
+        if (strcmp(line->drum, himc_drum_name(drum)))
+            continue;
+        if (!himc_drum_command(drum, &line->command, error))
+            return himc_error_prefix(error, "%s:%d", path, line->line);
+    }
+    return true;
+}
+
+/// The default drum, or the first one of the score.
+static himc_drum *open_drum(const char *path, himc_error *error)
+{
+    if (!path)
+        return himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
+    himc_score *score = himc_score_load(path, error);
+    if (!score)
+        return NULL;
+    const himc_score_line *line = cli_first_drum(score);
+    himc_drum *drum = himc_drum_new(line ? line->command.atom[0].symbol : CLI_DRUM,
+                                    cli_drum_inches(line), RATE, error);
+    if (drum && !tune(drum, score, path, error)) {
+        himc_drum_release(drum);
+        drum = NULL;
+    }
+    himc_score_free(score);
+    return drum;
+}
+
+/// Of the principal mode (1,1), whether or not the drum's list reaches it.
+static double principal(const himc_head *head, himc_error *error)
+{
+    himc_modes *modes = himc_modes_new(2, error);
+    if (!modes)
+        return NAN;
+    double frequency = himc_modes_get(modes, head, 1).frequency;
+    himc_modes_free(modes);
+    return frequency;
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    himc_drum *drum = open_drum(arguments->operand, &error);
+    if (!drum)
+        return cli_fail(&cli_modes, "%s", error.text);
+    const himc_membrane *membrane = himc_drum_membrane(drum);
+    const himc_head *head = himc_membrane_head(membrane);
+    double reference = principal(head, &error);
+    if (isnan(reference)) {
+        himc_drum_release(drum);
+        return cli_fail(&cli_modes, "%s", error.text);
+    }
+    printf("m,n,frequency_hz,ratio,t60_s\n");
+    for (int i = 0; i < head->modes; i++) {
+        himc_mode mode = himc_membrane_mode(membrane, i);
+        if (!mode.sine)
+            printf("%d,%d,%.6f,%.6f,%.6f\n", mode.m, mode.n, mode.frequency,
+                   mode.frequency / reference, log(1000) / mode.decay);
+    }
+    himc_drum_release(drum);
+    return cli_finish(&cli_modes);
+}
+
+static const cli_option options[] = {{0}};
+
+const cli_call cli_modes = {
+    "modes",
+    "[SCORE]",
+    "",
+    "lists the modes of a drum: m,n,frequency_hz,ratio,t60_s",
+    "The drum is the first that SCORE makes, tuned as its lines say, or without SCORE the default one of 23 inches.\n"
+    "One row for each pair of nodal diameters m and circles n; the ratio is to the principal mode (1,1).",
+    options,
+    run,
+};

@@ -1,0 +1,304 @@
+/// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a WAV file.
+///
+/// The command `score` or `take`, then `play` on sample 0, then block after block, just as `[himc~]` does it in Pd; each
+/// sample written is the sum of the drums' samples, rounded to 32-bit float once, as Pd's signals are. Whether it is
+/// over is asked only where a cell of 0.2 s ends, and blocks end there too, so that nothing depends on --block. It is
+/// over when the performer is done and a whole cell stayed 80 dB below the peak, or 8 s after.
+#define _POSIX_C_SOURCE 200809L
+#include "cli.h"
+#include "himc/performance.h"
+#include "render_tables.h"
+
+#include <math.h>
+#include <sndfile.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define CELL_SECONDS 0.2
+#define TAIL_SECONDS 8.0
+#define SILENCE 1e-4
+#define BLOCK_MAX 8192
+/// What the 32-bit sizes in a WAV file can count, headers taken off (samples).
+#define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
+
+enum { OUT, RATE, BLOCK, STROKES, MOTION, MODE, LEFT_TIP, RIGHT_TIP, UP };
+
+static const cli_option options[] = {
+    {"output", 'o', "OUT.wav", "the sound, 32-bit float, one channel: the sum of all drums"},
+    {"rate", 0, "HZ", "sample rate, 8000 .. 192000 (48000)"},
+    {"block", 0, "N", "samples computed at a time, 1 .. 8192 (64); the result is the same"},
+    {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
+    {"motion", 0, "F.csv", "a row every 4 ms: targets, sticks, joint angles, forces, elbows"},
+    {"mode", 0, "M", "control by himc, id or ik (himc)"},
+    {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else looked for by name)"},
+    {"right-tip", 0, "NAME", "the same, right"},
+    {"up", 0, "z|y", "a take's upward axis (else as the file says)"},
+    {0},
+};
+
+/// What was asked for.
+typedef struct job {
+    const char *source, *mode;
+    double rate;
+    int block;
+    himc_take_options take;
+} job;
+
+/// What is under way.
+typedef struct rendering {
+    himc_performance *performance;
+    cli_file wav, strokes, motion;
+    SNDFILE *sound;
+    bool done;     ///< the performer has come to rest
+    bool failed;   ///< a write did not arrive
+    bool too_long; ///< for a WAV file
+    uint64_t samples, done_at;
+    double peak, cell_peak; ///< of the sound so far, of the cell under way
+} rendering;
+
+static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
+{
+    const char *const *value = arguments->value;
+    *out = (job){.source = arguments->operand, .mode = value[MODE], .rate = 48000, .block = 64};
+    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION]};
+    if (!value[OUT])
+        return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
+    for (int i = 0; i < 4; i++)
+        for (int k = i + 1; k < 4; k++)
+            if (cli_same_file(files[i], files[k]))
+                return himc_error_set(error, "%s: named twice, allowed are different files",
+                                      files[k]);
+    return cli_number("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
+           cli_count("--block", value[BLOCK], 1, BLOCK_MAX, &out->block, error) &&
+           cli_take_options(value[LEFT_TIP], value[RIGHT_TIP], value[UP], &out->take, error);
+}
+
+/// Gives the performer `name` with one word, or without if `word` is NULL.
+static bool tell(himc_performance *performance, const char *name, const char *word,
+                 himc_error *error)
+{
+    himc_command command;
+    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
+    return himc_command_parse(&command, HIMC_PERFORMER, name, &atom, word ? 1 : 0, error) &&
+           himc_performance_command(performance, &command, 0, error);
+}
+
+static bool add_default_drum(himc_performance *performance, double rate, himc_error *error)
+{
+    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, rate, error);
+    bool good = drum && himc_performance_add_drum(performance, drum, error);
+    himc_drum_release(drum);
+    return good;
+}
+
+/// Looks whether the score makes drums itself, and whether a WAV file can hold it.
+static bool inspect_score(const job *wanted, bool *makes_drums, himc_error *error)
+{
+    himc_score *score = himc_score_load(wanted->source, error);
+    if (!score)
+        return false;
+    *makes_drums = cli_first_drum(score) != NULL;
+    double beat = score->stroke_count ? score->strokes[score->stroke_count - 1].beat : 0;
+    double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
+    himc_score_free(score);
+    if (seconds + TAIL_SECONDS > WAV_SAMPLES / wanted->rate)
+        return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %g Hz: %.0f s",
+                              wanted->source, seconds, wanted->rate,
+                              WAV_SAMPLES / wanted->rate - TAIL_SECONDS);
+    return true;
+}
+
+static bool prepare(himc_performance *performance, const job *wanted, himc_error *error)
+{
+    bool take = cli_is_take(wanted->source), makes_drums = false;
+    himc_performance_make_drums(performance, true);
+    himc_performance_take_options(performance, &wanted->take);
+    if (wanted->mode && !tell(performance, "mode", wanted->mode, error))
+        return himc_error_prefix(error, "--mode");
+    if (!take && !inspect_score(wanted, &makes_drums, error))
+        return false;
+    if (!makes_drums && !add_default_drum(performance, wanted->rate, error))
+        return false;
+    return tell(performance, take ? "take" : "score", wanted->source, error) &&
+           tell(performance, "play", NULL, error);
+}
+
+static bool open_sound(rendering *r, const char *path, double rate, himc_error *error)
+{
+    if (!cli_file_open(&r->wav, path, error))
+        return false;
+    SF_INFO info = {
+        .samplerate = (int)lround(rate), .channels = 1, .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
+    r->sound = sf_open_fd(fileno(r->wav.stream), SFM_WRITE, &info, SF_FALSE);
+    if (!r->sound)
+        return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(NULL));
+    // libsndfile's PEAK chunk holds the date, and two renders would differ
+    sf_command(r->sound, SFC_SET_ADD_PEAK_CHUNK, NULL, SF_FALSE);
+    return true;
+}
+
+/// Asks the performer for what happened; strikes go to their table, notes to the user.
+static void take_events(rendering *r)
+{
+    himc_event event;
+    while (himc_performance_event(r->performance, &event)) {
+        if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
+            render_stroke_row(r->strokes.stream, &event.strike);
+        else if (event.kind == HIMC_EVENT_NOTE)
+            printf("note: %s\n", event.text);
+        else if (event.kind == HIMC_EVENT_DONE)
+            r->done = true;
+    }
+}
+
+static void play_block(rendering *r, int n)
+{
+    double heard[BLOCK_MAX], sum[BLOCK_MAX] = {0};
+    float out[BLOCK_MAX];
+    himc_drum *drum;
+    himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
+    for (int d = 0; (drum = himc_performance_drum(r->performance, d)); d++) {
+        himc_drum_read(drum, r->samples, n, heard, NULL);
+        for (int i = 0; i < n; i++)
+            sum[i] += heard[i];
+    }
+    for (int i = 0; i < n; i++) {
+        out[i] = (float)sum[i];
+        r->cell_peak = fmax(r->cell_peak, fabs(sum[i]));
+    }
+    r->failed |= sf_writef_float(r->sound, out, n) != n;
+    r->samples += (uint64_t)n;
+    take_events(r);
+}
+
+/// Called where a cell ends: true when there is nothing more to hear.
+static bool is_over(rendering *r, double rate)
+{
+    r->peak = fmax(r->peak, r->cell_peak);
+    bool silent = r->cell_peak <= SILENCE * r->peak;
+    r->cell_peak = 0;
+    if (!r->done)
+        return false;
+    if (!r->done_at)
+        r->done_at = r->samples;
+    return (silent && r->samples > r->done_at) ||
+           (double)(r->samples - r->done_at) >= TAIL_SECONDS * rate;
+}
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void show_progress(double seconds, double elapsed, bool last)
+{
+    if (!isatty(STDERR_FILENO))
+        return;
+    if (last)
+        fprintf(stderr, "\r\033[K");
+    else
+        fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
+}
+
+/// Plays to the end; returns how long it took (s).
+static double play(rendering *r, const job *wanted)
+{
+    int cell = (int)lround(CELL_SECONDS * wanted->rate);
+    double start = now();
+    do {
+        for (int left = cell; left > 0 && !r->failed;) {
+            int n = left < wanted->block ? left : wanted->block;
+            play_block(r, n);
+            left -= n;
+        }
+        r->too_long = (double)(r->samples + (uint64_t)cell) > WAV_SAMPLES;
+        show_progress((double)r->samples / wanted->rate, now() - start, false);
+    } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
+    double elapsed = now() - start;
+    show_progress(0, 0, true);
+    return elapsed;
+}
+
+/// All three files complete, or none of them.
+static bool keep_files(rendering *r, himc_error *error)
+{
+    const char *path = r->wav.path;
+    if (r->failed)
+        return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(r->sound));
+    if (r->too_long)
+        return himc_error_set(error, "%s: not over when the file is full, allowed %.0f samples",
+                              path, WAV_SAMPLES);
+    bool closed = !sf_close(r->sound);
+    r->sound = NULL;
+    if (!closed)
+        return himc_error_set(error, "%s: cannot be written to its end", path);
+    return cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
+           cli_file_close(&r->motion, error) && cli_file_keep(&r->wav, error) &&
+           cli_file_keep(&r->strokes, error) && cli_file_keep(&r->motion, error);
+}
+
+static void close_all(rendering *r)
+{
+    if (r->sound)
+        sf_close(r->sound);
+    cli_file_drop(&r->wav);
+    cli_file_drop(&r->strokes);
+    cli_file_drop(&r->motion);
+    himc_performance_free(r->performance);
+}
+
+static bool open_all(rendering *r, const job *wanted, const char *const *value, himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = wanted->rate;
+    if (config.physics_rate > wanted->rate)
+        config.physics_rate = wanted->rate;
+    r->performance = himc_performance_new(&config, error);
+    if (!r->performance || !prepare(r->performance, wanted, error) ||
+        !open_sound(r, value[OUT], wanted->rate, error) ||
+        !cli_file_open(&r->strokes, value[STROKES], error) ||
+        !cli_file_open(&r->motion, value[MOTION], error))
+        return false;
+    if (r->strokes.stream)
+        render_stroke_header(r->strokes.stream);
+    if (r->motion.stream) {
+        render_motion_header(r->motion.stream);
+        himc_performance_on_motion(r->performance, render_motion_row, r->motion.stream);
+    }
+    return true;
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    rendering r = {0};
+    job wanted;
+    if (!read_job(arguments, &wanted, &error))
+        return cli_fail(&cli_render, "%s", error.text);
+    if (!open_all(&r, &wanted, arguments->value, &error)) {
+        close_all(&r);
+        return cli_fail(&cli_render, "%s", error.text);
+    }
+    double elapsed = play(&r, &wanted), seconds = (double)r.samples / wanted.rate;
+    himc_performance_stats stats = himc_performance_measure(r.performance);
+    bool good = keep_files(&r, &error);
+    close_all(&r);
+    if (!good)
+        return cli_fail(&cli_render, "%s", error.text);
+    render_report(&stats, seconds, seconds / elapsed);
+    return cli_finish(&cli_render);
+}
+
+const cli_call cli_render = {
+    "render",
+    "SOURCE",
+    " -o OUT.wav",
+    "plays a score or a take (.bvh .c3d .trc) into a WAV file",
+    "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm tip_rms_percent\n"
+    "peak_force_n realtime_factor. A score that makes no drum is played on \"kettle\", 23 inches.",
+    options,
+    run,
+};
