@@ -126,11 +126,15 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
     return himc_command_parse(command, receiver, s->s_name, atom, count, error);
 }
 
-/* Sends `selector` and the words of `line` as one message. */
+/* Sends `selector` and the words of `line` as one message; commas and semicolons mean something else in Pd. */
 static inline void outlet_words(t_outlet *outlet, const char *selector, const char *line)
 {
+    char text[MAXPDSTRING];
+    snprintf(text, sizeof text, "%s", line);
+    for (char *mark = text; (mark = strpbrk(mark, ",;"));)
+        *mark = ' ';
     t_binbuf *words = binbuf_new();
-    binbuf_text(words, line, strlen(line));
+    binbuf_text(words, text, strlen(text));
     outlet_anything(outlet, gensym(selector), binbuf_getnatom(words), binbuf_getvec(words));
     binbuf_free(words);
 }

@@ -1,4 +1,5 @@
-/// take_files.h: small take files made in memory, for the tests of the readers; each test program has its own copy.
+/// take_files.h: small take files made in memory, for the tests of the readers; each test program
+/// has its own copy.
 #ifndef HIMC_TESTS_TAKE_FILES_H
 #define HIMC_TESTS_TAKE_FILES_H
 
@@ -8,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// A file under ../shared/mocap (HIMC_SHARED overrides ../shared), or NULL if it is not there; one static buffer.
+/// A file under ../shared/mocap (HIMC_SHARED overrides ../shared), or NULL if it is not there; one
+/// static buffer.
 static inline const char *shared_capture(const char *name)
 {
     static char path[512];
@@ -38,8 +40,8 @@ static inline char *read_all(const char *path, size_t *size)
 }
 
 /// Reads a text as a take; NULL with error.text.
-static inline himc_take *read_text(const char *text, const char *name, const himc_take_options *options,
-                                   himc_error *error)
+static inline himc_take *read_text(const char *text, const char *name,
+                                   const himc_take_options *options, himc_error *error)
 {
     error->text[0] = 0;
     return himc_take_read(text, strlen(text), name, options, error);

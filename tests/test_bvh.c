@@ -1,4 +1,5 @@
-/// test_bvh.c: BVH files against forward kinematics done by hand, and files that are wrong in one place.
+/// test_bvh.c: BVH files against forward kinematics done by hand, and files that are wrong in one
+/// place.
 #include "take_files.h"
 #include "unity.h"
 
@@ -16,7 +17,7 @@ void tearDown(void)
 
 // a root, an arm with a hand's end, in metres; the channels and rows are filled in
 #define SKELETON                                                                                   \
-    "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition %s\n"        \
+    "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition %s\n"       \
     "\tJOINT Arm\n\t{\n\t\tOFFSET 0 1 0\n\t\tCHANNELS 3 %s\n\t\tJOINT Hand\n {\n OFFSET 0.5 0 0\n" \
     "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 0 0.25\n}\n}\n}\n}\n"         \
     "MOTION\nFrames: %d\nFrame Time: 0.01\n%s"
@@ -30,7 +31,8 @@ static himc_take *read_arm(const char *root, const char *arm, int frames, const 
 
 #define ZYX "Zrotation Yrotation Xrotation"
 
-static void check_point(const himc_take *take, int frame, const char *name, double x, double y, double z)
+static void check_point(const himc_take *take, int frame, const char *name, double x, double y,
+                        double z)
 {
     int point = himc_take_find(take, name);
     TEST_ASSERT_TRUE_MESSAGE(point >= 0, name);
@@ -54,12 +56,15 @@ static void test_zero_pose_adds_offsets_and_y_up_becomes_z_up(void)
 
 static void test_channel_order_decides_which_rotation_is_outermost(void)
 {
-    // Z then X: R = Rz(90) Rx(90) takes the bone (0.5, 0, 0) to (0, 0.5, 0); X then Z takes it to (0, 0, 0.5)
-    himc_take *zx = read_arm(ZYX, "Zrotation Xrotation Yrotation", 1, "0 0 0 0 0 0 90 90 0 0 0 0\n");
+    // Z then X: R = Rz(90) Rx(90) takes the bone (0.5, 0, 0) to (0, 0.5, 0); X then Z takes it to
+    // (0, 0, 0.5)
+    himc_take *zx =
+        read_arm(ZYX, "Zrotation Xrotation Yrotation", 1, "0 0 0 0 0 0 90 90 0 0 0 0\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(zx, error.text);
     check_point(zx, 0, "Hand", 0, 0, 1.5);
     himc_take_free(zx);
-    himc_take *xz = read_arm(ZYX, "Xrotation Zrotation Yrotation", 1, "0 0 0 0 0 0 90 90 0 0 0 0\n");
+    himc_take *xz =
+        read_arm(ZYX, "Xrotation Zrotation Yrotation", 1, "0 0 0 0 0 0 90 90 0 0 0 0\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(xz, error.text);
     check_point(xz, 0, "Hand", 0, -0.5, 1);
     himc_take_free(xz);
@@ -67,9 +72,10 @@ static void test_channel_order_decides_which_rotation_is_outermost(void)
 
 static void test_permuted_position_channels_are_read_by_name(void)
 {
-    const char *text = "HIERARCHY\nROOT A {\nOFFSET 0 0 0\nCHANNELS 6 Zrotation Zposition Xrotation "
-                       "Yposition Yrotation Xposition\nEnd Site {\nOFFSET 0 1.5 0\n} }\nMOTION\r\nFrames: 1\r\n"
-                       "Frame Time: .01\r\n0 3 0 2 90 1\r\n";
+    const char *text =
+        "HIERARCHY\nROOT A {\nOFFSET 0 0 0\nCHANNELS 6 Zrotation Zposition Xrotation "
+        "Yposition Yrotation Xposition\nEnd Site {\nOFFSET 0 1.5 0\n} }\nMOTION\r\nFrames: 1\r\n"
+        "Frame Time: .01\r\n0 3 0 2 90 1\r\n";
     himc_take *take = read_text(text, "a.BVH", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     check_point(take, 0, "A", 1, -3, 2);
@@ -79,9 +85,10 @@ static void test_permuted_position_channels_are_read_by_name(void)
 
 static void test_position_channels_of_a_joint_replace_its_offset(void)
 {
-    const char *text = "HIERARCHY\nROOT A\n{\nOFFSET 5 5 5\nCHANNELS 3 Xposition Yposition Zposition\nJOINT B\n{\n"
-                       "OFFSET 0 1 0\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 0 0.8 0\n}\n}\n}\n"
-                       "MOTION\nFrames: 1\nFrame Time: 0.01\n1 1 1 0.5\n";
+    const char *text =
+        "HIERARCHY\nROOT A\n{\nOFFSET 5 5 5\nCHANNELS 3 Xposition Yposition Zposition\nJOINT B\n{\n"
+        "OFFSET 0 1 0\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 0 0.8 0\n}\n}\n}\n"
+        "MOTION\nFrames: 1\nFrame Time: 0.01\n1 1 1 0.5\n";
     himc_take *take = read_text(text, "a.bvh", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     check_point(take, 0, "A", 1, -1, 1);
@@ -109,8 +116,9 @@ static double worst_forward_kinematics(const himc_take *take, int frame)
 
 static void test_rotations_and_offsets_give_the_points_again(void)
 {
-    himc_take *take = read_arm("Yrotation Zrotation Xrotation", ZYX, 2,
-                               "1 2 3 10 20 30 40 50 60 70 80 90\n0 0 0 -5 170 3 1 2 3 -100 20 7\n");
+    himc_take *take =
+        read_arm("Yrotation Zrotation Xrotation", ZYX, 2,
+                 "1 2 3 10 20 30 40 50 60 70 80 90\n0 0 0 -5 170 3 1 2 3 -100 20 7\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     TEST_ASSERT_TRUE(himc_take_has_skeleton(take));
     for (int frame = 0; frame < 2; frame++)
@@ -148,7 +156,8 @@ static void test_cmu_capture_equals_matrices_computed_elsewhere(void)
     TEST_ASSERT_EQUAL_INT(1102, himc_take_frames(take));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 120, himc_take_rate(take));
     TEST_ASSERT_EQUAL_INT(38, himc_take_points(take));
-    // the heading is turned by some angle about the vertical: found from the first place, it must fit all of them
+    // the heading is turned by some angle about the vertical: found from the first place, it must
+    // fit all of them
     himc_vec3 p = himc_take_point(take, 0, himc_take_find(take, known[0].name));
     double turn = atan2(p.y, p.x) - atan2(-known[0].x.z, known[0].x.x);
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
@@ -168,7 +177,8 @@ static void test_cmu_player_is_of_human_size_and_looks_along_x(void)
     double height = 0;
     int l = himc_take_find(take, "LeftShoulder"), r = himc_take_find(take, "RightShoulder");
     for (int frame = 0; frame < himc_take_frames(take); frame++) {
-        sum = himc_vec3_add(sum, himc_vec3_sub(himc_take_point(take, frame, l), himc_take_point(take, frame, r)));
+        sum = himc_vec3_add(
+            sum, himc_vec3_sub(himc_take_point(take, frame, l), himc_take_point(take, frame, r)));
         height = fmax(height, himc_take_point(take, frame, himc_take_find(take, "Head_end")).z);
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.1 * sum.y, 0, sum.x);
@@ -195,7 +205,8 @@ static himc_take *read_of_size(double size)
 
 static void test_units_are_guessed_from_the_skeletons_size(void)
 {
-    static const double size[] = {1.7, 170, 1700, 30}, metres[] = {1.7, 1.7, 1.7, 30 * 0.0254 / 0.45};
+    static const double size[] = {1.7, 170, 1700, 30},
+                        metres[] = {1.7, 1.7, 1.7, 30 * 0.0254 / 0.45};
     for (int i = 0; i < 4; i++) {
         himc_take *take = read_of_size(size[i]);
         TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
@@ -210,7 +221,8 @@ static void test_a_17_metre_player_is_refused_unless_the_unit_is_given(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "size.bvh: skeleton: 17 units"));
     himc_take_options options = himc_take_default();
     options.unit = 0.1;
-    const char *text = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 0 17 0\n}\n}\n"
+    const char *text = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n"
+                       "End Site\n{\nOFFSET 0 17 0\n}\n}\n"
                        "MOTION\nFrames: 1\nFrame Time: 0.01\n0.5\n";
     himc_take *take = read_text(text, "size.bvh", &options, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
@@ -227,14 +239,20 @@ static void refuses_rows(int frames, const char *rows, const char *reason)
 
 static void test_rows_that_do_not_fit_are_refused_with_line_and_joint(void)
 {
-    refuses_rows(2, "0 0 0 0 0 0 0 0 0 0 0 0\n", "arm.bvh: the header says 2 frames, the file has 1 rows");
+    refuses_rows(2, "0 0 0 0 0 0 0 0 0 0 0 0\n",
+                 "arm.bvh: the header says 2 frames, the file has 1 rows");
     refuses_rows(1, "", "arm.bvh: the header says 1 frames, the file has 0 rows");
-    refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0\n",
-                 "arm.bvh:24: the row ends before channel 3 of Hand, allowed are rows of 12 numbers");
-    refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0 0 0\n", "arm.bvh:24: after the row's last channel \"0\", allowed a new line");
-    refuses_rows(1, "0 0 0 0 0 0 nan 0 0 0 0 0\n", "arm.bvh:24: Arm \"nan\", allowed a number up to 1e8");
-    refuses_rows(1, "0 0 0 0 0 0 0 0 0 1e999 0 0\n", "arm.bvh:24: Hand \"1e999\", allowed a number up to 1e8");
-    refuses_rows(1, "0,5 0 0 0 0 0 0 0 0 0 0 0\n", "arm.bvh:24: Hips \"0,5\", allowed a number up to 1e8");
+    refuses_rows(
+        1, "0 0 0 0 0 0 0 0 0 0 0\n",
+        "arm.bvh:24: the row ends before channel 3 of Hand, allowed are rows of 12 numbers");
+    refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0 0 0\n",
+                 "arm.bvh:24: after the row's last channel \"0\", allowed a new line");
+    refuses_rows(1, "0 0 0 0 0 0 nan 0 0 0 0 0\n",
+                 "arm.bvh:24: Arm \"nan\", allowed a number up to 1e8");
+    refuses_rows(1, "0 0 0 0 0 0 0 0 0 1e999 0 0\n",
+                 "arm.bvh:24: Hand \"1e999\", allowed a number up to 1e8");
+    refuses_rows(1, "0,5 0 0 0 0 0 0 0 0 0 0 0\n",
+                 "arm.bvh:24: Hips \"0,5\", allowed a number up to 1e8");
 }
 
 static void refuses(const char *text, const char *reason)
@@ -250,13 +268,17 @@ static void test_broken_hierarchies_are_refused_with_the_line(void)
     refuses("hello", "x.bvh:1: the first line \"hello\", allowed HIERARCHY");
     refuses("HIERARCHY\nMOTION\n", "x.bvh:2: before any joint \"MOTION\", allowed ROOT");
     refuses("HIERARCHY\nROOT A\n{\n}\n", "x.bvh:4: A has no OFFSET");
-    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0", "x.bvh:4: OFFSET \"x\", allowed a number up to 1e8");
+    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0",
+            "x.bvh:4: OFFSET \"x\", allowed a number up to 1e8");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation Xrotation\n",
             "x.bvh:5: channel \"Xrotation\", allowed X, Y, Z position or rotation, each once");
-    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 7\n", "x.bvh:5: CHANNELS \"7\", allowed 0 .. 6, once for each joint");
-    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\nMOTION\nFrames: 0\nFrame Time: 0.01\n",
+    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 7\n",
+            "x.bvh:5: CHANNELS \"7\", allowed 0 .. 6, once for each joint");
+    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\n"
+            "MOTION\nFrames: 0\nFrame Time: 0.01\n",
             "x.bvh:8: Frames: \"0\", allowed 1 .. 1000000");
-    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n",
+    refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\n"
+            "MOTION\nFrames: 1\nFrame Time: 1\n0\n",
             "x.bvh:9: Frame Time: 1 s, allowed 0.0001 .. 0.05 s");
 }
 
@@ -275,7 +297,8 @@ static void test_deep_nesting_is_refused_without_recursion(void)
 static void test_every_prefix_of_a_file_is_refused_or_read(void)
 {
     char text[2000];
-    snprintf(text, sizeof text, SKELETON, ZYX, ZYX, 2, "1 2 3 0 0 0 0 0 0 0 0 0\n1 2 3 0 0 0 0 0 0 0 0 0.5\n");
+    snprintf(text, sizeof text, SKELETON, ZYX, ZYX, 2,
+             "1 2 3 0 0 0 0 0 0 0 0 0\n1 2 3 0 0 0 0 0 0 0 0 0.5\n");
     size_t whole = strlen(text);
     for (size_t size = 0; size < whole; size++) {
         // exactly as many bytes, so that the address sanitizer sees a byte too far

@@ -1,6 +1,6 @@
-/// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte from the format's
-/// description, and a real one beside the same trial exported as text.
-#include "c3d_parameters.h"
+/// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte
+/// from the format's description, and a real one beside the same trial exported as text.
+#include "c3d_files.h"
 #include "take_files.h"
 #include "unity.h"
 
@@ -12,195 +12,6 @@ void setUp(void)
 
 void tearDown(void)
 {
-}
-
-typedef struct maker {
-    c3d_processor processor;
-    bool floats;
-    int points, frames, first, analog;
-    double rate, scale; // mm per integer step
-    const char *units, *x_screen, *y_screen;
-    bool long_frames;   // the count goes to TRIAL and the header says 65535
-    int events;         // 0, or 2 in the group EVENT
-    int header_events;
-    unsigned char *bytes;
-    size_t size;
-} maker;
-
-static maker maker_default(c3d_processor processor, bool floats)
-{
-    return (maker){.processor = processor, .floats = floats, .points = 3, .frames = 5, .first = 1, .analog = 4,
-                   .rate = 250, .scale = 0.1, .units = "mm", .x_screen = "+X", .y_screen = "+Z"};
-}
-
-// what a file's point i is in frame f (mm); multiples of 0.1, so that integers hold it too
-static double coordinate(int f, int i, int axis)
-{
-    return 0.1 * (axis == 0 ? 3000 + 7 * f : axis == 1 ? -1234 + 2110 * i : 9000 - 13 * f + 17 * i);
-}
-
-static void put_word(const maker *m, unsigned char *at, int value)
-{
-    unsigned char low = (unsigned char)(value & 255), high = (unsigned char)(value >> 8 & 255);
-    at[0] = m->processor == C3D_MIPS ? high : low;
-    at[1] = m->processor == C3D_MIPS ? low : high;
-}
-
-static unsigned char *put_name(unsigned char *at, int group, const char *name)
-{
-    size_t n = strlen(name);
-    at[0] = (unsigned char)n;
-    at[1] = (unsigned char)group;
-    memcpy(at + 2, name, n);
-    return at + 2 + n;
-}
-
-static unsigned char *put_group(const maker *m, unsigned char *at, int number, const char *name)
-{
-    at = put_name(at, -number, name);
-    put_word(m, at, 3);
-    at[2] = 0;
-    return at + 3;
-}
-
-// `data` has a * b elements of |type| bytes; a = 0 for a scalar, b = 0 for one dimension
-static unsigned char *put(const maker *m, unsigned char *at, int group, const char *name, int type, int a, int b,
-                          const unsigned char *data)
-{
-    int dimensions = (a > 0) + (b > 0), bytes = abs(type) * (a ? a : 1) * (b ? b : 1);
-    at = put_name(at, group, name);
-    put_word(m, at, 2 + 2 + dimensions + bytes + 1);
-    at[2] = (unsigned char)type;
-    at[3] = (unsigned char)dimensions;
-    at += 4;
-    if (a > 0)
-        *at++ = (unsigned char)a;
-    if (b > 0)
-        *at++ = (unsigned char)b;
-    memcpy(at, data, (size_t)bytes);
-    at += bytes;
-    *at++ = 0;
-    return at;
-}
-
-static unsigned char *put_real(const maker *m, unsigned char *at, int group, const char *name, double value)
-{
-    unsigned char data[4];
-    himc_c3d_put_real(m->processor, value, data);
-    return put(m, at, group, name, 4, 0, 0, data);
-}
-
-static unsigned char *put_integer(const maker *m, unsigned char *at, int group, const char *name, int value)
-{
-    unsigned char data[2];
-    put_word(m, data, value);
-    return put(m, at, group, name, 2, 0, 0, data);
-}
-
-static unsigned char *put_text(const maker *m, unsigned char *at, int group, const char *name, const char *text)
-{
-    return put(m, at, group, name, -1, (int)strlen(text), 0, (const unsigned char *)text);
-}
-
-static unsigned char *put_field(const maker *m, unsigned char *at, const char *name, int value)
-{
-    unsigned char data[4];
-    put_word(m, data, value & 65535);
-    put_word(m, data + 2, value >> 16);
-    return put(m, at, 3, name, 2, 2, 0, data);
-}
-
-static unsigned char *put_events(const maker *m, unsigned char *at)
-{
-    unsigned char times[16];
-    himc_c3d_put_real(m->processor, 0, times);
-    himc_c3d_put_real(m->processor, 0.5, times + 4);
-    himc_c3d_put_real(m->processor, 1, times + 8);
-    himc_c3d_put_real(m->processor, 2.25, times + 12);
-    at = put_group(m, at, 2, "EVENT");
-    at = put_integer(m, at, 2, "USED", 2);
-    at = put(m, at, 2, "TIMES", 4, 2, 2, times);
-    at = put(m, at, 2, "LABELS", -1, 6, 2, (const unsigned char *)"StrikeApex  ");
-    return put(m, at, 2, "CONTEXTS", -1, 5, 2, (const unsigned char *)"RightLeft ");
-}
-
-static void put_parameters(const maker *m, unsigned char *at)
-{
-    static const char labels[] = "LTIP  RTIP  HEAD  ";
-    at[0] = 1;
-    at[1] = 0x50;
-    at[2] = 4;
-    at[3] = (unsigned char)m->processor;
-    at += 4;
-    // a parameter before its group, as is allowed
-    at = put_integer(m, at, 1, "USED", m->points);
-    at = put_group(m, at, 1, "POINT");
-    at = put_real(m, at, 1, "SCALE", m->floats ? -m->scale : m->scale);
-    at = put_real(m, at, 1, "RATE", m->rate);
-    at = put_text(m, at, 1, "UNITS", m->units);
-    at = put(m, at, 1, "labels", -1, 6, m->points < 2 ? m->points : 2, (const unsigned char *)labels);
-    at = put(m, at, 1, "LABELS2", -1, 6, 1, (const unsigned char *)labels + 12);
-    at = put_text(m, at, 1, "X_SCREEN", m->x_screen);
-    at = put_text(m, at, 1, "Y_SCREEN", m->y_screen);
-    if (m->events)
-        at = put_events(m, at);
-    if (m->long_frames) {
-        at = put_group(m, at, 3, "TRIAL");
-        at = put_field(m, at, "ACTUAL_START_FIELD", m->first);
-        at = put_field(m, at, "ACTUAL_END_FIELD", m->first + m->frames - 1);
-    }
-    at[0] = 0;
-    at[1] = 0;
-}
-
-static void put_header(const maker *m, unsigned char *at)
-{
-    int last = m->first + m->frames - 1;
-    at[0] = 2;
-    at[1] = 0x50;
-    put_word(m, at + 2, m->points);
-    put_word(m, at + 4, m->analog);
-    put_word(m, at + 6, m->long_frames ? 1 : m->first);
-    put_word(m, at + 8, m->long_frames ? 65535 : last);
-    himc_c3d_put_real(m->processor, m->floats ? -m->scale : m->scale, at + 12);
-    put_word(m, at + 16, 6);
-    put_word(m, at + 18, 2);
-    himc_c3d_put_real(m->processor, m->rate, at + 20);
-    if (m->header_events) {
-        put_word(m, at + 298, 12345);
-        put_word(m, at + 300, m->header_events);
-        himc_c3d_put_real(m->processor, 0.25, at + 304);
-        memcpy(at + 396, "RFS ", 4);
-    }
-}
-
-static void put_frame(const maker *m, unsigned char *at, int f)
-{
-    for (int i = 0; i < m->points; i++)
-        for (int k = 0; k < 4; k++) {
-            // point 1 is lost in frame 3: zeros with residual -1
-            bool lost = i == 1 && f == 3;
-            double v = k == 3 ? (lost ? -1 : 0) : lost ? 0 : coordinate(f, i, k);
-            int n = 4 * i + k;
-            if (m->floats)
-                himc_c3d_put_real(m->processor, v, at + 4 * n);
-            else
-                put_word(m, at + 2 * n, k == 3 ? (int)v : (int)lround(v / m->scale));
-        }
-    // analog samples are noise to the reader: NaNs and odd numbers
-    size_t width = m->floats ? 4 : 2;
-    memset(at + width * 4 * (size_t)m->points, 0xFF, width * (size_t)m->analog);
-}
-
-static void make(maker *m)
-{
-    size_t stride = (m->floats ? 4u : 2u) * (4 * (size_t)m->points + (size_t)m->analog);
-    m->size = 512 * 5 + stride * (size_t)m->frames;
-    m->bytes = calloc(1, m->size);
-    put_header(m, m->bytes);
-    put_parameters(m, m->bytes + 512);
-    for (int f = 0; f < m->frames; f++)
-        put_frame(m, m->bytes + 512 * 5 + stride * (size_t)f, f);
 }
 
 static himc_take *read_made(const maker *m)
@@ -280,7 +91,8 @@ static void test_mips_integers_are_read(void)
 static void test_dec_numbers_have_the_documented_bytes(void)
 {
     // 1.0 is 0x4080 0000 in VAX F; its first word comes first, low byte first
-    static const unsigned char one[4] = {0x80, 0x40, 0, 0}, minus[4] = {0xC0, 0xC1, 0, 0}, zero[4] = {0, 0, 0, 0};
+    static const unsigned char one[4] = {0x80, 0x40, 0, 0}, minus[4] = {0xC0, 0xC1, 0, 0},
+                               zero[4] = {0, 0, 0, 0};
     unsigned char bytes[4];
     TEST_ASSERT_EQUAL_DOUBLE(1, himc_c3d_real(C3D_DEC, one));
     TEST_ASSERT_EQUAL_DOUBLE(-6, himc_c3d_real(C3D_DEC, minus));
@@ -434,7 +246,8 @@ static void test_units_in_metres_and_unknown_units(void)
     m.units = "furlong";
     make(&m);
     TEST_ASSERT_NULL(read_made(&m));
-    TEST_ASSERT_EQUAL_STRING("made.c3d: POINT:UNITS is \"furlong\", allowed mm, cm, m, in or ft", error.text);
+    TEST_ASSERT_EQUAL_STRING("made.c3d: POINT:UNITS is \"furlong\", allowed mm, cm, m, in or ft",
+                             error.text);
     free(m.bytes);
 }
 
@@ -493,13 +306,16 @@ static void test_real_file_has_the_gaps_its_source_counts(void)
     static const struct {
         const char *name;
         int frames;
-    } gaps[] = {{"SCAP_CP", 92}, {"LARMl", 49}, {"STERr", 32}, {"STERl", 31}, {"STYLu", 29}, {"LASTC", 23}, {"MEDH", 22}};
+    } gaps[] = {{"SCAP_CP", 92}, {"LARMl", 49}, {"STERr", 32}, {"STERl", 31},
+                {"STYLu", 29},   {"LASTC", 23}, {"MEDH", 22}};
     for (size_t i = 0; i < sizeof gaps / sizeof gaps[0]; i++)
-        TEST_ASSERT_EQUAL_INT(gaps[i].frames, himc_take_missing(take, himc_take_find(take, gaps[i].name)));
+        TEST_ASSERT_EQUAL_INT(gaps[i].frames,
+                              himc_take_missing(take, himc_take_find(take, gaps[i].name)));
     himc_take_free(take);
 }
 
-// the exported text: after five lines, frame, sub frame, then x, y, z (mm) of each point; empty cells are gaps
+// the exported text: after five lines, frame, sub frame, then x, y, z (mm) of each point; empty
+// cells are gaps
 static void read_export(himc_vec3 *x, int frames, int points)
 {
     FILE *file = fopen(shared_capture("upperlimb_pyomeca_100hz/markers.csv"), "r");
@@ -538,10 +354,12 @@ static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
     }
     double turn = atan2(sine, cosine);
     for (int i = 0; i < frames * points; i++) {
-        himc_vec3 p = himc_vec3_scale(himc_take_point(take, i / points, i % points), 1000), q = known[i];
+        himc_vec3 p = himc_vec3_scale(himc_take_point(take, i / points, i % points), 1000),
+                  q = known[i];
         if (!himc_vec3_finite(p))
             continue;
-        himc_vec3 back = {p.x * cos(turn) + p.y * sin(turn), p.y * cos(turn) - p.x * sin(turn), p.z};
+        himc_vec3 back = {p.x * cos(turn) + p.y * sin(turn), p.y * cos(turn) - p.x * sin(turn),
+                          p.z};
         himc_vec3 d = himc_vec3_sub(back, q);
         double most = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
         // the text has six digits: 0.001 mm below 1 m, 0.01 mm beyond
@@ -550,7 +368,8 @@ static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
         worst_far = far ? fmax(worst_far, most) : worst_far;
         compared++;
     }
-    printf("c3d and csv: %d places, worst %.3g mm, beyond 1 m %.3g mm\n", compared, worst, worst_far);
+    printf("c3d and csv: %d places, worst %.3g mm, beyond 1 m %.3g mm\n", compared, worst,
+           worst_far);
     TEST_ASSERT_EQUAL_INT(580 * 51 - 305, compared);
     TEST_ASSERT_TRUE(worst < 1e-3);
     TEST_ASSERT_TRUE(worst_far < 6e-3);

@@ -69,16 +69,46 @@ static void test_stroke_is_read_with_word_and_number_forms(void)
 
 static void test_every_form_of_every_command_is_accepted(void)
 {
-    static const char *const performer[] = {
-        "hit left staccato fff", "tempo 90", "tempo 90 16", "clear", "play", "stop", "seek 4",
-        "score a.txt", "take b.bvh", "target left 0.5 0.1 1", "mode id", "solver transpose",
-        "damping 0.01", "law computed-torque", "gain wrist 40 1", "gain reset", "rate physics 10000",
-        "rate task 250", "coupling one-way", "player 1.75 75", "info", "reset", "drum low",
-        "drum low 29"};
-    static const char *const head[] = {
-        "radius 0.29", "tension 4000", "density 0.26", "tune 110", "tune A2", "tune f#3", "modes 200",
-        "decay 1.5", "decay 0.5 0.01", "mallet soft", "mallet 1.6e8 2.54 0.028", "place 0.7 0 0.85",
-        "place 0.7 0 0.85 0.1", "pickup 0.1 0", "pickup air 0 0.5 2", "strike 0.1 0 3"};
+    static const char *const performer[] = {"hit left staccato fff",
+                                            "tempo 90",
+                                            "tempo 90 16",
+                                            "clear",
+                                            "play",
+                                            "stop",
+                                            "seek 4",
+                                            "score a.txt",
+                                            "take b.bvh",
+                                            "target left 0.5 0.1 1",
+                                            "mode id",
+                                            "solver transpose",
+                                            "damping 0.01",
+                                            "law computed-torque",
+                                            "gain wrist 40 1",
+                                            "gain reset",
+                                            "rate physics 10000",
+                                            "rate task 250",
+                                            "coupling one-way",
+                                            "player 1.75 75",
+                                            "info",
+                                            "reset",
+                                            "drum low",
+                                            "drum low 29"};
+    static const char *const head[] = {"radius 0.29",
+                                       "tension 4000",
+                                       "density 0.26",
+                                       "tune 110",
+                                       "tune A2",
+                                       "tune f#3",
+                                       "modes 200",
+                                       "decay 1.5",
+                                       "decay 0.5 0.01",
+                                       "mallet soft",
+                                       "mallet 1.6e8 2.54 0.028",
+                                       "place 0.7 0 0.85",
+                                       "place 0.7 0 0.85 0.1",
+                                       "pickup 0.1 0",
+                                       "pickup air 0 0.5 2",
+                                       "strike 0.1 0 3"};
     for (size_t i = 0; i < sizeof performer / sizeof *performer; i++)
         TEST_ASSERT_TRUE_MESSAGE(perform(performer[i]), performer[i]);
     for (size_t i = 0; i < sizeof head / sizeof *head; i++)
@@ -102,7 +132,8 @@ static void test_faults_name_what_value_and_what_is_allowed(void)
     refused(perform("rate task 5"), "rate: HZ: 5, allowed 50 .. 2000 Hz");
     refused(drum("radius 0"), "radius: RADIUS: 0, allowed 0.05 .. 1 m");
     refused(drum("modes 2.5"), "modes: COUNT: 2.5, allowed 1 .. 2000, whole");
-    refused(drum("tune 5"), "tune: 5, allowed 20 .. 2000 Hz or a note from E0 to B6 such as A2 or f#3");
+    refused(drum("tune 5"),
+            "tune: 5, allowed 20 .. 2000 Hz or a note from E0 to B6 such as A2 or f#3");
     refused(drum("mallet 5"), "mallet: 5, allowed soft medium hard wood");
     refused(drum("mallet 1e6 2.5"),
             "mallet: MASS missing, allowed mallet soft|medium|hard|wood | K ALPHA MASS");
@@ -113,7 +144,8 @@ static void test_faults_name_what_value_and_what_is_allowed(void)
 static void test_unknown_commands_are_answered_with_the_nearest_name(void)
 {
     TEST_ASSERT_FALSE(perform("strok 1"));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "strok: unknown command, did you mean stroke? allowed stroke hit"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(error.text, "strok: unknown command, did you mean stroke? allowed stroke hit"));
     TEST_ASSERT_FALSE(perform("xylophone"));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "xylophone: unknown command, allowed stroke hit"));
     refused(perform("tune 110"), "tune: a command for a drum, not for the performer");
@@ -192,8 +224,20 @@ static void test_names_of_drums_cannot_be_taken_for_anything_else(void)
 
 static void test_random_atoms_never_break_the_parser(void)
 {
-    static const char *const word[] = {"left", "right", "legato", "f", "rim", "reset", "air", "", "x",
-                                       "physics", "A2", "soft", "\n", "a very long word indeed, longer "
+    static const char *const word[] = {"left",
+                                       "right",
+                                       "legato",
+                                       "f",
+                                       "rim",
+                                       "reset",
+                                       "air",
+                                       "",
+                                       "x",
+                                       "physics",
+                                       "A2",
+                                       "soft",
+                                       "\n",
+                                       "a very long word indeed, longer "
                                        "than anything the table would ever ask for, to be cut"};
     unsigned seed = 1;
     int good = 0;
@@ -211,7 +255,8 @@ static void test_random_atoms_never_break_the_parser(void)
         good += parsed;
         TEST_ASSERT_TRUE(parsed || (error.text[0] && !strchr(error.text, '\n')));
         for (int i = 0; parsed && i < command.count; i++)
-            TEST_ASSERT_TRUE(command.atom[i].kind == HIMC_ATOM_SYMBOL || isfinite(command.atom[i].number));
+            TEST_ASSERT_TRUE(command.atom[i].kind == HIMC_ATOM_SYMBOL ||
+                             isfinite(command.atom[i].number));
     }
     TEST_ASSERT_TRUE(good > 100);
 }

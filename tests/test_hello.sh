@@ -22,10 +22,11 @@ check() {
 sed -n '/^```c$/,/^```$/p' docs/hello.md | sed '1d;$d' >"$dir/hello.c"
 check test_hello_compiles_without_warnings "$CC" -std=c17 -Wall -Wextra -Wpedantic -Werror -Ilib "$dir/hello.c" \
     "$HIMC_BUILD/libhimc.a" -lode -lm -o "$dir/hello"
-check test_hello_plays "$dir/hello" >"$dir/hello.raw" 2>"$dir/strikes"
+"$dir/hello" >"$dir/hello.raw" 2>"$dir/strikes"
+check test_hello_plays [ $? = 0 ]
 strokes=$(grep -o '"stroke [^"]*"' docs/hello.md | wc -l)
 check test_hello_reports_a_strike_for_each_stroke [ "$(grep -c ' N$' "$dir/strikes")" = "$strokes" ]
-peak=$(od -An -v -t f4 -w4 "$dir/hello.raw" | awk '{v = $1 < 0 ? -$1 : $1; if (v > m) m = v} END {print m > 0.001 && m < 1000}')
+peak=$(od -An -v -t f4 -w4 "$dir/hello.raw" | awk '{v = $1 < 0 ? -$1 : $1; if (v > m) m = v} END {print (m > 0.001 && m < 1000)}')
 check test_hello_makes_sound [ "$peak" = 1 ]
 
 echo "-----------------------"

@@ -32,8 +32,8 @@ static void test_normal_is_square_to_the_head(void)
 static void test_from_world_undoes_to_world(void)
 {
     himc_place place = {{0.7, -0.4, 0.9}, -0.25, 0.3};
-    himc_vec3 w = himc_vec3_madd(himc_place_to_world(&place, 0.11, -0.07), 0.05,
-                                 himc_place_normal(&place));
+    himc_vec3 w =
+        himc_vec3_madd(himc_place_to_world(&place, 0.11, -0.07), 0.05, himc_place_normal(&place));
     himc_vec3 p = himc_place_from_world(&place, w);
     TEST_ASSERT_DOUBLE_WITHIN(1e-14, 0.11, p.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-14, -0.07, p.y);

@@ -10,10 +10,10 @@
 
 static himc_planner *planner;
 static himc_error error;
-static long allocations;
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 #define COUNTS_ALLOCATIONS 1
+static long allocations;
 void *__libc_malloc(size_t size);
 void *__libc_realloc(void *p, size_t size);
 void *__libc_calloc(size_t n, size_t size);
@@ -48,8 +48,8 @@ static himc_planner *make(double bpm)
 
 static void add(himc_planner *p, double beat, himc_hand hand, himc_nuance nuance, double dynamic)
 {
-    himc_stroke s = {.beat = beat, .hand = hand, .nuance = nuance, .dynamic = dynamic,
-                     .spot = HIMC_SPOT_NORMAL};
+    himc_stroke s = {
+        .beat = beat, .hand = hand, .nuance = nuance, .dynamic = dynamic, .spot = HIMC_SPOT_NORMAL};
     TEST_ASSERT_TRUE_MESSAGE(himc_planner_add(p, &s, 0, &error), error.text);
 }
 
@@ -131,7 +131,8 @@ static void test_impact_speeds_are_the_nuances_own_when_there_is_time(void)
         himc_planner_advance(planner, 1.9);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, -forte[nuance], at(planner, HIMC_LEFT, 2 - 1e-9).v.z);
         himc_planner_advance(planner, 2.9);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1.39 * forte[nuance], at(planner, HIMC_LEFT, 3 - 1e-9).v.z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1.39 * forte[nuance],
+                                  at(planner, HIMC_LEFT, 3 - 1e-9).v.z);
         himc_planner_advance(planner, 3.9);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, -forte[nuance] / 6.5, at(planner, HIMC_LEFT, 4 - 1e-9).v.z);
     }
@@ -256,32 +257,53 @@ static double normal_of(himc_vec3 a)
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
+/// The jump of acceleration at a point between two times: the difference left when they meet.
+static double jump_between(himc_hand hand, double t0, double t1)
+{
+    himc_vec3 a0 = himc_planner_target(planner, hand, t0).a;
+    himc_vec3 a1 = himc_planner_target(planner, hand, t1).a;
+    while (t1 - t0 > 1e-9) {
+        double middle = 0.5 * (t0 + t1);
+        himc_vec3 a = himc_planner_target(planner, hand, middle).a;
+        if (normal_of(himc_vec3_sub(a, a0)) > normal_of(himc_vec3_sub(a1, a)))
+            t1 = middle, a1 = a;
+        else
+            t0 = middle, a0 = a;
+    }
+    return normal_of(himc_vec3_sub(a1, a0));
+}
+
 static void test_acceleration_has_no_jumps_even_when_the_tempo_changes(void)
 {
+    double range = 0, sampled = 0, jump = 0;
     srand(11);
     add(planner, 1, HIMC_RIGHT, HIMC_LEGATO, 0.7);
     for (int i = 0; i < 30; i++)
         add(planner, 2 + i * 0.75, HIMC_RIGHT, (himc_nuance)(i % 5), rand() % 8 / 7.0);
     himc_planner_play(planner, 0);
-    double range = 0, jump = 0;
     himc_target before = at(planner, HIMC_RIGHT, 0);
     for (int k = 1; k < 100000; k++) {
         double t = k * 1e-4, touch;
         himc_stroke s;
         int drum;
-        if (k % 3701 == 0)
-            himc_planner_tempo(planner, t, 60 + rand() % 120);
-        himc_target now = at(planner, HIMC_RIGHT, t);
+        himc_target now = himc_planner_target(planner, HIMC_RIGHT, t);
+        double step = normal_of(himc_vec3_sub(now.a, before.a));
+        if (step > 1)
+            jump = fmax(jump, jump_between(HIMC_RIGHT, t - 1e-4, t));
         // inside a contact the acceleration is meant to change fast
         bool any = himc_planner_current(planner, HIMC_RIGHT, t, &s, &drum, &touch);
-        if (!any || t < touch - 1e-4 || t > touch + 0.0072) {
+        if (!any || t < touch || t > touch + 0.0072) {
             range = fmax(range, normal_of(now.a));
-            jump = fmax(jump, normal_of(himc_vec3_sub(now.a, before.a)));
+            sampled = fmax(sampled, step);
         }
         before = now;
+        if (k % 3701 == 0)
+            himc_planner_tempo(planner, t, 60 + rand() % 120);
+        himc_planner_advance(planner, t);
     }
     TEST_ASSERT_TRUE(range < 600);
-    TEST_ASSERT_TRUE_MESSAGE(jump < 0.02 * range, "acceleration jumps by 1 % of its range or more");
+    TEST_ASSERT_TRUE_MESSAGE(sampled < 0.02 * range, "acceleration changes by 2 % in 0.1 ms");
+    TEST_ASSERT_TRUE_MESSAGE(jump < 1e-4 * range, "acceleration jumps");
 }
 
 static void test_state_is_continuous_through_every_command(void)
@@ -300,8 +322,7 @@ static void test_state_is_continuous_through_every_command(void)
         case 4:
             himc_planner_hit(planner, t, &(himc_stroke){.hand = HIMC_LEFT, .dynamic = 0.5}, 1);
             break;
-        default:
-            himc_planner_reach(planner, t, HIMC_LEFT, himc_vec3_make(0.5, 0.2, 1.1));
+        default: himc_planner_reach(planner, t, HIMC_LEFT, himc_vec3_make(0.5, 0.2, 1.1));
         }
         same_state(before, himc_planner_target(planner, HIMC_LEFT, t));
     }
@@ -393,7 +414,7 @@ static void test_fast_strokes_are_smaller_and_said_once(void)
     for (double t = 0; t < 8; t += 0.01)
         himc_planner_advance(planner, t);
     TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
-    TEST_ASSERT_EQUAL_STRING("stroke at beat 4.5 right: 0.15 s after the last, played 0.079 m high",
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 4.5 right: 0.15 s after the last, played 0.073 m high",
                              note.text);
     TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
 }
@@ -456,8 +477,8 @@ static void test_stop_brings_the_tip_to_rest_and_play_resumes(void)
 
 static void test_hit_comes_within_a_quarter_second_from_rest(void)
 {
-    himc_stroke s = {.hand = HIMC_LEFT, .nuance = HIMC_LEGATO, .dynamic = 4 / 7.0,
-                     .spot = HIMC_SPOT_NORMAL};
+    himc_stroke s = {
+        .hand = HIMC_LEFT, .nuance = HIMC_LEGATO, .dynamic = 4 / 7.0, .spot = HIMC_SPOT_NORMAL};
     himc_planner_advance(planner, 1);
     double t = himc_planner_hit(planner, 1, &s, 0);
     TEST_ASSERT_TRUE(t > 1 && t <= 1.25);
@@ -517,11 +538,13 @@ static double storm(unsigned seed, int commands)
     srand(seed);
     use(120);
     for (int k = 0; k < commands; k++) {
-        himc_stroke s = {.beat = rand() % 400 / 4.0, .hand = (himc_hand)(rand() % 2),
-                         .nuance = (himc_nuance)(rand() % 5), .dynamic = rand() % 8 / 7.0,
+        himc_stroke s = {.beat = rand() % 400 / 4.0,
+                         .hand = (himc_hand)(rand() % 2),
+                         .nuance = (himc_nuance)(rand() % 5),
+                         .dynamic = rand() % 8 / 7.0,
                          .spot = (himc_spot)(rand() % 3)};
         himc_target m = himc_planner_target(planner, s.hand, t);
-        m.v.z = fabs(m.v.z) + rand() % 5;
+        m.v.z = rand() % 9;
         m.a.z = rand() % 2000 - 1000;
         switch (rand() % 11) {
         case 0: himc_planner_tempo(planner, t, 1 + rand() % 1000); break;
@@ -530,9 +553,14 @@ static double storm(unsigned seed, int commands)
         case 3: himc_planner_play(planner, t); break;
         case 4: himc_planner_seek(planner, t, rand() % 100); break;
         case 5: himc_planner_hit(planner, t, &s, rand() % 3); break;
-        case 6: himc_planner_reach(planner, t, s.hand, himc_vec3_make(rand() % 7 * 0.1, 0.3, 1.1)); break;
+        case 6:
+            himc_planner_reach(planner, t, s.hand, himc_vec3_make(rand() % 7 * 0.1, 0.3, 1.1));
+            break;
         case 7: himc_planner_separated(planner, s.hand, t, &m); break;
-        case 8: himc_planner_set_drum(planner, 0, &(himc_place){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3}); break;
+        case 8:
+            himc_planner_set_drum(planner, 0,
+                                  &(himc_place){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3});
+            break;
         case 9:
             if (rand() % 40 == 0)
                 himc_planner_clear(planner);
@@ -543,7 +571,8 @@ static double storm(unsigned seed, int commands)
         himc_planner_advance(planner, t);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             himc_target x = himc_planner_target(planner, (himc_hand)hand, t);
-            TEST_ASSERT_TRUE(himc_vec3_finite(x.x) && himc_vec3_finite(x.v) && himc_vec3_finite(x.a));
+            TEST_ASSERT_TRUE(himc_vec3_finite(x.x) && himc_vec3_finite(x.v) &&
+                             himc_vec3_finite(x.a));
             TEST_ASSERT_TRUE(himc_vec3_length(x.x) < 3);
             digest = digest * 0.99 + x.x.x + 2 * x.x.z + x.v.y;
         }

@@ -32,8 +32,9 @@ static void refused(const char *text, const char *expected)
 
 static void test_score_sorts_strokes_and_keeps_other_lines_in_order(void)
 {
-    himc_score *s = parse("comment a; b 1 2;\ndrum kettle 26;\nkettle tune 110;\nkettle place 0.7 0 0.85;\n"
-                          "b2 tune 120;");
+    himc_score *s =
+        parse("comment a; b 1 2;\ndrum kettle 26;\nkettle tune 110;\nkettle place 0.7 0 0.85;\n"
+              "b2 tune 120;");
     TEST_ASSERT_NULL(s); // "b 1 2" is no command
     s = parse("comment anything (at) all;\ndrum kettle 26;\nkettle tune 110;\n"
               "stroke 3 left legato f;\nstroke 1\n  right accent p rim kettle;\nmode himc;\n"
@@ -65,19 +66,23 @@ static void test_empty_score_has_the_default_tempo(void)
 
 static void test_faults_are_told_with_file_and_line(void)
 {
-    refused("play;\nstroke 1 left legatto f;",
-            "s.txt:2: stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
+    refused(
+        "play;\nstroke 1 left legatto f;",
+        "s.txt:2: stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
     refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
     refused("drum kettle;\n\nkettle radius 0;",
             "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");
     refused("score other.txt;", "s.txt:1: score: a score cannot load another");
-    refused("stroke 1 left legato f;\nstroke 1.01 left legato f;",
-            "s.txt:2: stroke: BEAT: 1.01 is 0.006 s after the last stroke of the left hand, allowed "
-            "0.04 s or more");
+    refused(
+        "stroke 1 left legato f;\nstroke 1.01 left legato f;",
+        "s.txt:2: stroke: BEAT: 1.01 is 0.006 s after the last stroke of the left hand, allowed "
+        "0.04 s or more");
     TEST_ASSERT_NULL(parse("\nstrok 1 left legato f;"));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "s.txt:2: strok: unknown command, did you mean stroke?"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(error.text, "s.txt:2: strok: unknown command, did you mean stroke?"));
     TEST_ASSERT_NULL(parse("drum kettle; kettle tun 110;"));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "s.txt:1: kettle: tun: unknown command, did you mean tune?"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(error.text, "s.txt:1: kettle: tun: unknown command, did you mean tune?"));
     TEST_ASSERT_NULL(himc_score_load("/no/such/file.txt", &error));
     TEST_ASSERT_EQUAL_STRING("/no/such/file.txt: No such file or directory", error.text);
     TEST_ASSERT_NULL(himc_score_load("tests", &error));
@@ -127,7 +132,8 @@ static void test_random_text_never_breaks_the_reader(void)
     for (int k = 0; k < 20000; k++) {
         size_t n = (seed = seed * 1664525u + 1013904223u) >> 24;
         for (size_t i = 0; i < n; i++)
-            text[i] = alphabet[((seed = seed * 1664525u + 1013904223u) >> 10) % (sizeof alphabet - 1)];
+            text[i] =
+                alphabet[((seed = seed * 1664525u + 1013904223u) >> 10) % (sizeof alphabet - 1)];
         text[n] = '\0';
         error.text[0] = '\0';
         himc_score *s = parse(text);

@@ -1,7 +1,8 @@
 /// bank.h: damped oscillators, each stepped exactly; a force is constant over a sample.
 ///
-/// m q'' + 2 m d q' + m w^2 q = f. No approximation of frequency or decay at any sample rate: between two samples
-/// nothing but the shape of the force is assumed. Sample rates and parameters may change while it sounds.
+/// m q'' + 2 m d q' + m w^2 q = f. No approximation of frequency or decay at any sample rate:
+/// between two samples nothing but the shape of the force is assumed. Sample rates and parameters
+/// may change while it sounds.
 #ifndef HIMC_BANK_H
 #define HIMC_BANK_H
 
@@ -19,25 +20,27 @@ typedef struct himc_bank himc_bank;
 himc_bank *himc_bank_new(int capacity, himc_error *error);
 void himc_bank_free(himc_bank *bank);
 
-/// Length of every array of weights below: the capacity rounded up to a multiple of 4. What lies past an array's
-/// oscillators must be 0.
+/// Length of every array of weights below: the capacity rounded up to a multiple of 4. They are
+/// aligned to 16 bytes, and what lies past the oscillators is 0.
 HIMC_RT int himc_bank_padded(const himc_bank *bank);
 
-/// From now on these `count` oscillators (in order of frequency, at most the capacity) at `rate` (Hz). Those that were
-/// there keep their phase and energy. Those from the first above 0.49 rate on are silent: they would be heard at a
-/// wrong pitch.
-HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count, double rate);
+/// From now on these `count` oscillators (in order of frequency, at most the capacity) at `rate`
+/// (Hz). Those that were there keep their phase and energy. Those from the first above 0.49 rate on
+/// are silent: they would be heard at a wrong pitch.
+HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
+                           double rate);
 /// Those that swing (not silent).
 HIMC_RT int himc_bank_count(const himc_bank *bank);
 
-/// A linear reading of the state, sum_i (weight on q_i) q_i + (weight on q_i') q_i', in the bank's own coordinates.
-/// It holds until the next himc_bank_set.
+/// A linear reading of the state, sum_i (weight on q_i) q_i + (weight on q_i') q_i', in the bank's
+/// own coordinates. It holds until the next himc_bank_set.
 typedef struct himc_tap {
     double *p, *s; ///< owned by the caller (padded)
 } himc_tap;
 
 /// Makes the tap of weights on displacements and on velocities (either may be NULL).
-HIMC_RT void himc_bank_tap(const himc_bank *bank, const double *on_q, const double *on_v, himc_tap *tap);
+HIMC_RT void himc_bank_tap(const himc_bank *bank, const double *on_q, const double *on_v,
+                           himc_tap *tap);
 HIMC_RT double himc_bank_read(const himc_bank *bank, const himc_tap *tap);
 
 /// What it would read one sample later, if no force acts.
@@ -45,14 +48,15 @@ HIMC_RT double himc_bank_peek(const himc_bank *bank, const himc_tap *tap);
 /// himc_bank_read for a tap on displacements alone.
 HIMC_RT double himc_bank_displacement(const himc_bank *bank, const himc_tap *tap);
 
-/// `n` samples without force: heard[i] is what `sound` reads after sample i, seen[i] what `place` does, a tap on
-/// displacements alone.
-HIMC_RT void himc_bank_run(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place, double *heard,
-                           double *seen);
-/// After a sample was run: what `force` (N) during it has added, spread by the weights `shape` (padded).
+/// `n` samples without force: heard[i] is what `sound` reads after sample i, seen[i] what `place`
+/// does, a tap on displacements alone.
+HIMC_RT void himc_bank_run(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place,
+                           double *heard, double *seen);
+/// After a sample was run: what `force` (N) during it has added, spread by the weights `shape`
+/// (padded).
 HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);
-/// What `tap` reads at the end of a sample per newton through `shape` (padded) during it; of a tap on displacements
-/// at one place and a shape of another, the compliance sum phi_a phi_b b1 (m/N).
+/// What `tap` reads at the end of a sample per newton through `shape` (padded) during it; of a tap
+/// on displacements at one place and a shape of another, the compliance sum phi_a phi_b b1 (m/N).
 HIMC_RT double himc_bank_response(const himc_bank *bank, const double *shape, const himc_tap *tap);
 
 /// Kinetic and potential energy (J).

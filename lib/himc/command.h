@@ -1,4 +1,4 @@
-/// command.h: the one vocabulary. A command is a name and its atoms, whoever carries it (Pd, OSC, a score file).
+/// command.h: the one vocabulary: a name and its atoms, whoever carries it (Pd, OSC, a score file).
 ///
 /// There is one table and one parser; an error leaves everything as it was and is one line of text.
 #ifndef HIMC_COMMAND_H
@@ -28,7 +28,12 @@ typedef enum himc_nuance {
 /// "legato", "tenuto", "accent", "vertical-accent", "staccato".
 const char *himc_nuance_name(himc_nuance nuance);
 
-typedef enum himc_spot { HIMC_SPOT_CENTER, HIMC_SPOT_NORMAL, HIMC_SPOT_RIM, HIMC_SPOT_XY } himc_spot;
+typedef enum himc_spot {
+    HIMC_SPOT_CENTER,
+    HIMC_SPOT_NORMAL,
+    HIMC_SPOT_RIM,
+    HIMC_SPOT_XY
+} himc_spot;
 
 #define HIMC_NAME_SIZE 32
 
@@ -100,7 +105,7 @@ typedef struct himc_command_row {
     himc_command_id id;
     himc_receiver receiver;
     const char *name;  ///< "stroke"
-    const char *atoms; ///< "BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]"
+    const char *atoms; ///< the grammar: "BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]", "X Y | air ..."
     const char *does;  ///< one sentence
 } himc_command_row;
 
@@ -108,12 +113,16 @@ typedef struct himc_command_row {
 const himc_command_row *himc_command_table(int index);
 
 /// Checks `name` and its atoms against the table; false, and `out` untouched, if they do not fit.
-bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name, const himc_atom *atoms,
-                        int count, himc_error *error);
+/// Numbers are rounded to single precision, as Pure Data and OSC send them, so that all carriers
+/// give the same bits; a note name becomes its frequency (Hz).
+bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
+                        const himc_atom *atoms, int count, himc_error *error);
 
-/// The same from text: "stroke 2 right accent f rim". Words split at white space, `\ ` keeps a space as in Pd's
-/// text files; what reads wholly as a decimal number is a number ("nan" and "inf" are words).
-bool himc_command_parse_text(himc_command *out, himc_receiver receiver, const char *text, himc_error *error);
+/// The same from text: "stroke 2 right accent f rim". Words split at white space, `\ ` keeps a
+/// space as in Pd's text files; what reads wholly as a decimal number is a number ("nan" and "inf"
+/// are words).
+bool himc_command_parse_text(himc_command *out, himc_receiver receiver, const char *text,
+                             himc_error *error);
 
 /// Deep copy (the symbols of `out` point into its own storage).
 void himc_command_copy(himc_command *out, const himc_command *in);

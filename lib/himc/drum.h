@@ -1,7 +1,9 @@
-/// drum.h: a membrane with a name, a place, a mallet and an ear; what `[membrane~ NAME]` and a score's `drum` make.
+/// drum.h: a membrane with a name, a place, a mallet and an ear; what `[membrane~ NAME]` and a
+/// score's `drum` make.
 ///
-/// A drum is shared by the object that shows it and the performer that strikes it, so it counts its references. All
-/// calls come from one thread. Time is counted in samples since the drum was made or realigned.
+/// A drum is shared by the object that shows it and the performer that strikes it, so it counts its
+/// references. All calls come from one thread. Time is counted in samples since the drum was made
+/// or realigned.
 #ifndef HIMC_DRUM_H
 #define HIMC_DRUM_H
 
@@ -12,8 +14,8 @@
 
 typedef struct himc_drum himc_drum;
 
-/// A drum of the given diameter (inches, 12 .. 60; the timpani are 23, 26, 29, 32) at `sample_rate` (Hz, 8000 ..
-/// 192000). One reference belongs to the caller.
+/// A drum of the given diameter (inches, 12 .. 60; the timpani are 23, 26, 29, 32) at `sample_rate`
+/// (Hz, 8000 .. 192000). One reference belongs to the caller.
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error);
 himc_drum *himc_drum_retain(himc_drum *drum);
 void himc_drum_release(himc_drum *drum);
@@ -28,33 +30,39 @@ HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
 
 /// Carries out a drum command now. False, and nothing changed, if it cannot be.
 bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error);
-/// The same `delay` samples from now (0 .. 8192), exact to the sample; at most 64 wait. `strike` only.
+/// The same `delay` samples from now (0 .. 8192), exact to the sample; at most 64 wait. `strike`
+/// only.
 HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                                  himc_error *error);
 HIMC_RT double himc_drum_rate(const himc_drum *drum);
 /// Another sample rate; what sounds goes on sounding.
 bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error);
 
-/// Advances the head by `n` samples with the given sticks in micro-contact (0 .. HIMC_STICKS of them), its own free
-/// mallets from `strike`, and an outside force. Fills the ring that himc_drum_read reads.
+/// Advances the head by `n` samples with the given sticks in micro-contact (0 .. HIMC_STICKS of
+/// them), its own free mallets from `strike`, and an outside force. Fills the ring that
+/// himc_drum_read reads.
 /// @param sticks    their x, v, force evolve (contact.h); may be NULL when stick_count is 0
 /// @param forces    forces[s][i] receives the force of stick s in sample i (N); may be NULL when stick_count is 0
 /// @param outside   force (N) applied at (x, y)[i], or NULL
 HIMC_RT void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count,
-                               double *const *forces, const double *outside, const double *x, const double *y);
+                               double *const *forces, const double *outside, const double *x,
+                               const double *y);
 
-/// Copies the sound and the displacement under the spot (m; either may be NULL) of samples [start, start + n) as counted
-/// since the last realign; silence for what is not there.
+/// Copies the sound and the displacement under the spot (m; either may be NULL) of samples [start,
+/// start + n) as counted since the last realign; silence for what is not there.
 #define HIMC_DRUM_RING 32768
-HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound, double *displacement);
+HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
+                            double *displacement);
 /// Samples advanced since the last realign.
 HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
-/// Counts from 0 again, the last `ahead` samples already made becoming samples 0 .. ahead - 1; the sound goes on.
+/// Counts from 0 again, the last `ahead` samples already made becoming samples 0 .. ahead - 1; the
+/// sound goes on.
 HIMC_RT void himc_drum_realign(himc_drum *drum, int ahead);
 
 /// Who advances this drum: the performer that has taken it, or nobody (then its own object does).
 typedef struct himc_drum_driver {
-    void (*advance_to)(void *performer, uint64_t time); ///< brings performer and drum to that sample
+    void (*advance_to)(void *performer,
+                       uint64_t time); ///< brings performer and drum to that sample
     void *performer;
 } himc_drum_driver;
 /// False if another performer drives it already. A driver with performer NULL gives it back.

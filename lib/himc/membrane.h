@@ -1,6 +1,7 @@
 /// membrane.h: a round drumhead: its modes, swinging, and an ear that hears them.
 ///
-/// w(x, y, t) = sum_i phi_i(x, y) q_i(t), up positive; each q_i is an oscillator of the bank. Needs libm alone.
+/// w(x, y, t) = sum_i phi_i(x, y) q_i(t), up positive; each q_i is an oscillator of the bank. Needs
+/// libm alone.
 #ifndef HIMC_MEMBRANE_H
 #define HIMC_MEMBRANE_H
 
@@ -11,15 +12,17 @@ typedef enum himc_pickup_kind {
     HIMC_PICKUP_POINT ///< velocity of the head at a place; 1.0 is HIMC_PICKUP_VELOCITY
 } himc_pickup_kind;
 
-#define HIMC_PICKUP_PRESSURE 100.0 ///< (Pa): a stroke of 110 N heard from one metre peaks at 0.5 to 0.8
-#define HIMC_PICKUP_VELOCITY 10.0  ///< (m/s)
+#define HIMC_PICKUP_PRESSURE \
+    100.0 ///< (Pa): a stroke of 110 N heard from one metre peaks at 0.5 to 0.8
+#define HIMC_PICKUP_VELOCITY 10.0 ///< (m/s)
 
 /// What the sound is read from.
 typedef struct himc_pickup {
     himc_pickup_kind kind;
-    double x, y;      ///< of a point (m, on the head)
-    double azimuth;   ///< of the listener (rad): 0 beyond the drum as the performer sees it, to the left positive
-    double elevation; ///< above the plane of the head (rad), 0 .. pi/2
+    double x, y; ///< of a point (m, on the head)
+    double
+        azimuth; ///< of the listener (rad): 0 beyond the drum as the performer sees it, to the left positive
+    double elevation; ///< above the plane of the head (rad), 0 .. 1.5708
     double distance;  ///< from the centre (m), 0.3 .. 100
 } himc_pickup;
 
@@ -32,11 +35,13 @@ typedef struct himc_membrane himc_membrane;
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error);
 void himc_membrane_free(himc_membrane *membrane);
 
-/// Changes the head while it sounds: modes keep energy and phase, those that no longer exist fade in 5 ms, and the sound
-/// does not jump. Allocates only when the number of modes changes. False, and nothing changed, if a value is not allowed.
+/// Changes the head while it sounds: modes keep energy and phase, those that no longer exist fade
+/// in 5 ms, and the sound does not jump. Allocates only when the number of modes changes. False,
+/// and nothing changed, if a value is not allowed.
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
 /// Moves the ear; fades over 5 ms.
-bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup, himc_error *error);
+bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup,
+                              himc_error *error);
 /// Another sample rate; what sounds goes on sounding.
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error);
 
@@ -50,10 +55,11 @@ HIMC_RT int himc_membrane_audible(const himc_membrane *membrane);
 
 /// The place whose displacement the functions below give as `seen`.
 HIMC_RT void himc_membrane_watch(himc_membrane *membrane, double x, double y);
-/// Adds a force (N, down positive, as a stick's) at (x, y) (m) to the coming sample. At most 8 a sample.
+/// Adds a force (N, down positive, as a stick's) at (x, y) (m) to the coming sample. At most 8 a
+/// sample.
 HIMC_RT void himc_membrane_push(himc_membrane *membrane, double x, double y, double force);
-/// Plays `n` samples without contact: heard[i] is the sound (1.0 as the pickup says), seen[i] the displacement (m, up
-/// positive) of the watched place. The forces pushed act in the first sample.
+/// Plays `n` samples without contact: heard[i] is the sound (1.0 as the pickup says), seen[i] the
+/// displacement (m, up positive) of the watched place. The forces pushed act in the first sample.
 HIMC_RT void himc_membrane_run(himc_membrane *membrane, int n, double *heard, double *seen);
 /// The last sample's.
 HIMC_RT double himc_membrane_heard(const himc_membrane *membrane);

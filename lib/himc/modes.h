@@ -1,8 +1,10 @@
-/// modes.h: the modes of an ideal round membrane: which there are, in order of frequency, and their shapes.
+/// modes.h: the modes of an ideal round membrane: which there are, in order of frequency, and their
+/// shapes.
 ///
-/// Mode (m, n) has m nodal diameters and n nodal circles, phi = J_m(j_mn r/a) cos(m th) or sin(m th), and sounds at
-/// j_mn/(2 pi a) sqrt(T/sigma) (Morse & Ingard 1968, section 5.2; Fletcher & Rossing 1998, section 3.3). The list depends
-/// on nothing but its length: radius, tension and density scale all frequencies alike.
+/// Mode (m, n) has m nodal diameters and n nodal circles, phi = J_m(j_mn r/a) cos(m th) or sin(m
+/// th), and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse & Ingard 1968, section 5.2; Fletcher &
+/// Rossing 1998, section 3.3). The list depends on nothing but its length: radius, tension and
+/// density scale all frequencies alike.
 #ifndef HIMC_MODES_H
 #define HIMC_MODES_H
 
@@ -11,15 +13,15 @@
 /// What the head is made of.
 typedef struct himc_head {
     double radius;         ///< a (m), 0.05 .. 1
-    double tension;        ///< T (N/m), 50 .. 50000
-    double density;        ///< sigma (kg/m^2), 0.01 .. 10
+    double tension;        ///< T (N/m), 10 .. 1e5
+    double density;        ///< sigma (kg/m^2), 0.001 .. 10
     double decay_constant; ///< S0 (1/s), 0 .. 1000: a mode decays as exp(-(S0 + S1 omega^2) t)
-    double decay_square;   ///< S1 (s), 0 .. 1e-3
+    double decay_square;   ///< S1 (s), 0 .. 1
     int modes;             ///< both members of a pair count, 1 .. HIMC_MODES_MAX
 } himc_head;
 
-/// A member of the list. One of m > 0 comes as a pair of equal frequency: cosine, then sine. A count that cuts a pair
-/// keeps the cosine, which is the one that a blow on the x axis excites.
+/// A member of the list. One of m > 0 comes as a pair of equal frequency: cosine, then sine. A
+/// count that cuts a pair keeps the cosine, which is the one that a blow on the x axis excites.
 typedef struct himc_mode {
     int m, n;
     bool sine;
@@ -32,10 +34,11 @@ typedef struct himc_mode {
 } himc_mode;
 
 #define HIMC_MODES_MAX 4000
-#define HIMC_TENSION_MIN 50.0    ///< (N/m)
-#define HIMC_TENSION_MAX 50000.0 ///< (N/m)
+#define HIMC_TENSION_MIN 10.0 ///< (N/m)
+#define HIMC_TENSION_MAX 1e5  ///< (N/m)
 
-/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes; tension and decay as modes.c explains.
+/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes; tension and decay as modes.c
+/// explains.
 himc_head himc_head_default(void);
 
 /// Every field of `head` in its range, or false with the field, the value and the range.
@@ -59,6 +62,7 @@ HIMC_RT himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head,
 double himc_modes_shape(const himc_modes *modes, double radius, int index, double x, double y);
 
 /// All shapes at (x, y) (m) into `shapes` (count), from a table, within 1e-8.
-HIMC_RT void himc_modes_shapes(const himc_modes *modes, double radius, double x, double y, double *shapes);
+HIMC_RT void himc_modes_shapes(const himc_modes *modes, double radius, double x, double y,
+                               double *shapes);
 
 #endif

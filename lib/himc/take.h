@@ -98,8 +98,8 @@ typedef struct himc_take_strike {
 int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                       himc_take_strike *strikes, int capacity);
 
-/// Where a drumhead belongs under these strikes: the median of their places (m). False without
-/// strikes.
+/// Where a drumhead belongs under these strikes: the middle of both hands' median places (m).
+/// False without strikes.
 bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place);
 
 /// One line per fact about the take (rate, length, points, units, axes, gaps, events, tips,

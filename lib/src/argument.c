@@ -1,8 +1,9 @@
 /// argument.c: the atoms of the vocabulary and their physical ranges, in one table.
 ///
-/// A row of the command table names its atoms in capitals; here each name gets its kind, its range and its unit. The
-/// same name may mean different things after different words, so a row with a context comes before one without.
-/// The ranges are wide but physical: what lies outside cannot be a drum, a person or a room.
+/// A row of the command table names its atoms in capitals; here each name gets its kind, its range
+/// and its unit. The same name may mean different things after different words, so a row with a
+/// context comes before one without. The ranges are wide but physical: what lies outside cannot be
+/// a drum, a person or a room.
 #include "argument.h"
 
 #include <ctype.h>

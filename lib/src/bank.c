@@ -1,14 +1,15 @@
 /// bank.c: the exact step as a rotation.
 ///
-/// With w_d = sqrt(w^2 - d^2), the coordinates p = w_d q and s = q' + d q turn by the angle w_d h and shrink by
-/// exp(-d h) in a sample of length h:
+/// With w_d = sqrt(w^2 - d^2), the coordinates p = w_d q and s = q' + d q turn by the angle w_d h
+/// and shrink by exp(-d h) in a sample of length h:
 ///     p' = C p + S s,   s' = C s - S p,   C = exp(-d h) cos w_d h,   S = exp(-d h) sin w_d h.
-/// A force f constant over the sample adds b1 f to q and b2 f to q' (zero-order hold), b1 = (1 - a11)/(m w^2) with
-/// a11 = C + d S/w_d, and b2 = S/(m w_d); in p, s: w_d b1 f and (b2 + d b1) f.
+/// A force f constant over the sample adds b1 f to q and b2 f to q' (zero-order hold), b1 = (1 -
+/// a11)/(m w^2) with a11 = C + d S/w_d, and b2 = S/(m w_d); in p, s: w_d b1 f and (b2 + d b1) f.
 ///
-/// The order of all sums is fixed: four lanes, each in the order of the oscillators. So a run of n samples and n runs of one
-/// give the same bits, on any machine. Every 1024 samples the oscillators at the top that have fallen below 1e-15 m/s
-/// are put to rest and skipped until the next force: high modes die first, and denormal numbers never arise.
+/// The order of all sums is fixed: four lanes, each in the order of the oscillators. So a run of n
+/// samples and n runs of one give the same bits, on any machine. Every 1024 samples the oscillators
+/// at the top that have fallen below 1e-15 m/s are put to rest and skipped until the next force:
+/// high modes die first, and denormal numbers never arise.
 #include "himc/bank.h"
 
 #include <math.h>
@@ -20,7 +21,8 @@
 #define QUIET 1e-15  // m/s
 #define TENDING 1024 // samples between looks for quiet oscillators
 
-// two oscillators at once, which every machine's compiler makes one instruction of, with the same result
+// two oscillators at once, which every machine's compiler makes one instruction of, with the same
+// result
 typedef double pair __attribute__((vector_size(2 * sizeof(double)), may_alias));
 
 // a sum in four lanes, and its total in a fixed order
@@ -34,9 +36,9 @@ struct himc_bank {
     int live;     // of these, the first `live` (a multiple of LANES) are not at rest
     int age;      // samples since the last look for quiet ones
     double *memory;
-    double *p, *s;           // state
-    double *turn_c, *turn_s; // C, S
-    double *push_p, *push_s; // what 1 N adds
+    double *p, *s;                         // state
+    double *turn_c, *turn_s;               // C, S
+    double *push_p, *push_s;               // what 1 N adds
     double *omega, *decay, *mass, *damped; // w, d, m, w_d
     lanes sum[2][CHUNK];
 };
@@ -59,8 +61,9 @@ himc_bank *himc_bank_new(int capacity, himc_error *error)
     memset(memory, 0, bytes);
     bank->capacity = capacity;
     bank->memory = memory;
-    double **arrays[ARRAYS] = {&bank->p,      &bank->s,     &bank->turn_c, &bank->turn_s, &bank->push_p,
-                               &bank->push_s, &bank->omega, &bank->decay,  &bank->mass,   &bank->damped};
+    double **arrays[ARRAYS] = {&bank->p,      &bank->s,      &bank->turn_c, &bank->turn_s,
+                               &bank->push_p, &bank->push_s, &bank->omega,  &bank->decay,
+                               &bank->mass,   &bank->damped};
     for (int i = 0; i < ARRAYS; i++)
         *arrays[i] = memory + (size_t)i * length;
     return bank;
@@ -105,7 +108,8 @@ static void tune(himc_bank *bank, int i, const himc_oscillator *o, double h)
 
 static void silence(himc_bank *bank, int i)
 {
-    bank->p[i] = bank->s[i] = bank->turn_c[i] = bank->turn_s[i] = bank->push_p[i] = bank->push_s[i] = 0;
+    bank->p[i] = bank->s[i] = bank->turn_c[i] = bank->turn_s[i] = bank->push_p[i] =
+        bank->push_s[i] = 0;
     bank->omega[i] = bank->decay[i] = bank->damped[i] = bank->mass[i] = 0;
 }
 
@@ -184,7 +188,8 @@ double himc_bank_displacement(const himc_bank *bank, const himc_tap *tap)
     return total(&sum);
 }
 
-// rests the quiet ones at the top; only at multiples of TENDING samples, so that block sizes do not matter
+// rests the quiet ones at the top; only at multiples of TENDING samples, so that block sizes do not
+// matter
 static void tend(himc_bank *bank)
 {
     bank->age = 0;
@@ -196,7 +201,8 @@ static void tend(himc_bank *bank)
     bank->live = (live + LANES - 1) / LANES * LANES;
 }
 
-// Four oscillators through n samples, adding what the two taps read. States and coefficients stay in registers.
+// Four oscillators through n samples, adding what the two taps read. States and coefficients stay
+// in registers.
 static void turn(himc_bank *bank, int at, int n, const himc_tap *sound, const himc_tap *place)
 {
     pair *p = (pair *)(bank->p + at), *s = (pair *)(bank->s + at);
@@ -229,7 +235,8 @@ static void turn_once(himc_bank *bank, const himc_tap *sound, const himc_tap *pl
 {
     pair *p = (pair *)bank->p, *s = (pair *)bank->s;
     const pair *c = (const pair *)bank->turn_c, *w = (const pair *)bank->turn_s;
-    const pair *tp = (const pair *)sound->p, *ts = (const pair *)sound->s, *tq = (const pair *)place->p;
+    const pair *tp = (const pair *)sound->p, *ts = (const pair *)sound->s,
+               *tq = (const pair *)place->p;
     lanes heard = {{0}, {0}}, seen = {{0}, {0}};
     for (int i = 0; i < bank->live / 2; i += 2) {
         pair p0 = c[i] * p[i] + w[i] * s[i], p1 = c[i + 1] * p[i + 1] + w[i + 1] * s[i + 1];
@@ -247,8 +254,8 @@ static void turn_once(himc_bank *bank, const himc_tap *sound, const himc_tap *pl
     bank->sum[1][0] = seen;
 }
 
-static void run_chunk(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place, double *heard,
-                      double *seen)
+static void run_chunk(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place,
+                      double *heard, double *seen)
 {
     if (n == 1) {
         turn_once(bank, sound, place);
@@ -267,7 +274,8 @@ static void run_chunk(himc_bank *bank, int n, const himc_tap *sound, const himc_
         tend(bank);
 }
 
-void himc_bank_run(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place, double *heard, double *seen)
+void himc_bank_run(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place,
+                   double *heard, double *seen)
 {
     for (int done = 0; done < n;) {
         int chunk = n - done < CHUNK ? n - done : CHUNK;

@@ -1,13 +1,14 @@
 /// bessel.c: J_m by backward recurrence, its zeros by safeguarded Newton steps.
 ///
-/// Recurrence J_{k-1} = (2 k/z) J_k - J_{k+1}, run downwards, suppresses everything but J (J. C. P. Miller, British
-/// Association Mathematical Tables X, 1952). It starts where J has fallen below 1e-20 of its largest value, at
-/// order M = K + 14 K^(1/3) + 15 with K = max(z, top) (J_M behaves as an Airy function there), from any value, and is
-/// scaled by J_0 + 2 (J_2 + J_4 + ...) = 1. A common factor does not move a zero, so the zeros are as exact as the
-/// recurrence: a few units in the last place.
+/// Recurrence J_{k-1} = (2 k/z) J_k - J_{k+1}, run downwards, suppresses everything but J (J. C. P.
+/// Miller, British Association Mathematical Tables X, 1952). It starts where J has fallen below
+/// 1e-20 of its largest value, at order M = K + 14 K^(1/3) + 15 with K = max(z, top) (J_M behaves
+/// as an Airy function there), from any value, and is scaled by J_0 + 2 (J_2 + J_4 + ...) = 1. A
+/// common factor does not move a zero, so the zeros are as exact as the recurrence: a few units in
+/// the last place.
 ///
-/// Zeros of one order are more than 3.1 apart and the first lies above m (Watson 1944, section 15.3), so steps of 1.5
-/// from m upwards can not miss one.
+/// Zeros of one order are more than 3.1 apart and the first lies above m (Watson 1944, section
+/// 15.3), so steps of 1.5 from m upwards can not miss one.
 #include "bessel.h"
 
 #include <math.h>

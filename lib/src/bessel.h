@@ -1,4 +1,5 @@
-/// bessel.h: Bessel functions of the first kind and integer order, and their zeros; the shapes of a round membrane.
+/// bessel.h: Bessel functions of the first kind and integer order, and their zeros; the shapes of a
+/// round membrane.
 #ifndef HIMC_BESSEL_H
 #define HIMC_BESSEL_H
 

@@ -1,10 +1,12 @@
 /// command.c: the vocabulary: one table, one parser.
 ///
-/// The `atoms` text of a row is the grammar the parser follows, so the manual cannot differ from it. Capitals name an
-/// argument (argument.c says what it may be), small letters stand for themselves, `a|b` is one word of several, brackets
-/// are optional, ` | ` separates whole alternatives; SPOT is a word or two numbers. If no alternative fits, the error speaks
-/// of the one that came closest. Numbers are held in single precision, as Pure Data and OSC send them, so that a command
-/// is the same to the last bit whoever carries it. Invariant: a refused command changes nothing.
+/// The `atoms` text of a row is the grammar the parser follows, so the manual cannot differ from
+/// it. Capitals name an argument (argument.c says what it may be), small letters stand for
+/// themselves, `a|b` is one word of several, brackets are optional, ` | ` separates whole
+/// alternatives; SPOT is a word or two numbers. If no alternative fits, the error speaks of the one
+/// that came closest. Numbers are held in single precision, as Pure Data and OSC send them, so that
+/// a command is the same to the last bit whoever carries it. Invariant: a refused command changes
+/// nothing.
 #include "himc/command.h"
 
 #include "argument.h"

@@ -1,18 +1,20 @@
 /// contact.c: one sample of head and sticks.
 ///
-/// All forces are constant over a sample of length h; the head's modes answer exactly (bank.c), a stick of mass M by
-/// x' = x + h v + h^2 (a - F/M)/2... as a free body does:
+/// All forces are constant over a sample of length h; the head's modes answer exactly (bank.c), a
+/// stick of mass M by x' = x + h v + h^2 (a - F/M)/2... as a free body does:
 ///     free head and sticks: d_f, x_f;  c0 = d - x before;  b = (d_f - x_f) - c0;
 ///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
 ///     solve r = b - G F(r) (meeting.c);  push the head by -F, the sticks by F.
 ///
-/// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own acceleration - losses of
-/// the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive body under constant force gains just force times
-/// displacement, and the forces' work on head and sticks together is -F r. No step size restricts it.
+/// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own
+/// acceleration - losses of the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive
+/// body under constant force gains just force times displacement, and the forces' work on head and
+/// sticks together is -F r. No step size restricts it.
 ///
-/// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the force of the motion F_m and
-/// the path of the stick. The head is then driven along that path by F_s = k_s c^alpha, c = d - x, k_s proportional to
-/// the largest F_m so far (2012 paper, equation 6). When the stick has left, F_m = 0 and F_s with it.
+/// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the
+/// force of the motion F_m and the path of the stick. The head is then driven along that path by
+/// F_s = k_s c^alpha, c = d - x, k_s proportional to the largest F_m so far (2012 paper, equation
+/// 6). When the stick has left, F_m = 0 and F_s with it.
 #include "meeting.h"
 #include "spot.h"
 
@@ -46,7 +48,8 @@ int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks,
         const himc_stick *s = sticks[i];
         // lowest it can get if both velocity and acceleration were downward all the time
         double t = n * h;
-        double lowest = s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
+        double lowest =
+            s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
         for (; n > 0 && (s->touching || lowest < HIMC_CONTACT_REACH + 1e-6); n /= 2) {
             t = n / 2 * h;
             lowest = s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
@@ -92,7 +95,8 @@ static void strike_rigid(himc_stick *stick, double h)
     hold(stick, stick->height < 0);
 }
 
-// the equation of one stick on the head; a one-way stick has moved already, along `from` to its height
+// the equation of one stick on the head; a one-way stick has moved already, along `from` to its
+// height
 static meeting meet(const himc_membrane *m, const near *n, double from, double h)
 {
     const himc_stick *s = n->stick;
@@ -108,7 +112,8 @@ static meeting meet(const himc_membrane *m, const near *n, double from, double h
                      .guess = s->one_way ? 0 : s->force};
 }
 
-static void compliances(const himc_membrane *m, const near *nears, int count, double (*g)[MEETINGS], double h)
+static void compliances(const himc_membrane *m, const near *nears, int count, double (*g)[MEETINGS],
+                        double h)
 {
     for (int i = 0; i < count; i++) {
         const himc_stick *s = nears[i].stick;
@@ -144,7 +149,8 @@ static void step_near(himc_membrane *membrane, near *nears, int count, double h)
     }
     for (int i = 0; i < count; i++)
         if (!nears[i].stick->one_way)
-            hold(nears[i].stick, spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
+            hold(nears[i].stick,
+                 spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
 }
 
 void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
@@ -169,8 +175,10 @@ void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int c
 
 double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick)
 {
-    double x = stick->touching ? stick->touch_x : stick->x, y = stick->touching ? stick->touch_y : stick->y;
-    double c = stick->one_way ? -stick->height : himc_membrane_displacement(membrane, x, y) - stick->height;
+    double x = stick->touching ? stick->touch_x : stick->x,
+           y = stick->touching ? stick->touch_y : stick->y;
+    double c = stick->one_way ? -stick->height
+                              : himc_membrane_displacement(membrane, x, y) - stick->height;
     return 0.5 * stick->mass * stick->velocity * stick->velocity +
            meeting_potential(stick->head.stiffness, stick->head.exponent, c);
 }

@@ -1,8 +1,10 @@
-/// drum.c: a head advances with whatever touches it, sample by sample, into a ring that others read.
+/// drum.c: a head advances with whatever touches it, sample by sample, into a ring that others
+/// read.
 ///
-/// Every sample is the same computation whichever way it is asked for. While nothing can touch (himc_contact_clear)
-/// the head runs free in long vectorised passes, whose bits equal single steps (bank.c); otherwise each sample is a
-/// himc_contact_step of all sticks. So the output does not depend on how the caller cuts time into blocks.
+/// Every sample is the same computation whichever way it is asked for. While nothing can touch
+/// (himc_contact_clear) the head runs free in long vectorised passes, whose bits equal single steps
+/// (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does not
+/// depend on how the caller cuts time into blocks.
 #include "drum_state.h"
 
 #include <math.h>
@@ -11,7 +13,8 @@
 #include <string.h>
 
 #define MOST_AHEAD 512 // (samples)
-#define MOST_FORCE 1e5 // (N) a larger one from outside counts as this, so that the sound stays finite
+#define MOST_FORCE \
+    1e5 // (N) a larger one from outside counts as this, so that the sound stays finite
 
 static bool check_rate(double rate, himc_error *error)
 {
@@ -21,7 +24,8 @@ static bool check_rate(double rate, himc_error *error)
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error)
 {
     if (strlen(name) >= HIMC_NAME_SIZE) {
-        himc_error_set(error, "drum: name %s, allowed up to %d characters", name, HIMC_NAME_SIZE - 1);
+        himc_error_set(error, "drum: name %s, allowed up to %d characters", name,
+                       HIMC_NAME_SIZE - 1);
         return NULL;
     }
     if (!himc_check_range("inches", inches, 12, 60, "in", error) || !check_rate(sample_rate, error))
@@ -95,7 +99,8 @@ double himc_drum_rate(const himc_drum *drum)
 
 bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error)
 {
-    if (!check_rate(sample_rate, error) || !himc_membrane_set_rate(drum->membrane, sample_rate, error))
+    if (!check_rate(sample_rate, error) ||
+        !himc_membrane_set_rate(drum->membrane, sample_rate, error))
         return false;
     double ratio = sample_rate / drum->rate;
     for (int i = 0; i < drum->waiting_count; i++) {
@@ -157,7 +162,8 @@ static void keep(himc_drum *drum, double heard, double seen)
 #define CHUNK 64
 
 // the head alone; the sticks fly
-static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count, double *const *forces, int at)
+static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count,
+                      double *const *forces, int at)
 {
     double heard[CHUNK], seen[CHUNK], h = 1 / drum->rate;
     himc_membrane_run(drum->membrane, n, heard, seen);
@@ -171,7 +177,8 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
     }
 }
 
-static void step_once(himc_drum *drum, himc_stick **all, int given, double *const *forces, const outside *o)
+static void step_once(himc_drum *drum, himc_stick **all, int given, double *const *forces,
+                      const outside *o)
 {
     double force = outside_force(o, o->at);
     if (force != 0)
@@ -185,8 +192,8 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     drum_follow_mallets(drum);
 }
 
-void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count, double *const *forces,
-                       const double *force, const double *x, const double *y)
+void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count,
+                       double *const *forces, const double *force, const double *x, const double *y)
 {
     himc_stick *all[2 * HIMC_STICKS];
     outside o = {force, x, y, 0, n};
@@ -207,7 +214,8 @@ void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int st
     }
 }
 
-void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound, double *displacement)
+void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
+                    double *displacement)
 {
     uint64_t oldest = drum->time > HIMC_DRUM_RING ? drum->time - HIMC_DRUM_RING : 0;
     for (int i = 0; i < n; i++) {
@@ -227,8 +235,11 @@ uint64_t himc_drum_time(const himc_drum *drum)
 
 void himc_drum_realign(himc_drum *drum, int ahead)
 {
-    uint64_t kept = ahead > 0 ? (uint64_t)ahead : 0;
+    uint64_t kept = ahead > 0 ? (uint64_t)ahead : 0, before = drum->zero;
     drum->zero = drum->time - (kept < drum->time ? kept : drum->time);
+    for (int i = 0; i < drum->report_count; i++)
+        drum->reports[(drum->report_first + i) % DRUM_REPORTS].time -=
+            ((double)drum->zero - (double)before) / drum->rate;
 }
 
 bool himc_drum_set_driver(himc_drum *drum, himc_drum_driver driver)

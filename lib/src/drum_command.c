@@ -1,4 +1,5 @@
-/// drum_command.c: a drum's commands: each makes the new state aside, has it checked, and only then takes it.
+/// drum_command.c: a drum's commands: each makes the new state aside, has it checked, and only then
+/// takes it.
 #include "drum_state.h"
 
 #include "argument.h"
@@ -7,16 +8,16 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEGREE (HIMC_PI / 180)
-
-// Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A softer felt loses
-// more. A stick's head and what moves with it when nobody holds it weigh about 30 g.
+// Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
+// softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
+// g.
 static const struct {
     const char *name;
     himc_mallet_head head;
 } presets[] = {
     {"soft", {.stiffness = 1e7, .exponent = 2.54, .loss = 0.15, .mass = 0.030, .radius = 0.0175}},
-    {"medium", {.stiffness = 1.6e8, .exponent = 2.54, .loss = 0.10, .mass = 0.030, .radius = 0.0175}},
+    {"medium",
+     {.stiffness = 1.6e8, .exponent = 2.54, .loss = 0.10, .mass = 0.030, .radius = 0.0175}},
     {"hard", {.stiffness = 1e9, .exponent = 2.5, .loss = 0.05, .mass = 0.030, .radius = 0.0175}},
     {"wood", {.stiffness = 1e10, .exponent = 2.5, .loss = 0.02, .mass = 0.030, .radius = 0.0175}},
 };
@@ -48,7 +49,8 @@ static bool numbers(const himc_command *c, const char *name, int count, himc_err
     bool good = c->count == count;
     for (int i = 0; i < c->count; i++)
         good = good && c->atom[i].kind == HIMC_ATOM_NUMBER;
-    return good || himc_error_set(error, "%s: takes %d number%s", name, count, count == 1 ? "" : "s");
+    return good ||
+           himc_error_set(error, "%s: takes %d number%s", name, count, count == 1 ? "" : "s");
 }
 
 static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
@@ -63,7 +65,8 @@ static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
 }
 
 // `radius`, `tension`, `density`: one number of the head
-static bool set_field(himc_drum *drum, const himc_command *c, const char *name, size_t field, himc_error *error)
+static bool set_field(himc_drum *drum, const himc_command *c, const char *name, size_t field,
+                      himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
     if (!numbers(c, name, 1, error))
@@ -75,10 +78,12 @@ static bool set_field(himc_drum *drum, const himc_command *c, const char *name, 
 static bool set_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
-    if (!numbers(c, "modes", 1, error) || !himc_check_range("modes", number(c, 0), 1, HIMC_MODES_MAX, "", error))
+    if (!numbers(c, "modes", 1, error) ||
+        !himc_check_range("modes", number(c, 0), 1, HIMC_MODES_MAX, "", error))
         return false;
     if (number(c, 0) != floor(number(c, 0)))
-        return himc_error_set(error, "modes: %g, allowed a whole number 1 .. %d", number(c, 0), HIMC_MODES_MAX);
+        return himc_error_set(error, "modes: %g, allowed a whole number 1 .. %d", number(c, 0),
+                              HIMC_MODES_MAX);
     head.modes = (int)number(c, 0);
     return set_head(drum, &head, error);
 }
@@ -87,7 +92,8 @@ static bool set_decay(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
     if (c->count == 1) {
-        if (!numbers(c, "decay", 1, error) || !himc_check_range("decay T60", number(c, 0), 0.01, 1000, "s", error))
+        if (!numbers(c, "decay", 1, error) ||
+            !himc_check_range("decay T60", number(c, 0), 0.001, 100, "s", error))
             return false;
         head.decay_constant = log(1000) / number(c, 0);
         head.decay_square = 0;
@@ -105,11 +111,13 @@ static bool tune(himc_drum *drum, const himc_command *c, himc_error *error)
     himc_head head = *himc_membrane_head(drum->membrane);
     double hz = number(c, 0);
     if (is_symbol(c, 0) && !himc_note_frequency(c->atom[0].symbol, &hz))
-        return himc_error_set(error, "tune: %s, allowed Hz or a note name as A2, f#3, Bb2", c->atom[0].symbol);
+        return himc_error_set(error, "tune: %s, allowed Hz or a note name as A2, f#3, Bb2",
+                              c->atom[0].symbol);
     if (c->count != 1)
         return himc_error_set(error, "tune: takes a frequency or a note name");
     double per_hz = himc_head_tension_for(&head, 1);
-    if (!himc_check_range("tune", hz, sqrt(HIMC_TENSION_MIN / per_hz), sqrt(HIMC_TENSION_MAX / per_hz), "Hz", error))
+    if (!himc_check_range("tune", hz, sqrt(HIMC_TENSION_MIN / per_hz),
+                          sqrt(HIMC_TENSION_MAX / per_hz), "Hz", error))
         return false;
     head.tension = per_hz * hz * hz;
     return set_head(drum, &head, error);
@@ -122,11 +130,12 @@ static bool set_mallet(himc_drum *drum, const himc_command *c, himc_error *error
     if (is_symbol(c, 0)) {
         name = c->atom[0].symbol;
         if (!drum_mallet_preset(name, &head))
-            return himc_error_set(error, "mallet: %s, allowed soft medium hard wood, or K ALPHA MASS", name);
+            return himc_error_set(
+                error, "mallet: %s, allowed soft medium hard wood, or K ALPHA MASS", name);
     } else {
         if (!numbers(c, "mallet", 3, error) ||
-            !himc_check_range("mallet K", number(c, 0), 1e3, 1e14, "N/m^ALPHA", error) ||
-            !himc_check_range("mallet ALPHA", number(c, 1), 1, 5, "", error) ||
+            !himc_check_range("mallet K", number(c, 0), 1e3, 1e13, "N/m^ALPHA", error) ||
+            !himc_check_range("mallet ALPHA", number(c, 1), 1, 4, "", error) ||
             !himc_check_range("mallet MASS", number(c, 2), 0.001, 1, "kg", error))
             return false;
         head = (himc_mallet_head){number(c, 0), number(c, 1), 0, number(c, 2), drum->mallet.radius};
@@ -166,13 +175,15 @@ static bool set_pickup(himc_drum *drum, const himc_command *c, himc_error *error
         return himc_membrane_set_pickup(drum->membrane, &pickup, error);
     }
     if (strcmp(c->atom[0].symbol, "air") != 0 || c->count != 4)
-        return himc_error_set(error, "pickup: %s, allowed X Y or air AZIMUTH ELEVATION DISTANCE", c->atom[0].symbol);
-    if (!himc_check_range("pickup azimuth", number(c, 1), -360, 360, "degrees", error) ||
-        !himc_check_range("pickup elevation", number(c, 2), 0, 90, "degrees", error))
-        return false;
+        return himc_error_set(error, "pickup: %s, allowed X Y or air AZIMUTH ELEVATION DISTANCE",
+                              c->atom[0].symbol);
+    if (c->atom[1].kind != HIMC_ATOM_NUMBER || c->atom[2].kind != HIMC_ATOM_NUMBER ||
+        c->atom[3].kind != HIMC_ATOM_NUMBER)
+        return himc_error_set(error,
+                              "pickup: AZIMUTH ELEVATION DISTANCE are numbers (rad, rad, m)");
     pickup.kind = HIMC_PICKUP_AIR;
-    pickup.azimuth = number(c, 1) * DEGREE;
-    pickup.elevation = number(c, 2) * DEGREE;
+    pickup.azimuth = number(c, 1);
+    pickup.elevation = number(c, 2);
     pickup.distance = number(c, 3);
     return himc_membrane_set_pickup(drum->membrane, &pickup, error);
 }
@@ -192,22 +203,14 @@ bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error 
         return set_field(drum, command, "tension", offsetof(himc_head, tension), error);
     case HIMC_COMMAND_DENSITY:
         return set_field(drum, command, "density", offsetof(himc_head, density), error);
-    case HIMC_COMMAND_TUNE:
-        return tune(drum, command, error);
-    case HIMC_COMMAND_MODES:
-        return set_modes(drum, command, error);
-    case HIMC_COMMAND_DECAY:
-        return set_decay(drum, command, error);
-    case HIMC_COMMAND_MALLET:
-        return set_mallet(drum, command, error);
-    case HIMC_COMMAND_PLACE:
-        return set_place(drum, command, error);
-    case HIMC_COMMAND_PICKUP:
-        return set_pickup(drum, command, error);
-    case HIMC_COMMAND_STRIKE:
-        return strike(drum, command, error);
-    default:
-        return himc_error_set(error, "command %d: not one to a drum", (int)command->id);
+    case HIMC_COMMAND_TUNE: return tune(drum, command, error);
+    case HIMC_COMMAND_MODES: return set_modes(drum, command, error);
+    case HIMC_COMMAND_DECAY: return set_decay(drum, command, error);
+    case HIMC_COMMAND_MALLET: return set_mallet(drum, command, error);
+    case HIMC_COMMAND_PLACE: return set_place(drum, command, error);
+    case HIMC_COMMAND_PICKUP: return set_pickup(drum, command, error);
+    case HIMC_COMMAND_STRIKE: return strike(drum, command, error);
+    default: return himc_error_set(error, "command %d: not one to a drum", (int)command->id);
     }
 }
 
@@ -216,9 +219,11 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
     const himc_head *head = himc_membrane_head(drum->membrane);
     const himc_place *p = &drum->place;
     double principal = sqrt(head->tension / himc_head_tension_for(head, 1));
-    snprintf(text, size,
-             "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, %d modes (%d audible), "
-             "mallet %s, at %.4g %.4g %.4g m",
-             drum->name, head->radius, head->tension, head->density, principal, head->modes,
-             himc_membrane_audible(drum->membrane), drum->mallet_name, p->center.x, p->center.y, p->center.z);
+    snprintf(
+        text, size,
+        "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, %d modes (%d audible), "
+        "mallet %s, at %.4g %.4g %.4g m",
+        drum->name, head->radius, head->tension, head->density, principal, head->modes,
+        himc_membrane_audible(drum->membrane), drum->mallet_name, p->center.x, p->center.y,
+        p->center.z);
 }

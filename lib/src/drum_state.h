@@ -1,4 +1,5 @@
-/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets) and drum_command.c.
+/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets)
+/// and drum_command.c.
 #ifndef HIMC_DRUM_STATE_H
 #define HIMC_DRUM_STATE_H
 
@@ -21,7 +22,7 @@ typedef struct drum_mallet {
     uint64_t touch;   ///< sample of the first force
     uint64_t release; ///< sample after the last force
     bool touched;
-    int age;         ///< samples since it was launched
+    int age; ///< samples since it was launched
     himc_contact_report report;
 } drum_mallet;
 
@@ -38,7 +39,7 @@ struct himc_drum {
     uint64_t time; ///< samples since it was made; what sample counts in here are
     uint64_t zero; ///< the one that counts as 0 outside, since the last realign
     double sound[HIMC_DRUM_RING], seen[HIMC_DRUM_RING];
-    double spot_x, spot_y; ///< of the force from outside
+    double spot_x, spot_y;              ///< of the force from outside
     drum_waiting waiting[DRUM_WAITING]; ///< unordered
     int waiting_count;
     drum_mallet mallets[HIMC_STICKS];
@@ -48,7 +49,8 @@ struct himc_drum {
 
 /// Launches the strikes that are due while a mallet is free; the rest go on waiting.
 HIMC_RT void drum_launch(himc_drum *drum);
-/// Samples until the next strike is due, at most `most`; 0 when one is due and a mallet free for it.
+/// Samples until the next strike is due, at most `most`; 0 when one is due and a mallet free for
+/// it.
 HIMC_RT int drum_until_launch(const himc_drum *drum, int most);
 /// Adds the mallets in use to `sticks`; returns how many.
 HIMC_RT int drum_add_mallets(himc_drum *drum, himc_stick **sticks);

@@ -1,25 +1,31 @@
-/// drum_strike.c: hits without a performer: free mallets, launched as they touch, forgotten when they have left.
+/// drum_strike.c: hits without a performer: free mallets, launched as they touch, forgotten when
+/// they have left.
 ///
-/// A mallet starts where the head is at that moment, so that its first sample is its first force and a strike is exact to
-/// the sample. It is weightless: in the few milliseconds of a contact gravity changes nothing, and so even the gentlest one leaves.
+/// A mallet starts where the head is at that moment, so that its first sample is its first force
+/// and a strike is exact to the sample. It is weightless: in the few milliseconds of a contact
+/// gravity changes nothing, and so even the gentlest one leaves.
 #include "drum_state.h"
 
 #include <math.h>
 
-#define GONE 0.005    // (m) above the head at rest and rising: it will not come back
-#define LONGEST 1.0   // (s) a mallet is taken away after this whatever it does
+#define GONE 0.005  // (m) above the head at rest and rising: it will not come back
+#define LONGEST 1.0 // (s) a mallet is taken away after this whatever it does
 
-bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity, himc_error *error)
+bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
+                         himc_error *error)
 {
     if (!himc_check_range("strike x", x, -drum->place.radius, drum->place.radius, "m", error) ||
         !himc_check_range("strike y", y, -drum->place.radius, drum->place.radius, "m", error) ||
-        !himc_check_range("strike place, from the centre", hypot(x, y), 0, drum->place.radius, "m", error) ||
+        !himc_check_range("strike place, from the centre", hypot(x, y), 0, drum->place.radius, "m",
+                          error) ||
         !himc_check_range("strike velocity", velocity, 0.001, 30, "m/s", error) ||
         !himc_check_range("strike delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
         return false;
     if (drum->waiting_count == DRUM_WAITING)
-        return himc_error_set(error, "strike: %d wait already, allowed up to %d", DRUM_WAITING, DRUM_WAITING);
-    drum->waiting[drum->waiting_count++] = (drum_waiting){drum->time + (uint64_t)delay, x, y, velocity};
+        return himc_error_set(error, "strike: %d wait already, allowed up to %d", DRUM_WAITING,
+                              DRUM_WAITING);
+    drum->waiting[drum->waiting_count++] =
+        (drum_waiting){drum->time + (uint64_t)delay, x, y, velocity};
     return true;
 }
 
@@ -89,7 +95,8 @@ int drum_add_mallets(himc_drum *drum, himc_stick **sticks)
     return count;
 }
 
-// its story ends: the report waits for himc_drum_strike_next; the oldest is dropped when nobody asks
+// its story ends: the report waits for himc_drum_strike_next; the oldest is dropped when nobody
+// asks
 static void finish(himc_drum *drum, drum_mallet *m)
 {
     m->used = false;

@@ -1,11 +1,13 @@
 /// gesture.c: the shapes of the five nuances.
 ///
-/// Speeds of the mallet head at f come from optical captures of timpani exercises (425 strokes; legato 4.3, tenuto 4.2,
-/// accent 4.5, vertical accent 7.5, staccato 2.8 m/s, and 1.39 times that in the louder takes); heights and depths keep what
-/// Bouënard, Gibet & Wanderley 2012 (section 3) tell nuances apart by: the accent highest and shallow, vertical accent and
-/// staccato deep, tenuto rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 9 from ppp
-/// to fff gives 21 dB. A quintic from rest at the height H to the speed v in the time T falls without turning as
-/// long as s = v T/H <= 2.5; s here is 1.9 to 2.1. A stroke given the share r < 1 of its time is r^2 as high.
+/// Speeds of the mallet head at f come from optical captures of timpani exercises (425 strokes;
+/// legato 4.3, tenuto 4.2, accent 4.5, vertical accent 7.5, staccato 2.8 m/s, and 1.39 times that
+/// in the louder takes); heights and depths keep what Bouënard, Gibet & Wanderley 2012 (section 3)
+/// tell nuances apart by: the accent highest and shallow, vertical accent and staccato deep, tenuto
+/// rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 9 from ppp to
+/// fff gives 21 dB. A quintic from rest at the height H to the speed v in the time T falls without
+/// turning as long as s = v T/H <= 2.5; s here is 1.9 to 2.1. A stroke given the share r < 1 of its
+/// time is r^2 as high.
 #include "gesture.h"
 
 #include <math.h>
@@ -27,7 +29,7 @@ static const struct profile {
     [HIMC_TENUTO] = {.42, 4.2, 1.9, .8, .02, .26, .08, 1, .45, 2.2},
     [HIMC_ACCENT] = {.54, 4.5, 1.9, .8, .03, .26, .04, 0, .95, 1.9},
     [HIMC_VERTICAL_ACCENT] = {.48, 7.5, 2.1, .9, .01, .22, .18, 0, .90, 2.0},
-    [HIMC_STACCATO] = {.36, 2.8, 2.0, .8, .05, .24, .16, 0, .75, 1.0},
+    [HIMC_STACCATO] = {.36, 2.8, 2.0, .8, .05, .24, .16, 0, .75, 0.8},
 };
 
 himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
@@ -35,8 +37,8 @@ himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
     const struct profile *p = &profile[nuance];
     double d = dynamic - FORTE;
     double louder = d < 0 ? pow(SOFTEST, d / FORTE) : pow(LOUDEST, d / (1 - FORTE));
-    himc_gesture g = {.dwell = p->dwell, .lift = p->lift, .arc = p->arc, .rebound = p->rebound,
-                      .pull = p->pull};
+    himc_gesture g = {
+        .dwell = p->dwell, .lift = p->lift, .arc = p->arc, .rebound = p->rebound, .pull = p->pull};
     g.speed = p->speed * louder;
     g.height = p->height * (d < 0 ? pow(louder, p->reach) : louder);
     g.height = fmin(g.height, LONGEST_DOWN * g.speed / p->shape);

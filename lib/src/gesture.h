@@ -13,7 +13,7 @@ typedef struct himc_gesture {
     double depth;   ///< how far the tip swings back towards the player (m)
     double arc;     ///< acceleration at the top, in -height/down^2: 0 halts there, 2 flows over
     double rebound; ///< height the rebound goes to by itself, in heights
-    double pull;    ///< its time, in rebound heights over rebound speed: 1 is pulled, 2 is free
+    double pull; ///< its time, in rebound heights over rebound speed: below 1 is pulled, 2 is free
 } himc_gesture;
 
 /// The stroke when there is time enough. `dynamic` 0 .. 1.

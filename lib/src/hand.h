@@ -36,22 +36,25 @@ HIMC_RT himc_target himc_hand_at(const himc_hand_plan *plan, double t);
 /// Forgets what comes after t; the plan ends there.
 HIMC_RT void himc_hand_cut(himc_hand_plan *plan, double t);
 
-/// Goes on from a state measured at t, after a touch; what acceleration the contact left dies out within a small part
-/// of the time to the `next` touch (s, may be infinite).
+/// Goes on from a state measured at t, after a touch; what acceleration the contact left dies out
+/// within a small part of the time to the `next` touch (s, may be infinite).
 HIMC_RT void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state,
                                double next);
 
 /// Whether another chunk has room.
 HIMC_RT bool himc_hand_room(const himc_hand_plan *plan);
 
-/// Time the tip needs from the plan's end to play the goal's gesture unhurried (s), and at the least.
+/// Time the tip needs from the plan's end to play the goal's gesture unhurried (s), and at the
+/// least.
 HIMC_RT double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal);
 HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal);
 
-/// Appends all up to the end of that stroke's contact. False, and nothing appended, if it cannot be played.
+/// Appends all up to the end of that stroke's contact. False, and nothing appended, if it cannot be
+/// played.
 HIMC_RT bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal);
 
-/// Appends some waiting, to `until` (s) at the least: over the last spot when `ready`, else at home.
+/// Appends some waiting, to `until` (s) at the least: over the last spot when `ready`, else at
+/// home.
 HIMC_RT void himc_hand_wait(himc_hand_plan *plan, double until, bool ready);
 
 /// Appends the way to x, which becomes home.

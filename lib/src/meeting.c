@@ -2,10 +2,11 @@
 ///
 /// Over a sample of length h the compression goes from c0 to c0 + r and the force is held at
 ///     F(r) = max(0, (V(c0 + r) - V(c0)) (1/r + mu/h)),    V(c) = k c^(alpha+1)/(alpha+1),
-/// so its elastic part does exactly the work V(c0 + r) - V(c0), and the rest only takes energy (V does not decrease).
-/// The bodies answer linearly: r = b - G F(r). V is convex, so F does not decrease with r: the residual r - b + G F(r) of one
-/// compression rises with slope >= 1 and has one root, between b - G F(b) and b; Newton steps kept inside that bracket
-/// find it. (Discrete gradient: Chatziioannou & van Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
+/// so its elastic part does exactly the work V(c0 + r) - V(c0), and the rest only takes energy (V
+/// does not decrease). The bodies answer linearly: r = b - G F(r). V is convex, so F does not
+/// decrease with r: the residual r - b + G F(r) of one compression rises with slope >= 1 and has
+/// one root, between b - G F(b) and b; Newton steps kept inside that bracket find it. (Discrete
+/// gradient: Chatziioannou & van Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
 ///
 /// Several compressions on one head: the residual is G times the gradient of the strictly convex
 ///     Psi(r) = (r - b)' G^-1 (r - b)/2 + sum_i int F_i dr_i,
@@ -29,7 +30,8 @@ static double gradient(const meeting *m, double r, double *slope)
     *slope = 0;
     if (c1 <= 0 && m->c0 <= 0)
         return 0;
-    // small steps: the difference would cancel; V' at the midpoint and its second derivative are exact to (r/mid)^4
+    // small steps: the difference would cancel; V' at the midpoint and its second derivative are
+    // exact to (r/mid)^4
     if (fabs(r) < 1e-3 * mid) {
         double force = m->k * pow(mid, m->alpha), t = r / mid;
         *slope = 0.5 * m->alpha * force / mid;

@@ -1,4 +1,5 @@
-/// meeting.h: the implicit equations of compressions that share a head; a private part of contact.c.
+/// meeting.h: the implicit equations of compressions that share a head; a private part of
+/// contact.c.
 #ifndef HIMC_MEETING_H
 #define HIMC_MEETING_H
 
@@ -19,7 +20,8 @@ typedef struct meeting {
 /// V(c) = k c^(alpha+1)/(alpha+1) for c > 0 (J).
 double meeting_potential(double k, double alpha, double c);
 
-/// Solves r_i = b_i - sum_j G_ij F_j(r_j); G (count x count, row stride MEETINGS) in m/N, symmetric positive.
+/// Solves r_i = b_i - sum_j G_ij F_j(r_j); G (count x count, row stride MEETINGS) in m/N, symmetric
+/// positive.
 void meetings_solve(meeting *meetings, int count, double (*g)[MEETINGS], double h);
 
 #endif

@@ -1,39 +1,30 @@
 /// membrane.c: modes, bank, ear and spots put together.
 ///
-/// A force f at (x, y) drives mode i with phi_i(x, y) f; the displacement there is sum phi_i q_i. Both use the same
-/// phi, from the same table, so work done on the head is energy in its modes to the last bit but rounding, whatever the table's
-/// error. A place is looked up or computed once (spot.h) and kept while it is used.
-///
-/// When head, ear or rate change, the sound would jump by a step D and its slope by E a sample. The difference between what
-/// would have been heard and what is now heard is added back as a cubic that starts with D and E and ends with zero and
-/// slope zero after 5 ms: no click, and no filter in the sound's way at any other time.
+/// A force f at (x, y) drives mode i with phi_i(x, y) f; the displacement there is sum phi_i q_i.
+/// Both use the same phi, from the same table, so work done on the head is energy in its modes to
+/// the last bit but rounding, whatever the table's error. A place is looked up or computed once
+/// (spot.h) and kept while it is used.
 #include "spot.h"
 
+#include "fade.h"
 #include "pickup.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define FADE 0.005 // (s)
 #define PUSHES 8
 
 // what depends on the number of modes and is allocated with it
 typedef struct core {
     himc_modes *modes;
     himc_bank *bank;
-    himc_oscillator *oscillators; // (modes)
-    double *memory;               // all arrays below, (padded) each, and the spots'
+    himc_oscillator *oscillators;   // (modes)
+    double *memory;                 // all arrays below, (padded) each, and the spots'
     double *on_q, *on_v, *on_force; // what the ear hears of each mode
     double *scratch;
     himc_tap ear, watch;
 } core;
-
-// the rest of a jump: value and slope at its start
-typedef struct fade {
-    double step, slope; // in units of sound, and per sample
-    int at, length;     // (samples)
-} fade;
 
 typedef struct push {
     double x, y, force;
@@ -88,7 +79,8 @@ static bool core_new(core *c, spot spots[SPOTS], int count, himc_error *error)
     c->ear = (himc_tap){take(&memory, padded), take(&memory, padded)};
     c->watch = (himc_tap){take(&memory, padded), take(&memory, padded)};
     for (int i = 0; i < SPOTS; i++) {
-        double *shape = take(&memory, padded), *p = take(&memory, padded), *s = take(&memory, padded);
+        double *shape = take(&memory, padded), *p = take(&memory, padded),
+               *s = take(&memory, padded);
         spots[i] = (spot){.shape = shape, .tap = {p, s}};
     }
     return true;
@@ -98,7 +90,8 @@ static void find_oscillators(himc_membrane *m)
 {
     for (int i = 0; i < m->head.modes; i++) {
         himc_mode mode = himc_modes_get(m->core.modes, &m->head, i);
-        m->core.oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
+        m->core.oscillators[i] =
+            (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
 }
 
@@ -147,14 +140,6 @@ static void retune(himc_membrane *m)
         m->spots[i].used = false;
     aim_ear(m);
     aim_watch(m);
-}
-
-static double fade_at(const fade *f, int at)
-{
-    if (f->length == 0 || at >= f->length)
-        return 0;
-    double t = (double)at / f->length, u = 1 - t;
-    return u * u * ((1 + 2 * t) * f->step + t * f->length * f->slope);
 }
 
 // what the coming sample and the one that was sound like without forces

@@ -1,16 +1,18 @@
 /// modes.c: the list of modes from one table of Bessel functions.
 ///
-/// J_m(z) and its slope are tabulated for all orders on a grid of step 1/32 in z = j_mn r/a. Sign changes along a row
-/// bracket the zeros j_mn; sorted, they are the list. Afterwards the same table gives the shapes at any place by cubic
-/// Hermite interpolation, whose error is at most step^4/384 max|J''''| < 3e-9: cheap enough to follow a moving stick.
+/// J_m(z) and its slope are tabulated for all orders on a grid of step 1/32 in z = j_mn r/a. Sign
+/// changes along a row bracket the zeros j_mn; sorted, they are the list. Afterwards the same table
+/// gives the shapes at any place by cubic Hermite interpolation, whose error is at most step^4/384
+/// max|J''''| < 3e-9: cheap enough to follow a moving stick.
 ///
-/// Weyl's law counts the modes below z: z^2/4 - z/2 (pairs twice), so the table ends at 1 + sqrt(1 + 4 count) and a
-/// little more (H. Weyl 1911; the second term is the rim's).
+/// Weyl's law counts the modes below z: z^2/4 - z/2 (pairs twice), so the table ends at 1 + sqrt(1
+/// + 4 count) and a little more (H. Weyl 1911; the second term is the rim's).
 ///
-/// The default head. 23 inches, Christian et al.'s Mylar, and 3700 N/m, the tension of a 23 inch timpano in the middle of
-/// its range: a mallet of 45 g then meets 65 N at 3.7 m/s and 108 N at 6 m/s, the forces the 2012 paper reports. Without the
-/// air's mass, which about halves such a head's frequencies, its principal mode is B3 (247 Hz). Decay: viscoelastic film,
-/// eta omega^2/2 with eta = 0.6e-6 s (Rhaouti, Chaigne & Joly 1999), and 2.2 1/s, the order of what the preferred modes
+/// The default head. 23 inches, Christian et al.'s Mylar, and 3700 N/m, the tension of a 23 inch
+/// timpano in the middle of its range: a mallet of 45 g then meets 65 N at 3.7 m/s and 108 N at 6
+/// m/s, the forces the 2012 paper reports. Without the air's mass, which about halves such a head's
+/// frequencies, its principal mode is B3 (247 Hz). Decay: viscoelastic film, eta omega^2/2 with eta
+/// = 0.6e-6 s (Rhaouti, Chaigne & Joly 1999), and 2.2 1/s, the order of what the preferred modes
 /// radiate: 2.4 s to -60 dB for (1,1), 0.5 s at 1 kHz.
 #include "himc/modes.h"
 
@@ -52,10 +54,11 @@ himc_head himc_head_default(void)
 bool himc_head_check(const himc_head *head, himc_error *error)
 {
     return himc_check_range("radius", head->radius, 0.05, 1, "m", error) &&
-           himc_check_range("tension", head->tension, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", error) &&
-           himc_check_range("density", head->density, 0.01, 10, "kg/m2", error) &&
+           himc_check_range("tension", head->tension, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m",
+                            error) &&
+           himc_check_range("density", head->density, 0.001, 10, "kg/m2", error) &&
            himc_check_range("decay S0", head->decay_constant, 0, 1000, "1/s", error) &&
-           himc_check_range("decay S1", head->decay_square, 0, 1e-3, "s", error) &&
+           himc_check_range("decay S1", head->decay_square, 0, 1, "s", error) &&
            himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error);
 }
 
@@ -130,7 +133,8 @@ static bool enlist(himc_modes *modes, int found)
     int mode = 0, i = 0;
     for (; i < found && mode < modes->count; i++) {
         modes->first[i] = mode;
-        for (int member = 0; member < (modes->zeros[i].m > 0 ? 2 : 1) && mode < modes->count; member++)
+        for (int member = 0; member < (modes->zeros[i].m > 0 ? 2 : 1) && mode < modes->count;
+             member++)
             modes->of[mode++] = i;
     }
     modes->zero_count = i;
@@ -215,7 +219,8 @@ double himc_modes_shape(const himc_modes *modes, double radius, int index, doubl
 static double hermite(const double *cell, double t)
 {
     double u = 1 - t;
-    return u * u * ((1 + 2 * t) * cell[0] + t * cell[1]) + t * t * ((1 + 2 * u) * cell[2] - u * cell[3]);
+    return u * u * ((1 + 2 * t) * cell[0] + t * cell[1]) +
+           t * t * ((1 + 2 * u) * cell[2] - u * cell[3]);
 }
 
 void himc_modes_shapes(const himc_modes *modes, double radius, double x, double y, double *shapes)

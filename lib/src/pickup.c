@@ -1,15 +1,18 @@
 /// pickup.c: what an ear far from a vibrating head hears of each mode.
 ///
-/// Rayleigh's integral over a baffled membrane gives, far away in the direction (th from the normal, az), with k = w/c and
-/// x = k a sin th,
+/// Rayleigh's integral over a baffled membrane gives, far away in the direction (th from the
+/// normal, az), with k = w/c and x = k a sin th,
 ///     p = (rho/R) (-i)^m a^2 j J_{m+1}(j) J_m(x)/(j^2 - x^2) {cos m az | sin m az} q''(t - R/c)
-/// (Morse & Ingard 1968, section 7.4; the integral of two Bessel functions is Lommel's). The common delay R/c is left out.
+/// (Morse & Ingard 1968, section 7.4; the integral of two Bessel functions is Lommel's). The common
+/// delay R/c is left out.
 ///
-/// With the time factor exp(-i w t), -i q'' is -w q'. So the modes of even m are heard by their acceleration, those of
-/// odd m a quarter of a period apart, by w times their velocity; signs go round with period 4 in m.
+/// With the time factor exp(-i w t), -i q'' is -w q'. So the modes of even m are heard by their
+/// acceleration, those of odd m a quarter of a period apart, by w times their velocity; signs go
+/// round with period 4 in m.
 ///
-/// The acceleration holds the force itself: q'' = phi f/m - w^2 q - 2 d q'. Left out, a mallet pressing on the head
-/// would be heard as a pressure that does not exist, for in equilibrium phi f/m is what cancels w^2 q.
+/// The acceleration holds the force itself: q'' = phi f/m - w^2 q - 2 d q'. Left out, a mallet
+/// pressing on the head would be heard as a pressure that does not exist, for in equilibrium phi
+/// f/m is what cancels w^2 q.
 #include "pickup.h"
 
 #include "bessel.h"
@@ -27,8 +30,9 @@ himc_pickup himc_pickup_default(void)
 bool pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error)
 {
     if (pickup->kind == HIMC_PICKUP_AIR)
-        return himc_check_range("pickup azimuth", pickup->azimuth, -2 * HIMC_PI, 2 * HIMC_PI, "rad", error) &&
-               himc_check_range("pickup elevation", pickup->elevation, 0, HIMC_PI / 2, "rad", error) &&
+        return himc_check_range("pickup azimuth", pickup->azimuth, -2 * HIMC_PI, 2 * HIMC_PI, "rad",
+                                error) &&
+               himc_check_range("pickup elevation", pickup->elevation, 0, 1.5708, "rad", error) &&
                himc_check_range("pickup distance", pickup->distance, 0.3, 100, "m", error);
     double r = hypot(pickup->x, pickup->y);
     return himc_check_range("pickup place, from the centre", r, 0, head->radius, "m", error);
@@ -48,11 +52,12 @@ static double radiation(const himc_mode *mode, const himc_head *head, const himc
 {
     double x = 2 * HIMC_PI * mode->frequency / SOUND_SPEED * head->radius * cos(pickup->elevation);
     double angle = mode->m * pickup->azimuth;
-    return AIR_DENSITY / pickup->distance * head->radius * head->radius * overlap(mode->m, mode->zero, x) *
-           (mode->sine ? sin(angle) : cos(angle));
+    return AIR_DENSITY / pickup->distance * head->radius * head->radius *
+           overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
-hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode, double point_shape)
+hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
+                     double point_shape)
 {
     if (pickup->kind == HIMC_PICKUP_POINT)
         return (hearing){.velocity = point_shape / HIMC_PICKUP_VELOCITY};

@@ -14,6 +14,7 @@ typedef struct hearing {
 bool pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error);
 
 /// `point_shape` is the mode's shape at the pickup's point (not used by HIMC_PICKUP_AIR).
-hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode, double point_shape);
+hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
+                     double point_shape);
 
 #endif

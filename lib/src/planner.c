@@ -1,8 +1,9 @@
 /// planner.c: what is to be played: drums, strokes, tempo map; and what has to be said about it.
 ///
-/// Strokes are kept for each hand, sorted by beat, since a hand only ever asks for its next one. Memory grows here, in
-/// setup; planner_motion.c and planner_transport.c only move within it. Notes are kept in a ring and each kind is given
-/// once per play, so that a fast passage does not say the same thing a hundred times.
+/// Strokes are kept for each hand, sorted by beat, since a hand only ever asks for its next one.
+/// Memory grows here, in setup; planner_motion.c and planner_transport.c only move within it. Notes
+/// are kept in a ring and each kind is given once per play, so that a fast passage does not say the
+/// same thing a hundred times.
 #include "planner_state.h"
 
 #include <stdarg.h>
@@ -15,14 +16,16 @@
 
 himc_planner_config himc_planner_default(void)
 {
-    return (himc_planner_config){.mallet_radius = 0.02, .rest = {{0.48, 0.10, 1.0}, {0.48, -0.10, 1.0}}};
+    return (himc_planner_config){.mallet_radius = 0.02,
+                                 .rest = {{0.48, 0.10, 1.0}, {0.48, -0.10, 1.0}}};
 }
 
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (!himc_vec3_finite(config->rest[hand])) {
-            himc_error_set(error, "rest of the %s hand: not finite", himc_hand_name((himc_hand)hand));
+            himc_error_set(error, "rest of the %s hand: not finite",
+                           himc_hand_name((himc_hand)hand));
             return NULL;
         }
     if (!himc_check_range("mallet_radius", config->mallet_radius, 0, 0.1, "m", error))
@@ -99,7 +102,8 @@ static bool check_stroke(const himc_planner *planner, const himc_stroke *stroke,
 {
     const planner_hand *h = &planner->hand[stroke->hand];
     if (drum < 0 || drum >= HIMC_DRUMS)
-        return himc_error_set(error, "stroke: drum number %d, allowed 0 .. %d", drum, HIMC_DRUMS - 1);
+        return himc_error_set(error, "stroke: drum number %d, allowed 0 .. %d", drum,
+                              HIMC_DRUMS - 1);
     if (h->count >= MOST_STROKES)
         return himc_error_set(error, "stroke: one too many, allowed %d for a hand", MOST_STROKES);
     double least = HUGE_VAL;
@@ -109,7 +113,8 @@ static bool check_stroke(const himc_planner *planner, const himc_stroke *stroke,
         least = fmin(least, gap(planner, h->list[at].stroke.beat, stroke->beat));
     if (least < CLOSEST)
         return himc_error_set(
-            error, "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, allowed %g s or more",
+            error,
+            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, allowed %g s or more",
             stroke->beat, least, himc_hand_name(stroke->hand), CLOSEST);
     return true;
 }
@@ -144,7 +149,7 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
     else if (at < h->next)
         planner_say(planner, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, that beat is past",
                     h->list[at].stroke.beat, himc_hand_name(hand));
-    planner_extend(planner, hand);
+    planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum, himc_error *error)
@@ -167,7 +172,8 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
         if (!himc_check_range("tempo", tempi[i].bpm, 1, 1000, "beats per minute", error))
             return false;
         if (!isfinite(tempi[i].beat) || (i > 0 && tempi[i].beat <= tempi[i - 1].beat))
-            return himc_error_set(error, "tempo: BEAT: %g is not after the one before", tempi[i].beat);
+            return himc_error_set(error, "tempo: BEAT: %g is not after the one before",
+                                  tempi[i].beat);
     }
     himc_tempo_change *copy = count > 0 ? malloc((size_t)count * sizeof *copy) : NULL;
     if (!copy)
@@ -194,7 +200,7 @@ void himc_planner_clear(himc_planner *planner)
         h->count = h->next = h->hits = 0;
         for (int i = 0; i < h->touches; i++)
             h->touch[i].index = -1;
-        planner_extend(planner, (himc_hand)hand);
+        planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     planner->beat = 0;
     planner->said = 0;
@@ -208,7 +214,8 @@ void planner_say(himc_planner *planner, planner_kind kind, const char *format, .
     if (planner->note_count == PLANNER_NOTES) {
         himc_planner_note *last =
             &planner->note[(planner->note_first + PLANNER_NOTES - 1) % PLANNER_NOTES];
-        snprintf(last->text, sizeof last->text, "%d more notes were lost", ++planner->note_lost + 1);
+        snprintf(last->text, sizeof last->text, "%d more notes were lost",
+                 ++planner->note_lost + 1);
         return;
     }
     int at = (planner->note_first + planner->note_count++) % PLANNER_NOTES;

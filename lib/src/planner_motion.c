@@ -1,18 +1,18 @@
 /// planner_motion.c: strokes in their order become touches, touches become chunks of motion.
 ///
-/// Each hand's plan is extended chunk by chunk from its own end, always to a point beyond the horizon. Whatever changes
-/// (tempo, score, a hit, what was measured at separation) cuts the plan and extends it again from the state there, so
-/// there is one way of planning and all joins are alike. A touch less than 60 ms away is committed: no player could take
-/// it back. Invariant: strokes of one hand are planned in the order of time, each at most once.
+/// Each hand's plan is extended chunk by chunk from its own end, always to a point beyond the
+/// horizon. Whatever changes (tempo, score, a hit, what was measured at separation) cuts the plan
+/// and extends it again from the state there, so there is one way of planning and all joins are
+/// alike. A touch less than 80 ms away is committed: no player could take it back. Invariant:
+/// strokes of one hand are planned in the order of time, each at most once.
 #include "planner_state.h"
 
-#define HORIZON 0.15    // planned beyond the last advance at least (s)
-#define FORESIGHT 3.0   // a stroke further away is not prepared yet (s)
-#define EARLY 0.03      // a touch may come this much before its time (s)
-#define AFTERGLOW 0.05  // and is the current one until this much after (s)
-#define REBOUND 0.12    // a rise within this time of a touch is its rebound (s)
-#define HIT_GAP 0.12    // between a hit and its neighbours (s)
-#define SMALL 0.6       // a stroke smaller than this share of its height is worth a word
+#define FORESIGHT 3.0  // a stroke further away is not prepared yet (s)
+#define EARLY 0.03     // a touch may come this much before its time (s)
+#define AFTERGLOW 0.05 // and is the current one until this much after (s)
+#define REBOUND 0.12   // a rise within this time of a touch is its rebound (s)
+#define HIT_GAP 0.12   // between a hit and its neighbours (s)
+#define SMALL 0.6      // a stroke smaller than this share of its height is worth a word
 #define MOST_TRIES 32
 
 static double touch_end(const planner_touch *touch)
@@ -27,7 +27,8 @@ himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int dru
     himc_stroke_spot(stroke, place->radius, &x, &y);
     double r = hypot(x, y);
     if (r > limit) {
-        planner_say(planner, PLANNER_OUTSIDE, "%s hand: %.3g %.3g is beyond the rim, struck inside it",
+        planner_say(planner, PLANNER_OUTSIDE,
+                    "%s hand: %.3g %.3g is beyond the rim, struck inside it",
                     himc_hand_name(stroke->hand), x, y);
         x *= limit / r;
         y *= limit / r;
@@ -81,8 +82,9 @@ static void say_given_up(himc_planner *planner, const planner_touch *touch)
     if (touch->index < 0)
         planner_say(planner, PLANNER_GIVEN_UP, "hit %s: given up, no time to prepare it", hand);
     else
-        planner_say(planner, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, no time to prepare it",
-                    touch->stroke.beat, hand);
+        planner_say(planner, PLANNER_GIVEN_UP,
+                    "stroke at beat %g %s: given up, no time to prepare it", touch->stroke.beat,
+                    hand);
 }
 
 static void say_smaller(himc_planner *planner, const planner_touch *touch, double since)
@@ -107,10 +109,9 @@ static void plan_touch(himc_planner *planner, planner_hand *h, planner_touch *to
     h->touch[h->touches++].goal = h->plan.last;
 }
 
-void planner_extend(himc_planner *planner, himc_hand hand)
+void planner_extend(himc_planner *planner, himc_hand hand, double until)
 {
     planner_hand *h = &planner->hand[hand];
-    double until = planner->now + HORIZON;
     for (int i = 0; i < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan); i++) {
         planner_touch touch;
         bool more = next_touch(planner, hand, &touch);
@@ -145,6 +146,8 @@ static void unplan_after(planner_hand *h, double t, double margin)
 void planner_cut(himc_planner *planner, himc_hand hand, double t)
 {
     planner_hand *h = &planner->hand[hand];
+    if (h->plan.end < t)
+        planner_extend(planner, hand, t);
     unplan_after(h, t, PLANNER_COMMIT);
     const planner_touch *last = h->touches > 0 ? &h->touch[h->touches - 1] : NULL;
     if (last && !last->parted)
@@ -160,7 +163,7 @@ void planner_replan(himc_planner *planner, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_cut(planner, (himc_hand)hand, t);
-        planner_extend(planner, (himc_hand)hand);
+        planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
 }
 
@@ -177,7 +180,7 @@ void himc_planner_advance(himc_planner *planner, double t)
         h->touches -= past;
         himc_chain_drop(&h->plan.ground, planner->now);
         himc_chain_drop(&h->plan.lift, planner->now);
-        planner_extend(planner, (himc_hand)hand);
+        planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
 }
 
@@ -203,7 +206,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
         h->plan.last = last->goal;
         h->plan.struck = t - last->goal.time < REBOUND;
     }
-    planner_extend(planner, hand);
+    planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
 /// Moves a hit's time behind any stroke that is too near; false if there is no gap.
@@ -248,7 +251,7 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
             h->hit[i] = h->hit[i - 1];
         h->hit[i] = hit;
     }
-    planner_extend(planner, stroke->hand);
+    planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
     return touch;
 }
 
@@ -258,7 +261,7 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
         return;
     planner_cut(planner, hand, t);
     himc_hand_reach(&planner->hand[hand].plan, x);
-    planner_extend(planner, hand);
+    planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
 /// Until when a touch is the current one, given the next.

@@ -9,8 +9,10 @@
 #define PLANNER_HITS 4
 #define PLANNER_TOUCHES 16
 #define PLANNER_NOTES 32
+/// Planned beyond the last advance at least (s).
+#define PLANNER_HORIZON 0.15
 /// Within this time of its touch a stroke is no longer changed (s).
-#define PLANNER_COMMIT 0.06
+#define PLANNER_COMMIT 0.08
 /// Calls that carry no time change the plan from this long after the last advance (s).
 #define PLANNER_AHEAD 0.03
 
@@ -69,10 +71,13 @@ HIMC_RT void planner_say(himc_planner *planner, planner_kind kind, const char *f
 
 HIMC_RT double planner_time_of(const himc_planner *planner, double beat);
 HIMC_RT double planner_beat_at(const himc_planner *planner, double t);
-HIMC_RT himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t);
-/// Plans anew from t on; what is committed stays. With every hand, then extends.
+HIMC_RT himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
+                               double t);
+/// Plans both hands anew from t on; what is committed stays.
 HIMC_RT void planner_replan(himc_planner *planner, double t);
+/// Takes back what is planned after t, unless committed; the plan then ends at t or soon after.
 HIMC_RT void planner_cut(himc_planner *planner, himc_hand hand, double t);
-HIMC_RT void planner_extend(himc_planner *planner, himc_hand hand);
+/// Plans a hand to `until` (s) at least.
+HIMC_RT void planner_extend(himc_planner *planner, himc_hand hand, double until);
 
 #endif

@@ -1,8 +1,9 @@
 /// planner_transport.c: beats and seconds.
 ///
-/// While playing, beat b is at time origin + S(b), S being the sum of 60/bpm over the tempo map. A change of tempo
-/// at beat b replaces what the map says up to b and moves the origin so that b stays where it is; the hands are then planned
-/// anew from there. Invariant: S grows strictly, so every time has one beat.
+/// While playing, beat b is at time origin + S(b), S being the sum of 60/bpm over the tempo map. A
+/// change of tempo at beat b replaces what the map says up to b and moves the origin so that b
+/// stays where it is; the hands are then planned anew from there. Invariant: S grows strictly, so
+/// every time has one beat.
 #include "planner_state.h"
 
 #include <string.h>
@@ -64,8 +65,9 @@ static void start(himc_planner *planner, double t)
     double late = lateness(planner);
     planner->origin += late;
     if (late > 0.001)
-        planner_say(planner, PLANNER_LATE, "beat %g is %.2g s late: the first stroke must be prepared",
-                    planner->beat, late);
+        planner_say(planner, PLANNER_LATE,
+                    "beat %g is %.2g s late: the first stroke must be prepared", planner->beat,
+                    late);
     planner_replan(planner, t);
 }
 
@@ -147,7 +149,8 @@ double himc_planner_end(const himc_planner *planner)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_hand *h = &planner->hand[hand];
         if (h->count > 0)
-            end = fmax(end, planner_time_of(planner, h->list[h->count - 1].stroke.beat) + RETURN_TIME);
+            end = fmax(end,
+                       planner_time_of(planner, h->list[h->count - 1].stroke.beat) + RETURN_TIME);
         for (int i = 0; i < h->hits; i++)
             end = fmax(end, h->hit[i].goal.time + RETURN_TIME);
         if (h->touches > 0)

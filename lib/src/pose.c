@@ -67,9 +67,10 @@ himc_pose himc_pose_from_state(const himc_skeleton *skeleton, const himc_body_st
 
 bool himc_body_state_finite(const himc_body_state *s)
 {
+    // a body state is doubles throughout; one that is not finite makes the sum so
+    const double *number = (const double *)s;
     double sum = 0;
-    for (int i = 0; i < HIMC_SEGMENTS; i++)
-        sum += s->orientation[i].w + s->origin[i].x + s->spin[i].x + s->orientation[i].x + s->origin[i].y +
-               s->spin[i].y + s->orientation[i].y + s->origin[i].z + s->spin[i].z + s->orientation[i].z;
-    return isfinite(sum);
+    for (size_t i = 0; i < sizeof *s / sizeof *number; i++)
+        sum += number[i] - number[i];
+    return sum == 0;
 }

@@ -1,9 +1,10 @@
 /// score.c: a score file read in one pass: statements to commands, strokes sorted by beat.
 ///
-/// Words are cut by text.c, checked by command.c; here is only what a score adds: lines for drums, the tempo map, order,
-/// and what no player can do. The tempo map is piecewise constant, so seconds are a sum of 60/bpm times beats, and
-/// its inverse the same sum walked the other way. Limits are there so that a wrong file is refused in a line rather
-/// than by the memory running out. Invariant: either the whole score is good, or nothing of it is kept.
+/// Words are cut by text.c, checked by command.c; here is only what a score adds: lines for drums,
+/// the tempo map, order, and what no player can do. The tempo map is piecewise constant, so seconds
+/// are a sum of 60/bpm times beats, and its inverse the same sum walked the other way. Limits are
+/// there so that a wrong file is refused in a line rather than by the memory running out.
+/// Invariant: either the whole score is good, or nothing of it is kept.
 #include "himc/score.h"
 
 #include "argument.h"

@@ -82,6 +82,10 @@ static bool config_valid(const himc_skeleton_config *c, himc_error *error)
                  himc_check_range("mallet radius", c->mallet_radius, 0.005, 0.05, "m", error) &&
                  himc_check_range("grip", c->grip, 0.02, 0.5 * c->stick_length, "m", error);
     valid = valid && (c->seat == 0 || himc_check_range("seat", c->seat, 0.3, 1.3, "m", error));
+    for (int hand = 0; valid && hand < HIMC_HANDS; hand++)
+        if (c->length[HIMC_LEFT_STICK + hand] != 0)
+            valid = himc_error_set(error, "%s: a length of its own, allowed 0: set the stick length",
+                                   rows[HIMC_LEFT_STICK + hand].segment);
     for (int i = 0; valid && i < HIMC_SEGMENTS; i++)
         valid = c->length[i] == 0 || himc_check_range(rows[i].segment, c->length[i], 0.02, 1, "m", error);
     return valid;
@@ -148,7 +152,8 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
     double scale = c->height / DE_LEVA_HEIGHT;
     s->parent = r->parent;
     s->axis = from_array(r->axis);
-    s->radius = r->radius * scale;
+    bool stick = r->length == 0;
+    s->radius = stick ? r->radius : r->radius * scale;
     s->length = c->length[i] > 0 ? c->length[i] : r->length * scale;
     s->mass = c->mass * mass_share(i, c->anthropometry);
     // a joint at the parent's far end follows the parent's length, one beside it the body's size

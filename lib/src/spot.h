@@ -1,23 +1,24 @@
 /// spot.h: places where sticks meet a membrane; what contact.c needs of membrane.c.
 ///
-/// A sample with contact is: find the spots, read their displacement, membrane_free_step, read again (what the
-/// head would do alone), solve, spot_apply for each force.
+/// A sample with contact is: find the spots, read their displacement, membrane_free_step, read
+/// again (what the head would do alone), solve, spot_apply for each force.
 #ifndef HIMC_SPOT_H
 #define HIMC_SPOT_H
 
 #include "himc/bank.h"
 #include "himc/membrane.h"
 
-/// A place and what it has to do with each mode. A pure function of place and head, so caching does not alter results.
+/// A place and what it has to do with each mode. A pure function of place and head, so caching does
+/// not alter results.
 typedef struct spot {
     bool used;
-    double x, y;          ///< (m)
-    unsigned long age;    ///< the larger, the more recently used
-    double *shape;        ///< phi_i there, owned by the membrane
-    himc_tap tap;         ///< reads the displacement there
-    double compliance;    ///< displacement there per newton there during a sample (m/N)
-    double heard;         ///< sound per newton there
-    double seen;          ///< displacement of the watched place per newton there (m/N)
+    double x, y;       ///< (m)
+    unsigned long age; ///< the larger, the more recently used
+    double *shape;     ///< phi_i there, owned by the membrane
+    himc_tap tap;      ///< reads the displacement there
+    double compliance; ///< displacement there per newton there during a sample (m/N)
+    double heard;      ///< sound per newton there
+    double seen;       ///< displacement of the watched place per newton there (m/N)
 } spot;
 
 #define SPOTS 24 ///< all sticks and mallets of a drum, and the forces pushed from outside

@@ -8,11 +8,12 @@
 /// frames are longer than 8 ms).
 ///
 /// The track near the touch is blunted by the capture's filter, so what happens is read from
-/// before: a parabola by least squares over the last 6 samples (or 20 ms) of undisturbed fall,
-/// those before the deceleration reaches a quarter of A. In a sharp track (nearly all of D within
-/// two frames) the touch is where the parabolas from before and after meet; in a blunted one, where
-/// the one from before passes the height of the lowest position. The speed is the parabola's slope
-/// there, at most one frame beyond the samples it was fitted to.
+/// before: a parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall,
+/// those before the deceleration reaches a tenth of A. In a sharp track (nearly all of D within two
+/// frames) the touch is where the parabolas from before and after meet; in a blunted one, where the
+/// one from before passes the height of the lowest position. In a sharp track the speed is the
+/// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
+/// beyond is not the filter's to tell.
 #include "himc/take.h"
 
 #include <stdlib.h>
@@ -134,59 +135,57 @@ static bool is_strike(const track *t, int i, int h, spike *s)
     return down < -LEAST_SPEED && up > 0.3 * down && s->rise < width * s->bend;
 }
 
-// the last frame before the spike in which the fall is still undisturbed
-static int clean_end(const track *t, int frame, double largest)
+static double bend_or_zero(const track *t, int i, int h)
 {
-    int limit = frame - frames_of(t, WINDOW, 3);
-    for (int i = frame; i > limit && i >= 2; i--)
-        if (bend(t, i - 1, 1) < 0.25 * largest && t->x[i].z < t->x[i - 1].z)
-            return i;
+    return i >= h && i + h < t->frames ? fmax(0, bend(t, i, h)) : 0;
+}
+
+// the frame of the largest bend by differences of h frames, near `frame`
+static int sharpest(const track *t, int frame, int h)
+{
+    int w = frames_of(t, 0.008, 2), best = frame;
+    for (int i = frame - w; i <= frame + w; i++)
+        if (bend_or_zero(t, i, h) > bend_or_zero(t, best, h))
+            best = i;
+    return best;
+}
+
+// the last frame before a blunt spike in which the fall is still undisturbed
+static int clean_end(const track *t, int frame)
+{
+    int h = frames_of(t, 0.004, 1), limit = frame - frames_of(t, WINDOW, 3);
+    double largest = bend_or_zero(t, sharpest(t, frame, h), h);
+    for (int i = frame - h; i > limit && i >= h; i--)
+        if (bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z)
+            return i + h;
     return frame > 0 ? frame - 1 : 0;
 }
 
-static double sharpest(const track *t, int frame, int *where)
+static himc_vec3 place_between(const track *t, double frame, double height)
 {
-    int w = frames_of(t, 0.008, 2);
-    double largest = 0;
-    for (int i = frame - w; i <= frame + w; i++)
-        if (i >= 1 && i + 1 < t->frames && bend(t, i, 1) > largest) {
-            largest = bend(t, i, 1);
-            *where = i;
-        }
-    return largest;
-}
-
-static double bend_or_zero(const track *t, int i)
-{
-    return i >= 1 && i + 1 < t->frames ? fmax(0, bend(t, i, 1)) : 0;
+    int i = (int)frame < t->frames - 1 ? (int)frame : t->frames - 2;
+    himc_vec3 x = himc_vec3_madd(t->x[i], frame - i, himc_vec3_sub(t->x[i + 1], t->x[i]));
+    x.z = height;
+    return x;
 }
 
 static himc_take_strike measure(const track *t, const spike *s, himc_hand hand)
 {
-    int peak = s->frame, w = frames_of(t, 0.025, 2);
-    double largest = sharpest(t, s->frame, &peak);
-    int low =
-        lowest(t, peak - w < 0 ? 0 : peak - w, peak + w >= t->frames ? t->frames - 1 : peak + w);
-    int end = clean_end(t, peak, largest), n = frames_of(t, 0.02, 6);
+    int peak = sharpest(t, s->frame, 1), w = frames_of(t, 0.025, 2), n = frames_of(t, 0.024, 4);
+    double earlier = bend_or_zero(t, peak - 1, 1), later = bend_or_zero(t, peak + 1, 1);
+    bool sharp = bend_or_zero(t, peak, 1) + fmax(earlier, later) > 0.8 * s->rise * t->rate;
+    int low = lowest(t, peak < w ? 0 : peak - w, peak + w < t->frames ? peak + w : t->frames - 1);
+    // a kink between two frames bends the track in both, so before it ends with the earlier one
+    int end = sharp ? peak - (earlier > later) : clean_end(t, peak);
     parabola before = fit(t, end, -1, n < end + 1 ? n : end + 1);
-    double neighbour = fmax(bend_or_zero(t, peak - 1), bend_or_zero(t, peak + 1));
-    bool sharp = (largest + neighbour) / t->rate > 0.8 * s->rise;
-    parabola level = {t->x[low].z, 0, 0, low}, after = level;
-    double latest = peak + w;
-    if (sharp) {
-        int start =
-            end + 1 < peak + 1 ? peak + (bend_or_zero(t, peak + 1) > 0.25 * largest) : end + 1;
-        start = start < t->frames ? start : t->frames - 1;
-        after = fit(t, start, 1, n < t->frames - start ? n : t->frames - start);
-        latest = start;
-    }
-    double touch = crossing(&before, &after, end, latest);
-    double slope_at = fmin(touch, end + 1.0) - before.origin;
-    int i = (int)touch < t->frames - 1 ? (int)touch : t->frames - 2;
-    himc_vec3 x = himc_vec3_madd(t->x[i], touch - i, himc_vec3_sub(t->x[i + 1], t->x[i]));
-    x.z = sharp ? value(&before, touch) : t->x[low].z;
-    return (himc_take_strike){hand, low, touch / t->rate, x,
-                              -(before.b + 2 * before.c * slope_at) * t->rate};
+    parabola after = {t->x[low].z, 0, 0, low};
+    if (sharp)
+        after = fit(t, end + 1, 1, n < t->frames - end - 1 ? n : t->frames - end - 1);
+    double touch = crossing(&before, &after, end, sharp ? end + 1 : low + 1);
+    double u = sharp ? touch - end : 0;
+    double height = sharp ? value(&before, touch) : t->x[low].z;
+    return (himc_take_strike){hand, low, touch / t->rate, place_between(t, touch, height),
+                              -(before.b + 2 * before.c * u) * t->rate};
 }
 
 // strikes of one hand from frame *from on; false when there are no more
@@ -239,20 +238,34 @@ static double median(double *values, int count)
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
+// the middle of one hand's strikes along one axis; false if it has none
+static bool hand_median(const himc_take_strike *strikes, int count, int hand, int axis,
+                        double *scratch, double *middle)
+{
+    int n = 0;
+    for (int i = 0; i < count; i++)
+        if ((int)strikes[i].hand == hand) {
+            himc_vec3 x = strikes[i].x;
+            scratch[n++] = axis == 0 ? x.x : axis == 1 ? x.y : x.z;
+        }
+    if (n > 0)
+        *middle = median(scratch, n);
+    return n > 0;
+}
+
 bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place)
 {
-    double *v = count > 0 ? malloc((size_t)count * sizeof *v) : NULL;
-    if (!v)
+    double *scratch = count > 0 ? malloc((size_t)count * sizeof *scratch) : NULL;
+    if (!scratch)
         return false;
-    for (int i = 0; i < count; i++)
-        v[i] = strikes[i].x.x;
-    place->x = median(v, count);
-    for (int i = 0; i < count; i++)
-        v[i] = strikes[i].x.y;
-    place->y = median(v, count);
-    for (int i = 0; i < count; i++)
-        v[i] = strikes[i].x.z;
-    place->z = median(v, count);
-    free(v);
+    double middle[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double l, r;
+        bool left = hand_median(strikes, count, HIMC_LEFT, axis, scratch, &l);
+        bool right = hand_median(strikes, count, HIMC_RIGHT, axis, scratch, &r);
+        middle[axis] = left && right ? 0.5 * (l + r) : left ? l : r;
+    }
+    *place = himc_vec3_make(middle[0], middle[1], middle[2]);
+    free(scratch);
     return true;
 }

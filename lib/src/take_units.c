@@ -4,9 +4,12 @@
 /// A BVH never says. Its skeleton does: the longest way through the bones (toe to head, or hand to
 /// hand) of a grown player, sticks included, is 1.2 to 3.2 m, and the usual units (m, cm, mm, and
 /// CMU's 1/0.45 inch) are so far apart that at most one fits; a skeleton of arms alone may be 0.3
-/// m, but then only in m, cm or mm. Marker files do say, not always rightly: points that lie more
-/// than 8 m apart within one frame, or stay all in all within 2 cm, are read again in the one
-/// metric unit that makes them 0.2 .. 4 m, and a note says so; if none does, the file is refused.
+/// m, but then only in m, cm or mm.
+///
+/// Marker files do say, not always rightly: points that lie more than 8 m apart within one frame,
+/// or stay all in all within 2 cm, are read again in the one metric unit that makes them 0.2 .. 4 m
+/// and leaves them within 100 m of the origin, and a note says so. If none does, what is small is
+/// taken at the file's word, and what is large is refused.
 #include "take_data.h"
 #include "take_text.h"
 
@@ -104,8 +107,14 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// of the points: how far apart in a typical frame (median), and the box of all frames (file units)
-static void marker_sizes(const himc_take *take, double *typical, double *all)
+// file units
+typedef struct sizes {
+    double typical; // how far points are apart in a typical frame (median)
+    double all;     // the box of all frames
+    double far;     // the largest coordinate
+} sizes;
+
+static sizes marker_sizes(const himc_take *take)
 {
     double spread[201];
     int count = 0, step = take->frames / 200 + 1;
@@ -119,8 +128,9 @@ static void marker_sizes(const himc_take *take, double *typical, double *all)
         spread[count++] = box_size(&one);
     }
     qsort(spread, (size_t)count, sizeof spread[0], compare);
-    *typical = spread[count / 2];
-    *all = box_size(&whole);
+    double low = fmax(-whole.low.x, fmax(-whole.low.y, -whole.low.z));
+    double high = fmax(whole.high.x, fmax(whole.high.y, whole.high.z));
+    return (sizes){spread[count / 2], box_size(&whole), fmax(low, high)};
 }
 
 static const char *unit_name(double metres, char text[32])
@@ -153,26 +163,37 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
     return true;
 }
 
+// the metric unit that makes points lie 0.2 .. 4 m apart and within 100 m of the origin; 0 if none
+static double guess_marker_unit(const sizes *s)
+{
+    double unit = guess_unit(s->typical > 0.05 * s->all ? s->typical : s->all, 0.2, 4, METRIC);
+    return s->far * unit <= 100 ? unit : 0;
+}
+
 static bool settle_markers(himc_take *take, double *unit, himc_error *error)
 {
-    double typical, all, said = take->file_unit;
-    marker_sizes(take, &typical, &all);
+    sizes s = marker_sizes(take);
+    double said = take->file_unit, in = said > 0 ? said : 1;
+    bool small = s.all * said < 0.02 && s.all > 0 && take->frames > 1;
+    bool fits = said > 0 && s.typical * said <= 8 && !small;
     char text[32], other[32];
-    bool fits =
-        said > 0 && typical * said <= 8 && (all * said >= 0.02 || take->frames == 1 || all == 0);
-    double size = typical > 0.05 * all ? typical : all;
-    *unit = fits ? said : guess_unit(size, 0.2, 4, METRIC);
+    *unit = fits ? said : guess_marker_unit(&s);
+    // one marker may hardly move, so what is small but no other unit's is taken at the file's word
+    if (*unit == 0 && said > 0 && small) {
+        *unit = said;
+        fits = true;
+    }
     if (*unit == 0)
-        return himc_error_set(
-            error,
-            "%s: points lie %.4g m apart in %s and no metric unit makes that 0.2 .. 4 m: "
-            "is this a player?",
-            take->file, size * (said > 0 ? said : 1), unit_name(said > 0 ? said : 1, text));
+        return himc_error_set(error,
+                              "%s: points lie %.4g m apart in %s and no metric unit makes that "
+                              "0.2 .. 4 m: is this a player?",
+                              take->file, fmax(s.typical, small ? s.all : 0) * in,
+                              unit_name(in, text));
     snprintf(take->units_text, sizeof take->units_text, "%s, %s", unit_name(*unit, text),
              fits ? "as the file says" : "guessed from the distances of the points");
     if (said > 0 && !fits)
         himc_take_note(take, "units: read as %s, for in %s the points lie %.4g m apart",
-                       unit_name(*unit, text), unit_name(said, other), size * said);
+                       unit_name(*unit, text), unit_name(said, other), s.typical * said);
     return true;
 }
 

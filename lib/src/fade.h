@@ -1,0 +1,27 @@
+/// fade.h: how a sound goes on smoothly when what makes it has changed; a private part of
+/// membrane.c.
+///
+/// When head, ear or rate change, the sound would jump by a step and its slope by another. The
+/// difference between what would have been heard and what is now heard is added back as the cubic
+/// that starts with both and ends with value and slope zero: no click, and no filter in the sound's
+/// way at any other time.
+#ifndef HIMC_FADE_H
+#define HIMC_FADE_H
+
+#define FADE 0.005 // (s)
+
+typedef struct fade {
+    double step, slope; // at its start: in units of sound, and per sample
+    int at, length;     // (samples)
+} fade;
+
+// what is added to sample `at`, which may lie just before the start
+static inline double fade_at(const fade *f, int at)
+{
+    if (f->length == 0 || at >= f->length)
+        return 0;
+    double t = (double)at / f->length, u = 1 - t;
+    return u * u * ((1 + 2 * t) * f->step + t * f->length * f->slope);
+}
+
+#endif

@@ -1,0 +1,192 @@
+#include "himc/bank.h"
+
+#include "unity.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RATE 48000.0
+#define COUNT 7
+
+static himc_bank *bank;
+static himc_oscillator o[COUNT];
+static _Alignas(64) double memory[6][8];
+static double heard[4096], seen[4096];
+static himc_tap sound = {memory[0], memory[1]}, place = {memory[2], memory[3]};
+static double *shape = memory[4], *none = memory[5];
+
+static void aim(void)
+{
+    for (int i = 0; i < COUNT; i++)
+        shape[i] = 0.3 + 0.1 * i;
+    himc_bank_tap(bank, none, shape, &sound);
+    himc_bank_tap(bank, shape, NULL, &place);
+}
+
+void setUp(void)
+{
+    for (int i = 0; i < COUNT; i++)
+        o[i] = (himc_oscillator){2 * HIMC_PI * (100 + 310 * i), 3 + i, 0.01 / (1 + i)};
+    bank = himc_bank_new(COUNT, NULL);
+    himc_bank_set(bank, o, COUNT, RATE);
+    aim();
+}
+
+void tearDown(void)
+{
+    himc_bank_free(bank);
+}
+
+// q and v of an oscillator that starts at (q0, v0) under the constant force f, by the textbook
+static void textbook(const himc_oscillator *p, double f, double t, double *q, double *v)
+{
+    double w = sqrt(p->omega * p->omega - p->decay * p->decay),
+           rest = f / (p->mass * p->omega * p->omega);
+    double a = *q - rest, b = (*v + p->decay * a) / w, e = exp(-p->decay * t);
+    *q = rest + e * (a * cos(w * t) + b * sin(w * t));
+    *v = e * ((b * w - p->decay * a) * cos(w * t) - (a * w + p->decay * b) * sin(w * t));
+}
+
+static void test_bank_step_is_the_exact_solution_free_and_forced(void)
+{
+    for (int k = 0; k < 2; k++) {
+        double force = k * 5.0, q[COUNT], v[COUNT];
+        for (int i = 0; i < COUNT; i++) {
+            himc_bank_excite(bank, i, 1e-3 * (i + 1), 0.2 * i - 0.5);
+            himc_bank_state(bank, i, &q[i], &v[i]);
+            textbook(&o[i], force * shape[i], 1 / RATE, &q[i], &v[i]);
+        }
+        himc_bank_run(bank, 1, &sound, &place, heard, seen);
+        himc_bank_push(bank, shape, force);
+        for (int i = 0; i < COUNT; i++) {
+            double got_q, got_v;
+            himc_bank_state(bank, i, &got_q, &got_v);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-15, q[i], got_q);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-13, v[i], got_v);
+        }
+    }
+}
+
+static void test_bank_taps_read_what_the_states_say(void)
+{
+    double expected_v = 0, expected_q = 0;
+    for (int i = 0; i < COUNT; i++) {
+        himc_bank_excite(bank, i, 1e-3 * i, 1.0 - i);
+        expected_q += shape[i] * 1e-3 * i;
+        expected_v += shape[i] * (1.0 - i);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_displacement(bank, &place));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_read(bank, &place));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, expected_v, himc_bank_read(bank, &sound));
+    double next = himc_bank_peek(bank, &sound);
+    himc_bank_run(bank, 1, &sound, &place, heard, seen);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, next, heard[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_displacement(bank, &place), seen[0]);
+}
+
+static void test_bank_response_is_what_a_newton_adds(void)
+{
+    himc_bank_push(bank, shape, 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-18, himc_bank_displacement(bank, &place),
+                              himc_bank_response(bank, shape, &place));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_read(bank, &sound),
+                              himc_bank_response(bank, shape, &sound));
+}
+
+static void test_bank_work_of_a_force_is_the_energy_gained(void)
+{
+    for (int i = 0; i < COUNT; i++)
+        o[i].decay = 0;
+    himc_bank_set(bank, o, COUNT, RATE);
+    aim();
+    double work = 0, before = 0;
+    for (int n = 0; n < 2000; n++) {
+        double force = 10 * sin(0.01 * n);
+        himc_bank_run(bank, 1, &sound, &place, heard, seen);
+        himc_bank_push(bank, shape, force);
+        double after = himc_bank_displacement(bank, &place);
+        work += force * (after - before);
+        before = after;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * himc_bank_energy(bank), work, himc_bank_energy(bank));
+}
+
+static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
+{
+    double *reference = malloc(sizeof heard);
+    for (int k = 0; k < 4; k++) {
+        static const int sizes[] = {4096, 1, 5, 777};
+        tearDown();
+        setUp();
+        himc_bank_push(bank, shape, 100);
+        for (int done = 0; done < 4096; done += sizes[k]) {
+            int n = 4096 - done < sizes[k] ? 4096 - done : sizes[k];
+            himc_bank_run(bank, n, &sound, &place, heard + done, seen + done);
+        }
+        if (k == 0)
+            memcpy(reference, heard, sizeof heard);
+        TEST_ASSERT_EQUAL_MEMORY(reference, heard, sizeof heard);
+    }
+    free(reference);
+}
+
+static void test_bank_leaves_out_what_would_alias(void)
+{
+    o[5].omega = 2 * HIMC_PI * 0.4899 * RATE;
+    o[6].omega = 2 * HIMC_PI * 0.4901 * RATE;
+    himc_bank_set(bank, o, COUNT, RATE);
+    TEST_ASSERT_EQUAL_INT(6, himc_bank_count(bank));
+    double q, v;
+    himc_bank_excite(bank, 6, 1, 1);
+    himc_bank_state(bank, 6, &q, &v);
+    TEST_ASSERT_EQUAL_DOUBLE(0, q);
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_bank_energy(bank));
+}
+
+static void test_bank_keeps_energy_and_phase_of_each_when_retuned(void)
+{
+    double energy = 0;
+    for (int i = 0; i < COUNT; i++)
+        himc_bank_excite(bank, i, 1e-3, 0.7);
+    energy = himc_bank_energy(bank);
+    for (int i = 0; i < COUNT; i++)
+        o[i] = (himc_oscillator){o[i].omega * 1.3, 2 * o[i].decay, o[i].mass * 0.6};
+    himc_bank_set(bank, o, COUNT, 44100);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * energy, energy, himc_bank_energy(bank));
+    for (int i = 0; i < COUNT; i++) {
+        double q, v;
+        himc_bank_state(bank, i, &q, &v);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-3 / 0.7 * o[i].omega / 1.3, q / v * o[i].omega);
+    }
+}
+
+static void test_bank_comes_to_exact_rest(void)
+{
+    himc_bank_push(bank, shape, 100);
+    for (int i = 0; i < COUNT; i++)
+        o[i].decay = 60;
+    himc_bank_set(bank, o, COUNT, RATE);
+    aim();
+    for (int k = 0; k < 12; k++)
+        himc_bank_run(bank, 4096, &sound, &place, heard, seen);
+    TEST_ASSERT_EQUAL_DOUBLE(0, heard[4095]);
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_bank_energy(bank));
+    himc_bank_push(bank, shape, 1);
+    himc_bank_run(bank, 1, &sound, &place, heard, seen);
+    TEST_ASSERT_TRUE(heard[0] != 0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_bank_step_is_the_exact_solution_free_and_forced);
+    RUN_TEST(test_bank_taps_read_what_the_states_say);
+    RUN_TEST(test_bank_response_is_what_a_newton_adds);
+    RUN_TEST(test_bank_work_of_a_force_is_the_energy_gained);
+    RUN_TEST(test_bank_runs_give_the_same_bits_in_any_blocks);
+    RUN_TEST(test_bank_leaves_out_what_would_alias);
+    RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);
+    RUN_TEST(test_bank_comes_to_exact_rest);
+    return UNITY_END();
+}

@@ -1,0 +1,329 @@
+#include "himc/contact.h"
+
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define RATE 48000.0
+#define STICKS 4
+
+static himc_membrane *membrane;
+static himc_head head;
+static himc_stick stick[STICKS];
+static himc_stick *sticks[STICKS] = {&stick[0], &stick[1], &stick[2], &stick[3]};
+
+// the drum, the mallet and the place on it of Christian et al.'s head loaded by air as by 1/0.66^2
+// of its mass
+static void christian(int modes)
+{
+    head = himc_head_default();
+    head.radius = 0.328;
+    head.tension = 3990;
+    head.density = 0.2653 / (0.66 * 0.66);
+    head.modes = modes;
+}
+
+static void place(int i, double x, double y, double velocity)
+{
+    stick[i] = (himc_stick){.head = {1.6e8, 2.54, 0, 0.030, 0.0175},
+                            .mass = 0.030,
+                            .x = x * head.radius,
+                            .y = y * head.radius,
+                            .velocity = -velocity};
+}
+
+static void place_all(void)
+{
+    place(0, -0.75, 0, 4);
+    place(1, -0.74, 0.05, 3); // beside the first: strongly coupled
+    place(2, -0.2, 0.4, 5);
+    place(3, -0.75, 0, 2); // on the first one's very place
+}
+
+static void remake(void)
+{
+    himc_membrane_free(membrane);
+    membrane = himc_membrane_new(&head, RATE, NULL);
+    TEST_ASSERT_NOT_NULL(membrane);
+}
+
+void setUp(void)
+{
+    christian(200);
+    membrane = NULL;
+    remake();
+    place_all();
+}
+
+void tearDown(void)
+{
+    himc_membrane_free(membrane);
+    membrane = NULL;
+}
+
+static double energy(int count)
+{
+    double sum = himc_membrane_energy(membrane);
+    for (int i = 0; i < count; i++)
+        sum += himc_contact_energy(membrane, &stick[i]);
+    return sum;
+}
+
+// a blow of `count` sticks: largest drift of the energy from its start, and largest step up, as
+// fractions of it
+static void blow(int count, double k, double mu, double *drift, double *rise)
+{
+    remake();
+    place_all();
+    for (int i = 0; i < count; i++) {
+        stick[i].head.stiffness = k;
+        stick[i].head.loss = mu;
+    }
+    double start = energy(count), before = start, most = 0;
+    *drift = *rise = 0;
+    for (int n = 0; n < 1500; n++) {
+        himc_contact_step(membrane, sticks, count);
+        double now = energy(count);
+        *drift = fmax(*drift, fabs(now - start) / start);
+        *rise = fmax(*rise, (now - before) / start);
+        before = now;
+        most = fmax(most, stick[0].force);
+    }
+    TEST_ASSERT_TRUE(most > 1);
+}
+
+static void test_contact_keeps_energy_when_nothing_is_lossy_for_any_stiffness(void)
+{
+    double worst = 0;
+    head.decay_constant = head.decay_square = 0;
+    for (int count = 1; count <= STICKS; count++) {
+        for (double k = 1e6; k < 2e12; k *= 100) {
+            double drift, rise;
+            blow(count, k, 0, &drift, &rise);
+            worst = fmax(worst, drift);
+        }
+    }
+    printf("largest drift %.2g of the blow\n", worst);
+    TEST_ASSERT_TRUE(worst < 1e-9);
+}
+
+static void test_contact_energy_never_grows_in_any_step_with_losses(void)
+{
+    double worst = 0;
+    for (int count = 1; count <= STICKS; count++) {
+        for (double k = 1e6; k < 2e12; k *= 100) {
+            double drift, rise;
+            blow(count, k, 0.2, &drift, &rise);
+            worst = fmax(worst, rise);
+        }
+    }
+    printf("largest step up %.2g of the blow\n", worst);
+    TEST_ASSERT_TRUE(worst < 1e-13);
+}
+
+typedef struct result {
+    double force, contact, restitution, impulse;
+} result;
+
+static result hit(double velocity)
+{
+    result r = {0};
+    remake();
+    place(0, -0.75, 0, velocity);
+    for (int n = 0; n < 1500; n++) {
+        himc_contact_step(membrane, sticks, 1);
+        r.force = fmax(r.force, stick[0].force);
+        r.contact += stick[0].force > 0 ? 1 / RATE : 0;
+        r.impulse += stick[0].force / RATE;
+    }
+    r.restitution = stick[0].velocity / velocity;
+    return r;
+}
+
+static void test_contact_forces_times_and_rebounds_are_the_published_models(void)
+{
+    static const double expected[5][4] = {{0.5, 5.7, 10.2e-3, 0.95},
+                                          {1, 12.5, 8.7e-3, 0.92},
+                                          {2, 26.5, 7.7e-3, 0.885},
+                                          {4, 56.3, 7.0e-3, 0.853},
+                                          {8, 122, 6.5e-3, 0.825}};
+    christian(260);
+    for (int i = 0; i < 5; i++) {
+        result r = hit(expected[i][0]);
+        printf("%3.1f m/s: %.1f N, %.2f ms, rebound %.3f\n", expected[i][0], r.force,
+               r.contact * 1e3, r.restitution);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05 * expected[i][1], expected[i][1], r.force);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05 * expected[i][2], expected[i][2], r.contact);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05 * expected[i][3], expected[i][3], r.restitution);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.030 * expected[i][0] * (1 + r.restitution), r.impulse);
+    }
+}
+
+// against a rigid wall the collision is known: c_max from energy, and the lossless rebound is
+// perfect
+static void test_contact_with_a_head_that_does_not_yield_is_hertz(void)
+{
+    place(0, 1.5, 0, 2); // outside the head every shape is 0
+    stick[0].head.stiffness = 1e7;
+    double most = 0, k = 1e7, alpha = 2.54;
+    for (int n = 0; n < 1500; n++) {
+        himc_contact_step(membrane, sticks, 1);
+        most = fmax(most, stick[0].force);
+    }
+    double c = pow(0.5 * 0.03 * 4 * (alpha + 1) / k, 1 / (alpha + 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * k * pow(c, alpha), k * pow(c, alpha), most);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 2, stick[0].velocity);
+}
+
+// Hunt & Crossley 1975: for small losses the rebound is about 1 - 2 mu v/3 of the impact's
+static void test_contact_loses_what_hunt_and_crossley_say(void)
+{
+    place(0, 1.5, 0, 1);
+    stick[0].head.loss = 0.03;
+    for (int n = 0; n < 1500; n++)
+        himc_contact_step(membrane, sticks, 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1.5e-3, 1 - 2 * 0.03 / 3, stick[0].velocity);
+}
+
+static void
+test_contact_of_two_equal_sticks_at_one_place_is_that_of_one_twice_as_heavy_and_stiff(void)
+{
+    place(0, -0.5, 0.1, 3);
+    place(1, -0.5, 0.1, 3);
+    for (int n = 0; n < 200; n++)
+        himc_contact_step(membrane, sticks, 2);
+    himc_stick first = stick[0];
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, first.height, stick[1].height);
+    remake();
+    place(0, -0.5, 0.1, 3);
+    stick[0].mass *= 2;
+    stick[0].head.stiffness *= 2;
+    for (int n = 0; n < 200; n++)
+        himc_contact_step(membrane, sticks, 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-10, stick[0].height, first.height);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, stick[0].force, 2 * first.force);
+}
+
+static void test_contact_converges_with_the_square_of_the_step(void)
+{
+    static const double rates[] = {24000, 48000, 96000, 384000};
+    double v[4];
+    for (int i = 0; i < 4; i++) {
+        himc_membrane_free(membrane);
+        membrane = himc_membrane_new(&head, rates[i], NULL);
+        place(0, -0.75, 0, 2);
+        for (int n = 0; n < (int)(0.02 * rates[i]); n++)
+            himc_contact_step(membrane, sticks, 1);
+        v[i] = stick[0].velocity;
+    }
+    double coarse = fabs(v[0] - v[3]), middle = fabs(v[1] - v[3]), fine = fabs(v[2] - v[3]);
+    TEST_ASSERT_TRUE(middle < 1e-4);
+    TEST_ASSERT_TRUE(coarse / middle > 2.5 && middle / fine > 2.5);
+}
+
+static void test_contact_holds_the_place_of_first_touch_until_it_ends(void)
+{
+    place(0, -0.75, 0, 2);
+    double x = stick[0].x;
+    for (int n = 0; n < 100; n++) {
+        himc_contact_step(membrane, sticks, 1);
+        TEST_ASSERT_TRUE(stick[0].touching);
+        TEST_ASSERT_EQUAL_DOUBLE(x, stick[0].touch_x);
+        stick[0].x += 1e-4;
+    }
+}
+
+static void test_one_way_stick_does_not_feel_the_head(void)
+{
+    place(0, -0.75, 0, 3);
+    stick[0].one_way = true;
+    for (int n = 0; n < 100; n++) {
+        himc_membrane_push(membrane, -0.2, 0, 300);
+        himc_contact_step(membrane, sticks, 1);
+    }
+    himc_stick on_moving = stick[0];
+    remake();
+    place(0, 1.5, 0, 3); // a rigid head: outside
+    for (int n = 0; n < 100; n++)
+        himc_contact_step(membrane, sticks, 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, stick[0].height, on_moving.height);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, stick[0].force, on_moving.force);
+}
+
+static double one_way_energy(double velocity)
+{
+    remake();
+    place(0, -0.75, 0, velocity);
+    stick[0].one_way = true;
+    for (int n = 0; n < 1500; n++)
+        himc_contact_step(membrane, sticks, 1);
+    TEST_ASSERT_FALSE(stick[0].touching);
+    TEST_ASSERT_EQUAL_DOUBLE(0, stick[0].force);
+    return himc_membrane_energy(membrane);
+}
+
+static void
+test_one_way_blow_drives_the_head_harder_the_harder_it_is_and_stays_finite_for_any_stiffness(void)
+{
+    double soft = one_way_energy(1), middle = one_way_energy(2), loud = one_way_energy(4);
+    TEST_ASSERT_TRUE(soft > 0 && middle > 2 * soft && loud > 2 * middle);
+    remake();
+    place_all();
+    for (int i = 0; i < STICKS; i++) {
+        stick[i].one_way = true;
+        stick[i].head.stiffness = 1e12;
+    }
+    for (int n = 0; n < 1500; n++)
+        himc_contact_step(membrane, sticks, STICKS);
+    TEST_ASSERT_TRUE(isfinite(himc_membrane_energy(membrane)) &&
+                     himc_membrane_energy(membrane) < 100);
+}
+
+static void test_contact_clear_never_promises_too_much(void)
+{
+    place(0, 0, 0, 10);
+    stick[0].height = 0.2;
+    stick[0].acceleration = -50;
+    while (stick[0].height > 0) {
+        int clear = himc_contact_clear(membrane, sticks, 1, 64);
+        for (int i = 0; i < clear; i++) {
+            himc_stick_fly(&stick[0], 1 / RATE);
+            TEST_ASSERT_TRUE(stick[0].height >= HIMC_CONTACT_REACH);
+        }
+        if (clear == 0)
+            himc_contact_step(membrane, sticks, 1);
+    }
+    TEST_ASSERT_EQUAL_INT(0, himc_contact_clear(membrane, sticks, 1, 64));
+}
+
+static void test_contact_with_a_stick_that_is_not_a_number_leaves_the_head_alone(void)
+{
+    place(0, -0.75, 0, 2);
+    stick[0].velocity = NAN;
+    place(1, -0.5, 0, 2);
+    for (int n = 0; n < 600; n++)
+        himc_contact_step(membrane, sticks, 2);
+    TEST_ASSERT_TRUE(isfinite(himc_membrane_energy(membrane)));
+    TEST_ASSERT_TRUE(isfinite(stick[1].velocity) && stick[1].velocity > 0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_contact_keeps_energy_when_nothing_is_lossy_for_any_stiffness);
+    RUN_TEST(test_contact_energy_never_grows_in_any_step_with_losses);
+    RUN_TEST(test_contact_forces_times_and_rebounds_are_the_published_models);
+    RUN_TEST(test_contact_with_a_head_that_does_not_yield_is_hertz);
+    RUN_TEST(test_contact_loses_what_hunt_and_crossley_say);
+    RUN_TEST(test_contact_of_two_equal_sticks_at_one_place_is_that_of_one_twice_as_heavy_and_stiff);
+    RUN_TEST(test_contact_converges_with_the_square_of_the_step);
+    RUN_TEST(test_contact_holds_the_place_of_first_touch_until_it_ends);
+    RUN_TEST(test_one_way_stick_does_not_feel_the_head);
+    RUN_TEST(
+        test_one_way_blow_drives_the_head_harder_the_harder_it_is_and_stays_finite_for_any_stiffness);
+    RUN_TEST(test_contact_clear_never_promises_too_much);
+    RUN_TEST(test_contact_with_a_stick_that_is_not_a_number_leaves_the_head_alone);
+    return UNITY_END();
+}

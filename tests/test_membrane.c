@@ -1,0 +1,347 @@
+#include "himc/membrane.h"
+
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RATE 48000.0
+#define LONG 48000
+
+static himc_membrane *membrane;
+static himc_head head;
+static himc_error error;
+static double heard[LONG], seen[LONG];
+
+static void remake(double rate)
+{
+    himc_membrane_free(membrane);
+    membrane = himc_membrane_new(&head, rate, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(membrane, error.text);
+    himc_membrane_watch(membrane, -0.1, 0.07);
+}
+
+void setUp(void)
+{
+    head = himc_head_default();
+    membrane = NULL;
+    remake(RATE);
+}
+
+void tearDown(void)
+{
+    himc_membrane_free(membrane);
+    membrane = NULL;
+}
+
+static void run(int n)
+{
+    himc_membrane_run(membrane, n, heard, seen);
+}
+
+// Phase (rad) and size of the component at w (rad/sample) in x, by a Hann window over n samples.
+static void component(const double *x, int n, double w, double *phase, double *size)
+{
+    double re = 0, im = 0;
+    for (int i = 0; i < n; i++) {
+        double window = 1 - cos(2 * HIMC_PI * (i + 0.5) / n);
+        re += window * x[i] * cos(w * i);
+        im -= window * x[i] * sin(w * i);
+    }
+    *phase = atan2(im, re);
+    *size = hypot(re, im) / n;
+}
+
+// what a mode alone sounds like: its frequency (Hz) and decay (1/s) from the output
+static void measure(int index, double rate, double *frequency, double *decay)
+{
+    himc_membrane_rest(membrane);
+    himc_membrane_excite(membrane, index, 1e-3, 0);
+    int n = (int)(rate / 4), gap = (int)(rate / 8);
+    run(n + gap);
+    double w = 2 * HIMC_PI * himc_membrane_mode(membrane, index).frequency / rate, p0, p1, s0, s1;
+    component(seen, n, w, &p0, &s0);
+    component(seen + gap, n, w, &p1, &s1);
+    double turn = w * gap + remainder(p1 - p0 - w * gap, 2 * HIMC_PI);
+    *frequency = turn / (2 * HIMC_PI) * rate / gap;
+    *decay = log(s0 / s1) * rate / gap;
+}
+
+static void test_membrane_sounds_at_bessel_zeros_within_a_hundredth_of_a_cent_at_any_rate(void)
+{
+    static const double rates[] = {44100, 48000, 96000};
+    double worst = 0;
+    head.decay_constant = 1;
+    head.decay_square = 1e-8;
+    for (int r = 0; r < 3; r++) {
+        remake(rates[r]);
+        for (int i = 0; i < 200; i += 7) {
+            double frequency, decay;
+            himc_mode mode = himc_membrane_mode(membrane, i);
+            double ideal =
+                mode.zero / (2 * HIMC_PI * head.radius) * sqrt(head.tension / head.density);
+            measure(i, rates[r], &frequency, &decay);
+            worst = fmax(worst, fabs(1200 * log2(frequency / ideal)));
+        }
+    }
+    printf("largest error of frequency %.2g cent\n", worst);
+    TEST_ASSERT_TRUE(worst < 0.01);
+}
+
+static void test_membrane_decays_as_the_two_parameters_say_within_a_thousandth(void)
+{
+    for (int k = 0; k < 2; k++) {
+        head.decay_constant = k == 0 ? 3 : log(1000) / 1.5;
+        head.decay_square = k == 0 ? 2e-7 : 0;
+        himc_membrane_set_head(membrane, &head, NULL);
+        double worst = 0;
+        for (int i = 0; i < 200; i += 9) {
+            double frequency, decay, w = 2 * HIMC_PI * himc_membrane_mode(membrane, i).frequency;
+            measure(i, RATE, &frequency, &decay);
+            double asked = head.decay_constant + head.decay_square * w * w;
+            worst = fmax(worst, fabs(decay / asked - 1));
+        }
+        printf("largest error of decay %.2g\n", worst);
+        TEST_ASSERT_TRUE(worst < 1e-3);
+    }
+}
+
+static void test_membrane_static_sag_under_a_force_follows_from_stiffness(void)
+{
+    head.decay_constant = 50;
+    remake(RATE);
+    himc_membrane_watch(membrane, -0.1, 0.07);
+    for (int i = 0; i < LONG; i++) {
+        himc_membrane_push(membrane, -0.1, 0.07, 10);
+        run(1);
+    }
+    himc_modes *modes = himc_modes_new(head.modes, NULL);
+    double sag = 0;
+    for (int i = 0; i < head.modes; i++) {
+        double phi = himc_modes_shape(modes, head.radius, i, -0.1, 0.07);
+        sag += 10 * phi * phi / himc_modes_get(modes, &head, i).stiffness;
+    }
+    himc_modes_free(modes);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * sag, -sag, himc_membrane_seen(membrane));
+    // in equilibrium nothing radiates: the force's own acceleration cancels the springs'
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_membrane_heard(membrane));
+}
+
+// the greatest change of slope of the sound in [from, to)
+static double roughness(int from, int to)
+{
+    double most = 0;
+    for (int i = from + 2; i < to; i++)
+        most = fmax(most, fabs(heard[i] - 2 * heard[i - 1] + heard[i - 2]));
+    return most;
+}
+
+// a blow's sound, 0.2 s old
+static void ring(void)
+{
+    for (int i = 0; i < 300; i++) {
+        himc_membrane_push(membrane, -0.2, 0, 100 * sin(HIMC_PI * i / 300));
+        run(1);
+    }
+    run(9600);
+}
+
+static void no_click(const char *what)
+{
+    run(2400);
+    double before = roughness(0, 2400), last = heard[2399], slope = last - heard[2398];
+    TEST_ASSERT_TRUE(before > 0);
+    (void)what;
+    heard[0] = last - slope;
+    heard[1] = last;
+    himc_membrane_set_head(membrane, &head, NULL);
+    himc_membrane_run(membrane, 2400, heard + 2, seen);
+    TEST_ASSERT_TRUE_MESSAGE(roughness(0, 2402) < 2 * before, what);
+}
+
+static void test_membrane_does_not_click_when_its_head_changes_while_ringing(void)
+{
+    ring();
+    head.tension *= pow(2, 2.0 / 12);
+    no_click("a tone up");
+    head.radius *= 0.97;
+    no_click("smaller");
+    head.density *= 1.1;
+    no_click("heavier");
+    head.decay_constant = 5;
+    no_click("drier");
+    head.modes = 120;
+    no_click("fewer modes");
+    head.modes = 900;
+    no_click("more modes");
+}
+
+static void test_membrane_does_not_click_when_ear_or_rate_changes(void)
+{
+    ring();
+    run(2400);
+    double before = roughness(0, 2400), last = heard[2399], slope = last - heard[2398];
+    himc_pickup pickup = himc_pickup_default();
+    pickup.azimuth = 2;
+    pickup.distance = 2;
+    TEST_ASSERT_TRUE(himc_membrane_set_pickup(membrane, &pickup, NULL));
+    heard[0] = last - slope;
+    heard[1] = last;
+    himc_membrane_run(membrane, 2400, heard + 2, seen);
+    TEST_ASSERT_TRUE(roughness(0, 2402) < 2 * before);
+    last = heard[2401];
+    TEST_ASSERT_TRUE(himc_membrane_set_rate(membrane, 44100, NULL));
+    run(2);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, last, heard[0]);
+    TEST_ASSERT_TRUE(heard[0] != 0);
+}
+
+static void test_membrane_keeps_its_energy_through_a_change_of_tune(void)
+{
+    ring();
+    double energy = himc_membrane_energy(membrane);
+    head.tension *= 1.5;
+    head.radius = 0.35;
+    TEST_ASSERT_TRUE(himc_membrane_set_head(membrane, &head, NULL));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * energy, energy, himc_membrane_energy(membrane));
+    head.modes = 700;
+    TEST_ASSERT_TRUE(himc_membrane_set_head(membrane, &head, NULL));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * energy, energy, himc_membrane_energy(membrane));
+}
+
+static void test_membrane_with_two_thousand_modes_sounds_and_decays(void)
+{
+    head.modes = 2000;
+    remake(RATE);
+    TEST_ASSERT_EQUAL_INT(2000, himc_membrane_audible(membrane));
+    ring();
+    double loud = 0;
+    run(LONG / 4);
+    for (int i = 0; i < LONG / 4; i++) {
+        TEST_ASSERT_TRUE(isfinite(heard[i]));
+        loud = fmax(loud, fabs(heard[i]));
+    }
+    TEST_ASSERT_TRUE(loud > 0.01 && loud < 1);
+}
+
+static void test_membrane_mutes_modes_it_can_not_sound(void)
+{
+    head.radius = 0.05;
+    head.tension = 50000;
+    head.modes = 400;
+    head.density = 0.2;
+    remake(44100);
+    int audible = himc_membrane_audible(membrane);
+    TEST_ASSERT_TRUE(audible > 0 && audible < 400);
+    TEST_ASSERT_TRUE(himc_membrane_mode(membrane, audible - 1).frequency < 0.49 * 44100);
+    TEST_ASSERT_TRUE(himc_membrane_mode(membrane, audible).frequency >= 0.49 * 44100);
+}
+
+// pressure far away by summing Rayleigh's integral over rings and sectors of the head
+static double rayleigh(const himc_mode *mode, const himc_pickup *p, double *quarter)
+{
+    const int rings = 160, sectors = 192;
+    double k = 2 * HIMC_PI * mode->frequency / 344.0, re = 0, im = 0;
+    himc_modes *modes = himc_modes_new(60, NULL);
+    int index = 0;
+    while (himc_modes_get(modes, &head, index).m != mode->m ||
+           himc_modes_get(modes, &head, index).n != mode->n ||
+           himc_modes_get(modes, &head, index).sine != mode->sine)
+        index++;
+    for (int i = 0; i < rings; i++) {
+        for (int j = 0; j < sectors; j++) {
+            double r = (i + 0.5) / rings * head.radius, th = 2 * HIMC_PI * (j + 0.5) / sectors;
+            double w = himc_modes_shape(modes, head.radius, index, r * cos(th), r * sin(th)) * r *
+                       (head.radius / rings) * (2 * HIMC_PI / sectors);
+            double nearer = r * cos(th - p->azimuth) * cos(p->elevation);
+            re += w * cos(k * nearer);
+            im += w * sin(k * nearer);
+        }
+    }
+    himc_modes_free(modes);
+    *quarter = 1.21 / (2 * HIMC_PI * p->distance) * im;
+    return 1.21 / (2 * HIMC_PI * p->distance) * re;
+}
+
+// nearer parts arrive earlier: p = re q''(t) + im (q'' a quarter of a period earlier), which is -w
+// q' for q'' = -w^2 q
+static void test_membrane_is_heard_in_the_air_as_rayleighs_integral_says(void)
+{
+    head.decay_constant = head.decay_square = 0;
+    himc_membrane_set_head(membrane, &head, NULL);
+    himc_pickup pickup = {HIMC_PICKUP_AIR, 0, 0, 0.6, 0.5, 1.7};
+    TEST_ASSERT_TRUE(himc_membrane_set_pickup(membrane, &pickup, &error));
+    run(480);
+    for (int i = 0; i < 20; i += 1) {
+        himc_mode mode = himc_membrane_mode(membrane, i);
+        double w = 2 * HIMC_PI * mode.frequency, quarter,
+               direct = rayleigh(&mode, &pickup, &quarter);
+        himc_membrane_rest(membrane);
+        run(480);
+        himc_membrane_excite(membrane, i, 1e-4, 0.3);
+        run(1);
+        double q, v;
+        himc_membrane_state(membrane, i, &q, &v);
+        double expected = (direct * -w * w * q + quarter * -w * v) / HIMC_PICKUP_PRESSURE;
+        double size = hypot(direct, quarter) * w * hypot(w * 1e-4, 0.3) / HIMC_PICKUP_PRESSURE;
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3 * size + 1e-12, expected, heard[0]);
+    }
+}
+
+static void test_membrane_point_pickup_reads_the_velocity_there(void)
+{
+    himc_pickup pickup = {.kind = HIMC_PICKUP_POINT, .x = 0.1, .y = 0.05};
+    TEST_ASSERT_TRUE(himc_membrane_set_pickup(membrane, &pickup, &error));
+    run(480);
+    himc_membrane_watch(membrane, 0.1, 0.05);
+    himc_membrane_push(membrane, -0.2, 0.03, 20);
+    run(200);
+    double slope = (8 * (seen[151] - seen[149]) - (seen[152] - seen[148])) * RATE / 12;
+    TEST_ASSERT_DOUBLE_WITHIN(2e-3 * fabs(slope) + 1e-5, slope, heard[150] * HIMC_PICKUP_VELOCITY);
+}
+
+static void test_membrane_refuses_and_stays_as_it_was(void)
+{
+    himc_membrane *twin = himc_membrane_new(&head, RATE, NULL);
+    himc_membrane_watch(twin, -0.1, 0.07);
+    himc_membrane_push(membrane, 0.1, 0, 50);
+    himc_membrane_push(twin, 0.1, 0, 50);
+    himc_head bad = head;
+    bad.tension = INFINITY;
+    TEST_ASSERT_FALSE(himc_membrane_set_head(membrane, &bad, &error));
+    bad = head;
+    bad.modes = 1000000;
+    TEST_ASSERT_FALSE(himc_membrane_set_head(membrane, &bad, &error));
+    himc_pickup deaf = himc_pickup_default();
+    deaf.distance = 0;
+    TEST_ASSERT_FALSE(himc_membrane_set_pickup(membrane, &deaf, &error));
+    TEST_ASSERT_EQUAL_STRING("pickup distance: 0 m, allowed 0.3 .. 100 m", error.text);
+    TEST_ASSERT_FALSE(himc_membrane_set_rate(membrane, NAN, &error));
+    run(1000);
+    static double same_heard[1000], same_seen[1000];
+    himc_membrane_run(twin, 1000, same_heard, same_seen);
+    TEST_ASSERT_EQUAL_MEMORY(same_heard, heard, sizeof same_heard);
+    TEST_ASSERT_EQUAL_MEMORY(same_seen, seen, sizeof same_seen);
+    himc_membrane_free(twin);
+    bad.radius = 0;
+    TEST_ASSERT_NULL(himc_membrane_new(&bad, RATE, &error));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_membrane_sounds_at_bessel_zeros_within_a_hundredth_of_a_cent_at_any_rate);
+    RUN_TEST(test_membrane_decays_as_the_two_parameters_say_within_a_thousandth);
+    RUN_TEST(test_membrane_static_sag_under_a_force_follows_from_stiffness);
+    RUN_TEST(test_membrane_does_not_click_when_its_head_changes_while_ringing);
+    RUN_TEST(test_membrane_does_not_click_when_ear_or_rate_changes);
+    RUN_TEST(test_membrane_keeps_its_energy_through_a_change_of_tune);
+    RUN_TEST(test_membrane_with_two_thousand_modes_sounds_and_decays);
+    RUN_TEST(test_membrane_mutes_modes_it_can_not_sound);
+    RUN_TEST(test_membrane_is_heard_in_the_air_as_rayleighs_integral_says);
+    RUN_TEST(test_membrane_point_pickup_reads_the_velocity_there);
+    RUN_TEST(test_membrane_refuses_and_stays_as_it_was);
+    return UNITY_END();
+}

@@ -1,0 +1,116 @@
+/// table.c: makes lib/src/air_table.c. Two minutes; not a part of himc.
+///
+///     make air-table
+#include "../../lib/src/air_galerkin.h"
+#include "../../lib/src/air_table.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "himc/air.h"
+
+static const double RADIUS[HIMC_AIR_DRUMS] = {0.292, 0.328, 0.368, 0.406};
+
+static int ratio[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES];
+static int decay[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES];
+static double outer[HIMC_AIR_ORDERS][HIMC_AIR_RANKS], inner[HIMC_AIR_ORDERS][HIMC_AIR_RANKS];
+static double slosh[HIMC_AIR_ORDERS];
+
+static void at_rest(const himc_air_order *order)
+{
+    double real[HIMC_AIR_BASIS][HIMC_AIR_BASIS], loss[HIMC_AIR_BASIS][HIMC_AIR_BASIS];
+    double inside[HIMC_AIR_BASIS][HIMC_AIR_BASIS];
+    himc_air_outside(order, 0, real, loss);
+    himc_air_inside(order, 0, HIMC_AIR_KETTLE_SHAPE / HIMC_PI, inside);
+    for (int n = 0; n < HIMC_AIR_RANKS; n++) {
+        double norm = order->next[n] * order->next[n] / 2;
+        outer[order->m][n] = real[n][n] / norm;
+        inner[order->m][n] = inside[n][n] / norm;
+    }
+    slosh[order->m] = order->beta[order->m == 0];
+}
+
+static bool node(const himc_air_order *order, int drum, int k, himc_error *error)
+{
+    double tension = HIMC_AIR_TABLE_LOW *
+                     pow(HIMC_AIR_TABLE_HIGH / HIMC_AIR_TABLE_LOW, k / (HIMC_AIR_NODES - 1.0));
+    himc_air_problem problem = {
+        .tension = tension / (HIMC_AIR_TABLE_FILM * HIMC_AIR_SPEED * HIMC_AIR_SPEED),
+        .loading = HIMC_AIR_DENSITY * RADIUS[drum] / HIMC_AIR_TABLE_FILM,
+        .depth = HIMC_AIR_KETTLE_SHAPE / HIMC_PI,
+    };
+    himc_air_root root[HIMC_AIR_RANKS];
+    if (!himc_air_solve(order, &problem, HIMC_AIR_RANKS, root, error))
+        return false;
+    for (int n = 0; n < HIMC_AIR_RANKS; n++) {
+        double bare = order->alpha[n] * sqrt(problem.tension);
+        ratio[drum][order->m][n][k] = (int)lround(1e5 * log(root[n].x / bare));
+        decay[drum][order->m][n][k] = (int)lround(1e3 * log(fmax(root[n].decay, 0) + HIMC_AIR_FLOOR));
+    }
+    return true;
+}
+
+static void put_row(const int *row)
+{
+    printf("    ");
+    for (int k = 0; k < HIMC_AIR_NODES; k++)
+        printf("%d,", row[k]);
+    printf("\n");
+}
+
+static void put_table(const char *name, int table[][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES])
+{
+    printf("\nconst int %s[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES] = {{{{\n", name);
+    for (int d = 0; d < HIMC_AIR_DRUMS; d++)
+        for (int m = 0; m < HIMC_AIR_ORDERS; m++)
+            for (int n = 0; n < HIMC_AIR_RANKS; n++) {
+                put_row(table[d][m][n]);
+                bool last = n == HIMC_AIR_RANKS - 1, end = last && m == HIMC_AIR_ORDERS - 1;
+                puts(end && d == HIMC_AIR_DRUMS - 1 ? "}}}};" : end ? "}}},{{{" : last ? "}},{{" : "},{");
+            }
+}
+
+static void put_rest(const char *name, double table[][HIMC_AIR_RANKS])
+{
+    printf("\nconst double %s[HIMC_AIR_ORDERS][HIMC_AIR_RANKS] = {\n", name);
+    for (int m = 0; m < HIMC_AIR_ORDERS; m++)
+        printf("    {%.6f, %.6f, %.6f, %.6f},\n", table[m][0], table[m][1], table[m][2], table[m][3]);
+    puts("};");
+}
+
+static void put_all(void)
+{
+    puts("/// air_table.c: the modes of four timpani in air. Made by tools/air/table.c (make air-table); not to be edited.\n"
+         "///\n"
+         "/// A row is a mode over the tensions; rows go by n, then m, then drum.\n"
+         "#include \"air_table.h\"\n\n"
+         "// clang-format off");
+    printf("const double himc_air_radius[HIMC_AIR_DRUMS] = {%g, %g, %g, %g};\n", RADIUS[0], RADIUS[1], RADIUS[2],
+           RADIUS[3]);
+    put_rest("himc_air_outer", outer);
+    put_rest("himc_air_inner", inner);
+    printf("\nconst double himc_air_slosh[HIMC_AIR_ORDERS] = {");
+    for (int m = 0; m < HIMC_AIR_ORDERS; m++)
+        printf("%s%.7f", m ? ", " : "", slosh[m]);
+    puts("};");
+    put_table("himc_air_ratio", ratio);
+    put_table("himc_air_decay", decay);
+}
+
+int main(void)
+{
+    himc_error error;
+    himc_air_order order;
+    for (int m = 0; m < HIMC_AIR_ORDERS; m++) {
+        himc_air_order_make(&order, m);
+        at_rest(&order);
+        for (int drum = 0; drum < HIMC_AIR_DRUMS; drum++)
+            for (int k = 0; k < HIMC_AIR_NODES; k++)
+                if (!node(&order, drum, k, &error)) {
+                    fprintf(stderr, "%s\n", error.text);
+                    return 1;
+                }
+    }
+    put_all();
+    return 0;
+}
