@@ -119,6 +119,9 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
         static const int sizes[] = {4096, 1, 5, 777};
         tearDown();
         setUp();
+        o[6].decay = 800; // comes to rest on the way
+        himc_bank_set(bank, o, COUNT, RATE);
+        aim();
         himc_bank_push(bank, shape, 100);
         for (int done = 0; done < 4096; done += sizes[k]) {
             int n = 4096 - done < sizes[k] ? 4096 - done : sizes[k];

@@ -1,4 +1,4 @@
-/// test_base.c: errors are one line each; ranges are refused with name, value, unit, what is allowed.
+/// test_base.c: errors are one line; ranges are refused with name, value, unit and what is allowed.
 #include "himc/base.h"
 
 #include "unity.h"

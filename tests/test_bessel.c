@@ -33,32 +33,32 @@ static void test_bessel_zeros_agree_with_the_tables(void)
     for (int m = 0; m <= 10; m++)
         for (int n = 1; n <= 5; n++)
             TEST_ASSERT_DOUBLE_WITHIN(6e-13 * (1 + zeros[m][n - 1]), zeros[m][n - 1],
-                                      bessel_zero(m, n));
+                                      himc_bessel_zero(m, n));
 }
 
 static void test_bessel_first_zero_of_j0_has_all_its_digits(void)
 {
-    TEST_ASSERT_DOUBLE_WITHIN(5e-16, 2.404825557695772768622, bessel_zero(0, 1));
-    TEST_ASSERT_DOUBLE_WITHIN(5e-16, 3.831705970207512315614, bessel_zero(1, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(5e-16, 2.404825557695772768622, himc_bessel_zero(0, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(5e-16, 3.831705970207512315614, himc_bessel_zero(1, 1));
 }
 
 static void test_bessel_next_order_at_zeros_agrees_with_the_tables(void)
 {
-    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.5191474973, bessel_j(1, bessel_zero(0, 1)));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-10, -0.3001157525, bessel_j(2, bessel_zero(1, 2)));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.1671180997, bessel_j(6, bessel_zero(5, 5)));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.1438126699, bessel_j(11, bessel_zero(10, 5)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.5191474973, himc_bessel_j(1, himc_bessel_zero(0, 1)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-10, -0.3001157525, himc_bessel_j(2, himc_bessel_zero(1, 2)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.1671180997, himc_bessel_j(6, himc_bessel_zero(5, 5)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.1438126699, himc_bessel_j(11, himc_bessel_zero(10, 5)));
 }
 
 static void test_bessel_zeros_of_high_orders_interlace_and_vanish(void)
 {
     for (int m = 0; m < 90; m += 7) {
         for (int n = 1; n < 25; n += 3) {
-            double z = bessel_zero(m, n);
-            TEST_ASSERT_TRUE(z < bessel_zero(m + 1, n));
-            TEST_ASSERT_TRUE(bessel_zero(m + 1, n) < bessel_zero(m, n + 1));
+            double z = himc_bessel_zero(m, n);
+            TEST_ASSERT_TRUE(z < himc_bessel_zero(m + 1, n));
+            TEST_ASSERT_TRUE(himc_bessel_zero(m + 1, n) < himc_bessel_zero(m, n + 1));
             // |J| one rounding of z away from its zero
-            TEST_ASSERT_DOUBLE_WITHIN(4e-16 * z + 1e-15, 0, bessel_j(m, z));
+            TEST_ASSERT_DOUBLE_WITHIN(4e-16 * z + 1e-15, 0, himc_bessel_j(m, z));
         }
     }
 }
@@ -67,10 +67,10 @@ static void test_bessel_orders_agree_with_the_c_library(void)
 {
     double j[101];
     for (double z = 0; z < 120; z += 0.377) {
-        bessel_orders(z, 100, j);
+        himc_bessel_orders(z, 100, j);
         for (int m = 0; m <= 100; m += 9) {
             TEST_ASSERT_DOUBLE_WITHIN(3e-15, jn(m, z), j[m]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-15, j[m], bessel_j(m, z));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-15, j[m], himc_bessel_j(m, z));
         }
     }
 }
@@ -81,7 +81,7 @@ static double integral_of_square(int m, double j)
     const int n = 2000;
     double sum = 0;
     for (int i = 0; i <= n; i++) {
-        double x = (double)i / n, f = bessel_j(m, j * x);
+        double x = (double)i / n, f = himc_bessel_j(m, j * x);
         sum += (i == 0 || i == n ? 1 : i % 2 ? 4 : 2) * x * f * f;
     }
     return sum / (3.0 * n);
@@ -91,7 +91,7 @@ static void test_bessel_integral_of_x_j_squared_is_half_the_next_order_squared(v
 {
     for (int m = 0; m <= 6; m += 2) {
         for (int n = 1; n <= 3; n++) {
-            double j = bessel_zero(m, n), next = bessel_j(m + 1, j);
+            double j = himc_bessel_zero(m, n), next = himc_bessel_j(m + 1, j);
             TEST_ASSERT_DOUBLE_WITHIN(1e-12, next * next / 2, integral_of_square(m, j));
         }
     }

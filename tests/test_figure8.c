@@ -1,5 +1,6 @@
-/// test_figure8.c: the experiment of figure 8 of the 2012 paper: three blows of rising force, then two of equal force, one
-/// on the ringing head and one on a calm one. The paper's forces: 106.9 N the third, 65 N and 62.3 N the last two.
+/// test_figure8.c: the experiment of figure 8 of the 2012 paper: three blows of rising force,
+/// then two of equal force, one on the ringing head and one on a calm one. The paper's forces:
+/// 106.9 N the third, 65 N and 62.3 N the last two.
 #include "himc/himc.h"
 
 #include "unity.h"
@@ -81,7 +82,8 @@ static void test_equal_blow_sounds_louder_on_the_ringing_head(void)
     TEST_ASSERT_TRUE(loudness[3] > 1.03 * loudness[4]);
 }
 
-// a pivoting 45 g stick has 0.0245 .. 0.028 kg at its tip: the forces of the paper ask for about 5 .. 8 m/s
+// a pivoting 45 g stick has 0.0245 .. 0.028 kg at its tip: the forces of the paper ask for about
+// 5 .. 8 m/s
 static void test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives(void)
 {
     TEST_ASSERT_DOUBLE_WITHIN(5, 107, blow[2].force);

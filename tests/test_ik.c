@@ -1,4 +1,4 @@
-/// test_ik.c: the Jacobian by differences, the solvers against a dense 3 x 12 reference, null space and release.
+/// test_ik.c: the Jacobian by differences, solvers against a dense 3 x 12 reference, null space, release.
 #include "himc/ik.h"
 
 #include "unity.h"

@@ -9,9 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#define PIECE "tempo 120; drum kettle; " \
-              "stroke 2 right legato mf; stroke 3 left tenuto f; stroke 4 right accent f; " \
-              "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; stroke 7 left legato pp;"
+#define PIECE                                                                     \
+    "tempo 120; drum kettle; "                                                    \
+    "stroke 2 right legato mf; stroke 3 left tenuto f; stroke 4 right accent f; " \
+    "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; stroke 7 left legato pp;"
 
 static himc_error error;
 
@@ -52,7 +53,8 @@ void *realloc(void *old, size_t size)
 static bool try_command(himc_performance *p, const char *text)
 {
     himc_command c;
-    return himc_command_parse_text(&c, HIMC_PERFORMER, text, &error) && himc_performance_command(p, &c, 0, &error);
+    return himc_command_parse_text(&c, HIMC_PERFORMER, text, &error) &&
+           himc_performance_command(p, &c, 0, &error);
 }
 
 static void command(himc_performance *p, const char *text)
@@ -348,7 +350,8 @@ static void test_real_stroke_strikes_the_drum_from_its_bead_alone(void)
 {
     const char *shared = getenv("HIMC_SHARED");
     char line[512], path[400];
-    snprintf(path, sizeof path, "%s/mocap/drumstroke_pearl_240hz/stroke.trc", shared ? shared : "../shared");
+    snprintf(path, sizeof path, "%s/mocap/drumstroke_pearl_240hz/stroke.trc",
+             shared ? shared : "../shared");
     if (access(path, R_OK) != 0)
         TEST_IGNORE_MESSAGE("no captures here");
     himc_performance *p = new_performance();

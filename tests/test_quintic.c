@@ -1,4 +1,4 @@
-/// test_quintic.c: both ends are met, minimum jerk is what it is known to be, any quintic is recovered.
+/// test_quintic.c: both ends are met, minimum jerk is the known one, any quintic is recovered.
 #include "himc/quintic.h"
 
 #include "unity.h"

@@ -153,10 +153,9 @@ static void test_headers_that_disagree_with_the_rows_are_refused(void)
     refuses(1, 2, "mm", "", "a.trc: the header says 1 frames, the file has 0 rows");
     refuses(0, 2, "mm", "", "a.trc:3: NumFrames is \"0\", allowed 1 .. 1000000");
     refuses(2, 3, "mm", ROW_1 ROW_2, "a.trc:4: the header says 3 markers, the file names 2");
-    refuses(
-        2, 1, "mm", ROW_1 ROW_2,
-        "a.trc:4: marker \"B\" stands over column 6, allowed: every third from 3 on, "
-"for 1 markers");
+    refuses(2, 1, "mm", ROW_1 ROW_2,
+            "a.trc:4: marker \"B\" stands over column 6, allowed: every third from 3 on, "
+            "for 1 markers");
     refuses(2, 9999, "mm", ROW_1 ROW_2,
             "a.trc:3: NumMarkers is 9999, more than the rows have cells for");
     refuses(2, 2, "ell", ROW_1 ROW_2, "a.trc:3: Units is \"ell\", allowed mm, cm, m, in or ft");
@@ -228,7 +227,7 @@ static void test_real_table_with_an_honest_header_is_read_with_z_up(void)
     const char *path = shared_capture("upperlimb_pyomeca_100hz/markers.trc");
     if (!path)
         TEST_IGNORE_MESSAGE("../shared/mocap is absent");
-    size_t size;
+    size_t size = 0;
     char *bytes = read_all(path, &size), *count = strstr(bytes, "100,100,652,");
     TEST_ASSERT_NOT_NULL(count);
     memcpy(count + 8, "93 ", 3);

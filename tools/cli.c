@@ -1,7 +1,9 @@
-/// cli.c: one table of options per call serves the parser, its error lines and --help, so they cannot disagree.
+/// cli.c: one table of options per call serves the parser, its error lines and --help, so they
+/// cannot disagree.
 ///
-/// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that names the call, what
-/// was wrong and what is allowed. All options take a value; given twice, the last counts, as POSIX tools do.
+/// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that
+/// names the call, what was wrong and what is allowed. All options take a value; given twice, the
+/// last counts, as POSIX tools do.
 #include "cli.h"
 
 #include <errno.h>

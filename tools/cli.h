@@ -1,4 +1,5 @@
-/// cli.h: what the calls of the program share: how options are read, how a call fails, how files are written.
+/// cli.h: what the calls of the program share: how options are read, how a call fails, how files
+/// are written.
 #ifndef CLI_H
 #define CLI_H
 
@@ -37,7 +38,8 @@ typedef struct cli_call {
 
 extern const cli_call cli_render, cli_info, cli_modes;
 
-/// Reads the arguments after the call's name; false with one line that says what is wrong and what is allowed.
+/// Reads the arguments after the call's name; false with one line that says what is wrong and what
+/// is allowed.
 bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error);
 
 /// Prints usage and options.
@@ -53,10 +55,11 @@ int cli_finish(const cli_call *call);
 bool cli_number(const char *name, const char *text, double low, double high, const char *unit,
                 double *out, himc_error *error);
 /// The same for a whole number.
-bool cli_count(const char *name, const char *text, int low, int high, int *out, himc_error *error);
+bool cli_count(const char *name, const char *text, int low, int high, const char *unit, int *out,
+               himc_error *error);
 
-/// A file that appears under its name complete or not at all: it is written beside it and renamed in the end. What is
-/// no regular file (/dev/null, a pipe) is written directly.
+/// A file that appears under its name complete or not at all: it is written beside it and renamed
+/// in the end. What is no regular file (/dev/null, a pipe) is written directly.
 typedef struct cli_file {
     char path[4096]; ///< "" when not wanted
     char temp[4096]; ///< where it is written until kept; "" when written directly
@@ -65,7 +68,8 @@ typedef struct cli_file {
 
 /// Opens for writing; does nothing if `path` is NULL.
 bool cli_file_open(cli_file *file, const char *path, himc_error *error);
-/// Brings all to the disk and closes; false, and the temporary file removed, if something did not arrive.
+/// Brings all to the disk and closes; false, and the temporary file removed, if something did not
+/// arrive.
 bool cli_file_close(cli_file *file, himc_error *error);
 /// Gives a closed file its name.
 bool cli_file_keep(cli_file *file, himc_error *error);
@@ -83,7 +87,8 @@ const himc_score_line *cli_first_drum(const himc_score *score);
 /// The size a `drum` line asks for (inches).
 double cli_drum_inches(const himc_score_line *line);
 
-/// How a take is to be read, from the values of --left-tip, --right-tip and --up (each may be NULL).
+/// How a take is to be read, from the values of --left-tip, --right-tip and --up (each may be
+/// NULL).
 bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
                       himc_take_options *out, himc_error *error);
 

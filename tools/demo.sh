@@ -1,8 +1,10 @@
 #!/bin/sh
-# Plays patches/01-improvisation.pd headless in Pure Data, the same score by himc render, and draws what happened.
+# Plays patches/01-improvisation.pd headless in Pure Data, the same score by himc render, and draws
+# what happened.
 #   tools/demo.sh
-# Run from the repository's root after make (make demo does both). Leaves improvisation.wav (Pd's sound), strokes.csv,
-# motion.csv and improvisation.png in build/demo. Fails if Pd and himc render do not sound alike to the last bit.
+# Run from the repository's root after make (make demo does both). Leaves improvisation.wav (Pd's
+# sound), strokes.csv, motion.csv and improvisation.png in build/demo. Fails if Pd and himc render
+# do not sound alike to the last bit.
 set -eu
 build=${HIMC_BUILD:-build}
 out=$build/demo
@@ -54,11 +56,12 @@ play_in_pd() {
     mv "$work/pd.wav" "$out/improvisation.wav"
 }
 
-# Pd stops recording when the performer is at rest, himc render when the drum is; what both have must be equal
+# Pd stops recording when the performer is at rest, himc render when the drum is; what both have
+# must be equal
 compare() {
     tail -c "+$(($(samples_at "$1") + 1))" "$1" >"$work/a"
     tail -c "+$(($(samples_at "$2") + 1))" "$2" >"$work/b"
-    shorter=$(wc -c "$work/a" "$work/b" | awk '/total/ {exit} NR == 1 || $1 < n {n = $1} END {print n}')
+    shorter=$({ wc -c <"$work/a"; wc -c <"$work/b"; } | sort -n | head -n 1)
     cmp -n "$shorter" "$work/a" "$work/b" >"$work/cmp.log" 2>&1
 }
 
@@ -73,8 +76,9 @@ envelope() {
         }'
 }
 
-# the five strokes of figure 8: three of rising force, then two that are most alike, the second after a rest; where
-# a piece has none, those around the loudest. Prints from, to (s) and what they are.
+# the five strokes of figure 8: three of rising force, then two that are most alike, the second
+# after a rest; where a piece has none, those around the loudest. Prints from, to (s) and what they
+# are.
 find_excerpt() {
     awk -F, '
         NR > 1 { t[++n] = $1; f[n] = $8 }
@@ -84,8 +88,9 @@ find_excerpt() {
                 if (f[i + 2] > f[top]) top = i + 2
                 unlike = f[i + 4] > 0 ? f[i + 3] / f[i + 4] - 1 : 1
                 if (unlike < 0) unlike = -unlike
-                if (f[i] < f[i + 1] && f[i + 1] < f[i + 2] && f[i + 3] < f[i + 2] && unlike < best &&
-                    t[i + 4] - t[i + 3] > 2 * (t[i + 3] - t[i + 2])) {
+                rising = f[i] < f[i + 1] && f[i + 1] < f[i + 2] && f[i + 3] < f[i + 2]
+                rest = t[i + 4] - t[i + 3] > 2 * (t[i + 3] - t[i + 2])
+                if (rising && rest && unlike < best) {
                     best = unlike
                     at = i
                 }
@@ -105,12 +110,14 @@ draw() {
     find_excerpt "$out/strokes.csv" >"$work/excerpt"
     read -r from to what <"$work/excerpt"
     envelope "$out/improvisation.wav" >"$work/sound.csv"
-    gnuplot -e "motion = '$out/motion.csv'; strokes = '$out/strokes.csv'; sound = '$work/sound.csv'" \
+    gnuplot -e "motion = '$out/motion.csv'; strokes = '$out/strokes.csv'" \
+        -e "sound = '$work/sound.csv'" \
         -e "from = $from; to = $to; length = $(length_of "$out/improvisation.wav")" \
         -e "title = 'Timpani improvisation by a simulated percussionist'" \
-        -e "said = '$landed strokes on time and in place, sticks $apart mm (RMS) from their targets'" \
+        -e "said = '$landed strokes on time and in place, sticks $apart mm (RMS) off their targets'" \
         -e "excerpt = '$what'; picture = '$work/picture.png'" \
-        tools/figures/improvisation.gp >"$work/gnuplot.log" 2>&1 || fail "gnuplot: $(tail -n 1 "$work/gnuplot.log")"
+        tools/figures/improvisation.gp >"$work/gnuplot.log" 2>&1 ||
+        fail "gnuplot: $(tail -n 1 "$work/gnuplot.log")"
     mv "$work/picture.png" "$out/improvisation.png"
 }
 
@@ -119,8 +126,8 @@ draw() {
 echo "Pure Data plays $patch ..."
 play_in_pd
 echo "himc render plays $score ..."
-"$himc" render "$score" -o "$work/render.wav" --strokes "$out/strokes.csv" --motion "$out/motion.csv" \
-    >"$work/render.log" || exit 1
+"$himc" render "$score" -o "$work/render.wav" --strokes "$out/strokes.csv" \
+    --motion "$out/motion.csv" >"$work/render.log" || exit 1
 landed="$(number played) of $(number strokes)"
 apart=$(number tip_rms_mm | awk '{printf "%.2g", $1}')
 echo "gnuplot draws ..."
@@ -135,9 +142,10 @@ fi
 length=$(length_of "$out/improvisation.wav")
 echo
 echo "in $out: improvisation.wav ($length s, from Pd), improvisation.png, strokes.csv, motion.csv"
-echo "strokes   $landed landed within 5 ms and 2 cm of where the score wants them, at up to $(number peak_force_n) N"
-echo "sticks    $apart mm (RMS) from their targets, $(number tip_rms_percent | awk '{printf "%.2g", $1}') % of the" \
-    "height of a stroke"
+echo "strokes   $landed landed within 5 ms and 2 cm of where the score wants them," \
+    "at up to $(number peak_force_n) N"
+echo "sticks    $apart mm (RMS) off their targets," \
+    "$(number tip_rms_percent | awk '{printf "%.2g", $1}') % of the height of a stroke"
 echo "speed     Pd $(echo "$length $pd_time" | awk '{printf "%.1f", $1 / $2}') x real time," \
     "himc render $(number realtime_factor | awk '{printf "%.1f", $1}') x; the two $alike"
 echo "live      pd -path $externals $patch"

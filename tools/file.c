@@ -1,7 +1,8 @@
 /// file.c: a file that appears complete or not at all.
 ///
-/// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system and is atomic. An
-/// interrupted run removes what it had begun. Symbolic links are followed, so that the link stays and its file changes.
+/// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
+/// and is atomic. An interrupted run removes what it had begun. Symbolic links are followed, so
+/// that the link stays and its file changes.
 #define _XOPEN_SOURCE 700
 #include "cli.h"
 
@@ -74,6 +75,8 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
     *file = (cli_file){0};
     if (!path)
         return true;
+    if (!path[0])
+        return himc_error_set(error, "\"\": no file has an empty name");
     struct stat status;
     bool exists = !stat(path, &status);
     mode_t mask = umask(0);

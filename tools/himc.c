@@ -1,6 +1,7 @@
 /// himc.c: the command line: `himc CALL ...`; each call is a file of its own beside this one.
 ///
-/// Exit status 0, or 1 with one line on stderr that says what was wrong, where, and what is allowed.
+/// Exit status 0, or 1 with one line on stderr that says what was wrong, where, and what is
+/// allowed.
 #include "cli.h"
 #include "himc/himc.h"
 

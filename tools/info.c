@@ -117,7 +117,7 @@ const cli_call cli_info = {
     "FILE",
     "",
     "says what is in a score, or in a take (.bvh .c3d .trc)",
-    "Of a take: rate, length, points, gaps, the strikes found in it and where the drumhead is placed.",
+    "Of a take: rate, length, points, gaps, the strikes found in it, where the drumhead is placed.",
     options,
     run,
 };

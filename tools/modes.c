@@ -1,7 +1,8 @@
-/// modes.c: `himc modes`: the frequencies and decays of a drum, as a score has it tuned before its first stroke.
+/// modes.c: `himc modes`: the frequencies and decays of a drum, as a score has it tuned before its
+/// first stroke.
 ///
-/// The two members of a pair (cosine and sine) sound alike and are one row. T60 is the time in which a mode falls by
-/// 60 dB: ln(1000) over its decay rate.
+/// The two members of a pair (cosine and sine) sound alike and are one row. T60 is the time in
+/// which a mode falls by 60 dB: ln(1000) over its decay rate.
 #include "cli.h"
 #include "himc/drum.h"
 
@@ -85,8 +86,9 @@ const cli_call cli_modes = {
     "[SCORE]",
     "",
     "lists the modes of a drum: m,n,frequency_hz,ratio,t60_s",
-    "The drum is the first that SCORE makes, tuned as its lines say, or without SCORE the default one of 23 inches.\n"
-    "One row for each pair of nodal diameters m and circles n; the ratio is to the principal mode (1,1).",
+    "The drum is the first that SCORE makes, tuned as its lines say; without SCORE the default one\n"
+    "of 23 inches. One row for each pair of nodal diameters m and circles n; the ratio is to the\n"
+    "principal mode (1,1).",
     options,
     run,
 };

@@ -1,9 +1,11 @@
-/// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a WAV file.
+/// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a WAV
+/// file.
 ///
-/// The command `score` or `take`, then `play` on sample 0, then block after block, just as `[himc~]` does it in Pd; each
-/// sample written is the sum of the drums' samples, rounded to 32-bit float once, as Pd's signals are. Whether it is
-/// over is asked only where a cell of 0.2 s ends, and blocks end there too, so that nothing depends on --block. It is
-/// over when the performer is done and a whole cell stayed 80 dB below the peak, or 8 s after.
+/// The command `score` or `take`, then `play` on sample 0, then block after block, just as
+/// `[himc~]` does it in Pd; each sample written is the sum of the drums' samples, rounded to 32-bit
+/// float once, as Pd's signals are. Whether it is over is asked only where a cell of 0.2 s ends,
+/// and blocks end there too, so that nothing depends on --block. It is over when the performer is
+/// done and a whole cell stayed 80 dB below the peak, or 8 s after.
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "himc/performance.h"
@@ -40,8 +42,7 @@ static const cli_option options[] = {
 /// What was asked for.
 typedef struct job {
     const char *source, *mode;
-    double rate;
-    int block;
+    int rate, block;
     himc_take_options take;
 } job;
 
@@ -69,8 +70,8 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
             if (cli_same_file(files[i], files[k]))
                 return himc_error_set(error, "%s: named twice, allowed are different files",
                                       files[k]);
-    return cli_number("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
-           cli_count("--block", value[BLOCK], 1, BLOCK_MAX, &out->block, error) &&
+    return cli_count("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
+           cli_count("--block", value[BLOCK], 1, BLOCK_MAX, "samples", &out->block, error) &&
            cli_take_options(value[LEFT_TIP], value[RIGHT_TIP], value[UP], &out->take, error);
 }
 
@@ -115,7 +116,7 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
     himc_performance_make_drums(performance, true);
     himc_performance_take_options(performance, &wanted->take);
     if (wanted->mode && !tell(performance, "mode", wanted->mode, error))
-        return himc_error_prefix(error, "--mode");
+        return false;
     if (!take && !inspect_score(wanted, &makes_drums, error))
         return false;
     if (!makes_drums && !add_default_drum(performance, wanted->rate, error))
@@ -297,8 +298,9 @@ const cli_call cli_render = {
     "SOURCE",
     " -o OUT.wav",
     "plays a score or a take (.bvh .c3d .trc) into a WAV file",
-    "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm tip_rms_percent\n"
-    "peak_force_n realtime_factor. A score that makes no drum is played on \"kettle\", 23 inches.",
+    "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm\n"
+    "tip_rms_percent peak_force_n realtime_factor. A score that makes no drum is played on\n"
+    "\"kettle\", 23 inches.",
     options,
     run,
 };

@@ -1,5 +1,5 @@
-/// render_tables.c: rows and numbers as text. Columns carry their unit; a number that is not known is `nan` in a table
-/// and `null` in JSON, which has no word for it.
+/// render_tables.c: rows and numbers as text. Columns carry their unit; a number that is not known
+/// is `nan` in a table and `null` in JSON, which has no word for it.
 #include "render_tables.h"
 
 #include <math.h>
@@ -96,7 +96,7 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
         printf("strokes   %d of %d landed within 5 ms and 2 cm\n", stats->played, stats->strokes);
     if (isfinite(stats->tip_rms_percent))
         printf(
-            "accuracy  sticks within %.3g mm RMS of their targets, %.2g %% of the strokes' height\n",
+            "accuracy  sticks %.3g mm RMS off their targets, %.2g %% of the strokes' height\n",
             rms_mm, stats->tip_rms_percent);
     printf("force     up to %.1f N\n", stats->peak_force);
     printf("speed     %.1f s played, %.1f x real time\n", seconds, realtime_factor);

@@ -1,9 +1,10 @@
 /// base.h: what every module shares: errors, hands, the two kinds of functions.
 ///
-/// Every public function is either *setup* (may allocate, lock, read files; the default) or marked HIMC_RT:
-/// it never allocates, locks, prints or waits, and its time is bounded, so it may be called from an audio callback.
-/// SI units everywhere (m, kg, s, N, N m, rad, Hz). World frame: right-handed, x forward (performer towards
-/// drum), y left, z up, origin on the floor under the pelvis (ROS REP-103).
+/// Every public function is either *setup* (may allocate, lock, read files; the default) or
+/// marked HIMC_RT: it never allocates, locks, prints or waits, and its time is bounded, so it may
+/// be called from an audio callback. SI units everywhere (m, kg, s, N, N m, rad, Hz). World
+/// frame: right-handed, x forward (performer towards drum), y left, z up, origin on the floor
+/// under the pelvis (ROS REP-103).
 #ifndef HIMC_BASE_H
 #define HIMC_BASE_H
 
@@ -12,7 +13,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Marks a function that is safe in an audio callback; a test interposes malloc and holds it to that.
+/// Marks a function that is safe in an audio callback; a test interposes malloc and holds it to
+/// that.
 #define HIMC_RT
 
 #define HIMC_PI 3.14159265358979323846
@@ -24,12 +26,15 @@ typedef struct himc_error {
 
 /// Writes one line into `error` (printf format); `error` may be NULL. Returns false, so that a
 /// check can end with `return himc_error_set(...)`.
-bool himc_error_set(himc_error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool himc_error_set(himc_error *error, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /// Puts "context: " before the line already in `error` (which may be NULL). Returns false.
-bool himc_error_prefix(himc_error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool himc_error_prefix(himc_error *error, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-/// Refuses a number outside [low, high] or not finite, naming it: "radius: 0 m, allowed 0.05 .. 1 m".
+/// Refuses a number outside [low, high] or not finite, naming it: "radius: 0 m, allowed 0.05 .. 1
+/// m".
 bool himc_check_range(const char *name, double value, double low, double high, const char *unit,
                       himc_error *error);
 

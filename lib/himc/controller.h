@@ -1,5 +1,6 @@
-/// controller.h: the control of a physical body: joint errors by mode (`himc`, `id`), torques by law; HIMC is the cascade
-/// of the two inside every physics step (2012 paper, section 3.2, algorithm 2).
+/// controller.h: the control of a physical body: joint errors by mode (`himc`, `id`), torques by
+/// law; HIMC is the cascade of the two inside every physics step (2012 paper, section 3.2,
+/// algorithm 2).
 #ifndef HIMC_CONTROLLER_H
 #define HIMC_CONTROLLER_H
 
@@ -8,7 +9,7 @@
 #include "himc/posture.h"
 
 typedef enum himc_pipeline {
-    HIMC_PIPELINE_HIMC, ///< tips -> inverse kinematics -> inverse dynamics (pipeline 2 of the 2012 paper)
+    HIMC_PIPELINE_HIMC, ///< tips -> inverse kinematics -> inverse dynamics (2012, pipeline 2)
     HIMC_PIPELINE_ID,   ///< joint targets -> inverse dynamics (pipeline 3)
     HIMC_PIPELINE_IK    ///< joint targets shown as they are, no dynamics (pipeline 1)
 } himc_pipeline;
@@ -33,30 +34,36 @@ typedef struct himc_controller {
     double damping;              ///< lambda of the inverse kinematics (m), default 0.01
     double bandwidth;            ///< of computed torque, critically damped (Hz), default 20
     himc_gain gain[HIMC_JOINTS]; ///< of the PD laws
-    bool gain_set[HIMC_JOINTS];  ///< by the user: computed torque uses it too, over the joint's inertia
-    himc_vec3 inertia[HIMC_JOINTS]; ///< of what hangs on each joint, about the child's axes (kg m^2)
+    bool gain_set
+        [HIMC_JOINTS]; ///< by the user: computed torque uses it too, over the joint's inertia
+    himc_vec3
+        inertia[HIMC_JOINTS]; ///< of what hangs on each joint, about the child's axes (kg m^2)
 } himc_controller;
 
 /// What the body should do now.
 typedef struct himc_reference {
     himc_target tip[HIMC_HANDS];
-    himc_posture_motion posture; ///< joint targets of `id`; in `himc` what the null space is for
-    bool released[HIMC_HANDS];   ///< the tip is in contact: control lets go of the normal
+    himc_posture_motion posture;  ///< joint targets of `id`; in `himc` what the null space is for
+    bool released[HIMC_HANDS];    ///< the tip is in contact: control lets go of the normal
     himc_vec3 normal[HIMC_HANDS]; ///< of the head it touches
 } himc_reference;
 
-/// Default gains: stiffness I w^2 and damping 2 I w, critically damped, I the inertia of all that hangs on the joint in
-/// the given posture about each axis (about a segment's own length its own), w three times 2 pi 8 Hz at the
-/// shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
+/// Default gains: stiffness I w^2 and damping 2 I w, critically damped, I the inertia of all that
+/// hangs on the joint in the given posture about each axis (about a segment's own length its
+/// own), w three times 2 pi 8 Hz at the shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
 HIMC_RT void himc_controller_init(himc_controller *controller, const himc_skeleton *skeleton,
                                   const himc_body_state *posture);
 
-/// Sets a joint's stiffness and damping about its axes of flexion; about its length they shrink with the inertia.
-HIMC_RT void himc_controller_set_gain(himc_controller *controller, int joint, double stiffness, double damping);
+/// Sets a joint's stiffness and damping about its axes of flexion; about its length they shrink
+/// with the inertia.
+HIMC_RT void himc_controller_set_gain(himc_controller *controller, int joint, double stiffness,
+                                      double damping);
 
-/// InverseKinematics and InverseDynamics of algorithm 2: the torques (world frame, N m) for this state and reference.
-HIMC_RT void himc_controller_torques(const himc_controller *controller, const himc_skeleton *skeleton,
-                                     const himc_body_state *state, const himc_reference *reference,
+/// InverseKinematics and InverseDynamics of algorithm 2: the torques (world frame, N m) for this
+/// state and reference.
+HIMC_RT void himc_controller_torques(const himc_controller *controller,
+                                     const himc_skeleton *skeleton, const himc_body_state *state,
+                                     const himc_reference *reference,
                                      himc_vec3 torque[HIMC_JOINTS]);
 
 #endif

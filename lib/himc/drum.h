@@ -42,7 +42,7 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error);
 /// them), its own free mallets from `strike`, and an outside force. Fills the ring that
 /// himc_drum_read reads.
 /// @param sticks    their x, v, force evolve (contact.h); may be NULL when stick_count is 0
-/// @param forces    forces[s][i] receives the force of stick s in sample i (N); may be NULL when stick_count is 0
+/// @param forces    forces[s][i] receives the force of stick s in sample i (N); NULL if unwanted
 /// @param outside   force (N) applied at (x, y)[i], or NULL
 HIMC_RT void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count,
                                double *const *forces, const double *outside, const double *x,

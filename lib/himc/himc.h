@@ -1,13 +1,16 @@
 /// himc.h: the whole of libhimc, in the order in which a stroke becomes sound.
 ///
 ///     score ┐
-///     take ─┴→ planner, track → task → controller (ik → invdyn) → character (ODE) → contact ⇄ membrane → samples
-///     command (Pd, OSC, file) ─────────────→ performance ←──────────────────────────────── drum
+///     take ─┴→ planner, track → task → controller (ik → invdyn) → character (ODE)
+///                                                                     ⇅
+///     samples ←──────────────────────────── drum (membrane ⇄ contact) ┘
+///     command (Pd, OSC, file) → performance: the clock of it all
 ///
-/// A percussionist of 20 segments and 57 degrees of freedom is driven, from nothing but the trajectories of its two
-/// drumstick tips, by Hybrid Inverse Motion Control (Bouënard, Gibet and Wanderley, The Visual Computer 28(4), 2012)
-/// inside every physics step; sticks and drumheads exchange forces sample by sample. To play, make a himc_performance, give
-/// it commands and ask it for samples; the headers below are its parts, each usable alone.
+/// A percussionist of 20 segments and 57 degrees of freedom is driven, from nothing but the
+/// trajectories of its two drumstick tips, by Hybrid Inverse Motion Control (Bouënard, Gibet and
+/// Wanderley, The Visual Computer 28(4), 2012) inside every physics step; sticks and drumheads
+/// exchange forces sample by sample. To play, make a himc_performance, give it commands and ask it
+/// for samples; the headers below are its parts, each usable alone.
 #ifndef HIMC_H
 #define HIMC_H
 

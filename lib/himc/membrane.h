@@ -16,12 +16,12 @@ typedef enum himc_pickup_kind {
     100.0 ///< (Pa): a stroke of 110 N heard from one metre peaks at 0.5 to 0.8
 #define HIMC_PICKUP_VELOCITY 10.0 ///< (m/s)
 
-/// What the sound is read from.
+/// What the sound is read from. Azimuth 0 is beyond the drum as the performer sees it, positive to
+/// the left.
 typedef struct himc_pickup {
     himc_pickup_kind kind;
-    double x, y; ///< of a point (m, on the head)
-    double
-        azimuth; ///< of the listener (rad): 0 beyond the drum as the performer sees it, to the left positive
+    double x, y;      ///< of a point (m, on the head)
+    double azimuth;   ///< of the listener (rad)
     double elevation; ///< above the plane of the head (rad), 0 .. 1.5708
     double distance;  ///< from the centre (m), 0.3 .. 100
 } himc_pickup;

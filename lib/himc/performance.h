@@ -1,7 +1,9 @@
-/// performance.h: the performer and its drums, clocked by the sample count: commands in, sound and strikes out.
+/// performance.h: the performer and its drums, clocked by the sample count: commands in, sound
+/// and strikes out.
 ///
-/// Only this module knows all stages; its step is algorithm 2 of the 2012 paper. What it plays depends on nothing but
-/// the commands and the sample on which each arrived: not on block size, clock or thread.
+/// Only this module knows all stages; its step is algorithm 2 of the 2012 paper. What it plays
+/// depends on nothing but the commands and the sample on which each arrived: not on block size,
+/// clock or thread.
 #ifndef HIMC_PERFORMANCE_H
 #define HIMC_PERFORMANCE_H
 
@@ -22,37 +24,41 @@ typedef struct himc_performance himc_performance;
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error);
 void himc_performance_free(himc_performance *performance);
 
-/// Takes a drum to play on (its own reference; its rate must be the performance's). Replaces one of the same name. The
-/// first drum is the one strokes without a drum go to; a performer without drums plays on a silent one.
+/// Takes a drum to play on (its own reference; its rate must be the performance's). Replaces one
+/// of the same name. The first drum is the one strokes without a drum go to; a performer without
+/// drums plays on a silent one.
 bool himc_performance_add_drum(himc_performance *performance, himc_drum *drum, himc_error *error);
 void himc_performance_remove_drum(himc_performance *performance, const char *name);
 /// Drum `index`, or NULL past the last. Borrowed.
 HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int index);
 
-/// Carries out a performer's command `delay` samples from now (0 .. 8192; commands that read files act at once). Files
-/// are opened by the name given: relative names and search paths are the caller's business.
-/// A score's lines for drums go to the drums of those names; with `make_drums` its `drum` lines make them.
+/// Carries out a performer's command `delay` samples from now (0 .. 8192; commands that read
+/// files act at once). Files are opened by the name given: relative names and search paths are
+/// the caller's business. A score's lines for drums go to the drums of those names; with
+/// `make_drums` its `drum` lines make them.
 bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
                               himc_error *error);
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
 
-/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n), each may be NULL; the drums' sound is in
-/// their rings (himc_drum_read).
-HIMC_RT void himc_performance_process(himc_performance *performance, int n, double *const force[HIMC_HANDS]);
+/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n), each may be NULL;
+/// the drums' sound is in their rings (himc_drum_read).
+HIMC_RT void himc_performance_process(himc_performance *performance, int n,
+                                      double *const force[HIMC_HANDS]);
 /// Samples played since the last realign.
 HIMC_RT uint64_t himc_performance_time(const himc_performance *performance);
 /// Counts samples from 0 again, here and in all drums; the performance goes on.
 HIMC_RT void himc_performance_realign(himc_performance *performance);
 /// Another sample rate, here and in all drums.
-bool himc_performance_set_rate(himc_performance *performance, double sample_rate, himc_error *error);
+bool himc_performance_set_rate(himc_performance *performance, double sample_rate,
+                               himc_error *error);
 
 typedef enum himc_event_kind {
     HIMC_EVENT_STRIKE, ///< a contact ended
     HIMC_EVENT_BEAT,   ///< a whole beat began
     HIMC_EVENT_DONE,   ///< everything has been played and has come to rest
-    HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach, a silent drum
+    HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach
 } himc_event_kind;
 
 typedef struct himc_strike {
@@ -76,22 +82,23 @@ typedef struct himc_event {
     char text[192];
 } himc_event;
 
-/// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and counted.
+/// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and
+/// counted.
 HIMC_RT bool himc_performance_event(himc_performance *performance, himc_event *event);
 
 /// One row of motion at the task rate.
 typedef struct himc_motion_row {
-    double time;                              ///< (s)
-    himc_vec3 target[HIMC_HANDS];             ///< of the tips (m)
-    himc_vec3 tip[HIMC_HANDS];                ///< simulated (m)
-    double force[HIMC_HANDS];                 ///< largest since the last row (N)
-    himc_vec3 joint[HIMC_JOINTS];             ///< rotation vector from the zero pose, parent's frame (rad)
-    himc_vec3 elbow[HIMC_HANDS];              ///< position (m)
+    double time;                  ///< (s)
+    himc_vec3 target[HIMC_HANDS]; ///< of the tips (m)
+    himc_vec3 tip[HIMC_HANDS];    ///< simulated (m)
+    double force[HIMC_HANDS];     ///< largest since the last row (N)
+    himc_vec3 joint[HIMC_JOINTS]; ///< rotation vector from the zero pose, parent's frame (rad)
+    himc_vec3 elbow[HIMC_HANDS];  ///< position (m)
 } himc_motion_row;
 
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it.
-void himc_performance_on_motion(himc_performance *performance, void (*row)(void *, const himc_motion_row *),
-                                void *user);
+void himc_performance_on_motion(himc_performance *performance,
+                                void (*row)(void *, const himc_motion_row *), void *user);
 
 typedef struct himc_performance_stats {
     double seconds;         ///< played
@@ -108,6 +115,7 @@ typedef struct himc_performance_stats {
 HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *performance);
 
 /// Several lines about the state (mode, law, rates, drums, player, transport), for `info`.
-void himc_performance_describe(const himc_performance *performance, void (*line)(void *, const char *), void *user);
+void himc_performance_describe(const himc_performance *performance,
+                               void (*line)(void *, const char *), void *user);
 
 #endif

@@ -1,5 +1,5 @@
-/// quintic.h: the polynomial of fifth degree in space that joins two states of position, velocity and acceleration; what
-/// all planned motion is made of.
+/// quintic.h: the polynomial of fifth degree in space that joins two states of position, velocity
+/// and acceleration; what all planned motion is made of.
 #ifndef HIMC_QUINTIC_H
 #define HIMC_QUINTIC_H
 
@@ -16,12 +16,15 @@ typedef struct himc_quintic {
     himc_vec3 c[6]; ///< coefficients of 1, t, ... t^5 (m, m/s, ...)
 } himc_quintic;
 
-/// The quintic from `from` at time 0 to `to` at `duration` (s, > 0): solves the three conditions at its end.
-HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, const himc_target *to, double duration)
+/// The quintic from `from` at time 0 to `to` at `duration` (s, > 0): solves the three conditions
+/// at its end.
+HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, const himc_target *to,
+                                                     double duration)
 {
     double t = duration, t2 = t * t;
     himc_vec3 half = himc_vec3_scale(from->a, 0.5);
-    himc_vec3 x = himc_vec3_sub(to->x, himc_vec3_madd(himc_vec3_madd(from->x, t, from->v), t2, half));
+    himc_vec3 x =
+        himc_vec3_sub(to->x, himc_vec3_madd(himc_vec3_madd(from->x, t, from->v), t2, half));
     himc_vec3 v = himc_vec3_sub(to->v, himc_vec3_madd(from->v, t, from->a));
     himc_vec3 a = himc_vec3_sub(to->a, from->a);
     x = himc_vec3_scale(x, 1 / (t2 * t));
@@ -41,7 +44,8 @@ HIMC_RT static inline himc_target himc_quintic_at(const himc_quintic *q, double 
 {
     himc_target s = {q->c[5], {0, 0, 0}, {0, 0, 0}};
     for (int i = 4; i >= 0; i--) {
-        s.a = himc_vec3_madd(s.v, t, s.a); // Horner's rule for the value and its first two derivatives (a / 2)
+        s.a = himc_vec3_madd(
+            s.v, t, s.a); // Horner's rule for the value and its first two derivatives (a / 2)
         s.v = himc_vec3_madd(s.x, t, s.v);
         s.x = himc_vec3_madd(q->c[i], t, s.x);
     }

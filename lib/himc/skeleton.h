@@ -1,8 +1,10 @@
-/// skeleton.h: the performer's body as a constant table: 20 rigid segments in a tree of 19 ball joints (57 degrees of
-/// freedom), with masses, centres and inertias; sticks are segments like any other (2012 paper, section 3.1).
+/// skeleton.h: the performer's body as a constant table: 20 rigid segments in a tree of 19 ball
+/// joints (57 degrees of freedom), with masses, centres and inertias; sticks are segments like
+/// any other (2012 paper, section 3.1).
 ///
-/// Each segment's frame has its origin in the joint to its parent. In the zero pose the body stands, arms and sticks
-/// hanging, and all frames are parallel to the world's: x forward, y left, z up. Joint j joins segment j + 1 to its parent.
+/// Each segment's frame has its origin in the joint to its parent. In the zero pose the body
+/// stands, arms and sticks hanging, and all frames are parallel to the world's: x forward, y
+/// left, z up. Joint j joins segment j + 1 to its parent.
 #ifndef HIMC_SKELETON_H
 #define HIMC_SKELETON_H
 
@@ -40,19 +42,19 @@ typedef enum himc_segment_id {
 
 typedef enum himc_anthropometry {
     HIMC_DE_LEVA, ///< de Leva 1996, from height and mass
-    HIMC_TABLE_1  ///< 2012 paper, table 1: each row once per body, scaled to sum to one; inertias as de Leva
+    HIMC_TABLE_1  ///< 2012 paper, table 1: each row once per body, scaled to sum to one
 } himc_anthropometry;
 
 typedef struct himc_skeleton_config {
     double height; ///< 1.2 .. 2.2 (m), default 1.75
     double mass;   ///< 30 .. 200 (kg), default 75, sticks not counted
     himc_anthropometry anthropometry;
-    double stick_length;          ///< 0.2 .. 0.6 (m), default 0.36
-    double shaft_mass;            ///< 0.005 .. 0.2 (kg), default 0.025
-    double mallet_mass;           ///< 0.005 .. 0.2 (kg), default 0.020
-    double mallet_radius;         ///< 0.005 .. 0.05 (m), default 0.0175
-    double grip;                  ///< from the butt to where it is held (m), default 0.10
-    double seat;                  ///< height of the hip joints, on a stool (m); 0 takes 0.42 of the height
+    double stick_length;  ///< 0.2 .. 0.6 (m), default 0.36
+    double shaft_mass;    ///< 0.005 .. 0.2 (kg), default 0.025
+    double mallet_mass;   ///< 0.005 .. 0.2 (kg), default 0.020
+    double mallet_radius; ///< 0.005 .. 0.05 (m), default 0.0175
+    double grip;          ///< from the butt to where it is held (m), default 0.10
+    double seat;          ///< height of the hip joints, on a stool (m); 0 takes 0.42 of the height
     double length[HIMC_SEGMENTS]; ///< measured lengths (m); 0 takes them from the height
 } himc_skeleton_config;
 
@@ -78,7 +80,8 @@ typedef struct himc_skeleton {
 } himc_skeleton;
 
 /// Builds the table; false if a field is out of its range.
-bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *config, himc_error *error);
+bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *config,
+                        himc_error *error);
 
 /// "pelvis", "trunk", ..., "left-stick".
 const char *himc_segment_name(int segment);

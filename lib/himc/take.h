@@ -21,8 +21,8 @@ typedef struct himc_take_options {
     himc_up up;            ///< of the file's axes; AUTO asks the file, else guesses from the data
     const char *left_tip;  ///< name of the left stick tip's point, or NULL to look for it
     const char *right_tip; ///< the same, right
-    double longest_gap; ///< gaps of the tips up to this are interpolated (s) 0 .. 10, default 0.2
-    double unit;        ///< the file's (m) 1e-6 .. 10, or 0 (default): as the file says, or guessed
+    double longest_gap;    ///< gaps of the tips up to this are filled (s) 0 .. 10, default 0.2
+    double unit; ///< the file's (m) 1e-6 .. 10, or 0 (default): as the file says, or guessed
 } himc_take_options;
 
 himc_take_options himc_take_default(void);

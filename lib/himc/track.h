@@ -1,8 +1,9 @@
-/// track.h: plays the drumstick tips of a take: captured positions made into smooth targets that know of impacts.
+/// track.h: plays the drumstick tips of a take: captured positions made into smooth targets that
+/// know of impacts.
 ///
-/// A capture at 250 Hz contains the bounce and, filtered, a blunted impact. So each strike is cut out: before it the approach
-/// is carried on to the head, in contact control lets go, after it the motion starts from the tip as it really is and
-/// rejoins the capture.
+/// A capture at 250 Hz contains the bounce and, filtered, a blunted impact. So each strike is cut
+/// out: before it the approach is carried on to the head, in contact control lets go, after it
+/// the motion starts from the tip as it really is and rejoins the capture.
 #ifndef HIMC_TRACK_H
 #define HIMC_TRACK_H
 
@@ -11,14 +12,16 @@
 
 typedef struct himc_track himc_track;
 
-/// Builds the track of a take for a drum standing at `place`; the take is moved (not turned or scaled) so that its strikes
-/// fall on the head's usual spot. The take may be freed afterwards. NULL if it has no tips or a gap too long.
-himc_track *himc_track_new(himc_take *take, const himc_take_options *options, const himc_place *place,
-                           double mallet_radius, himc_error *error);
+/// Builds the track of a take for a drum standing at `place`; the take is moved (not turned or
+/// scaled) so that its strikes fall on the head's usual spot. The take may be freed afterwards.
+/// NULL if it has no tips or a gap too long.
+himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
+                           const himc_place *place, double mallet_radius, himc_error *error);
 void himc_track_free(himc_track *track);
 
 /// Before its first frame the tip comes from `now` on a quintic of `duration` seconds.
-HIMC_RT void himc_track_approach(himc_track *track, himc_hand hand, const himc_target *now, double duration);
+HIMC_RT void himc_track_approach(himc_track *track, himc_hand hand, const himc_target *now,
+                                 double duration);
 /// At `t` the tips, now moving as given, leave the take and come to rest.
 HIMC_RT void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HANDS]);
 /// Forgets the strikes already played, to play it again.
@@ -32,12 +35,15 @@ double himc_track_length(const himc_track *track);
 /// Strikes found for that hand.
 int himc_track_strikes(const himc_track *track, himc_hand hand);
 
-/// State of the tip at `t` (s from the take's start): on its approach before it, at rest soon after its end.
+/// State of the tip at `t` (s from the take's start): on its approach before it, at rest soon
+/// after its end.
 HIMC_RT himc_target himc_track_target(const himc_track *track, himc_hand hand, double t);
-/// Time of the strike that hand is on or comes to at `t`, and where on the head; false if there is none ahead.
-HIMC_RT bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time, double *x,
-                                double *y);
+/// Time of the strike that hand is on or comes to at `t`, and where on the head; false if there
+/// is none ahead.
+HIMC_RT bool himc_track_current(const himc_track *track, himc_hand hand, double t,
+                                double *contact_time, double *x, double *y);
 /// The tip left the head at `t` in this state: a quintic of 40 ms leads back to the capture.
-HIMC_RT void himc_track_separated(himc_track *track, himc_hand hand, double t, const himc_target *measured);
+HIMC_RT void himc_track_separated(himc_track *track, himc_hand hand, double t,
+                                  const himc_target *measured);
 
 #endif

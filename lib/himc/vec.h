@@ -1,7 +1,8 @@
 /// vec.h: vectors, quaternions (w, x, y, z) and 3x3 matrices; values, inline, HIMC_RT throughout.
 ///
-/// A unit quaternion q turns the vector v by q v q^-1. Rotation vectors are axis times angle (rad): the log here is the
-/// full angle, twice the half-angle logarithm of the 2012 paper's algorithm 1.
+/// A unit quaternion q turns the vector v by q v q^-1. Rotation vectors are axis times angle
+/// (rad): the log here is the full angle, twice the half-angle logarithm of the 2012 paper's
+/// algorithm 1.
 #ifndef HIMC_VEC_H
 #define HIMC_VEC_H
 
@@ -190,7 +191,8 @@ static inline himc_mat3 himc_mat3_inverse_symmetric(const himc_mat3 *a)
     double c12 = a->m[0][1] * a->m[0][2] - a->m[0][0] * a->m[1][2];
     double c22 = a->m[0][0] * a->m[1][1] - a->m[0][1] * a->m[0][1];
     double s = 1 / (a->m[0][0] * c00 + a->m[0][1] * c01 + a->m[0][2] * c02);
-    return (himc_mat3){{{c00 * s, c01 * s, c02 * s}, {c01 * s, c11 * s, c12 * s}, {c02 * s, c12 * s, c22 * s}}};
+    return (himc_mat3){
+        {{c00 * s, c01 * s, c02 * s}, {c01 * s, c11 * s, c12 * s}, {c02 * s, c12 * s, c22 * s}}};
 }
 
 #endif

@@ -44,7 +44,7 @@ static const double WEIGHT[5] = {0.2955242247147529, 0.2692667193099963, 0.21908
 
 static double slope(int m, double z)
 {
-    return m > 0 ? 0.5 * (bessel_j(m - 1, z) - bessel_j(m + 1, z)) : -bessel_j(1, z);
+    return m > 0 ? 0.5 * (himc_bessel_j(m - 1, z) - himc_bessel_j(m + 1, z)) : -himc_bessel_j(1, z);
 }
 
 // J_m' changes sign once in the interval
@@ -68,17 +68,17 @@ void himc_air_order_make(himc_air_order *order, int m)
     for (int s = 0; s < HIMC_AIR_CAVITY; s++) {
         // beta_s lies before j_ms, and after j_m,s-1; for m = 0 the first is 0
         double before = zero;
-        zero = bessel_zero(m, s + 1);
+        zero = himc_bessel_zero(m, s + 1);
         if (s < SIZE) {
             order->alpha[s] = zero;
-            order->next[s] = bessel_j(m + 1, zero);
+            order->next[s] = himc_bessel_j(m + 1, zero);
         }
         order->beta[s] = m == 0 && s == 0 ? 0 : slope_zero(m, before, zero);
     }
     for (int s = 0; s < HIMC_AIR_CAVITY; s++) {
         double b = order->beta[s];
         double norm = b > 0 ? (1 - m * m / (b * b)) / 2 : 0.5; // n_s/J_m(beta_s)^2
-        double sign = bessel_j(m, b) < 0 ? -1 : 1;
+        double sign = himc_bessel_j(m, b) < 0 ? -1 : 1;
         for (int n = 0; n < SIZE; n++) {
             double a = order->alpha[n];
             order->share[s][n] = sign * a * order->next[n] / ((a * a - b * b) * sqrt(norm));
@@ -89,7 +89,7 @@ void himc_air_order_make(himc_air_order *order, int m)
 // W_n(kap) of all n
 static void hankel(const himc_air_order *order, double kap, double *w)
 {
-    double j = bessel_j(order->m, kap);
+    double j = himc_bessel_j(order->m, kap);
     for (int n = 0; n < SIZE; n++) {
         double a = order->alpha[n];
         bool limit = fabs(kap - a) < 1e-6;

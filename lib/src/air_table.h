@@ -11,12 +11,17 @@
 #define HIMC_AIR_TABLE_LOW 800.0   ///< tension (N/m)
 #define HIMC_AIR_TABLE_HIGH 12000.0
 #define HIMC_AIR_KETTLE_SHAPE 3.967 ///< V/a^3
-#define HIMC_AIR_FLOOR 1e-9         ///< added to delta a/c before its logarithm is taken
+#define HIMC_AIR_FLOOR 1e-8         ///< added to delta a/c before its logarithm is taken
+#define HIMC_AIR_RATIO_UNIT 1e-4    ///< of ln(f/f_bare)
+#define HIMC_AIR_DECAY_UNIT 2e-3    ///< of ln(delta a/c + floor)
+
+/// Entries of a table, and where the row of mode (m, n + 1) of a drum begins.
+#define HIMC_AIR_ENTRIES (HIMC_AIR_DRUMS * HIMC_AIR_ORDERS * HIMC_AIR_RANKS * HIMC_AIR_NODES)
+#define HIMC_AIR_ROW(drum, m, n) \
+    ((((drum)*HIMC_AIR_ORDERS + (m)) * HIMC_AIR_RANKS + (n)) * HIMC_AIR_NODES)
 
 extern const double himc_air_radius[HIMC_AIR_DRUMS]; ///< (m)
-/// 1e5 ln(f/f_bare) and 1e3 ln(delta a/c + HIMC_AIR_FLOOR).
-extern const int himc_air_ratio[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES];
-extern const int himc_air_decay[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES];
+extern const short himc_air_ratio[HIMC_AIR_ENTRIES], himc_air_decay[HIMC_AIR_ENTRIES];
 
 /// Added mass of a mode at rest per rho a and area, outside and in the kettle (without its change of volume).
 extern const double himc_air_outer[HIMC_AIR_ORDERS][HIMC_AIR_RANKS];

@@ -22,7 +22,7 @@ static void rescale(double *j, int from, int top, double factor)
         j[k] *= factor;
 }
 
-void bessel_orders(double z, int top, double *j)
+void himc_bessel_orders(double z, int top, double *j)
 {
     for (int k = 0; k <= top; k++)
         j[k] = 0;
@@ -81,7 +81,7 @@ static void with_slope(int m, double z, double *value, double *slope)
     *slope = before / sum - m / z * *value;
 }
 
-double bessel_j(int m, double z)
+double himc_bessel_j(int m, double z)
 {
     if (!(z > 1e-30))
         return m == 0 ? 1 : 0;
@@ -90,9 +90,9 @@ double bessel_j(int m, double z)
     return value;
 }
 
-double bessel_zero_between(int m, double low, double high)
+double himc_bessel_zero_between(int m, double low, double high)
 {
-    double value, slope, sign = bessel_j(m, low), z = 0.5 * (low + high);
+    double value, slope, sign = himc_bessel_j(m, low), z = 0.5 * (low + high);
     for (int i = 0; i < 80; i++) {
         with_slope(m, z, &value, &slope);
         if (value == 0)
@@ -111,13 +111,13 @@ double bessel_zero_between(int m, double low, double high)
     return z;
 }
 
-double bessel_zero(int m, int n)
+double himc_bessel_zero(int m, int n)
 {
-    double low = m > 0 ? m : 0.5, before = bessel_j(m, low);
+    double low = m > 0 ? m : 0.5, before = himc_bessel_j(m, low);
     for (;;) {
-        double high = low + 1.5, after = bessel_j(m, high);
+        double high = low + 1.5, after = himc_bessel_j(m, high);
         if ((before > 0) != (after > 0) && --n == 0)
-            return bessel_zero_between(m, low, high);
+            return himc_bessel_zero_between(m, low, high);
         low = high;
         before = after;
     }

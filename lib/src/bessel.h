@@ -4,15 +4,19 @@
 #define HIMC_BESSEL_H
 
 /// J_0(z) .. J_top(z) into `j` (top + 1), z >= 0; absolute error about 1e-15.
-void bessel_orders(double z, int top, double *j);
+void himc_bessel_orders(double z, int top, double *j);
 
 /// J_m(z), m >= 0, z >= 0.
-double bessel_j(int m, double z);
+double himc_bessel_j(int m, double z);
 
 /// The n-th positive zero of J_m (m >= 0, n >= 1), to about 1e-15 relative.
-double bessel_zero(int m, int n);
+double himc_bessel_zero(int m, int n);
 
 /// The zero of J_m in [low, high], which must hold exactly one.
-double bessel_zero_between(int m, double low, double high);
+double himc_bessel_zero_between(int m, double low, double high);
+
+// short names inside the library
+#define bessel_j himc_bessel_j
+#define bessel_zero himc_bessel_zero
 
 #endif

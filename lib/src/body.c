@@ -1,8 +1,9 @@
 /// body.c: which pairs of points are the ends of which segment, and how far they lie apart.
 ///
-/// A skeleton file says lengths outright (a joint's offset from its parent); of markers the median over all frames is
-/// taken, so that gaps and a few bad frames do not count. Arms are measured one by one; what only one side shows holds
-/// for the other, since players are nearly symmetric and a capture of one hand is common.
+/// A skeleton file says lengths outright (a joint's offset from its parent); of markers the
+/// median over all frames is taken, so that gaps and a few bad frames do not count. Arms are
+/// measured one by one; what only one side shows holds for the other, since players are nearly
+/// symmetric and a capture of one hand is common.
 #include "himc/body.h"
 
 #include <stdio.h>
@@ -11,10 +12,10 @@
 #define NAMES 4
 
 typedef struct pair {
-    int segment;                   // of the left side
-    const char *from[NAMES];       // joint at the body's side, without left or right
-    const char *to[NAMES];         // joint at the far side
-    double usual;                  // (m)
+    int segment;             // of the left side
+    const char *from[NAMES]; // joint at the body's side, without left or right
+    const char *to[NAMES];   // joint at the far side
+    double usual;            // (m)
 } pair;
 
 static const pair pairs[] = {
@@ -27,7 +28,8 @@ static const pair pairs[] = {
 };
 
 // "LeftElbow", "LElbow", or "Elbow" for a take that names no sides
-static int find_joint(const himc_take *take, const char *const names[NAMES], const char *const sides[3])
+static int find_joint(const himc_take *take, const char *const names[NAMES],
+                      const char *const sides[3])
 {
     char name[64];
     for (int s = 0; s < 3; s++)
@@ -90,7 +92,8 @@ int himc_body_measure(const himc_take *take, himc_skeleton_config *config)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             double l = length[hand] > 0 ? length[hand] : length[1 - hand];
             if (l > 0 && pairs[i].segment == HIMC_LEFT_STICK)
-                config->stick_length = config->grip + l + config->mallet_radius; // both sticks are alike
+                config->stick_length =
+                    config->grip + l + config->mallet_radius; // both sticks are alike
             else if (l > 0)
                 config->length[pairs[i].segment + hand] = l;
         }

@@ -1,9 +1,11 @@
-/// character.c: 19 ODE bodies for the segments beyond the pelvis, 19 ball joints, one loop over the table.
+/// character.c: 19 ODE bodies for the segments beyond the pelvis, 19 ball joints, one loop over
+/// the table.
 ///
-/// A body's frame is its segment's, moved to the centre of mass, where ODE wants it. The pelvis is ODE's world (body 0), so
-/// trunk and legs are islands of their own and cost the sum of their small systems. dWorldStep (not QuickStep: that one
-/// draws random numbers) repeats to the bit. ODE aborts the process on a bad mass, so the skeleton has been checked
-/// before; it takes NaN silently, so himc_performance checks the state after each step.
+/// A body's frame is its segment's, moved to the centre of mass, where ODE wants it. The pelvis
+/// is ODE's world (body 0), so trunk and legs are islands of their own and cost the sum of their
+/// small systems. dWorldStep (not QuickStep: that one draws random numbers) repeats to the bit.
+/// ODE aborts the process on a bad mass, so the skeleton has been checked before; it takes NaN
+/// silently, so himc_performance checks the state after each step.
 #include "himc/character.h"
 
 #include <ode/ode.h>
@@ -22,8 +24,8 @@ static void make_body(himc_character *c, int i)
     const himc_segment *segment = &c->skeleton.segment[i];
     dMass mass;
     c->body[i] = dBodyCreate(c->world);
-    dMassSetParameters(&mass, segment->mass, 0, 0, 0, segment->inertia.x, segment->inertia.y, segment->inertia.z, 0, 0,
-                       0);
+    dMassSetParameters(&mass, segment->mass, 0, 0, 0, segment->inertia.x, segment->inertia.y,
+                       segment->inertia.z, 0, 0, 0);
     dBodySetMass(c->body[i], &mass);
     dBodySetAutoDisableFlag(c->body[i], 0);
     dBodySetGyroscopicMode(c->body[i], 1);
@@ -56,7 +58,8 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     himc_character_place(c, &state);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         make_joint(c, i, &state);
-    // the engine allocates its working memory in the first step: take it here, not in the audio callback
+    // the engine allocates its working memory in the first step: take it here, not in the audio
+    // callback
     static const himc_vec3 none[HIMC_JOINTS];
     himc_character_step(c, none, none, 1e-4);
     himc_character_place(c, &state);
@@ -73,7 +76,8 @@ void himc_character_free(himc_character *c)
 }
 
 // velocity of each joint's centre, by summing w x r outwards
-static void origin_velocities(const himc_skeleton *skeleton, const himc_body_state *s, himc_vec3 v[HIMC_SEGMENTS])
+static void origin_velocities(const himc_skeleton *skeleton, const himc_body_state *s,
+                              himc_vec3 v[HIMC_SEGMENTS])
 {
     v[0] = himc_vec3_make(0, 0, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
@@ -93,7 +97,8 @@ void himc_character_place(himc_character *c, const himc_body_state *state)
         himc_vec3 center = himc_mat3_apply(&s.rotation[i], c->skeleton.segment[i].center);
         himc_vec3 x = himc_vec3_add(s.origin[i], center);
         himc_vec3 u = himc_vec3_add(v[i], himc_vec3_cross(s.spin[i], center));
-        const dQuaternion q = {s.orientation[i].w, s.orientation[i].x, s.orientation[i].y, s.orientation[i].z};
+        const dQuaternion q = {s.orientation[i].w, s.orientation[i].x, s.orientation[i].y,
+                               s.orientation[i].z};
         dBodySetPosition(c->body[i], x.x, x.y, x.z);
         dBodySetQuaternion(c->body[i], q);
         dBodySetLinearVel(c->body[i], u.x, u.y, u.z);
@@ -150,13 +155,14 @@ static void apply_torques(himc_character *c, const himc_vec3 torque[HIMC_JOINTS]
         dBodyAddTorque(c->body[i], sum[i].x, sum[i].y, sum[i].z);
 }
 
-void himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS], const himc_vec3 tip_force[HIMC_HANDS],
-                         double h)
+void himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
+                         const himc_vec3 tip_force[HIMC_HANDS], double h)
 {
     apply_torques(c, torque);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int i = himc_stick_segment((himc_hand)hand);
-        himc_vec3 f = tip_force[hand], at = himc_vec3_sub(c->skeleton.tip, c->skeleton.segment[i].center);
+        himc_vec3 f = tip_force[hand],
+                  at = himc_vec3_sub(c->skeleton.tip, c->skeleton.segment[i].center);
         if (f.x != 0 || f.y != 0 || f.z != 0)
             dBodyAddForceAtRelPos(c->body[i], f.x, f.y, f.z, at.x, at.y, at.z);
     }

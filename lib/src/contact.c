@@ -90,7 +90,7 @@ static void strike_rigid(himc_stick *stick, double h)
                  .c0 = -stick->height,
                  .b = -h * (stick->velocity + 0.5 * h * stick->acceleration),
                  .guess = stick->force};
-    meetings_solve(&m, 1, g, h);
+    himc_meetings_solve(&m, 1, g, h);
     move(stick, m.force, h);
     hold(stick, stick->height < 0);
 }
@@ -108,7 +108,7 @@ static meeting meet(const himc_membrane *m, const near *n, double from, double h
                      .alpha = s->head.exponent,
                      .mu = s->head.loss,
                      .c0 = n->before - from,
-                     .b = spot_displacement(m, n->spot) - n->before - (to - from),
+                     .b = himc_spot_displacement(m, n->spot) - n->before - (to - from),
                      .guess = s->one_way ? 0 : s->force};
 }
 
@@ -121,7 +121,7 @@ static void compliances(const himc_membrane *m, const near *nears, int count, do
         double own = s->one_way ? 1e-12 * nears[i].spot->compliance + 1e-30 : 0.5 * h * h / s->mass;
         g[i][i] = nears[i].spot->compliance + own;
         for (int j = 0; j < i; j++)
-            g[i][j] = g[j][i] = spot_compliance(m, nears[i].spot, nears[j].spot);
+            g[i][j] = g[j][i] = himc_spot_compliance(m, nears[i].spot, nears[j].spot);
     }
 }
 
@@ -140,17 +140,17 @@ static void step_near(himc_membrane *membrane, near *nears, int count, double h)
     }
     if (!apart)
         compliances(membrane, nears, count, g, h);
-    meetings_solve(meetings, count, g, h);
+    himc_meetings_solve(meetings, count, g, h);
     for (int i = 0; i < count; i++) {
         himc_stick *s = nears[i].stick;
-        spot_apply(membrane, nears[i].spot, -meetings[i].force);
+        himc_spot_apply(membrane, nears[i].spot, -meetings[i].force);
         if (!s->one_way)
             move(s, meetings[i].force, h);
     }
     for (int i = 0; i < count; i++)
         if (!nears[i].stick->one_way)
             hold(nears[i].stick,
-                 spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
+                 himc_spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
 }
 
 void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
@@ -165,10 +165,10 @@ void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int c
             continue;
         }
         double x = s->touching ? s->touch_x : s->x, y = s->touching ? s->touch_y : s->y;
-        spot *place = membrane_spot(membrane, x, y);
-        nears[near_count++] = (near){s, place, spot_displacement(membrane, place)};
+        spot *place = himc_membrane_spot(membrane, x, y);
+        nears[near_count++] = (near){s, place, himc_spot_displacement(membrane, place)};
     }
-    membrane_free_step(membrane);
+    himc_membrane_free_step(membrane);
     if (near_count > 0)
         step_near(membrane, nears, near_count, h);
 }
@@ -180,5 +180,5 @@ double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stic
     double c = stick->one_way ? -stick->height
                               : himc_membrane_displacement(membrane, x, y) - stick->height;
     return 0.5 * stick->mass * stick->velocity * stick->velocity +
-           meeting_potential(stick->head.stiffness, stick->head.exponent, c);
+           himc_meeting_potential(stick->head.stiffness, stick->head.exponent, c);
 }

@@ -1,15 +1,16 @@
-/// controller.c: two stages. Errors: for each joint what is missing in angle and rate, and the acceleration fed
-/// forward. Law: what torque that makes.
+/// controller.c: two stages. Errors: for each joint what is missing in angle and rate, and the
+/// acceleration fed forward. Law: what torque that makes.
 ///
 /// In `id` the errors are those to the joint targets. In `himc` an arm's come from its tip alone,
-///     dq = J+ (X_t - X),  q'_t = J+ X'_t,  q''_t = J+ (X''_t - J' q')       (equation 3 and its derivatives)
-/// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q', `feedforward`
-/// tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse
-/// dynamics. While a stick touches the head all three let go of the normal: the rebound is the physics'.
+///     dq = J+ (X_t - X),  q'_t = J+ X'_t,  q''_t = J+ (X''_t - J' q') (equation 3, differentiated)
+/// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q',
+/// `feedforward` tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t
+/// - q') + w^2 dq through inverse dynamics. While a stick touches the head all three let go of
+/// the normal: the rebound is the physics'.
 #include "himc/controller.h"
 
-#define PD_STIFFER 3.0       // the default gains' frequencies above the table's
-#define LARGEST_STEP 0.05    // of the tip, one step of inverse kinematics (m)
+#define PD_STIFFER 3.0    // the default gains' frequencies above the table's
+#define LARGEST_STEP 0.05 // of the tip, one step of inverse kinematics (m)
 
 typedef struct errors {
     himc_vec3 angle[HIMC_JOINTS];        // dq (rad)
@@ -23,8 +24,8 @@ static himc_vec3 relative_spin(const himc_skeleton *skeleton, const himc_body_st
 }
 
 // errors to the joint targets, turned from the parent's frame into the world
-static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s, const himc_posture_motion *target,
-                         errors *e)
+static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s,
+                         const himc_posture_motion *target, errors *e)
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
         int p = skeleton->segment[j + 1].parent;
@@ -33,8 +34,9 @@ static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s
         himc_vec3 wanted = himc_mat3_apply(&s->rotation[p], target->rate[j]);
         e->angle[j] = himc_mat3_apply(&s->rotation[p], missing);
         e->rate[j] = himc_vec3_sub(wanted, relative_spin(skeleton, s, j));
-        e->acceleration[j] = himc_vec3_add(himc_mat3_apply(&s->rotation[p], target->acceleration[j]),
-                                           himc_vec3_cross(s->spin[p], wanted));
+        e->acceleration[j] =
+            himc_vec3_add(himc_mat3_apply(&s->rotation[p], target->acceleration[j]),
+                          himc_vec3_cross(s->spin[p], wanted));
     }
 }
 
@@ -56,9 +58,10 @@ static void scatter_arm(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand, hi
         all[himc_arm_joint(hand, k)] = arm[k];
 }
 
-// the tip's demand through the Jacobian, the posture's in the null space; `demand` is linear in all of it
-static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jacobian, himc_hand hand, himc_vec3 demand,
-                         himc_vec3 *all)
+// the tip's demand through the Jacobian, the posture's in the null space; `demand` is linear in
+// all of it
+static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jacobian,
+                         himc_hand hand, himc_vec3 demand, himc_vec3 *all)
 {
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     gather_arm(all, hand, posture);
@@ -67,9 +70,10 @@ static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jaco
     scatter_arm(solution, hand, all);
 }
 
-// tip acceleration that the arm's joints must make: the target's, less what the state's spins and the trunk make already
-static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
-                                   const errors *e, himc_vec3 wanted)
+// tip acceleration that the arm's joints must make: the target's, less what the state's spins and
+// the trunk make already
+static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
+                                   himc_hand hand, const errors *e, himc_vec3 wanted)
 {
     himc_vec3 others[HIMC_JOINTS];
     for (int j = 0; j < HIMC_JOINTS; j++)
@@ -80,8 +84,9 @@ static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_bod
 }
 
 // equation 3: replaces the arm's joint errors by those that its tip asks for
-static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
-                       const himc_target *target, himc_hand hand, const himc_arm_jacobian *jacobian, errors *e)
+static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
+                       const himc_body_state *s, const himc_target *target, himc_hand hand,
+                       const himc_arm_jacobian *jacobian, errors *e)
 {
     himc_vec3 missing = clamp_length(himc_vec3_sub(target->x, s->tip[hand]), LARGEST_STEP);
     himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
@@ -101,7 +106,8 @@ static void release_normal(const himc_skeleton *skeleton, const himc_body_state 
         himc_ik_release(jacobian, normal, 0, arm);
         scatter_arm(arm, hand, parts[i]);
     }
-    double free = himc_vec3_dot(normal, acceleration_left(skeleton, s, hand, e, himc_vec3_make(0, 0, 0)));
+    double free =
+        himc_vec3_dot(normal, acceleration_left(skeleton, s, hand, e, himc_vec3_make(0, 0, 0)));
     gather_arm(e->acceleration, hand, arm);
     himc_ik_release(jacobian, normal, free, arm);
     scatter_arm(arm, hand, e->acceleration);
@@ -110,12 +116,13 @@ static void release_normal(const himc_skeleton *skeleton, const himc_body_state 
 static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3 v)
 {
     himc_vec3 local = himc_mat3_apply_transposed(rotation, v);
-    return himc_mat3_apply(rotation, himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
+    return himc_mat3_apply(rotation,
+                           himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
 }
 
 // equation 2, with the target's velocity and gravity fed forward or not
-static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
-                          const errors *e, himc_vec3 torque[HIMC_JOINTS])
+static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *s, const errors *e, himc_vec3 torque[HIMC_JOINTS])
 {
     bool printed = c->law == HIMC_LAW_PRINTED;
     if (printed)
@@ -130,8 +137,10 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
     }
 }
 
-// w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over the inertia
-static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j, const errors *e)
+// w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
+// the inertia
+static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
+                          const errors *e)
 {
     double w = 2 * HIMC_PI * c->bandwidth;
     if (!c->gain_set[j])
@@ -139,11 +148,13 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
     himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
     const himc_mat3 *r = &s->rotation[j + 1];
     himc_vec3 a = scale_axes(r, himc_vec3_make(ks.x / i.x, ks.y / i.y, ks.z / i.z), e->angle[j]);
-    return himc_vec3_add(a, scale_axes(r, himc_vec3_make(kd.x / i.x, kd.y / i.y, kd.z / i.z), e->rate[j]));
+    return himc_vec3_add(
+        a, scale_axes(r, himc_vec3_make(kd.x / i.x, kd.y / i.y, kd.z / i.z), e->rate[j]));
 }
 
-static void computed_torques(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
-                             const errors *e, himc_vec3 torque[HIMC_JOINTS])
+static void computed_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                             const himc_body_state *s, const errors *e,
+                             himc_vec3 torque[HIMC_JOINTS])
 {
     himc_vec3 wanted[HIMC_JOINTS];
     for (int j = 0; j < HIMC_JOINTS; j++)
@@ -158,8 +169,9 @@ static void forget_target_rates(const himc_skeleton *skeleton, const himc_body_s
         e->rate[j] = himc_vec3_scale(relative_spin(skeleton, s, j), -1);
 }
 
-void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
-                             const himc_reference *reference, himc_vec3 torque[HIMC_JOINTS])
+void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                             const himc_body_state *s, const himc_reference *reference,
+                             himc_vec3 torque[HIMC_JOINTS])
 {
     errors e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
@@ -173,7 +185,8 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         forget_target_rates(skeleton, s, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (reference->released[hand])
-            release_normal(skeleton, s, (himc_hand)hand, &jacobian[hand], reference->normal[hand], &e);
+            release_normal(skeleton, s, (himc_hand)hand, &jacobian[hand], reference->normal[hand],
+                           &e);
     if (c->law == HIMC_LAW_COMPUTED_TORQUE)
         computed_torques(c, skeleton, s, &e, torque);
     else
@@ -192,7 +205,8 @@ static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_
         if (up != joint + 1)
             continue;
         const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 c = himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], segment->center));
+        himc_vec3 c =
+            himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], segment->center));
         himc_vec3 r = himc_vec3_sub(c, s->origin[joint + 1]);
         for (int k = 0; k < 3; k++) {
             himc_vec3 axis = {axes->m[0][k], axes->m[1][k], axes->m[2][k]};
@@ -213,13 +227,15 @@ static double servo_frequency(int joint)
     return PD_STIFFER * (is_arm ? arm[k] : 5);
 }
 
-void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *posture)
+void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *posture)
 {
     *c = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .bandwidth = 20};
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const himc_segment *segment = &skeleton->segment[j + 1];
         himc_vec3 i = hanging_inertia(skeleton, posture, j);
-        // about its own length a segment meets its own small inertia first: explicit servos must respect it
+        // about its own length a segment meets its own small inertia first: explicit servos must
+        // respect it
         if (fabs(segment->axis.z) > 0.5)
             i.z = fmin(i.z, segment->inertia.z);
         double w = 2 * HIMC_PI * servo_frequency(j);

@@ -44,7 +44,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     snprintf(drum->name, sizeof drum->name, "%s", name);
     drum->references = 1;
     drum->membrane = membrane;
-    drum_mallet_preset("medium", &drum->mallet);
+    himc_drum_mallet_preset("medium", &drum->mallet);
     snprintf(drum->mallet_name, sizeof drum->mallet_name, "medium");
     drum->place = (himc_place){.center = {0.70, 0, 0.85}, .radius = head.radius};
     drum->rate = sample_rate;
@@ -183,13 +183,13 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     double force = outside_force(o, o->at);
     if (force != 0)
         himc_membrane_push(drum->membrane, drum->spot_x, drum->spot_y, force);
-    int count = given + drum_add_mallets(drum, all + given);
+    int count = given + himc_drum_add_mallets(drum, all + given);
     himc_contact_step(drum->membrane, all, count);
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
     keep(drum, himc_membrane_heard(drum->membrane), himc_membrane_seen(drum->membrane));
-    drum_follow_mallets(drum);
+    himc_drum_follow_mallets(drum);
 }
 
 void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count,
@@ -200,11 +200,11 @@ void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int st
     for (int i = 0; i < stick_count; i++)
         all[i] = sticks[i];
     while (o.at < n) {
-        drum_launch(drum);
+        himc_drum_launch(drum);
         move_spot(drum, &o);
-        bool alone = drum_add_mallets(drum, all + stick_count) == 0;
+        bool alone = himc_drum_add_mallets(drum, all + stick_count) == 0;
         int run = alone ? outside_quiet(drum, &o) : 0;
-        run = drum_until_launch(drum, run < CHUNK ? run : CHUNK);
+        run = himc_drum_until_launch(drum, run < CHUNK ? run : CHUNK);
         run = himc_contact_clear(drum->membrane, all, stick_count, run);
         if (run > 0)
             run_clear(drum, run, all, stick_count, forces, o.at);

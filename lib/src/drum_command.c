@@ -22,7 +22,7 @@ static const struct {
     {"wood", {.stiffness = 1e10, .exponent = 2.5, .loss = 0.02, .mass = 0.030, .radius = 0.0175}},
 };
 
-bool drum_mallet_preset(const char *name, himc_mallet_head *head)
+bool himc_drum_mallet_preset(const char *name, himc_mallet_head *head)
 {
     for (size_t i = 0; i < sizeof presets / sizeof presets[0]; i++) {
         if (strcmp(presets[i].name, name) == 0) {
@@ -129,7 +129,7 @@ static bool set_mallet(himc_drum *drum, const himc_command *c, himc_error *error
     const char *name = "own";
     if (is_symbol(c, 0)) {
         name = c->atom[0].symbol;
-        if (!drum_mallet_preset(name, &head))
+        if (!himc_drum_mallet_preset(name, &head))
             return himc_error_set(
                 error, "mallet: %s, allowed soft medium hard wood, or K ALPHA MASS", name);
     } else {
@@ -219,11 +219,11 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
     const himc_head *head = himc_membrane_head(drum->membrane);
     const himc_place *p = &drum->place;
     double principal = sqrt(head->tension / himc_head_tension_for(head, 1));
-    snprintf(
-        text, size,
-        "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, %d modes (%d audible), "
-        "mallet %s, at %.4g %.4g %.4g m",
-        drum->name, head->radius, head->tension, head->density, principal, head->modes,
-        himc_membrane_audible(drum->membrane), drum->mallet_name, p->center.x, p->center.y,
-        p->center.z);
+    snprintf(text, size,
+             "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
+             "%d modes (%d audible), "
+             "mallet %s, at %.4g %.4g %.4g m",
+             drum->name, head->radius, head->tension, head->density, principal, head->modes,
+             himc_membrane_audible(drum->membrane), drum->mallet_name, p->center.x, p->center.y,
+             p->center.z);
 }

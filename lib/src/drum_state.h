@@ -48,16 +48,16 @@ struct himc_drum {
 };
 
 /// Launches the strikes that are due while a mallet is free; the rest go on waiting.
-HIMC_RT void drum_launch(himc_drum *drum);
+HIMC_RT void himc_drum_launch(himc_drum *drum);
 /// Samples until the next strike is due, at most `most`; 0 when one is due and a mallet free for
 /// it.
-HIMC_RT int drum_until_launch(const himc_drum *drum, int most);
+HIMC_RT int himc_drum_until_launch(const himc_drum *drum, int most);
 /// Adds the mallets in use to `sticks`; returns how many.
-HIMC_RT int drum_add_mallets(himc_drum *drum, himc_stick **sticks);
+HIMC_RT int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks);
 /// Keeps the books of the mallets after a sample: touch, peak, impulse, and the end.
-HIMC_RT void drum_follow_mallets(himc_drum *drum);
+HIMC_RT void himc_drum_follow_mallets(himc_drum *drum);
 
 /// The preset's numbers; false if there is none of that name.
-bool drum_mallet_preset(const char *name, himc_mallet_head *head);
+bool himc_drum_mallet_preset(const char *name, himc_mallet_head *head);
 
 #endif

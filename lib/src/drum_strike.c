@@ -66,7 +66,7 @@ static void launch(himc_drum *drum, drum_mallet *m, const drum_waiting *w)
     m->report = (himc_contact_report){.x = w->x, .y = w->y, .velocity = w->velocity};
 }
 
-void drum_launch(himc_drum *drum)
+void himc_drum_launch(himc_drum *drum)
 {
     for (;;) {
         int next = earliest(drum);
@@ -78,7 +78,7 @@ void drum_launch(himc_drum *drum)
     }
 }
 
-int drum_until_launch(const himc_drum *drum, int most)
+int himc_drum_until_launch(const himc_drum *drum, int most)
 {
     int next = earliest(drum);
     if (next < 0 || drum->waiting[next].at >= drum->time + (uint64_t)most)
@@ -86,7 +86,7 @@ int drum_until_launch(const himc_drum *drum, int most)
     return drum->waiting[next].at > drum->time ? (int)(drum->waiting[next].at - drum->time) : 0;
 }
 
-int drum_add_mallets(himc_drum *drum, himc_stick **sticks)
+int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks)
 {
     int count = 0;
     for (int i = 0; i < HIMC_STICKS; i++)
@@ -127,7 +127,7 @@ static void follow(himc_drum *drum, drum_mallet *m)
         finish(drum, m);
 }
 
-void drum_follow_mallets(himc_drum *drum)
+void himc_drum_follow_mallets(himc_drum *drum)
 {
     for (int i = 0; i < HIMC_STICKS; i++)
         if (drum->mallets[i].used)

@@ -24,4 +24,17 @@ static inline double fade_at(const fade *f, int at)
     return u * u * ((1 + 2 * t) * f->step + t * f->length * f->slope);
 }
 
+// the last sample and the coming one without forces
+typedef struct sound {
+    double now, next;
+} sound;
+
+// makes up for a sound that was going to go on as `before` and goes on as `after`
+static inline fade fade_between(sound before, sound after, double rate)
+{
+    double step = before.next - after.next;
+    return (fade){
+        .step = step, .slope = step - (before.now - after.now), .length = (int)(FADE * rate) + 1};
+}
+
 #endif

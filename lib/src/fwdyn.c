@@ -1,11 +1,13 @@
 /// fwdyn.c: articulated bodies joined by ball joints, in world coordinates.
 ///
-/// Seen from its parent, a segment that hangs on a ball joint is just a 3 x 3 mass matrix at the joint, since a ball passes
-/// forces and, here, a known torque. With J the rotational inertia about the joint, H = m [c]x the moment for a unit
-/// acceleration of the joint and M the mass (each with the children's mass matrices A_c moved here),
+/// Seen from its parent, a segment that hangs on a ball joint is just a 3 x 3 mass matrix at the
+/// joint, since a ball passes forces and, here, a known torque. With J the rotational inertia
+/// about the joint, H = m [c]x the moment for a unit acceleration of the joint and M the mass
+/// (each with the children's mass matrices A_c moved here),
 ///     J alpha + H a = -n,   f = M a + H' alpha + p   =>   A = M - H' J^-1 H,   b = p - H' J^-1 n,
-/// where n and p gather centripetal terms, gravity, torques and forces (Featherstone 2008, chapter 7, for joints with
-/// three rotational freedoms). The legs hang on the held pelvis and never feel the arms, so they are left out.
+/// where n and p gather centripetal terms, gravity, torques and forces (Featherstone 2008,
+/// chapter 7, for joints with three rotational freedoms). The legs hang on the held pelvis and
+/// never feel the arms, so they are left out.
 #include "himc/invdyn.h"
 
 #define UPPER_END HIMC_LEFT_UPPER_LEG // segments 1 .. UPPER_END - 1 are trunk, neck, head and arms
@@ -47,8 +49,8 @@ static himc_mat3 transposed_mul(const himc_mat3 *a, const himc_mat3 *b)
 }
 
 // a segment's own J, H and M about its joint
-static void own_inertia(const himc_segment *segment, const himc_mat3 *rotation, himc_mat3 *j, himc_mat3 *h,
-                        himc_mat3 *m)
+static void own_inertia(const himc_segment *segment, const himc_mat3 *rotation, himc_mat3 *j,
+                        himc_mat3 *h, himc_mat3 *m)
 {
     himc_vec3 c = himc_mat3_apply(rotation, segment->center);
     himc_mat3 cx = cross_matrix(c), scaled = *rotation;
@@ -65,7 +67,8 @@ static void own_inertia(const himc_segment *segment, const himc_mat3 *rotation, 
     *m = (himc_mat3){{{segment->mass, 0, 0}, {0, segment->mass, 0}, {0, 0, segment->mass}}};
 }
 
-void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *s, himc_articulation *art)
+void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *s,
+                     himc_articulation *art)
 {
     himc_mat3 j[UPPER_END], h[UPPER_END], m[UPPER_END];
     for (int i = 1; i < UPPER_END; i++)
@@ -98,7 +101,8 @@ static bias own_bias(const himc_segment *segment, const himc_mat3 *rotation, him
 {
     himc_vec3 c = himc_mat3_apply(rotation, segment->center);
     himc_vec3 local = himc_mat3_apply_transposed(rotation, spin);
-    local = himc_vec3_make(local.x * segment->inertia.x, local.y * segment->inertia.y, local.z * segment->inertia.z);
+    local = himc_vec3_make(local.x * segment->inertia.x, local.y * segment->inertia.y,
+                           local.z * segment->inertia.z);
     bias b;
     b.force = centripetal(spin, c);
     b.force.z += HIMC_GRAVITY;
@@ -108,9 +112,11 @@ static bias own_bias(const himc_segment *segment, const himc_mat3 *rotation, him
     return b;
 }
 
-// inwards: what each segment asks of its joint; `alpha_free` is its angular acceleration if the joint stood still
-static void gather(const himc_skeleton *skeleton, const himc_body_state *s, const himc_articulation *art,
-                   const himc_vec3 *torque, bias b[], himc_vec3 alpha_free[])
+// inwards: what each segment asks of its joint; `alpha_free` is its angular acceleration if the
+// joint stood still
+static void gather(const himc_skeleton *skeleton, const himc_body_state *s,
+                   const himc_articulation *art, const himc_vec3 *torque, bias b[],
+                   himc_vec3 alpha_free[])
 {
     for (int i = UPPER_END - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
@@ -120,18 +126,21 @@ static void gather(const himc_skeleton *skeleton, const himc_body_state *s, cons
         if (p == HIMC_PELVIS)
             continue;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
-        himc_vec3 force = himc_vec3_add(b[i].force, himc_mat3_apply_transposed(&art->couple[i], alpha_free[i]));
+        himc_vec3 force =
+            himc_vec3_add(b[i].force, himc_mat3_apply_transposed(&art->couple[i], alpha_free[i]));
         if (torque) {
             b[p].moment = himc_vec3_add(b[p].moment, torque[i - 1]);
-            force = himc_vec3_add(force, himc_mat3_apply(&art->mass[i], centripetal(s->spin[p], r)));
+            force =
+                himc_vec3_add(force, himc_mat3_apply(&art->mass[i], centripetal(s->spin[p], r)));
         }
         b[p].force = himc_vec3_add(b[p].force, force);
         b[p].moment = himc_vec3_add(b[p].moment, himc_vec3_cross(r, force));
     }
 }
 
-void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state *s, const himc_articulation *art,
-                           const himc_vec3 *torque, const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS])
+void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_articulation *art, const himc_vec3 *torque,
+                           const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS])
 {
     bias b[UPPER_END] = {{{0, 0, 0}, {0, 0, 0}}};
     himc_vec3 alpha[UPPER_END] = {{0, 0, 0}}, a[UPPER_END] = {{0, 0, 0}};
@@ -151,20 +160,22 @@ void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state 
             a[i] = himc_vec3_add(a[p], himc_vec3_cross(alpha[p], r));
             a[i] = himc_vec3_add(a[i], centripetal(s->spin[p], r));
         }
-        himc_vec3 pulled = himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->couple[i], a[i]));
+        himc_vec3 pulled =
+            himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->couple[i], a[i]));
         alpha[i] = himc_vec3_sub(alpha[i], pulled);
         relative[i - 1] = himc_vec3_sub(alpha[i], alpha[p]);
     }
 }
 
 // the answer of the arm's chain to a unit force alone: same sweep, nothing but the force in it
-double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state *s, const himc_articulation *art,
-                           himc_hand hand, himc_vec3 n)
+double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_articulation *art, himc_hand hand, himc_vec3 n)
 {
     int chain[HIMC_SEGMENTS], count = 0;
     himc_vec3 alpha[HIMC_SEGMENTS], force = n, end = s->tip[hand], moment = {0, 0, 0};
     for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent) {
-        // `force` acts at `end`; nothing but it turns the segment about its joint, and the rest goes to the parent
+        // `force` acts at `end`; nothing but it turns the segment about its joint, and the rest
+        // goes to the parent
         moment = himc_vec3_cross(himc_vec3_sub(end, s->origin[i]), force);
         alpha[i] = himc_mat3_apply(&art->inverse[i], moment);
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->couple[i], alpha[i]));

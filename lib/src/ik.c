@@ -1,7 +1,9 @@
-/// ik.c: everything is a force f at the tip, three numbers, put through J': rotation_j = lever_j x f.
+/// ik.c: everything is a force f at the tip, three numbers, put through J': rotation_j = lever_j
+/// x f.
 ///
-/// Damped least squares f = (J J' + lambda^2)^-1 e; pseudo-inverse f = sum over singular values s_i > tol s_max of
-/// u_i (u_i . e) / s_i^2, from the eigenvectors of J J' (Jacobi rotations, always converging for 3 x 3).
+/// Damped least squares f = (J J' + lambda^2)^-1 e; pseudo-inverse f = sum over singular values
+/// s_i > tol s_max of u_i (u_i . e) / s_i^2, from the eigenvectors of J J' (Jacobi rotations,
+/// always converging for 3 x 3).
 #include "himc/ik.h"
 
 #define PINV_TOLERANCE 0.02 // singular values below this share of the largest are left out
@@ -29,7 +31,8 @@ void himc_arm_jacobian_at(const himc_body_state *s, himc_hand hand, himc_arm_jac
     jacobian->inverse = himc_mat3_inverse_symmetric(&g);
 }
 
-static void through_transpose(const himc_arm_jacobian *jacobian, himc_vec3 f, himc_vec3 rotation[HIMC_ARM_JOINTS])
+static void through_transpose(const himc_arm_jacobian *jacobian, himc_vec3 f,
+                              himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         rotation[k] = himc_vec3_cross(jacobian->lever[k], f);
@@ -88,8 +91,8 @@ static himc_vec3 truncated(const himc_mat3 *gram, himc_vec3 e)
     return f;
 }
 
-void himc_ik_solve(const himc_arm_jacobian *jacobian, himc_solver solver, double damping, himc_vec3 error,
-                   himc_vec3 rotation[HIMC_ARM_JOINTS])
+void himc_ik_solve(const himc_arm_jacobian *jacobian, himc_solver solver, double damping,
+                   himc_vec3 error, himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     himc_vec3 f;
     if (solver == HIMC_SOLVER_DLS) {
@@ -104,7 +107,8 @@ void himc_ik_solve(const himc_arm_jacobian *jacobian, himc_solver solver, double
     through_transpose(jacobian, f, rotation);
 }
 
-himc_vec3 himc_ik_forward(const himc_arm_jacobian *jacobian, const himc_vec3 rotation[HIMC_ARM_JOINTS])
+himc_vec3 himc_ik_forward(const himc_arm_jacobian *jacobian,
+                          const himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     himc_vec3 moved = {0, 0, 0};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)

@@ -1,9 +1,10 @@
 /// invdyn.c: recursive Newton-Euler for a tree of ball joints, in world coordinates.
 ///
-/// Outwards: alpha_c = alpha_p + relative_c, a_c = a_p + alpha_p x r + w_p x (w_p x r) for each joint; inwards: the force
-/// m (a_com - g) and moment I alpha + w x I w of each segment, and what its children ask, give the moment that its
-/// joint must pass. Three components a joint, so no axes: the torque is a vector in the world frame. Fwdyn.c is the
-/// mirror; a test puts the torques of one into the other and gets the accelerations back.
+/// Outwards: alpha_c = alpha_p + relative_c, a_c = a_p + alpha_p x r + w_p x (w_p x r) for each
+/// joint; inwards: the force m (a_com - g) and moment I alpha + w x I w of each segment, and what
+/// its children ask, give the moment that its joint must pass. Three components a joint, so no
+/// axes: the torque is a vector in the world frame. Fwdyn.c is the mirror; a test puts the
+/// torques of one into the other and gets the accelerations back.
 #include "himc/invdyn.h"
 
 typedef struct motion {
@@ -24,8 +25,8 @@ static himc_vec3 inertia_times(const himc_mat3 *rotation, himc_vec3 inertia, him
     return himc_mat3_apply(rotation, local);
 }
 
-static void outwards(const himc_skeleton *skeleton, const himc_body_state *s, const himc_vec3 *relative,
-                     const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
+static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
+                     const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
 {
     // gravity as an upward acceleration of the pelvis
     m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
@@ -37,8 +38,8 @@ static void outwards(const himc_skeleton *skeleton, const himc_body_state *s, co
     }
 }
 
-void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state *s, const himc_vec3 *relative,
-                           bool still, himc_vec3 torque[HIMC_JOINTS])
+void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
 {
     static const himc_vec3 no_spin[HIMC_SEGMENTS];
     const himc_vec3 *spin = still ? no_spin : s->spin;
@@ -58,13 +59,13 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
         torque[i - 1] = moment[i];
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[segment->parent]);
         force[segment->parent] = himc_vec3_add(force[segment->parent], force[i]);
-        moment[segment->parent] =
-            himc_vec3_add(moment[segment->parent], himc_vec3_add(moment[i], himc_vec3_cross(r, force[i])));
+        moment[segment->parent] = himc_vec3_add(
+            moment[segment->parent], himc_vec3_add(moment[i], himc_vec3_cross(r, force[i])));
     }
 }
 
-himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
-                                const himc_vec3 *relative)
+himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                himc_hand hand, const himc_vec3 *relative)
 {
     int chain[HIMC_SEGMENTS], count = 0;
     for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)

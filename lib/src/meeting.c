@@ -18,7 +18,7 @@
 
 #define STEPS 60
 
-double meeting_potential(double k, double alpha, double c)
+double himc_meeting_potential(double k, double alpha, double c)
 {
     return c > 0 ? k * pow(c, alpha + 1) / (alpha + 1) : 0;
 }
@@ -194,13 +194,13 @@ static void solve_together(meeting *meetings, int n, double (*g)[MEETINGS], doub
         meetings[i].force = s.force[i];
 }
 
-void meetings_solve(meeting *meetings, int count, double (*g)[MEETINGS], double h)
+void himc_meetings_solve(meeting *meetings, int count, double (*g)[MEETINGS], double h)
 {
     bool apart = true;
     for (int i = 0; i < count; i++) {
         meeting *m = &meetings[i];
         m->force = 0;
-        m->potential0 = meeting_potential(m->k, m->alpha, m->c0);
+        m->potential0 = himc_meeting_potential(m->k, m->alpha, m->c0);
         apart = apart && m->c0 <= 0 && m->c0 + m->b <= 0;
     }
     if (apart)

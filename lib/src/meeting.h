@@ -18,10 +18,10 @@ typedef struct meeting {
 } meeting;
 
 /// V(c) = k c^(alpha+1)/(alpha+1) for c > 0 (J).
-double meeting_potential(double k, double alpha, double c);
+double himc_meeting_potential(double k, double alpha, double c);
 
 /// Solves r_i = b_i - sum_j G_ij F_j(r_j); G (count x count, row stride MEETINGS) in m/N, symmetric
 /// positive.
-void meetings_solve(meeting *meetings, int count, double (*g)[MEETINGS], double h);
+void himc_meetings_solve(meeting *meetings, int count, double (*g)[MEETINGS], double h);
 
 #endif

@@ -120,7 +120,7 @@ static void aim_ear(himc_membrane *m)
     himc_modes_shapes(c->modes, m->head.radius, m->pickup.x, m->pickup.y, c->scratch);
     for (int i = 0; i < m->head.modes; i++) {
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        hearing h = pickup_hears(&m->pickup, &m->head, &mode, c->scratch[i]);
+        hearing h = himc_pickup_hears(&m->pickup, &m->head, &mode, c->scratch[i]);
         c->on_q[i] = h.displacement;
         c->on_v[i] = h.velocity;
         c->on_force[i] = h.force;
@@ -142,11 +142,6 @@ static void retune(himc_membrane *m)
     aim_watch(m);
 }
 
-// what the coming sample and the one that was sound like without forces
-typedef struct sound {
-    double now, next;
-} sound;
-
 static sound listen(const himc_membrane *m)
 {
     const core *c = &m->core;
@@ -158,21 +153,13 @@ static sound listen(const himc_membrane *m)
 static void splice(himc_membrane *m, sound before)
 {
     m->fade = (fade){0};
-    sound after = listen(m);
-    double step = before.next - after.next;
-    m->fade = (fade){.step = step,
-                     .slope = step - (before.now - after.now),
-                     .length = (int)ceil(FADE * m->rate)};
-}
-
-static bool check_rate(double rate, himc_error *error)
-{
-    return himc_check_range("sample rate", rate, 4000, 384000, "Hz", error);
+    m->fade = fade_between(before, listen(m), m->rate);
 }
 
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
 {
-    if (!himc_head_check(head, error) || !check_rate(rate, error))
+    if (!himc_head_check(head, error) ||
+        !himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
     if (!m || !core_new(&m->core, m->spots, head->modes, error)) {
@@ -229,7 +216,7 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
 
 bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup, himc_error *error)
 {
-    if (!pickup_check(pickup, &membrane->head, error))
+    if (!himc_pickup_check(pickup, &membrane->head, error))
         return false;
     sound before = listen(membrane);
     membrane->pickup = *pickup;
@@ -240,7 +227,7 @@ bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
 {
-    if (!check_rate(rate, error))
+    if (!himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
         return false;
     sound before = listen(membrane);
     before.next = before.now + (before.next - before.now) * (membrane->rate / rate);
@@ -304,7 +291,7 @@ static void place_spot(himc_membrane *m, spot *s, double x, double y)
     s->seen = himc_bank_response(c->bank, s->shape, &c->watch);
 }
 
-spot *membrane_spot(himc_membrane *membrane, double x, double y)
+spot *himc_membrane_spot(himc_membrane *membrane, double x, double y)
 {
     spot *oldest = &membrane->spots[0];
     for (int i = 0; i < SPOTS; i++) {
@@ -321,17 +308,17 @@ spot *membrane_spot(himc_membrane *membrane, double x, double y)
     return oldest;
 }
 
-double spot_displacement(const himc_membrane *membrane, const spot *s)
+double himc_spot_displacement(const himc_membrane *membrane, const spot *s)
 {
     return himc_bank_displacement(membrane->core.bank, &s->tap);
 }
 
-double spot_compliance(const himc_membrane *membrane, const spot *a, const spot *b)
+double himc_spot_compliance(const himc_membrane *membrane, const spot *a, const spot *b)
 {
     return himc_bank_response(membrane->core.bank, b->shape, &a->tap);
 }
 
-void spot_apply(himc_membrane *membrane, const spot *s, double force)
+void himc_spot_apply(himc_membrane *membrane, const spot *s, double force)
 {
     if (force == 0)
         return;
@@ -350,13 +337,13 @@ static void advance(himc_membrane *m, int n, double *heard, double *seen)
     m->seen = seen[n - 1];
 }
 
-void membrane_free_step(himc_membrane *membrane)
+void himc_membrane_free_step(himc_membrane *membrane)
 {
     double heard, seen;
     advance(membrane, 1, &heard, &seen);
     for (int i = 0; i < membrane->push_count; i++) {
         const push *p = &membrane->pushes[i];
-        spot_apply(membrane, membrane_spot(membrane, p->x, p->y), -p->force);
+        himc_spot_apply(membrane, himc_membrane_spot(membrane, p->x, p->y), -p->force);
     }
     membrane->push_count = 0;
 }
@@ -364,7 +351,7 @@ void membrane_free_step(himc_membrane *membrane)
 void himc_membrane_run(himc_membrane *membrane, int n, double *heard, double *seen)
 {
     if (n > 0 && membrane->push_count > 0) {
-        membrane_free_step(membrane);
+        himc_membrane_free_step(membrane);
         *heard++ = membrane->heard;
         *seen++ = membrane->seen;
         n--;
@@ -386,7 +373,7 @@ double himc_membrane_seen(const himc_membrane *membrane)
 double himc_membrane_displacement(const himc_membrane *membrane, double x, double y)
 {
     // only the cache of spots changes, which nobody can see
-    return spot_displacement(membrane, membrane_spot((himc_membrane *)membrane, x, y));
+    return himc_spot_displacement(membrane, himc_membrane_spot((himc_membrane *)membrane, x, y));
 }
 
 double himc_membrane_energy(const himc_membrane *membrane)

@@ -64,7 +64,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
 
 double himc_head_tension_for(const himc_head *head, double frequency)
 {
-    double speed = 2 * HIMC_PI * frequency * head->radius / bessel_zero(1, 1);
+    double speed = 2 * HIMC_PI * frequency * head->radius / himc_bessel_zero(1, 1);
     return head->density * speed * speed;
 }
 
@@ -85,7 +85,7 @@ static bool tabulate(himc_modes *modes, int top, int columns)
         return false;
     }
     for (int k = 0; k < columns; k++) {
-        bessel_orders((double)k / STEPS, top + 1, j);
+        himc_bessel_orders((double)k / STEPS, top + 1, j);
         for (int m = 0; m <= top; m++) {
             double *entry = table + 2 * ((size_t)m * (size_t)columns + (size_t)k);
             entry[0] = j[m];
@@ -117,8 +117,8 @@ static int collect(const himc_modes *modes, zero *out)
                 continue;
             n++;
             if (out) {
-                double z = bessel_zero_between(m, (double)k / STEPS, (double)(k + 1) / STEPS);
-                double next = bessel_j(m + 1, z);
+                double z = himc_bessel_zero_between(m, (double)k / STEPS, (double)(k + 1) / STEPS);
+                double next = himc_bessel_j(m + 1, z);
                 out[found] = (zero){m, n, z, next * next * (m > 0 ? 0.5 : 1)};
             }
             found++;
@@ -212,7 +212,8 @@ double himc_modes_shape(const himc_modes *modes, double radius, int index, doubl
     double r = hypot(x, y) / radius, angle = m * atan2(y, x);
     if (!(r < 1))
         return 0;
-    return bessel_j(m, modes->zeros[i].z * r) * (index > modes->first[i] ? sin(angle) : cos(angle));
+    return himc_bessel_j(m, modes->zeros[i].z * r) *
+           (index > modes->first[i] ? sin(angle) : cos(angle));
 }
 
 // J from value and slope at both ends of a grid cell

@@ -1,9 +1,11 @@
-/// performance.c: the sample clock and the physics step: algorithm 2 of the 2012 paper, with a drum in it.
+/// performance.c: the sample clock and the physics step: algorithm 2 of the 2012 paper, with a
+/// drum in it.
 ///
-/// Step k of the physics covers the samples from floor(k fs / F_S) to floor((k + 1) fs / F_S) counted from where the
-/// rates were last set: 4 or 5 samples of 48 kHz at 10 kHz, 24 in every 5 steps. A task tick comes every
-/// F_S / F_T steps. A step is simulated when its first sample is asked for, and its forces wait here; so what is played
-/// does not depend on how many samples are asked for at a time.
+/// Step k of the physics covers the samples from floor(k fs / F_S) to floor((k + 1) fs / F_S)
+/// counted from where the rates were last set: 4 or 5 samples of 48 kHz at 10 kHz, 24 in every 5
+/// steps. A task tick comes every F_S / F_T steps. A step is simulated when its first sample is
+/// asked for, and its forces wait here; so what is played does not depend on how many samples are
+/// asked for at a time.
 #include "performance_state.h"
 
 #include <stdlib.h>
@@ -49,7 +51,8 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     himc_task_tick_complete(tick, &p->posture);
 }
 
-// Read task: the targets at the next tick, and at this one if the plan has changed since it was read
+// Read task: the targets at the next tick, and at this one if the plan has changed since it was
+// read
 static void read_task(himc_performance *p, double t)
 {
     uint64_t period = steps_per_task(p), next = (p->step / period + 1) * period;
@@ -126,7 +129,8 @@ static void guard(himc_performance *p)
     performance_forget_touch(p);
 }
 
-// Inverse kinematics, inverse dynamics, forward dynamics; the contact is solved inside the same step
+// Inverse kinematics, inverse dynamics, forward dynamics; the contact is solved inside the same
+// step
 static void step_dynamics(himc_performance *p, int n, double h)
 {
     himc_vec3 tip_force[HIMC_HANDS];
@@ -182,7 +186,8 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
         int ready = (int)(p->made - p->sample), count = ready < n - done ? ready : n - done;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             if (force && force[hand])
-                memcpy(force[hand] + done, p->force[hand] + p->force_count - ready, (size_t)count * sizeof(double));
+                memcpy(force[hand] + done, p->force[hand] + p->force_count - ready,
+                       (size_t)count * sizeof(double));
         p->sample += (uint64_t)count;
         done += count;
     }

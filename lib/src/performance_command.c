@@ -1,13 +1,14 @@
 /// performance_command.c: what each command of the vocabulary does to a performance.
 ///
-/// One table, one small function a command. They act between physics steps: one that comes with a delay waits in a short
-/// queue until the step at its sample. A command that cannot be carried out changes nothing and says why in one line.
+/// One table, one small function a command. They act between physics steps: one that comes with a
+/// delay waits in a short queue until the step at its sample. A command that cannot be carried
+/// out changes nothing and says why in one line.
 #include "performance_state.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define APPROACH 1.0   // from wherever the sticks are to the beginning of a take (s)
+#define APPROACH 1.0       // from wherever the sticks are to the beginning of a take (s)
 #define LONGEST_DELAY 8192 // samples
 
 typedef bool (*action)(himc_performance *p, const himc_command *command, himc_error *error);
@@ -20,12 +21,13 @@ static int find_drum(const himc_performance *p, const char *name)
     return -1;
 }
 
-static bool put_drum(himc_performance *p, himc_drum *drum, bool silent, int *index, himc_error *error)
+static bool put_drum(himc_performance *p, himc_drum *drum, bool silent, int *index,
+                     himc_error *error)
 {
     int i = find_drum(p, himc_drum_name(drum));
     if (i < 0 && p->drums == HIMC_DRUMS)
-        return himc_error_set(error, "drum %s: a performer plays on %d drums at most", himc_drum_name(drum),
-                              HIMC_DRUMS);
+        return himc_error_set(error, "drum %s: a performer plays on %d drums at most",
+                              himc_drum_name(drum), HIMC_DRUMS);
     if (i < 0)
         i = p->drums++;
     else
@@ -36,7 +38,8 @@ static bool put_drum(himc_performance *p, himc_drum *drum, bool silent, int *ind
     return true;
 }
 
-static bool make_drum(himc_performance *p, const char *name, double inches, bool silent, int *index, himc_error *error)
+static bool make_drum(himc_performance *p, const char *name, double inches, bool silent, int *index,
+                      himc_error *error)
 {
     himc_drum *drum = himc_drum_new(name, inches, p->config.sample_rate, error);
     if (!drum)
@@ -54,7 +57,8 @@ bool performance_ensure_drum(himc_performance *p, const char *name, int *index, 
         return true;
     if (!make_drum(p, name[0] ? name : "drum", 23, true, index, error))
         return false;
-    performance_note(p, "no drum %s: playing on a silent one", himc_drum_name(p->drum[*index].drum));
+    performance_note(p, "no drum %s: playing on a silent one",
+                     himc_drum_name(p->drum[*index].drum));
     return true;
 }
 
@@ -67,7 +71,8 @@ bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error 
     return false;
 }
 
-// strokes name their drum by its slot, so a drum that leaves is replaced by a silent one of its name
+// strokes name their drum by its slot, so a drum that leaves is replaced by a silent one of its
+// name
 void himc_performance_remove_drum(himc_performance *p, const char *name)
 {
     int i = find_drum(p, name), index;
@@ -87,7 +92,8 @@ himc_drum *himc_performance_drum(himc_performance *p, int index)
 static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
-    return performance_ensure_drum(p, stroke->drum, &drum, error) && himc_planner_add(p->planner, stroke, drum, error);
+    return performance_ensure_drum(p, stroke->drum, &drum, error) &&
+           himc_planner_add(p->planner, stroke, drum, error);
 }
 
 static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
@@ -110,7 +116,8 @@ static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *err
 {
     (void)error;
     if (c->count > 1)
-        return himc_error_set(error, "tempo: BEAT: only in a score file; here a tempo holds from now on");
+        return himc_error_set(error,
+                              "tempo: BEAT: only in a score file; here a tempo holds from now on");
     himc_planner_tempo(p->planner, step_time(p), c->atom[0].number);
     p->replan = true;
     return true;
@@ -188,7 +195,8 @@ static bool run_line(himc_performance *p, const himc_score_line *line, himc_erro
            himc_drum_command(p->drum[index].drum, &line->command, error);
 }
 
-static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path, himc_error *error)
+static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
+                            himc_error *error)
 {
     for (int i = 0; i < score->line_count; i++)
         if (!run_line(p, &score->lines[i], error))
@@ -256,8 +264,8 @@ static bool do_target(himc_performance *p, const himc_command *c, himc_error *er
     himc_vec3 x = himc_posture_reachable(&p->posture, hand, asked);
     (void)error;
     if (himc_vec3_length(himc_vec3_sub(x, asked)) > 1e-3)
-        performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f", himc_hand_name(hand), asked.x,
-                         asked.y, asked.z, x.x, x.y, x.z);
+        performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
+                         himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
     himc_planner_reach(p->planner, step_time(p), hand, x);
     p->replan = true;
     return true;
@@ -332,7 +340,8 @@ static bool do_gain(himc_performance *p, const himc_command *c, himc_error *erro
         himc_error_set(error, "gain: JOINT: %s, allowed", c->atom[0].symbol);
         size_t used = error ? strlen(error->text) : 0;
         for (int j = 0; error && j < HIMC_JOINTS; j++)
-            used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s", himc_joint_name(j));
+            used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
+                                     himc_joint_name(j));
         return false;
     }
     himc_controller_set_gain(&p->controller, joint, c->atom[1].number, c->atom[2].number);
@@ -404,7 +413,8 @@ static bool do_drum(himc_performance *p, const himc_command *c, himc_error *erro
     int index;
     if (!p->make_drums || find_drum(p, c->atom[0].symbol) >= 0)
         return true; // in Pd each [membrane~ NAME] is one
-    return make_drum(p, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : 23, false, &index, error);
+    return make_drum(p, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : 23, false, &index,
+                     error);
 }
 
 static bool do_info(himc_performance *p, const himc_command *c, himc_error *error)
@@ -414,20 +424,21 @@ static bool do_info(himc_performance *p, const himc_command *c, himc_error *erro
 }
 
 static const action actions[HIMC_COMMANDS] = {
-    [HIMC_COMMAND_STROKE] = do_stroke,       [HIMC_COMMAND_HIT] = do_hit,
-    [HIMC_COMMAND_TEMPO] = do_tempo,         [HIMC_COMMAND_CLEAR] = do_clear,
-    [HIMC_COMMAND_PLAY] = do_play,           [HIMC_COMMAND_STOP] = do_stop,
-    [HIMC_COMMAND_SEEK] = do_seek,           [HIMC_COMMAND_SCORE] = do_score,
-    [HIMC_COMMAND_TAKE] = do_take,           [HIMC_COMMAND_TARGET] = do_target,
-    [HIMC_COMMAND_MODE] = do_mode,           [HIMC_COMMAND_SOLVER] = do_solver,
-    [HIMC_COMMAND_DAMPING] = do_damping,     [HIMC_COMMAND_LAW] = do_law,
-    [HIMC_COMMAND_GAIN] = do_gain,           [HIMC_COMMAND_RATE] = do_rate,
-    [HIMC_COMMAND_COUPLING] = do_coupling,   [HIMC_COMMAND_PLAYER] = do_player,
-    [HIMC_COMMAND_INFO] = do_info,           [HIMC_COMMAND_RESET] = do_reset,
+    [HIMC_COMMAND_STROKE] = do_stroke,     [HIMC_COMMAND_HIT] = do_hit,
+    [HIMC_COMMAND_TEMPO] = do_tempo,       [HIMC_COMMAND_CLEAR] = do_clear,
+    [HIMC_COMMAND_PLAY] = do_play,         [HIMC_COMMAND_STOP] = do_stop,
+    [HIMC_COMMAND_SEEK] = do_seek,         [HIMC_COMMAND_SCORE] = do_score,
+    [HIMC_COMMAND_TAKE] = do_take,         [HIMC_COMMAND_TARGET] = do_target,
+    [HIMC_COMMAND_MODE] = do_mode,         [HIMC_COMMAND_SOLVER] = do_solver,
+    [HIMC_COMMAND_DAMPING] = do_damping,   [HIMC_COMMAND_LAW] = do_law,
+    [HIMC_COMMAND_GAIN] = do_gain,         [HIMC_COMMAND_RATE] = do_rate,
+    [HIMC_COMMAND_COUPLING] = do_coupling, [HIMC_COMMAND_PLAYER] = do_player,
+    [HIMC_COMMAND_INFO] = do_info,         [HIMC_COMMAND_RESET] = do_reset,
     [HIMC_COMMAND_MAKE_DRUM] = do_drum,
 };
 
-bool himc_performance_command(himc_performance *p, const himc_command *command, int delay, himc_error *error)
+bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
+                              himc_error *error)
 {
     action act = actions[command->id];
     if (!act)
@@ -438,7 +449,8 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
     if (p->waiting_count == WAITING_COMMANDS)
-        return himc_error_set(error, "more than %d commands at once: this one is dropped", WAITING_COMMANDS);
+        return himc_error_set(error, "more than %d commands at once: this one is dropped",
+                              WAITING_COMMANDS);
     waiting_command *w = &p->waiting[p->waiting_count++];
     w->due = p->sample + (uint64_t)delay;
     himc_command_copy(&w->command, command);

@@ -1,4 +1,5 @@
-/// performance_report.c: what a performance tells: events in a bounded queue, figures, rows of motion, its state.
+/// performance_report.c: what a performance tells: events in a bounded queue, figures, rows of
+/// motion, its state.
 #include "performance_state.h"
 
 #include <stdio.h>
@@ -34,14 +35,16 @@ bool himc_performance_event(himc_performance *p, himc_event *event)
     return true;
 }
 
-// height of the target over the head it will strike; its largest value between strikes is the stroke's height
+// height of the target over the head it will strike; its largest value between strikes is the
+// stroke's height
 static void measure_height(himc_performance *p, himc_hand hand)
 {
     touch *c = &p->touch[hand];
     if (p->drums == 0)
         return;
     const himc_place *place = himc_drum_place(p->drum[c->drum].drum);
-    double height = himc_place_from_world(place, p->reference.tip[hand].x).z - p->skeleton.mallet_radius;
+    double height =
+        himc_place_from_world(place, p->reference.tip[hand].x).z - p->skeleton.mallet_radius;
     if (c->touching && c->apex > 0) {
         p->height_sum += c->apex;
         p->height_count++;
@@ -96,7 +99,8 @@ void performance_watch(himc_performance *p, double t)
     while (himc_planner_note_next(p->planner, &note))
         performance_note(p, "%s", note.text);
     watch_beats(p, t);
-    double end = p->track ? p->track_start + himc_track_length(p->track) : himc_planner_end(p->planner);
+    double end =
+        p->track ? p->track_start + himc_track_length(p->track) : himc_planner_end(p->planner);
     bool touching = p->touch[HIMC_LEFT].touching || p->touch[HIMC_RIGHT].touching;
     if (p->playing && t >= end && !touching) {
         himc_event event = {.kind = HIMC_EVENT_DONE};
@@ -105,7 +109,8 @@ void performance_watch(himc_performance *p, double t)
     }
 }
 
-void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const himc_motion_row *), void *user)
+void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const himc_motion_row *),
+                                void *user)
 {
     p->on_motion = row;
     p->motion_user = user;
@@ -128,37 +133,42 @@ void performance_motion_row(himc_performance *p, double t)
         p->on_motion(p->motion_user, &row);
 }
 
-static void describe_drums(const himc_performance *p, void (*line)(void *, const char *), void *user)
+static void describe_drums(const himc_performance *p, void (*line)(void *, const char *),
+                           void *user)
 {
     char text[512], about[400];
     for (int i = 0; i < p->drums; i++) {
         himc_drum_describe(p->drum[i].drum, about, sizeof about);
-        snprintf(text, sizeof text, "drum %s%s: %s", himc_drum_name(p->drum[i].drum), p->drum[i].silent ? " (silent)" : "",
-                 about);
+        snprintf(text, sizeof text, "drum %s%s: %s", himc_drum_name(p->drum[i].drum),
+                 p->drum[i].silent ? " (silent)" : "", about);
         line(user, text);
     }
 }
 
-void himc_performance_describe(const himc_performance *p, void (*line)(void *, const char *), void *user)
+void himc_performance_describe(const himc_performance *p, void (*line)(void *, const char *),
+                               void *user)
 {
-    static const char *const mode[] = {"himc", "id", "ik"}, *const solver[] = {"dls", "pinv", "transpose"},
+    static const char *const mode[] = {"himc", "id", "ik"},
+                             *const solver[] = {"dls", "pinv", "transpose"},
                              *const law[] = {"printed", "feedforward", "computed-torque"};
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
-    snprintf(text, sizeof text, "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom", p->body.height,
-             p->body.mass);
+    snprintf(text, sizeof text,
+             "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
+             p->body.height, p->body.mass);
     line(user, text);
-    snprintf(text, sizeof text, "mode %s, solver %s, damping %g m, law %s, coupling %s", mode[p->controller.mode],
-             solver[p->controller.solver], p->controller.damping, law[p->controller.law],
-             p->one_way ? "one-way" : "two-way");
+    snprintf(text, sizeof text, "mode %s, solver %s, damping %g m, law %s, coupling %s",
+             mode[p->controller.mode], solver[p->controller.solver], p->controller.damping,
+             law[p->controller.law], p->one_way ? "one-way" : "two-way");
     line(user, text);
-    snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz", p->physics_rate, p->config.task_rate,
-             p->config.sample_rate);
+    snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz", p->physics_rate,
+             p->config.task_rate, p->config.sample_rate);
     line(user, text);
     describe_drums(p, line, user);
     snprintf(text, sizeof text,
-             "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, peak force %.1f N, recoveries %ld",
-             p->playing ? "playing" : "stopped", s.seconds, s.strokes, s.played, 1e3 * s.tip_rms, s.peak_force,
-             s.recoveries);
+             "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, "
+             "peak force %.1f N, recoveries %ld",
+             p->playing ? "playing" : "stopped", s.seconds, s.strokes, s.played, 1e3 * s.tip_rms,
+             s.peak_force, s.recoveries);
     line(user, text);
 }

@@ -1,5 +1,6 @@
-/// performance_state.h: what a performance holds, shared by the four files that are its rooms: performance.c (the step),
-/// performance_touch.c (sticks on heads), performance_command.c (what is asked), performance_report.c (what is told).
+/// performance_state.h: what a performance holds, shared by the four files that are its rooms:
+/// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c (what
+/// is asked), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -9,11 +10,11 @@
 #include "himc/task.h"
 #include "himc/track.h"
 
-#define LONGEST_STEP 512  // samples of one physics step
+#define LONGEST_STEP 512 // samples of one physics step
 #define WAITING_COMMANDS 64
 #define WAITING_EVENTS 1024
-#define PLAYED_TIME 0.005  // a stroke has landed if it touches within this of its time (s) ...
-#define PLAYED_PLACE 0.02  // ... and within this of its place (m)
+#define PLAYED_TIME 0.005 // a stroke has landed if it touches within this of its time (s) ...
+#define PLAYED_PLACE 0.02 // ... and within this of its place (m)
 
 /// A drum the performer plays on; silent ones are its own, made for names nobody else has.
 typedef struct slot {
@@ -32,16 +33,17 @@ typedef struct touch {
     double last_force;  // when force was last felt (s)
     double peak_row;    // largest force since the last motion row (N)
     himc_strike strike; // being made
-    double answered;    // planned time of the last stroke that has been struck, given up or counted (s)
-    double apex;        // highest target above the head since the last strike (m)
+    double
+        answered; // planned time of the last stroke that has been struck, given up or counted (s)
+    double apex;  // highest target above the head since the last strike (m)
 } touch;
 
 /// The stroke a hand is on or comes to.
 typedef struct stroke_plan {
     bool any;
-    double time;     // of contact (s)
-    int drum;        // slot
-    double x, y;     // on the head (m)
+    double time; // of contact (s)
+    int drum;    // slot
+    double x, y; // on the head (m)
     char nuance[HIMC_NAME_SIZE];
 } stroke_plan;
 
@@ -67,7 +69,7 @@ struct himc_performance {
 
     // what to play
     himc_planner *planner;
-    himc_track *track; // instead of the planner when a take is loaded
+    himc_track *track;  // instead of the planner when a take is loaded
     double track_start; // (s); infinite while stopped
     himc_take_options take_options;
     double piece_start, end; // of the piece being played (s)
@@ -81,11 +83,11 @@ struct himc_performance {
     touch touch[HIMC_HANDS];
 
     // time
-    uint64_t sample;      // played since the performance was made
-    uint64_t aligned;     // sample 0 of himc_performance_time
-    uint64_t made;        // samples simulated: the next step begins here
-    uint64_t step_origin; // the sample at which step 0 began
-    uint64_t step;        // steps since then
+    uint64_t sample;                        // played since the performance was made
+    uint64_t aligned;                       // sample 0 of himc_performance_time
+    uint64_t made;                          // samples simulated: the next step begins here
+    uint64_t step_origin;                   // the sample at which step 0 began
+    uint64_t step;                          // steps since then
     double force[HIMC_HANDS][LONGEST_STEP]; // of the last step
     int force_count;
     himc_task_tick from, to;
@@ -133,7 +135,8 @@ bool performance_ensure_drum(himc_performance *p, const char *name, int *index, 
 
 // performance_report.c
 void performance_emit(himc_performance *p, const himc_event *event);
-void performance_note(himc_performance *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void performance_note(himc_performance *p, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void performance_measure_step(himc_performance *p);
 void performance_watch(himc_performance *p, double t);
 void performance_motion_row(himc_performance *p, double t);

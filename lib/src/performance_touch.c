@@ -1,11 +1,13 @@
-/// performance_touch.c: sticks on heads: when a contact begins and ends, what it does to the body and to the plan.
+/// performance_touch.c: sticks on heads: when a contact begins and ends, what it does to the body
+/// and to the plan.
 ///
-/// Near a head a stick becomes a point of its effective mass 1 / (n J M^-1 J' n), free acceleration as forward dynamics has it,
-/// and is solved with the head's modes sample by sample (contact.h); the impulse goes back to the body as a force in the
-/// same physics step. So both ends of the contact see the same force, and the body's tip and the point differ only by
-/// what M changes in a step; that offset is kept while they touch and fades afterwards. From the planned time of contact,
-/// or the first force, to separation control lets go of the head's normal; then the plan goes on from the stick
-/// as it really is.
+/// Near a head a stick becomes a point of its effective mass 1 / (n J M^-1 J' n), free
+/// acceleration as forward dynamics has it, and is solved with the head's modes sample by sample
+/// (contact.h); the impulse goes back to the body as a force in the same physics step. So both
+/// ends of the contact see the same force, and the body's tip and the point differ only by what M
+/// changes in a step; that offset is kept while they touch and fades afterwards. From the planned
+/// time of contact, or the first force, to separation control lets go of the head's normal; then
+/// the plan goes on from the stick as it really is.
 #include "performance_state.h"
 
 #include <string.h>
@@ -29,13 +31,15 @@ stroke_plan performance_plan(const himc_performance *p, himc_hand hand, double t
     stroke_plan next = {.any = false, .drum = 0};
     himc_stroke stroke;
     if (p->track && himc_track_present(p->track, hand)) {
-        next.any = himc_track_current(p->track, hand, t - p->track_start, &next.time, &next.x, &next.y);
+        next.any =
+            himc_track_current(p->track, hand, t - p->track_start, &next.time, &next.x, &next.y);
         next.time += p->track_start;
         strcpy(next.nuance, "none");
     } else if (himc_planner_current(p->planner, hand, t, &stroke, &next.drum, &next.time)) {
         next.any = next.drum < p->drums;
         if (next.any)
-            himc_stroke_spot(&stroke, himc_drum_place(p->drum[next.drum].drum)->radius, &next.x, &next.y);
+            himc_stroke_spot(&stroke, himc_drum_place(p->drum[next.drum].drum)->radius, &next.x,
+                             &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
     }
     next.any = next.any && next.time > p->touch[hand].answered && isfinite(next.time);
@@ -46,7 +50,8 @@ static himc_target measured_tip(const himc_performance *p, himc_hand hand)
 {
     const touch *c = &p->touch[hand];
     himc_vec3 n = p->reference.normal[hand], a = p->reference.tip[hand].a;
-    himc_target m = {p->state.tip[hand], p->state.tip_velocity[hand], himc_vec3_madd(a, -himc_vec3_dot(a, n), n)};
+    himc_target m = {p->state.tip[hand], p->state.tip_velocity[hand],
+                     himc_vec3_madd(a, -himc_vec3_dot(a, n), n)};
     if (p->controller.mode == HIMC_PIPELINE_IK && c->touching) {
         m.x = p->reference.tip[hand].x;
         m.v = p->reference.tip[hand].v;
@@ -70,7 +75,8 @@ static void give_up(himc_performance *p, himc_hand hand, double t, const stroke_
     p->touch[hand].answered = next->time;
     p->strokes++;
     performance_note(p, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
-                     next->drum < p->drums ? himc_drum_name(p->drum[next->drum].drum) : "drum", next->time);
+                     next->drum < p->drums ? himc_drum_name(p->drum[next->drum].drum) : "drum",
+                     next->time);
     go_on_from_here(p, hand, t);
 }
 
@@ -115,7 +121,8 @@ static int drum_below(const himc_performance *p, himc_hand hand, himc_vec3 *loca
         const himc_place *place = himc_drum_place(p->drum[i].drum);
         himc_vec3 at = himc_place_from_world(place, p->state.tip[hand]);
         at.z -= p->skeleton.mallet_radius;
-        if (at.x * at.x + at.y * at.y < place->radius * place->radius && at.z < NEAR && at.z > UNDER) {
+        if (at.x * at.x + at.y * at.y < place->radius * place->radius && at.z < NEAR &&
+            at.z > UNDER) {
             *local = at;
             return i;
         }
@@ -124,8 +131,8 @@ static int drum_below(const himc_performance *p, himc_hand hand, himc_vec3 *loca
 }
 
 // the stick as a point on the head's normal, at the beginning of the step
-static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local, const himc_articulation *art,
-                       const himc_vec3 *relative)
+static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local,
+                       const himc_articulation *art, const himc_vec3 *relative)
 {
     touch *c = &p->touch[hand];
     himc_drum *drum = p->drum[c->drum].drum;
@@ -138,7 +145,8 @@ static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local, con
     c->stick.y = local.y;
     c->stick.acceleration = 0;
     if (!kinematic)
-        c->stick.acceleration = himc_vec3_dot(n, himc_tip_acceleration(&p->skeleton, &p->state, hand, relative));
+        c->stick.acceleration =
+            himc_vec3_dot(n, himc_tip_acceleration(&p->skeleton, &p->state, hand, relative));
     if (kinematic && c->touching)
         return;
     c->stick.height = local.z + c->offset;
@@ -166,7 +174,8 @@ static void begin_strike(himc_performance *p, himc_hand hand, double time, doubl
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     c->answered = next.time;
     p->strokes++;
-    p->played += fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
+    p->played +=
+        fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
 }
 
 // what the samples of a step did; returns the impulse (N s)
@@ -251,7 +260,8 @@ void performance_after_contact(himc_performance *p, double t)
             continue;
         }
         const himc_place *place = himc_drum_place(p->drum[c->drum].drum);
-        double height = himc_place_from_world(place, p->state.tip[hand]).z - p->skeleton.mallet_radius;
+        double height =
+            himc_place_from_world(place, p->state.tip[hand]).z - p->skeleton.mallet_radius;
         if (p->controller.mode != HIMC_PIPELINE_IK)
             c->offset = c->stick.height - height;
         double quiet = t - c->last_force;

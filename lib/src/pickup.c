@@ -27,7 +27,7 @@ himc_pickup himc_pickup_default(void)
     return (himc_pickup){.kind = HIMC_PICKUP_AIR, .elevation = 10 * HIMC_PI / 180, .distance = 1};
 }
 
-bool pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error)
+bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error)
 {
     if (pickup->kind == HIMC_PICKUP_AIR)
         return himc_check_range("pickup azimuth", pickup->azimuth, -2 * HIMC_PI, 2 * HIMC_PI, "rad",
@@ -41,10 +41,10 @@ bool pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *
 // the integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2
 static double overlap(int m, double j, double x)
 {
-    double next = bessel_j(m + 1, j);
+    double next = himc_bessel_j(m + 1, j);
     if (fabs(x - j) < 1e-6 * j)
         return 0.5 * next * next;
-    return j * next * bessel_j(m, x) / ((j - x) * (j + x));
+    return j * next * himc_bessel_j(m, x) / ((j - x) * (j + x));
 }
 
 // pressure per (m/s^2) of the mode's acceleration, phase aside
@@ -56,8 +56,8 @@ static double radiation(const himc_mode *mode, const himc_head *head, const himc
            overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
-hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
-                     double point_shape)
+hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
+                          double point_shape)
 {
     if (pickup->kind == HIMC_PICKUP_POINT)
         return (hearing){.velocity = point_shape / HIMC_PICKUP_VELOCITY};

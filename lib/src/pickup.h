@@ -11,10 +11,10 @@ typedef struct hearing {
     double force;        ///< per newton of modal force phi f (N)
 } hearing;
 
-bool pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error);
+bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error);
 
 /// `point_shape` is the mode's shape at the pickup's point (not used by HIMC_PICKUP_AIR).
-hearing pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
-                     double point_shape);
+hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
+                          double point_shape);
 
 #endif

@@ -173,6 +173,7 @@ static void *read_file(const char *path, size_t *size)
     if (!file)
         return NULL;
     char *bytes = malloc((size_t)status.st_size + 1);
+    errno = bytes ? 0 : ENOMEM;
     if (bytes) {
         *size = fread(bytes, 1, (size_t)status.st_size, file);
         if (ferror(file)) {

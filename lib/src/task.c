@@ -1,16 +1,18 @@
 /// task.c: quintic Hermite interpolation; one set of six basis values serves every channel.
 ///
-/// With u = (t - t0) / T the six quintics that carry position, velocity and acceleration at each end, and their two
-/// derivatives, are computed once a step. Joints are interpolated as four-component quaternions q with
-/// q' = w q / 2 and q'' = (w' - |w|^2 / 2) q / 2 (w in the parent's frame, as a pure quaternion), then normalised; w and
-/// w' come back as 2 vec(q' q*) / |q|^2 and its derivative.
+/// With u = (t - t0) / T the six quintics that carry position, velocity and acceleration at each
+/// end, and their two derivatives, are computed once a step. Joints are interpolated as
+/// four-component quaternions q with q' = w q / 2 and q'' = (w' - |w|^2 / 2) q / 2 (w in the
+/// parent's frame, as a pure quaternion), then normalised; w and w' come back as 2 vec(q' q*) /
+/// |q|^2 and its derivative.
 #include "himc/task.h"
 
 typedef struct basis {
     double value[3][6]; // of the position, its rate, its second derivative, for x0 v0 a0 x1 v1 a1
 } basis;
 
-// the quintics with unit x0, v0 and a0 at u = 0 and their derivatives; those of the other end are mirror images
+// the quintics with unit x0, v0 and a0 at u = 0 and their derivatives; those of the other end are
+// mirror images
 static void half_basis(double u, double h[3][3])
 {
     double u2 = u * u, u3 = u2 * u, u4 = u3 * u, u5 = u4 * u;
@@ -64,7 +66,8 @@ static spin_state spin_of(himc_quat q, himc_vec3 w, himc_vec3 a)
 {
     himc_quat second = himc_quat_mul(pure(a), q);
     second = add4(second, -0.5 * himc_vec3_dot(w, w), q);
-    return (spin_state){q, himc_quat_scale(himc_quat_mul(pure(w), q), 0.5), himc_quat_scale(second, 0.5)};
+    return (spin_state){q, himc_quat_scale(himc_quat_mul(pure(w), q), 0.5),
+                        himc_quat_scale(second, 0.5)};
 }
 
 static himc_quat mix4(const double w[6], const spin_state *p, const spin_state *q)
@@ -75,20 +78,21 @@ static himc_quat mix4(const double w[6], const spin_state *p, const spin_state *
     return add4(r, w[5], q->second);
 }
 
-static void joint_between(const basis *b, const himc_posture_motion *from, const himc_posture_motion *to, int j,
-                          himc_posture_motion *out)
+static void joint_between(const basis *b, const himc_posture_motion *from,
+                          const himc_posture_motion *to, int j, himc_posture_motion *out)
 {
     double sign = himc_quat_dot(from->joint[j], to->joint[j]) < 0 ? -1 : 1;
     spin_state p = spin_of(from->joint[j], from->rate[j], from->acceleration[j]);
     spin_state q = spin_of(himc_quat_scale(to->joint[j], sign), to->rate[j], to->acceleration[j]);
-    himc_quat x = mix4(b->value[0], &p, &q), v = mix4(b->value[1], &p, &q), a = mix4(b->value[2], &p, &q);
+    himc_quat x = mix4(b->value[0], &p, &q), v = mix4(b->value[1], &p, &q),
+              a = mix4(b->value[2], &p, &q);
     double square = himc_quat_dot(x, x);
     himc_quat back = himc_quat_scale(himc_quat_conj(x), 2 / square);
     himc_vec3 w = himc_quat_vector(himc_quat_mul(v, back));
     out->joint[j] = himc_quat_scale(x, 1 / sqrt(square));
     out->rate[j] = w;
-    out->acceleration[j] =
-        himc_vec3_madd(himc_quat_vector(himc_quat_mul(a, back)), -2 * himc_quat_dot(x, v) / square, w);
+    out->acceleration[j] = himc_vec3_madd(himc_quat_vector(himc_quat_mul(a, back)),
+                                          -2 * himc_quat_dot(x, v) / square, w);
 }
 
 void himc_task_tick_complete(himc_task_tick *tick, const himc_posture *posture)
@@ -96,7 +100,8 @@ void himc_task_tick_complete(himc_task_tick *tick, const himc_posture *posture)
     himc_posture_moving(posture, tick->tip, &tick->posture);
 }
 
-void himc_task_between(const himc_task_tick *from, const himc_task_tick *to, double time, himc_reference *reference)
+void himc_task_between(const himc_task_tick *from, const himc_task_tick *to, double time,
+                       himc_reference *reference)
 {
     basis b;
     double length = to->time - from->time;
@@ -111,5 +116,6 @@ void himc_task_between(const himc_task_tick *from, const himc_task_tick *to, dou
     reference->posture = to->posture;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            joint_between(&b, &from->posture, &to->posture, himc_arm_joint((himc_hand)hand, k), &reference->posture);
+            joint_between(&b, &from->posture, &to->posture, himc_arm_joint((himc_hand)hand, k),
+                          &reference->posture);
 }

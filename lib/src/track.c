@@ -1,24 +1,27 @@
-/// track.c: local cubic fits give each frame position, velocity and acceleration; quintics join the frames.
+/// track.c: local cubic fits give each frame position, velocity and acceleration; quintics join
+/// the frames.
 ///
-/// The fit at a frame uses the frames within +-WINDOW seconds on the same side of every strike (least squares,
-/// one-sided near a strike), so noise is smoothed before it is differentiated and no impact is smeared. A strike's frames
-/// from CUT before its lowest point to CUT after are dropped. Approach: from the last good frame to the head's plane
-/// with an acceleration that fades to nothing there gives the time of contact. Then a bridge: a quintic from there to where the capture is rejoined; the
-/// bridge is what control sees while it is released, and is replaced at separation by one from the measured state.
+/// The fit at a frame uses the frames within +-WINDOW seconds on the same side of every strike
+/// (least squares, one-sided near a strike), so noise is smoothed before it is differentiated and
+/// no impact is smeared. A strike's frames from CUT before its lowest point to CUT after are
+/// dropped. Approach: from the last good frame to the head's plane with an acceleration that
+/// fades to nothing there gives the time of contact. Then a bridge: a quintic from there to where
+/// the capture is rejoined; the bridge is what control sees while it is released, and is replaced
+/// at separation by one from the measured state.
 #include "himc/track.h"
 #include "himc/quintic.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define WINDOW 0.025  // half width of the local fits (s)
-#define EDGE 5        // frames of the one-sided fit beside a strike, less one
-#define CUT 0.0125    // of the capture around a strike's lowest point (s)
-#define REJOIN 0.040  // from separation back to the capture (s)
+#define WINDOW 0.025      // half width of the local fits (s)
+#define EDGE 5            // frames of the one-sided fit beside a strike, less one
+#define CUT 0.0125        // of the capture around a strike's lowest point (s)
+#define REJOIN 0.040      // from separation back to the capture (s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
-#define SETTLE 0.4    // from a stop to rest (s)
-#define EASE 0.1      // at both ends of the take time starts and stops so slowly (s)
-#define HOVER 0.08     // of a tip at rest above the head (m)
+#define SETTLE 0.4        // from a stop to rest (s)
+#define EASE 0.1          // at both ends of the take time starts and stops so slowly (s)
+#define HOVER 0.08        // of a tip at rest above the head (m)
 #define LEAST_FRAMES 8
 #define MAX_STRIKES 4096
 
@@ -32,7 +35,7 @@ typedef struct bridge {
 
 typedef struct hand_track {
     bool present;
-    himc_target *frame; // (frames)
+    himc_target *frame;        // (frames)
     bridge *bridges, *planned; // as they are played, as they were built
     int bridge_count;
     himc_quintic approach, settle; // before the first frame; after a stop
@@ -48,9 +51,11 @@ struct himc_track {
     hand_track hand[HIMC_HANDS];
 };
 
-// least squares polynomial of `order` coefficients through the frames range[0] .. range[2] about frame range[1]: the
-// normal equations by Gauss elimination; fewer coefficients when there are few frames
-static bool fit_polynomial(const himc_vec3 *x, const int range[3], int order, double dt, himc_target *out)
+// least squares polynomial of `order` coefficients through the frames range[0] .. range[2] about
+// frame range[1]: the normal equations by Gauss elimination; fewer coefficients when there are
+// few frames
+static bool fit_polynomial(const himc_vec3 *x, const int range[3], int order, double dt,
+                           himc_target *out)
 {
     int lo = range[0], k = range[1], hi = range[2];
     double a[4][7] = {{0}};
@@ -107,22 +112,25 @@ static himc_target carried_on(himc_target s, double dt)
     return s;
 }
 
-// when the approach from frame state `s` reaches the head, its acceleration fading to nothing on the way:
-// the first root of height + v t + a t^2 / 3
+// when the approach from frame state `s` reaches the head, its acceleration fading to nothing on
+// the way: the first root of height + v t + a t^2 / 3
 static double fall_time(const himc_place *place, const himc_target *s, double mallet_radius)
 {
     himc_vec3 n = himc_place_normal(place);
     double height = himc_place_from_world(place, s->x).z - mallet_radius;
-    double v = himc_vec3_dot(n, s->v), a = himc_vec3_dot(n, s->a), under = v * v - 4 / 3.0 * a * height;
+    double v = himc_vec3_dot(n, s->v), a = himc_vec3_dot(n, s->a),
+           under = v * v - 4 / 3.0 * a * height;
     if (v >= 0 || under < 0)
         return LONGEST_FALL;
     return fmin(2 * height / (-v + sqrt(under)), LONGEST_FALL);
 }
 
-static void make_bridge(himc_track *track, hand_track *h, bridge *b, int last, int next, double mallet_radius)
+static void make_bridge(himc_track *track, hand_track *h, bridge *b, int last, int next,
+                        double mallet_radius)
 {
     himc_target before = h->frame[last], after = h->frame[next];
-    double start = last / track->rate, fall = fmax(fall_time(&track->place, &before, mallet_radius), 0);
+    double start = last / track->rate,
+           fall = fmax(fall_time(&track->place, &before, mallet_radius), 0);
     b->approach = (himc_quintic){{before.x, before.v, himc_vec3_scale(before.a, 0.5)}};
     if (fall > 0)
         b->approach.c[3] = himc_vec3_scale(before.a, -1 / (6 * fall));
@@ -150,8 +158,8 @@ static himc_quintic come_to_rest(const himc_place *place, const himc_target *s)
 }
 
 // cuts the strikes of one hand out of its capture and fits what is between
-static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captured, const himc_take_strike *strikes,
-                       int count, double mallet_radius)
+static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captured,
+                       const himc_take_strike *strikes, int count, double mallet_radius)
 {
     hand_track *h = &track->hand[hand];
     himc_vec3 *x = malloc((size_t)track->frames * sizeof *x);
@@ -183,8 +191,9 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
 }
 
 // moves the mean of the strikes' places onto the head's usual spot
-static himc_vec3 find_offset(const himc_take_strike *strikes, int count, const himc_take_tip tips[HIMC_HANDS],
-                             int frames, const himc_place *place, double mallet_radius)
+static himc_vec3 find_offset(const himc_take_strike *strikes, int count,
+                             const himc_take_tip tips[HIMC_HANDS], int frames,
+                             const himc_place *place, double mallet_radius)
 {
     himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
     double sx, sy;
@@ -207,18 +216,21 @@ static himc_vec3 find_offset(const himc_take_strike *strikes, int count, const h
     return himc_vec3_sub(spot, mean);
 }
 
-himc_track *himc_track_new(himc_take *take, const himc_take_options *options, const himc_place *place,
-                           double mallet_radius, himc_error *error)
+himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
+                           const himc_place *place, double mallet_radius, himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))
         return NULL;
     if (!tips[HIMC_LEFT].present && !tips[HIMC_RIGHT].present) {
-        himc_error_set(error, "take: no drumstick tip found among its points: name them with --left-tip, --right-tip");
+        himc_error_set(
+            error,
+            "take: no drumstick tip among its points: name them with --left-tip, --right-tip");
         return NULL;
     }
     if (himc_take_frames(take) < LEAST_FRAMES) {
-        himc_error_set(error, "take: %d frames, allowed %d or more", himc_take_frames(take), LEAST_FRAMES);
+        himc_error_set(error, "take: %d frames, allowed %d or more", himc_take_frames(take),
+                       LEAST_FRAMES);
         return NULL;
     }
     himc_track *track = calloc(1, sizeof *track);
@@ -234,7 +246,8 @@ himc_track *himc_track_new(himc_take *take, const himc_take_options *options, co
         track->offset = find_offset(strikes, count, tips, track->frames, place, mallet_radius);
         for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
             if (tips[hand].present)
-                ok = build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
+                ok =
+                    build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
     }
     free(strikes);
     if (!ok) {
@@ -348,8 +361,8 @@ static himc_target played_at(const himc_track *track, const hand_track *h, doubl
     return himc_quintic_at(&b->path, t - b->contact);
 }
 
-// Takes begin and end in motion; time itself starts from a stand and comes to one, over EASE around each end. `at` is the
-// take's time when it is `t`, with its rate and second derivative.
+// Takes begin and end in motion; time itself starts from a stand and comes to one, over EASE
+// around each end. `at` is the take's time when it is `t`, with its rate and second derivative.
 static void warp_time(const himc_track *track, double t, double at[3])
 {
     double length = (track->frames - 1) / track->rate, half = 0.5 * EASE;
@@ -387,7 +400,8 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     return s;
 }
 
-bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time, double *x, double *y)
+bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
+                        double *x, double *y)
 {
     const hand_track *h = &track->hand[hand];
     int i = h->present ? bridge_at(h, t) : 0;

@@ -1,13 +1,15 @@
 /// vec.c: the one conversion too long to be inline.
 #include "himc/vec.h"
 
-// Shepperd 1978: solve for the largest of the four components first, so that no small number is divided by
+// Shepperd 1978: solve for the largest of the four components first, so that no small number is
+// divided by
 himc_quat himc_quat_from_mat3(himc_mat3 a)
 {
     double trace = a.m[0][0] + a.m[1][1] + a.m[2][2];
     if (trace > 0) {
         double s = 2 * sqrt(trace + 1);
-        return himc_quat_unit((himc_quat){0.25 * s, (a.m[2][1] - a.m[1][2]) / s, (a.m[0][2] - a.m[2][0]) / s,
+        return himc_quat_unit((himc_quat){0.25 * s, (a.m[2][1] - a.m[1][2]) / s,
+                                          (a.m[0][2] - a.m[2][0]) / s,
                                           (a.m[1][0] - a.m[0][1]) / s});
     }
     int i = a.m[1][1] > a.m[0][0] ? 1 : 0;

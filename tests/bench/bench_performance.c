@@ -1,7 +1,9 @@
-/// bench_performance.c: how fast the whole performance runs, one core, and where a physics step's time goes.
+/// bench_performance.c: how fast the whole performance runs, one core, and where a physics step's
+/// time goes.
 ///
-/// Prints the parts of a step in microseconds and, for the improvisation at 48 kHz and 10 kHz with 57 degrees of freedom and
-/// one drum of its usual number of modes, the factor by which it is faster than real time (median of five runs).
+/// Prints the parts of a step in microseconds and, for the improvisation at 48 kHz and 10 kHz
+/// with 57 degrees of freedom and one drum of its usual number of modes, the factor by which it
+/// is faster than real time (median of five runs).
 #define _POSIX_C_SOURCE 200809L
 #include "himc/himc.h"
 
@@ -31,7 +33,8 @@ static void command(himc_performance *p, const char *text)
 {
     himc_error error;
     himc_command c;
-    if (!himc_command_parse_text(&c, HIMC_PERFORMER, text, &error) || !himc_performance_command(p, &c, 0, &error)) {
+    if (!himc_command_parse_text(&c, HIMC_PERFORMER, text, &error) ||
+        !himc_performance_command(p, &c, 0, &error)) {
         fprintf(stderr, "%s\n", error.text);
         exit(1);
     }
@@ -126,7 +129,7 @@ int main(void)
     for (int i = 0; i < RUNS; i++)
         factor[i] = bench_piece();
     qsort(factor, RUNS, sizeof *factor, by_size);
-    printf("%-34s %6.2f x real time (%.2f .. %.2f)\n", "the improvisation, one core", factor[RUNS / 2], factor[0],
-           factor[RUNS - 1]);
+    printf("%-34s %6.2f x real time (%.2f .. %.2f)\n", "the improvisation, one core",
+           factor[RUNS / 2], factor[0], factor[RUNS - 1]);
     return 0;
 }

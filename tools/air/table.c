@@ -11,8 +11,7 @@
 
 static const double RADIUS[HIMC_AIR_DRUMS] = {0.292, 0.328, 0.368, 0.406};
 
-static int ratio[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES];
-static int decay[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES];
+static short ratio[HIMC_AIR_ENTRIES], decay[HIMC_AIR_ENTRIES];
 static double outer[HIMC_AIR_ORDERS][HIMC_AIR_RANKS], inner[HIMC_AIR_ORDERS][HIMC_AIR_RANKS];
 static double slosh[HIMC_AIR_ORDERS];
 
@@ -44,30 +43,19 @@ static bool node(const himc_air_order *order, int drum, int k, himc_error *error
         return false;
     for (int n = 0; n < HIMC_AIR_RANKS; n++) {
         double bare = order->alpha[n] * sqrt(problem.tension);
-        ratio[drum][order->m][n][k] = (int)lround(1e5 * log(root[n].x / bare));
-        decay[drum][order->m][n][k] = (int)lround(1e3 * log(fmax(root[n].decay, 0) + HIMC_AIR_FLOOR));
+        int i = HIMC_AIR_ROW(drum, order->m, n) + k;
+        ratio[i] = (short)lround(log(root[n].x / bare) / HIMC_AIR_RATIO_UNIT);
+        decay[i] = (short)lround(log(fmax(root[n].decay, 0) + HIMC_AIR_FLOOR) / HIMC_AIR_DECAY_UNIT);
     }
     return true;
 }
 
-static void put_row(const int *row)
+static void put_table(const char *name, const short *table)
 {
-    printf("    ");
-    for (int k = 0; k < HIMC_AIR_NODES; k++)
-        printf("%d,", row[k]);
-    printf("\n");
-}
-
-static void put_table(const char *name, int table[][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES])
-{
-    printf("\nconst int %s[HIMC_AIR_DRUMS][HIMC_AIR_ORDERS][HIMC_AIR_RANKS][HIMC_AIR_NODES] = {{{{\n", name);
-    for (int d = 0; d < HIMC_AIR_DRUMS; d++)
-        for (int m = 0; m < HIMC_AIR_ORDERS; m++)
-            for (int n = 0; n < HIMC_AIR_RANKS; n++) {
-                put_row(table[d][m][n]);
-                bool last = n == HIMC_AIR_RANKS - 1, end = last && m == HIMC_AIR_ORDERS - 1;
-                puts(end && d == HIMC_AIR_DRUMS - 1 ? "}}}};" : end ? "}}},{{{" : last ? "}},{{" : "},{");
-            }
+    printf("\nconst short %s[HIMC_AIR_ENTRIES] = {\n", name);
+    for (int i = 0; i < HIMC_AIR_ENTRIES; i++)
+        printf("%d,%s", table[i], i % HIMC_AIR_NODES == HIMC_AIR_NODES - 1 ? "\n" : "");
+    puts("};");
 }
 
 static void put_rest(const char *name, double table[][HIMC_AIR_RANKS])
@@ -80,7 +68,7 @@ static void put_rest(const char *name, double table[][HIMC_AIR_RANKS])
 
 static void put_all(void)
 {
-    puts("/// air_table.c: the modes of four timpani in air. Made by tools/air/table.c (make air-table); not to be edited.\n"
+    puts("/// air_table.c: the modes of four timpani in air. Made by `make air-table` (tools/air/table.c).\n"
          "///\n"
          "/// A row is a mode over the tensions; rows go by n, then m, then drum.\n"
          "#include \"air_table.h\"\n\n"
@@ -89,9 +77,9 @@ static void put_all(void)
            RADIUS[3]);
     put_rest("himc_air_outer", outer);
     put_rest("himc_air_inner", inner);
-    printf("\nconst double himc_air_slosh[HIMC_AIR_ORDERS] = {");
+    puts("\nconst double himc_air_slosh[HIMC_AIR_ORDERS] = {");
     for (int m = 0; m < HIMC_AIR_ORDERS; m++)
-        printf("%s%.7f", m ? ", " : "", slosh[m]);
+        printf("    %.7f,\n", slosh[m]);
     puts("};");
     put_table("himc_air_ratio", ratio);
     put_table("himc_air_decay", decay);

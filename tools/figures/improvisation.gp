@@ -1,7 +1,8 @@
-# improvisation.gp: a performance in one picture, in the manner of figure 8 of Bouënard, Gibet and Wanderley 2012.
+# improvisation.gp: a performance in one picture, in the manner of figure 8 of Bouënard, Gibet and
+# Wanderley 2012.
 #
-# Three rows share their time axis: heights of the drumstick tips, contact forces, sound; on the left the whole
-# piece, on the right an excerpt of it. Wanted, by gnuplot -e:
+# Three rows share their time axis: heights of the drumstick tips, contact forces, sound; on the
+# left the whole piece, on the right an excerpt of it. Wanted, by gnuplot -e:
 #   motion, strokes   tables of himc render
 #   sound             time, least and greatest sample of each millisecond
 #   from, to, length  of the excerpt and of the whole (s)
@@ -65,9 +66,12 @@ set label 4 "the whole piece" at screen 0.058,0.892 font "DejaVu Sans,12" textco
 set label 5 "left hand" at screen 0.655,0.923 textcolor rgb left_hand
 set label 6 "right hand" at screen 0.761,0.923 textcolor rgb right_hand
 set label 7 "broken lines: target" at screen 0.874,0.923 textcolor rgb ink
-set arrow 1 from screen 0.626,0.923 to screen 0.650,0.923 nohead linewidth 4.5 linecolor rgb left_hand
-set arrow 2 from screen 0.732,0.923 to screen 0.756,0.923 nohead linewidth 4.5 linecolor rgb right_hand
-set arrow 3 from screen 0.842,0.923 to screen 0.868,0.923 nohead linewidth 1.4 dashtype (10,7) linecolor rgb "black"
+set arrow 1 from screen 0.626,0.923 to screen 0.650,0.923 \
+    nohead linewidth 4.5 linecolor rgb left_hand
+set arrow 2 from screen 0.732,0.923 to screen 0.756,0.923 \
+    nohead linewidth 4.5 linecolor rgb right_hand
+set arrow 3 from screen 0.842,0.923 to screen 0.868,0.923 \
+    nohead linewidth 1.4 dashtype (10,7) linecolor rgb "black"
 
 do for [part = 0:1] {
     set lmargin at screen left(part)
@@ -76,9 +80,11 @@ do for [part = 0:1] {
     every = part ? 1 : 5
     set xtics every
     if (part) {
-        set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb shade fillstyle solid noborder
+        set object 1 rectangle from graph 0,0 to graph 1,1 behind \
+            fillcolor rgb shade fillstyle solid noborder
     } else {
-        set object 1 rectangle from from,graph 0 to to,graph 1 behind fillcolor rgb shade fillstyle solid noborder
+        set object 1 rectangle from from,graph 0 to to,graph 1 behind \
+            fillcolor rgb shade fillstyle solid noborder
     }
 
     # heights
@@ -91,10 +97,14 @@ do for [part = 0:1] {
     simulated = part ? 4.5 : 2
     target = part ? 1.4 : 0.5
     plot 0 with lines linecolor rgb soft linewidth 0.8, \
-         motion using 1:(height("left", "tip")) with lines linecolor rgb left_hand linewidth simulated, \
-         motion using 1:(height("right", "tip")) with lines linecolor rgb right_hand linewidth simulated, \
-         motion using 1:(height("left", "target")) with lines dashtype (10,7) linecolor rgb left_target linewidth target, \
-         motion using 1:(height("right", "target")) with lines dashtype (10,7) linecolor rgb right_target linewidth target
+         motion using 1:(height("left", "tip")) \
+             with lines linecolor rgb left_hand linewidth simulated, \
+         motion using 1:(height("right", "tip")) \
+             with lines linecolor rgb right_hand linewidth simulated, \
+         motion using 1:(height("left", "target")) \
+             with lines dashtype (10,7) linecolor rgb left_target linewidth target, \
+         motion using 1:(height("right", "target")) \
+             with lines dashtype (10,7) linecolor rgb right_target linewidth target
     unset label
     unset arrow
 
@@ -108,9 +118,12 @@ do for [part = 0:1] {
     dot = part ? 1.2 : 0.6
     plot strokes using 1:(force("left")) with impulses linecolor rgb left_hand linewidth stem, \
          strokes using 1:(force("right")) with impulses linecolor rgb right_hand linewidth stem, \
-         strokes using 1:(force("left")) with points pointtype 7 pointsize dot linecolor rgb left_hand, \
-         strokes using 1:(force("right")) with points pointtype 7 pointsize dot linecolor rgb right_hand, \
-         strokes using 1:(part ? column("peak_force_n") : NaN):(sprintf("%.1f N", column("peak_force_n"))) \
+         strokes using 1:(force("left")) \
+             with points pointtype 7 pointsize dot linecolor rgb left_hand, \
+         strokes using 1:(force("right")) \
+             with points pointtype 7 pointsize dot linecolor rgb right_hand, \
+         strokes using 1:(part ? column("peak_force_n") : NaN): \
+             (sprintf("%.1f N", column("peak_force_n"))) \
              with labels offset 0,1 textcolor rgb ink
 
     # sound: from the least to the greatest sample of each millisecond

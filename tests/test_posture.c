@@ -1,0 +1,301 @@
+/// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and right.
+#include "himc/posture.h"
+
+#include "unity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define LEVEL 0.8675
+
+static himc_skeleton skeleton;
+static himc_posture posture;
+
+void setUp(void)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_skeleton_init(&skeleton, &config, NULL);
+    himc_posture_init(&posture, &skeleton, LEVEL);
+    srand(5);
+}
+
+void tearDown(void)
+{
+}
+
+static double uniform(double low, double high)
+{
+    return low + (high - low) * rand() / RAND_MAX;
+}
+
+static double distance(himc_vec3 a, himc_vec3 b)
+{
+    return himc_vec3_length(himc_vec3_sub(a, b));
+}
+
+static double place_tips(const himc_vec3 tip[HIMC_HANDS], himc_body_state *s)
+{
+    himc_pose pose;
+    double missing = himc_posture_at(&posture, tip, &pose);
+    himc_pose_to_state(&skeleton, &pose, NULL, s);
+    return missing;
+}
+
+// where a timpanist's tips are: over heads in front, up to 0.6 m above them, a little across the middle
+static himc_vec3 playing_place(himc_hand hand)
+{
+    double x = uniform(0.35, 0.75), y = uniform(-0.15, 0.35), z = uniform(LEVEL - 0.03, LEVEL + 0.6);
+    return himc_vec3_make(x, hand == HIMC_LEFT ? y : -y, z);
+}
+
+static void test_tips_are_on_their_targets_over_the_whole_playing_space(void)
+{
+    himc_body_state s;
+    int reached = 0;
+    for (int n = 0; n < 20000; n++) {
+        himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
+        if (place_tips(tip, &s) > 0)
+            continue;
+        reached++;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(tip[hand], s.tip[hand]));
+    }
+    TEST_ASSERT_TRUE(reached > 18000);
+}
+
+static void test_heights_of_people_do_not_matter(void)
+{
+    for (double height = 1.2; height <= 2.2; height += 0.05) {
+        himc_skeleton_config config = himc_skeleton_default();
+        himc_body_state s;
+        config.height = height;
+        himc_skeleton_init(&skeleton, &config, NULL);
+        double level = 0.5 * height;
+        himc_posture_init(&posture, &skeleton, level);
+        himc_vec3 tip[HIMC_HANDS] = {{0.27 * height, 0.03 * height, level + 0.1},
+                                     {0.27 * height, -0.03 * height, level}};
+        TEST_ASSERT_EQUAL_DOUBLE(0, place_tips(tip, &s));
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(tip[hand], s.tip[hand]));
+    }
+}
+
+static void test_arms_have_their_lengths_and_elbows_hang_below_and_outside(void)
+{
+    himc_body_state s;
+    for (int n = 0; n < 1000; n++) {
+        himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
+        for (int hand = 0; hand < HIMC_HANDS; hand++) { // a wrist below its shoulder leaves no outside
+            tip[hand].x = fmax(tip[hand].x, 0.45);
+            tip[hand].y = fmin(fmax(tip[hand].y, -0.2), 0.2);
+        }
+        place_tips(tip, &s);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_vec3 shoulder = s.origin[HIMC_LEFT_UPPER_ARM + hand];
+            himc_vec3 elbow = s.origin[HIMC_LEFT_FOREARM + hand];
+            himc_vec3 wrist = s.origin[HIMC_LEFT_HAND + hand];
+            himc_vec3 u = himc_vec3_unit(himc_vec3_sub(wrist, shoulder));
+            himc_vec3 off = himc_vec3_sub(elbow, shoulder);
+            off = himc_vec3_madd(off, -himc_vec3_dot(off, u), u);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-13, skeleton.segment[HIMC_LEFT_UPPER_ARM].length,
+                                      distance(shoulder, elbow));
+            TEST_ASSERT_TRUE(off.z < 0);
+            TEST_ASSERT_TRUE((hand == HIMC_LEFT ? off.y : -off.y) > 0);
+        }
+    }
+}
+
+static void test_stick_lies_level_at_impact_and_rises_with_the_tip(void)
+{
+    himc_body_state s;
+    double last = -1;
+    for (int i = 0; i <= 50; i++) {
+        himc_vec3 tip[HIMC_HANDS] = {{0.5, 0.1, LEVEL + 0.01 * i}, {0.5, -0.1, LEVEL}};
+        place_tips(tip, &s);
+        double up = s.tip[HIMC_LEFT].z - s.origin[HIMC_LEFT_STICK].z;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0, s.tip[HIMC_RIGHT].z - s.origin[HIMC_RIGHT_STICK].z);
+        TEST_ASSERT_TRUE(up > last);
+        last = up;
+    }
+}
+
+static void test_joints_follow_the_tip_without_jumps(void)
+{
+    // along straight lines across the playing space: 1 mm turns no joint by more than 30 mrad
+    for (int n = 0; n < 200; n++) {
+        himc_vec3 a = playing_place(HIMC_LEFT), b = playing_place(HIMC_LEFT), d;
+        himc_vec3 right = playing_place(HIMC_RIGHT);
+        himc_pose last, pose;
+        d = himc_vec3_sub(b, a);
+        int steps = (int)(himc_vec3_length(d) / 1e-3) + 1;
+        for (int i = 0; i <= steps; i++) {
+            himc_vec3 tip[HIMC_HANDS] = {himc_vec3_madd(a, (double)i / steps, d), right};
+            himc_posture_at(&posture, tip, &pose);
+            for (int j = 0; i > 0 && j < HIMC_JOINTS; j++) {
+                himc_quat moved = himc_quat_mul(himc_quat_conj(last.joint[j]), pose.joint[j]);
+                TEST_ASSERT_TRUE(himc_vec3_length(himc_quat_log(moved)) < 0.03);
+            }
+            last = pose;
+        }
+    }
+}
+
+static himc_target random_motion(himc_hand hand)
+{
+    himc_target t = {.x = playing_place(hand)};
+    t.x.z = fmin(t.x.z, LEVEL + 0.4);
+    t.v = himc_vec3_make(uniform(-1, 1), uniform(-1, 1), uniform(-5, 5));
+    t.a = himc_vec3_make(uniform(-20, 20), uniform(-20, 20), uniform(-100, 100));
+    return t;
+}
+
+static himc_target later(const himc_target *t, double h)
+{
+    himc_target s = *t;
+    s.x = himc_vec3_madd(himc_vec3_madd(t->x, h, t->v), 0.5 * h * h, t->a);
+    s.v = himc_vec3_madd(t->v, h, t->a);
+    return s;
+}
+
+// rates are central differences over 1 ms: their own error is near 1e-6 of the third derivatives
+static void test_rates_carry_the_tips_at_the_velocity_asked(void)
+{
+    for (int n = 0; n < 500; n++) {
+        himc_target tip[HIMC_HANDS] = {random_motion(HIMC_LEFT), random_motion(HIMC_RIGHT)};
+        himc_vec3 x[HIMC_HANDS] = {tip[0].x, tip[1].x};
+        himc_posture_motion m;
+        himc_pose pose;
+        himc_body_state s;
+        if (himc_posture_at(&posture, x, &pose) > 0)
+            continue;
+        himc_posture_moving(&posture, tip, &m);
+        TEST_ASSERT_EQUAL_MEMORY(pose.joint, m.joint, sizeof m.joint);
+        himc_pose_to_state(&skeleton, &pose, m.rate, &s);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            TEST_ASSERT_DOUBLE_WITHIN(0.02, 0, distance(tip[hand].v, s.tip_velocity[hand]));
+    }
+}
+
+static void test_acceleration_is_the_difference_of_the_rate(void)
+{
+    double h = 1e-3;
+    for (int n = 0; n < 200; n++) {
+        himc_target tip[HIMC_HANDS] = {random_motion(HIMC_LEFT), random_motion(HIMC_RIGHT)};
+        himc_target before[HIMC_HANDS], after[HIMC_HANDS];
+        himc_vec3 x[HIMC_HANDS] = {tip[0].x, tip[1].x};
+        himc_posture_motion m, m0, m1;
+        himc_pose pose;
+        if (himc_posture_at(&posture, x, &pose) > 0)
+            continue;
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            before[hand] = later(&tip[hand], -h);
+            after[hand] = later(&tip[hand], h);
+        }
+        himc_posture_moving(&posture, tip, &m);
+        himc_posture_moving(&posture, before, &m0);
+        himc_posture_moving(&posture, after, &m1);
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            himc_vec3 a = himc_vec3_scale(himc_vec3_sub(m1.rate[j], m0.rate[j]), 0.5 / h);
+            double size = himc_vec3_length(m.acceleration[j]);
+            TEST_ASSERT_DOUBLE_WITHIN(1 + 0.01 * size, 0, distance(a, m.acceleration[j]));
+        }
+    }
+}
+
+static void test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that(void)
+{
+    himc_body_state s;
+    for (int n = 0; n < 1000; n++) {
+        himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
+        himc_hand far = (himc_hand)(n % 2), near = (himc_hand)(1 - n % 2);
+        tip[near] = himc_vec3_make(0.5, near == HIMC_LEFT ? 0.1 : -0.1, LEVEL + 0.1);
+        tip[far].x += 1.5;
+        double missing = place_tips(tip, &s);
+        TEST_ASSERT_TRUE(missing > 0.3);
+        TEST_ASSERT_TRUE(himc_body_state_finite(&s));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, missing, distance(tip[far], s.tip[far]));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(tip[near], s.tip[near]));
+    }
+}
+
+static void test_reachable_place_is_reached_and_a_place_in_reach_is_kept(void)
+{
+    for (int n = 0; n < 2000; n++) {
+        himc_hand hand = (himc_hand)(n % 2);
+        himc_vec3 tip = playing_place(hand);
+        tip.x += n % 4 < 2 ? 0 : uniform(0, 2);
+        tip.z += n % 3 ? 0 : uniform(-0.8, 1);
+        himc_vec3 near = himc_posture_reachable(&posture, hand, tip);
+        himc_vec3 rest = {0.5, hand == HIMC_LEFT ? -0.1 : 0.1, LEVEL};
+        himc_vec3 both[HIMC_HANDS] = {rest, rest};
+        himc_body_state s;
+        both[hand] = tip;
+        if (place_tips(both, &s) == 0)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(tip, near));
+        both[hand] = near;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0, place_tips(both, &s));
+    }
+}
+
+static void test_no_place_makes_a_posture_that_is_no_number(void)
+{
+    himc_body_state s;
+    for (int n = 0; n < 20000; n++) {
+        himc_vec3 tip[HIMC_HANDS];
+        double far = n % 2 ? 3 : 1e6;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            tip[hand] = himc_vec3_make(uniform(-far, far), uniform(-far, far), uniform(-far, far));
+        if (n < 4)
+            tip[n % 2] = n < 2 ? posture.shoulder[n % 2] : himc_vec3_make(0, 0, 0);
+        place_tips(tip, &s);
+        TEST_ASSERT_TRUE(himc_body_state_finite(&s));
+        for (int i = 0; i < HIMC_SEGMENTS; i++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1, himc_quat_dot(s.orientation[i], s.orientation[i]));
+    }
+}
+
+static void test_left_and_right_mirror_each_other(void)
+{
+    himc_body_state s, mirrored;
+    for (int n = 0; n < 500; n++) {
+        himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
+        himc_vec3 swap[HIMC_HANDS] = {tip[1], tip[0]};
+        swap[0].y = -swap[0].y;
+        swap[1].y = -swap[1].y;
+        place_tips(tip, &s);
+        place_tips(swap, &mirrored);
+        for (int i = HIMC_LEFT_UPPER_ARM; i < HIMC_SEGMENTS; i++) {
+            himc_vec3 x = s.origin[i], y = mirrored.origin[i ^ 1];
+            y.y = -y.y;
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(x, y));
+        }
+    }
+}
+
+static void test_feet_of_the_seated_stand_on_the_floor(void)
+{
+    himc_body_state s;
+    himc_pose_to_state(&skeleton, &posture.rest, NULL, &s);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.075, s.origin[HIMC_LEFT_FOOT + hand].z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1, s.rotation[HIMC_LEFT_LOWER_LEG + hand].m[2][2]);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_tips_are_on_their_targets_over_the_whole_playing_space);
+    RUN_TEST(test_heights_of_people_do_not_matter);
+    RUN_TEST(test_arms_have_their_lengths_and_elbows_hang_below_and_outside);
+    RUN_TEST(test_stick_lies_level_at_impact_and_rises_with_the_tip);
+    RUN_TEST(test_joints_follow_the_tip_without_jumps);
+    RUN_TEST(test_rates_carry_the_tips_at_the_velocity_asked);
+    RUN_TEST(test_acceleration_is_the_difference_of_the_rate);
+    RUN_TEST(test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that);
+    RUN_TEST(test_reachable_place_is_reached_and_a_place_in_reach_is_kept);
+    RUN_TEST(test_no_place_makes_a_posture_that_is_no_number);
+    RUN_TEST(test_left_and_right_mirror_each_other);
+    RUN_TEST(test_feet_of_the_seated_stand_on_the_floor);
+    return UNITY_END();
+}

@@ -1,0 +1,166 @@
+/// test_take_strikes.c: blows of known time, speed and place in made-up tracks, and the real drum
+/// stroke.
+#include "take_motions.h"
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static himc_vec3 dead_stroke(double t)
+{
+    return himc_vec3_make(0.6, 0.1, 0.8 + (t < touch_time ? bounce_height(t) : 0));
+}
+
+// the same blow seen through a low-pass filter of about 40 Hz
+static himc_vec3 blunt_bounce(double t)
+{
+    double sum = 0, weight = 0, s = 0.004;
+    for (int i = -40; i <= 40; i++) {
+        double u = i * s / 10, w = exp(-0.5 * u * u / (s * s));
+        sum += w * bounce_height(t + u);
+        weight += w;
+    }
+    return himc_vec3_make(0.6, 0.1, 0.8 + sum / weight);
+}
+
+static void test_strike_between_frames_is_found_at_any_rate_and_phase(void)
+{
+    static const double rates[] = {100, 120, 250, 500, 1000, 2000};
+    double worst_time = 0, worst_speed = 0, worst_height = 0;
+    for (int i = 0; i < 6; i++)
+        for (int phase = 0; phase < 10; phase++) {
+            touch_time = 0.5 + phase / (10 * rates[i]);
+            himc_take *take = read_motion(bounce, rates[i], (int)rates[i]);
+            himc_take_strike s[4];
+            TEST_ASSERT_EQUAL_INT(1, strikes_of(take, s, 4));
+            worst_time = fmax(worst_time, fabs(s[0].time - touch_time));
+            worst_speed = fmax(worst_speed, fabs(s[0].velocity - 4));
+            worst_height = fmax(worst_height, fabs(s[0].x.z - 0.8));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.6 + 0.1 * touch_time, s[0].x.x);
+            TEST_ASSERT_DOUBLE_WITHIN(1.01 / rates[i], touch_time, s[0].frame / rates[i]);
+            himc_take_free(take);
+        }
+    printf("sharp strikes: time within %.3g ms, speed %.3g %%, height %.3g mm\n", worst_time * 1000,
+           worst_speed * 25, worst_height * 1000);
+    TEST_ASSERT_TRUE(worst_time < 2e-4);
+    TEST_ASSERT_TRUE(worst_speed < 0.04);
+    TEST_ASSERT_TRUE(worst_height < 1e-3);
+}
+
+static void test_dead_stroke_is_found(void)
+{
+    for (int phase = 0; phase < 10; phase++) {
+        touch_time = 0.5 + phase / 2500.0;
+        himc_take *take = read_motion(dead_stroke, 250, 250);
+        himc_take_strike s[4];
+        TEST_ASSERT_EQUAL_INT(1, strikes_of(take, s, 4));
+        TEST_ASSERT_DOUBLE_WITHIN(2e-4, touch_time, s[0].time);
+        TEST_ASSERT_DOUBLE_WITHIN(0.04, 4, s[0].velocity);
+        himc_take_free(take);
+    }
+}
+
+static void test_low_pass_filtered_strike_is_found_within_3_ms_and_10_percent(void)
+{
+    double worst_time = 0, worst_speed = 0;
+    for (int phase = 0; phase < 10; phase++) {
+        touch_time = 0.5 + phase / 2500.0;
+        himc_take *take = read_motion(blunt_bounce, 250, 250);
+        himc_take_strike s[4];
+        TEST_ASSERT_EQUAL_INT(1, strikes_of(take, s, 4));
+        worst_time = fmax(worst_time, fabs(s[0].time - touch_time));
+        worst_speed = fmax(worst_speed, fabs(s[0].velocity - 4));
+        himc_take_free(take);
+    }
+    printf("blunt strikes: time within %.3g ms, speed %.3g %%\n", worst_time * 1000,
+           worst_speed * 25);
+    TEST_ASSERT_TRUE(worst_time < 3e-3);
+    TEST_ASSERT_TRUE(worst_speed < 0.4);
+}
+
+static void test_half_a_millimetre_of_noise_neither_hides_nor_adds_strikes(void)
+{
+    noise = 5e-4;
+    touch_time = 0.5;
+    for (int i = 0; i < 20; i++) {
+        himc_take_strike s[4];
+        himc_take *take = read_motion(bounce, 250, 250);
+        TEST_ASSERT_EQUAL_INT(1, strikes_of(take, s, 4));
+        TEST_ASSERT_DOUBLE_WITHIN(4e-3, touch_time, s[0].time);
+        TEST_ASSERT_DOUBLE_WITHIN(0.6, 4, s[0].velocity);
+        himc_take_free(take);
+        take = read_motion(stroke_in_the_air, 250, 500);
+        TEST_ASSERT_EQUAL_INT(0, strikes_of(take, s, 4));
+        himc_take_free(take);
+    }
+    noise = 0;
+}
+
+static void test_strokes_in_the_air_are_no_strikes(void)
+{
+    for (double rate = 60; rate <= 2000; rate *= 2) {
+        himc_take *take = read_motion(stroke_in_the_air, rate, (int)(2 * rate));
+        TEST_ASSERT_EQUAL_INT(0, strikes_of(take, NULL, 0));
+        himc_take_free(take);
+    }
+}
+
+static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
+{
+    himc_take *take = read_roll();
+    himc_take_strike s[32];
+    int count = strikes_of(take, s, 32);
+    TEST_ASSERT_EQUAL_INT(15, count);
+    for (int i = 0; i < count; i++) {
+        TEST_ASSERT_EQUAL_INT(i % 2 ? HIMC_LEFT : HIMC_RIGHT, s[i].hand);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.2 + 0.3 * (i / 2) + 0.11 * (i % 2), s[i].time);
+    }
+    himc_vec3 place;
+    TEST_ASSERT_TRUE(himc_take_strike_place(s, count, &place));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.65, place.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.05, place.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.8, place.z);
+    TEST_ASSERT_FALSE(himc_take_strike_place(s, 0, &place));
+    // fewer places than strikes: the first ones, and how many there are
+    TEST_ASSERT_EQUAL_INT(15, strikes_of(take, s, 3));
+    himc_take_free(take);
+}
+
+static void test_real_stroke_strikes_once_where_and_as_its_source_says(void)
+{
+    const char *path = shared_capture("drumstroke_pearl_240hz/stroke.trc");
+    if (!path)
+        TEST_IGNORE_MESSAGE("../shared/mocap is absent");
+    himc_take *take = himc_take_load(path, NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    himc_take_strike s[4];
+    TEST_ASSERT_EQUAL_INT(1, strikes_of(take, s, 4));
+    printf("real stroke: %.4f s, %.2f m/s, %.3f %.3f %.3f m\n", s[0].time, s[0].velocity, s[0].x.x,
+           s[0].x.y, s[0].x.z);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, s[0].hand);
+    TEST_ASSERT_EQUAL_INT(149, s[0].frame);
+    TEST_ASSERT_DOUBLE_WITHIN(0.008, 149 / 240.0, s[0].time);
+    // the fastest sampled fall is 9.3 m/s in a filtered track; the head's height is given as -0.471
+    // m
+    TEST_ASSERT_TRUE(s[0].velocity > 9.2 && s[0].velocity < 10.5);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, -0.47108, s[0].x.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.003, 0.543, s[0].x.x);
+    himc_take_free(take);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_strike_between_frames_is_found_at_any_rate_and_phase);
+    RUN_TEST(test_dead_stroke_is_found);
+    RUN_TEST(test_low_pass_filtered_strike_is_found_within_3_ms_and_10_percent);
+    RUN_TEST(test_half_a_millimetre_of_noise_neither_hides_nor_adds_strikes);
+    RUN_TEST(test_strokes_in_the_air_are_no_strikes);
+    RUN_TEST(test_strikes_of_both_hands_come_in_order_and_place_the_drum);
+    RUN_TEST(test_real_stroke_strikes_once_where_and_as_its_source_says);
+    return UNITY_END();
+}
