@@ -129,30 +129,18 @@ int cli_finish(const cli_call *call)
     return 0;
 }
 
-bool cli_number(const char *name, const char *text, double low, double high, const char *unit,
-                double *out, himc_error *error)
+bool cli_count(const char *name, const char *text, int low, int high, const char *unit, int *out,
+               himc_error *error)
 {
     if (!text)
         return true;
     char *end;
     double value = strtod(text, &end);
-    if (end == text || *end)
-        return himc_error_set(error, "%s: \"%s\" is not a number, allowed %g .. %g%s%s", name, text,
-                              low, high, unit[0] ? " " : "", unit);
+    if (end == text || *end || (isfinite(value) && value != floor(value)))
+        return himc_error_set(error, "%s: \"%s\" is not a whole number, allowed %d .. %d %s", name,
+                              text, low, high, unit);
     if (!himc_check_range(name, value, low, high, unit, error))
         return false;
-    *out = value;
-    return true;
-}
-
-bool cli_count(const char *name, const char *text, int low, int high, int *out, himc_error *error)
-{
-    double value = *out;
-    if (!cli_number(name, text, low, high, "", &value, error))
-        return false;
-    if (value != floor(value))
-        return himc_error_set(error, "%s: %s is not a whole number, allowed %d .. %d", name, text,
-                              low, high);
     *out = (int)value;
     return true;
 }

@@ -51,10 +51,8 @@ int cli_fail(const cli_call *call, const char *format, ...) __attribute__((forma
 /// Returns 0, or fails if what was printed did not reach stdout (a full disk).
 int cli_finish(const cli_call *call);
 
-/// The number after option `name`, which must lie in [low, high]; left as it is if `text` is NULL.
-bool cli_number(const char *name, const char *text, double low, double high, const char *unit,
-                double *out, himc_error *error);
-/// The same for a whole number.
+/// The whole number after option `name`, which must lie in [low, high]; left as it is if `text` is
+/// NULL.
 bool cli_count(const char *name, const char *text, int low, int high, const char *unit, int *out,
                himc_error *error);
 

@@ -114,7 +114,7 @@ draw() {
         -e "sound = '$work/sound.csv'" \
         -e "from = $from; to = $to; length = $(length_of "$out/improvisation.wav")" \
         -e "title = 'Timpani improvisation by a simulated percussionist'" \
-        -e "said = '$landed strokes on time and in place, sticks $apart mm (RMS) off their targets'" \
+        -e "said = '$landed strokes on time and in place, sticks $apart mm (RMS) off target'" \
         -e "excerpt = '$what'; picture = '$work/picture.png'" \
         tools/figures/improvisation.gp >"$work/gnuplot.log" 2>&1 ||
         fail "gnuplot: $(tail -n 1 "$work/gnuplot.log")"

@@ -104,7 +104,7 @@ static bool inspect_score(const job *wanted, bool *makes_drums, himc_error *erro
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
     himc_score_free(score);
     if (seconds + TAIL_SECONDS > WAV_SAMPLES / wanted->rate)
-        return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %g Hz: %.0f s",
+        return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %d Hz: %.0f s",
                               wanted->source, seconds, wanted->rate,
                               WAV_SAMPLES / wanted->rate - TAIL_SECONDS);
     return true;
@@ -125,12 +125,11 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
            tell(performance, "play", NULL, error);
 }
 
-static bool open_sound(rendering *r, const char *path, double rate, himc_error *error)
+static bool open_sound(rendering *r, const char *path, int rate, himc_error *error)
 {
     if (!cli_file_open(&r->wav, path, error))
         return false;
-    SF_INFO info = {
-        .samplerate = (int)lround(rate), .channels = 1, .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
+    SF_INFO info = {.samplerate = rate, .channels = 1, .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
     r->sound = sf_open_fd(fileno(r->wav.stream), SFM_WRITE, &info, SF_FALSE);
     if (!r->sound)
         return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(NULL));
@@ -174,7 +173,7 @@ static void play_block(rendering *r, int n)
 }
 
 /// Called where a cell ends: true when there is nothing more to hear.
-static bool is_over(rendering *r, double rate)
+static bool is_over(rendering *r, int rate)
 {
     r->peak = fmax(r->peak, r->cell_peak);
     bool silent = r->cell_peak <= SILENCE * r->peak;

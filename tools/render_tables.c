@@ -95,9 +95,8 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     if (stats->strokes)
         printf("strokes   %d of %d landed within 5 ms and 2 cm\n", stats->played, stats->strokes);
     if (isfinite(stats->tip_rms_percent))
-        printf(
-            "accuracy  sticks %.3g mm RMS off their targets, %.2g %% of the strokes' height\n",
-            rms_mm, stats->tip_rms_percent);
+        printf("accuracy  sticks %.3g mm RMS off their targets, %.2g %% of the strokes' height\n",
+               rms_mm, stats->tip_rms_percent);
     printf("force     up to %.1f N\n", stats->peak_force);
     printf("speed     %.1f s played, %.1f x real time\n", seconds, realtime_factor);
     if (stats->recoveries)

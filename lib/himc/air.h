@@ -29,7 +29,7 @@ typedef struct himc_air {
 /// Volume (m^3) of a kettle of usual shape: 0.14 m^3 under a 26 inch head (Christian et al. 1984), others alike.
 HIMC_RT double himc_air_kettle(double radius);
 
-/// From a quarter to four times the usual, or false with the value and the range.
+/// From half to twice the usual, or false with the value and the range.
 bool himc_air_check(double kettle, double radius, himc_error *error);
 
 /// The air around `head` (in its ranges) over a kettle of that volume (m^3, within himc_air_check).

@@ -25,7 +25,7 @@
 
 #include <math.h>
 
-#define STIFFEST 4.0      // times the usual kettle's volume, or a part of it
+#define KETTLES 2.0       // times the usual volume at most, and one part of it at least
 #define FADE 1.3862943611 // of the table beyond its tensions, in log tension
 #define FADE_DRUM 0.6931471806
 #define RIM 1.07
@@ -56,7 +56,7 @@ double himc_air_kettle(double radius)
 bool himc_air_check(double kettle, double radius, himc_error *error)
 {
     double usual = himc_air_kettle(radius);
-    return himc_check_range("kettle", kettle, usual / STIFFEST, usual * STIFFEST, "m3", error);
+    return himc_check_range("kettle", kettle, usual / KETTLES, usual * KETTLES, "m3", error);
 }
 
 // J_{2m+1}(z) + J_{2m+3}(z) + ... by backward recurrence; what is below 1e-7 may come out as 0
