@@ -11,6 +11,7 @@
 #include "himc/performance.h"
 #include "render_tables.h"
 
+#include <errno.h>
 #include <math.h>
 #include <sndfile.h>
 #include <string.h>
@@ -52,7 +53,7 @@ typedef struct rendering {
     cli_file wav, strokes, motion;
     SNDFILE *sound;
     bool done;     ///< the performer has come to rest
-    bool failed;   ///< a write did not arrive
+    int failed;    ///< errno of the first write that did not arrive
     bool too_long; ///< for a WAV file
     uint64_t samples, done_at;
     double peak, cell_peak; ///< of the sound so far, of the cell under way
@@ -167,7 +168,9 @@ static void play_block(rendering *r, int n)
         out[i] = (float)sum[i];
         r->cell_peak = fmax(r->cell_peak, fabs(sum[i]));
     }
-    r->failed |= sf_writef_float(r->sound, out, n) != n;
+    errno = 0;
+    if (sf_writef_float(r->sound, out, n) != n)
+        r->failed = errno ? errno : EIO;
     r->samples += (uint64_t)n;
     take_events(r);
 }
@@ -227,7 +230,7 @@ static bool keep_files(rendering *r, himc_error *error)
 {
     const char *path = r->wav.path;
     if (r->failed)
-        return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(r->sound));
+        return himc_error_set(error, "%s: cannot be written: %s", path, strerror(r->failed));
     if (r->too_long)
         return himc_error_set(error, "%s: not over when the file is full, allowed %.0f samples",
                               path, WAV_SAMPLES);

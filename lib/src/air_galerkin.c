@@ -42,23 +42,28 @@ static const double NODE[5] = {0.1488743389816312, 0.4333953941292472, 0.6794095
 static const double WEIGHT[5] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
                                  0.0666713443086881};
 
-static double slope(int m, double z)
-{
-    return m > 0 ? 0.5 * (himc_bessel_j(m - 1, z) - himc_bessel_j(m + 1, z)) : -himc_bessel_j(1, z);
-}
-
-// J_m' changes sign once in the interval
+// J_m' changes sign once in the interval; J_m'' = -J_m'/z - (1 - m^2/z^2) J_m
 static double slope_zero(int m, double low, double high)
 {
-    bool rising = slope(m, low) > 0;
-    for (int i = 0; i < 60; i++) {
-        double z = 0.5 * (low + high);
-        if ((slope(m, z) > 0) == rising)
+    double z = 0.5 * (low + high), j[32];
+    for (int i = 0, rising = -1; i < 60; i++) {
+        himc_bessel_orders(z, m + 1, j);
+        double slope = m / z * j[m] - j[m + 1], bend = -slope / z - (1 - m * m / (z * z)) * j[m];
+        if (rising < 0) {
+            himc_bessel_orders(low, m + 1, j);
+            rising = m / low * j[m] > j[m + 1];
+        }
+        if ((slope > 0) == rising)
             low = z;
         else
             high = z;
+        double next = z - slope / bend;
+        next = next > low && next < high ? next : 0.5 * (low + high);
+        if (fabs(next - z) < 1e-15 * z)
+            return next;
+        z = next;
     }
-    return 0.5 * (low + high);
+    return z;
 }
 
 void himc_air_order_make(himc_air_order *order, int m)

@@ -222,14 +222,8 @@ himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))
         return NULL;
-    if (!tips[HIMC_LEFT].present && !tips[HIMC_RIGHT].present) {
-        himc_error_set(
-            error,
-            "take: no drumstick tip among its points: name them with --left-tip, --right-tip");
-        return NULL;
-    }
     if (himc_take_frames(take) < LEAST_FRAMES) {
-        himc_error_set(error, "take: %d frames, allowed %d or more", himc_take_frames(take),
+        himc_error_set(error, "%d frames, allowed %d or more", himc_take_frames(take),
                        LEAST_FRAMES);
         return NULL;
     }
@@ -252,7 +246,7 @@ himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
     free(strikes);
     if (!ok) {
         himc_track_free(track);
-        himc_error_set(error, "take: out of memory");
+        himc_error_set(error, "out of memory");
         return NULL;
     }
     return track;
