@@ -53,6 +53,12 @@ static inline t_drum_link *drum_link_find(const char *name)
     return same ? link : NULL;
 }
 
+/* What a [himc~] gives a drum as its performer, so that [membrane~] can see how far it has played. */
+typedef struct t_player {
+    void *p_himc;
+    uint64_t p_time; /* of the performance; the head may be a few samples ahead (samples) */
+} t_player;
+
 /* An object's place in the stream of samples. */
 typedef struct t_stream {
     int s_length;     /* of a block (samples) */

@@ -29,6 +29,7 @@ typedef struct t_himc {
     t_outlet *x_messages;
 
     himc_performance *x_performance;
+    t_player x_player;
     double x_rate; /* of the performance (Hz) */
     int x_count;
     t_himc_drum x_drum[HIMC_DRUMS];
@@ -42,15 +43,16 @@ typedef struct t_himc {
 } t_himc;
 
 /* Brings the performance to sample `time`, whoever needs it: x's perform or that of one of its drums. */
-static void himc_tilde_advance(void *object, uint64_t time)
+static void himc_tilde_advance(void *player, uint64_t time)
 {
-    t_himc *x = object;
+    t_himc *x = ((t_player *)player)->p_himc;
     for (uint64_t now; (now = himc_performance_time(x->x_performance)) < time;) {
         uint64_t at = now % FORCE_RING;
         uint64_t n = time - now < FORCE_RING - at ? time - now : FORCE_RING - at;
         double *force[HIMC_HANDS] = {x->x_force[HIMC_LEFT] + at, x->x_force[HIMC_RIGHT] + at};
         himc_performance_process(x->x_performance, (int)n, force);
     }
+    x->x_player.p_time = himc_performance_time(x->x_performance);
     if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
         x->x_waiting = true;
         clock_delay(x->x_clock, 0);
@@ -62,7 +64,7 @@ static t_int *himc_tilde_perform(t_int *w)
     t_himc *x = (t_himc *)w[1];
     t_stream *s = &x->x_stream;
     stream_begin(s, himc_performance_time(x->x_performance));
-    himc_tilde_advance(x, s->s_count + (uint64_t)s->s_length);
+    himc_tilde_advance(&x->x_player, s->s_count + (uint64_t)s->s_length);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < s->s_length; i++)
             x->x_out[hand][i] = (t_sample)x->x_force[hand][(s->s_count + (uint64_t)i) % FORCE_RING];
@@ -73,7 +75,7 @@ static t_int *himc_tilde_perform(t_int *w)
 
 static void himc_tilde_let_go(t_himc *x, const t_himc_drum *d)
 {
-    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == x)
+    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == &x->x_player)
         himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
 }
 
@@ -82,7 +84,7 @@ static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_err
 {
     if (!himc_performance_add_drum(x->x_performance, drum, error))
         return false;
-    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, x});
+    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, &x->x_player});
     d->d_drum = drum;
     return true;
 }
@@ -96,7 +98,7 @@ static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error
         return NULL;
     }
     void *performer = himc_drum_get_driver(link->l_drum).performer;
-    if (performer && performer != x) {
+    if (performer && performer != &x->x_player) {
         himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);
         return NULL;
     }
@@ -147,6 +149,7 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         stream_restart(&x->x_stream, sp[0]);
         himc_tilde_resolve(x, true);
         himc_performance_realign(x->x_performance);
+        x->x_player.p_time = 0;
         dsp_add(himc_tilde_perform, 1, x);
         return;
     }
@@ -277,6 +280,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_canvas = canvas_getcurrent();
     x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
     x->x_performance = performance;
+    x->x_player.p_himc = x;
     x->x_rate = config.sample_rate;
     x->x_count = argc;
     for (int i = 0; i < argc; i++)

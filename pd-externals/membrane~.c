@@ -8,7 +8,8 @@ outlets  sound, displacement under the spot (m), messages:
 
 Glue only. Without a performer the object advances its drum itself. With one, the performer steps head and sticks together,
 and may have done so before the inlet's force for those samples is known; so that force plays on a second head of the
-same make (the layer). A membrane is linear: the sum is the sound of both, except that sticks do not feel the inlet. */
+same make (the layer). A membrane is linear: the sum is the sound of both, except that sticks do not feel the inlet. The
+displacement outlet then follows x and y from block to block. */
 #include "drum-link.h"
 
 #define CHUNK 64 /* samples at a time, on the stack of the perform routine */
@@ -54,10 +55,11 @@ static void membrane_layer(t_membrane *x, int n, double in[3][CHUNK], double out
         x->x_layer_sounds = in[0][i] != 0;
     if (!x->x_layer_sounds)
         return;
-    himc_membrane_watch(x->x_layer, in[1][0], in[2][0]);
     for (int i = 0, run; i < n; i += run) {
-        for (run = 1; i + run < n && in[0][i + run] == 0;)
+        run = 1;
+        while (i + run < n && in[0][i + run] == 0 && in[1][i + run] == in[1][i] && in[2][i + run] == in[2][i])
             run++;
+        himc_membrane_watch(x->x_layer, in[1][i], in[2][i]);
         if (in[0][i] != 0)
             himc_membrane_push(x->x_layer, in[1][i], in[2][i], in[0][i]);
         himc_membrane_run(x->x_layer, run, heard + i, seen + i);
@@ -85,6 +87,8 @@ static void membrane_fit_layer(t_membrane *x)
 {
     himc_error error;
     himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    if (membrane_layer_fits(x))
+        return;
     if (!himc_membrane_set_head(x->x_layer, himc_membrane_head(drum), &error) ||
         !himc_membrane_set_pickup(x->x_layer, himc_membrane_pickup(drum), &error))
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
@@ -119,7 +123,8 @@ static t_int *membrane_perform(t_int *w)
 {
     t_membrane *x = (t_membrane *)w[1];
     double in[3][CHUNK], out[2][CHUNK];
-    stream_begin(&x->x_stream, himc_drum_time(x->x_link.l_drum));
+    const t_player *player = himc_drum_get_driver(x->x_link.l_drum).performer;
+    stream_begin(&x->x_stream, player ? player->p_time : himc_drum_time(x->x_link.l_drum));
     for (int done = 0, n; done < x->x_stream.s_length; done += n) {
         n = x->x_stream.s_length - done < CHUNK ? x->x_stream.s_length - done : CHUNK;
         /* all inlets are read before an outlet is written: they may be the same memory */
@@ -159,6 +164,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
             himc_drum_realign(x->x_link.l_drum, 0);
         }
         x->x_told = false;
+        membrane_fit_layer(x);
         dsp_add(membrane_perform, 1, x);
         return;
     }
@@ -184,8 +190,7 @@ static void membrane_tick(t_membrane *x)
     else if (membrane_troubled(x))
         pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0", name);
     x->x_told |= membrane_troubled(x);
-    if (!membrane_layer_fits(x))
-        membrane_fit_layer(x);
+    membrane_fit_layer(x);
     while (x->x_waiting) {
         /* what is sent may come back as a command, so the state is written first */
         himc_contact_report report = x->x_report;
@@ -216,7 +221,10 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
                                    command.atom[2].number, error);
     }
-    return himc_drum_command(drum, &command, error);
+    if (!himc_drum_command(drum, &command, error))
+        return false;
+    membrane_fit_layer(x);
+    return true;
 }
 
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)

@@ -139,6 +139,25 @@ static bool open_sound(rendering *r, const char *path, int rate, himc_error *err
     return true;
 }
 
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void show_progress(double seconds, double elapsed)
+{
+    if (isatty(STDERR_FILENO))
+        fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
+}
+
+static void clear_progress(void)
+{
+    if (isatty(STDERR_FILENO))
+        fputs("\r\033[K", stderr);
+}
+
 /// Asks the performer for what happened; strikes go to their table, notes to the user.
 static void take_events(rendering *r)
 {
@@ -146,18 +165,20 @@ static void take_events(rendering *r)
     while (himc_performance_event(r->performance, &event)) {
         if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
             render_stroke_row(r->strokes.stream, &event.strike);
-        else if (event.kind == HIMC_EVENT_NOTE)
+        else if (event.kind == HIMC_EVENT_NOTE) {
+            clear_progress();
             printf("note: %s\n", event.text);
-        else if (event.kind == HIMC_EVENT_DONE)
+        } else if (event.kind == HIMC_EVENT_DONE)
             r->done = true;
     }
 }
 
 static void play_block(rendering *r, int n)
 {
-    double heard[BLOCK_MAX], sum[BLOCK_MAX] = {0};
+    double heard[BLOCK_MAX], sum[BLOCK_MAX];
     float out[BLOCK_MAX];
     himc_drum *drum;
+    memset(sum, 0, (size_t)n * sizeof *sum);
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
     for (int d = 0; (drum = himc_performance_drum(r->performance, d)); d++) {
         himc_drum_read(drum, r->samples, n, heard, NULL);
@@ -189,23 +210,6 @@ static bool is_over(rendering *r, int rate)
            (double)(r->samples - r->done_at) >= TAIL_SECONDS * rate;
 }
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static void show_progress(double seconds, double elapsed, bool last)
-{
-    if (!isatty(STDERR_FILENO))
-        return;
-    if (last)
-        fprintf(stderr, "\r\033[K");
-    else
-        fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
-}
-
 /// Plays to the end; returns how long it took (s).
 static double play(rendering *r, const job *wanted)
 {
@@ -218,10 +222,10 @@ static double play(rendering *r, const job *wanted)
             left -= n;
         }
         r->too_long = (double)(r->samples + (uint64_t)cell) > WAV_SAMPLES;
-        show_progress((double)r->samples / wanted->rate, now() - start, false);
+        show_progress((double)r->samples / wanted->rate, now() - start);
     } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
     double elapsed = now() - start;
-    show_progress(0, 0, true);
+    clear_progress();
     return elapsed;
 }
 
