@@ -1,14 +1,14 @@
-/* [himc~ DRUM ...]: the performer, a simulated percussionist who strikes the drums [membrane~ DRUM].
+/* [himc~ DRUM ...]: the performer, a simulated percussionist who strikes [membrane~ DRUM].
 
-inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h has the table)
+inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          beat N   done   info ...
 
-Glue only: commands go to a himc_performance with the sample on which they arrived; each block brings it forward and puts
-out what the sticks felt. A [membrane~] that comes earlier in the tick asks for its sound first and so brings the
-performance forward itself (himc_tilde_advance), so the forces wait in a ring. Nothing is sent from perform: a clock does,
-at the start of the next tick. */
+Glue only: commands go to a himc_performance with the sample on which they arrived; each block
+brings it forward and puts out what the sticks felt. A [membrane~] that comes earlier in the tick
+asks for its sound first and so brings the performance forward itself (himc_tilde_advance); so the
+forces wait in a ring. Nothing is sent from perform: a clock does, at the start of the next tick. */
 #include "drum-link.h"
 
 #define FORCE_RING HIMC_DRUM_RING
@@ -42,7 +42,7 @@ typedef struct t_himc {
     himc_event x_event;
 } t_himc;
 
-/* Brings the performance to sample `time`, whoever needs it: x's perform or that of one of its drums. */
+/* Brings the performance to sample `time`, for x's own perform or that of one of its drums. */
 static void himc_tilde_advance(void *player, uint64_t time)
 {
     t_himc *x = ((t_player *)player)->p_himc;
@@ -140,7 +140,8 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
     himc_error error;
     if (sp[0]->s_n > FORCE_RING) {
         pd_error(x, "himc~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, FORCE_RING);
-    } else if (sp[0]->s_sr != x->x_rate && !himc_performance_set_rate(x->x_performance, sp[0]->s_sr, &error)) {
+    } else if (sp[0]->s_sr != x->x_rate &&
+               !himc_performance_set_rate(x->x_performance, sp[0]->s_sr, &error)) {
         pd_error(x, "himc~: %s", error.text);
     } else {
         x->x_rate = sp[0]->s_sr;
@@ -177,12 +178,8 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
         SETFLOAT(atom, (t_float)event->beat);
         outlet_anything(x->x_messages, gensym("beat"), 1, atom);
         break;
-    case HIMC_EVENT_DONE:
-        outlet_anything(x->x_messages, gensym("done"), 0, NULL);
-        break;
-    case HIMC_EVENT_NOTE:
-        logpost(x, PD_NORMAL, "himc~: %s", event->text);
-        break;
+    case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
+    case HIMC_EVENT_NOTE: logpost(x, PD_NORMAL, "himc~: %s", event->text); break;
     }
 }
 
@@ -197,15 +194,18 @@ static void himc_tilde_tick(t_himc *x)
 }
 
 /* Pd's own way to a file: absolute, beside the patch, or along its search path. */
-static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size, himc_error *error)
+static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size,
+                              himc_error *error)
 {
     char folder[MAXPDSTRING], *base;
     int file = canvas_open(x->x_canvas, name, "", folder, &base, MAXPDSTRING, 0);
     if (file < 0)
-        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path", name);
+        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path",
+                              name);
     sys_close(file);
     if ((size_t)snprintf(path, size, "%s/%s", folder, base) >= size)
-        return himc_error_set(error, "%s: its full name is longer than %zu characters", name, size - 1);
+        return himc_error_set(error, "%s: its full name is longer than %zu characters", name,
+                              size - 1);
     return true;
 }
 
@@ -224,12 +224,12 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return true;
     }
     if (command.id == HIMC_COMMAND_SCORE || command.id == HIMC_COMMAND_TAKE) {
-        char path[HIMC_PATH_SIZE];
-        if (!himc_tilde_locate(x, command.atom[0].symbol, path, sizeof path, error))
-            return himc_error_prefix(error, "%s", command.id == HIMC_COMMAND_SCORE ? "score" : "take");
-        himc_atom atom = {HIMC_ATOM_SYMBOL, 0, path};
         const char *name = command.id == HIMC_COMMAND_SCORE ? "score" : "take";
-        if (!himc_command_parse(&command, HIMC_PERFORMER, name, &atom, 1, error))
+        char path[HIMC_PATH_SIZE];
+        himc_atom file = {HIMC_ATOM_SYMBOL, 0, path};
+        if (!himc_tilde_locate(x, command.atom[0].symbol, path, sizeof path, error))
+            return himc_error_prefix(error, "%s", name);
+        if (!himc_command_parse(&command, HIMC_PERFORMER, name, &file, 1, error))
             return false;
     }
     /* a command may come before DSP is on, and its drums should be there */
@@ -254,8 +254,9 @@ static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error
         char text[80];
         atom_string(argv + i, text, sizeof text);
         if (argv[i].a_type != A_SYMBOL || strlen(text) >= HIMC_NAME_SIZE)
-            return himc_error_set(error, "argument %d: %s, allowed: a drum's name of up to %d characters", i + 1, text,
-                                  HIMC_NAME_SIZE - 1);
+            return himc_error_set(error,
+                                  "argument %d: %s, allowed: a drum's name of up to %d characters",
+                                  i + 1, text, HIMC_NAME_SIZE - 1);
         for (int k = 0; k < i; k++)
             if (argv[k].a_w.w_symbol == argv[i].a_w.w_symbol)
                 return himc_error_set(error, "argument %d: %s is named twice", i + 1, text);
@@ -304,8 +305,9 @@ __attribute__((visibility("default"))) void himc_tilde_setup(void);
 
 void himc_tilde_setup(void)
 {
-    himc_tilde_class = class_new(gensym("himc~"), (t_newmethod)himc_tilde_new, (t_method)himc_tilde_free,
-                                 sizeof(t_himc), CLASS_DEFAULT, A_GIMME, A_NULL);
+    himc_tilde_class =
+        class_new(gensym("himc~"), (t_newmethod)himc_tilde_new, (t_method)himc_tilde_free,
+                  sizeof(t_himc), CLASS_DEFAULT, A_GIMME, A_NULL);
     if (!himc_tilde_class)
         return; /* a Pd of another float size has refused it and said so */
     class_addmethod(himc_tilde_class, (t_method)himc_tilde_dsp, gensym("dsp"), A_CANT, A_NULL);

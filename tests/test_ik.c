@@ -1,4 +1,5 @@
-/// test_ik.c: the Jacobian by differences, solvers against a dense 3 x 12 reference, null space, release.
+/// test_ik.c: the Jacobian by differences, solvers against a dense 3 x 12 reference, null space,
+/// release.
 #include "himc/ik.h"
 
 #include "unity.h"
@@ -88,7 +89,8 @@ static void dense(const himc_arm_jacobian *j, double a[3][COLUMNS])
     }
 }
 
-// (J'J + lambda^2) x = J'e by Gauss elimination with pivots: 12 x 12, the other way round than the module
+// (J'J + lambda^2) x = J'e by Gauss elimination with pivots: 12 x 12, the other way round than the
+// module
 static void dense_damped(double a[3][COLUMNS], double lambda, const double e[3], double x[COLUMNS])
 {
     double m[COLUMNS][COLUMNS + 1];
@@ -150,7 +152,8 @@ static void test_damped_least_squares_is_the_dense_solution(void)
         dense(&j, a);
         dense_damped(a, lambda, error, x);
         himc_ik_solve(&j, HIMC_SOLVER_DLS, lambda, e, got);
-        for (int c = 0; c < COLUMNS; c++) // 1e-6: the module's floor of 1e-9 m^2 under lambda^2 = 1e-4
+        for (int c = 0; c < COLUMNS;
+             c++) // 1e-6: the module's floor of 1e-9 m^2 under lambda^2 = 1e-4
             TEST_ASSERT_DOUBLE_WITHIN(1e-6, x[c], component(got[c / 3], c % 3));
     }
 }
@@ -177,7 +180,8 @@ static void test_pseudo_inverse_reaches_the_tip_with_the_least_rotation(void)
     }
 }
 
-// all levers along z but for `bend`: along z nothing moves, and a small singular value is made to order
+// all levers along z but for `bend`: along z nothing moves, and a small singular value is made to
+// order
 static void straight(himc_arm_jacobian *j, double bend)
 {
     himc_body_state s;
@@ -239,7 +243,8 @@ static void test_transpose_step_is_the_best_along_its_direction(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_vec3_length(got[0]));
 }
 
-// N J# = 0: what a pseudo-inverse makes has no part in the null space, and the null space does not move the tip
+// N J# = 0: what a pseudo-inverse makes has no part in the null space, and the null space does not
+// move the tip
 static void test_null_space_leaves_the_tip_alone_and_projects_once(void)
 {
     for (int n = 0; n < POSES; n++) {

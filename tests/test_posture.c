@@ -1,4 +1,5 @@
-/// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and right.
+/// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and
+/// right.
 #include "himc/posture.h"
 
 #include "unity.h"
@@ -41,10 +42,12 @@ static double place_tips(const himc_vec3 tip[HIMC_HANDS], himc_body_state *s)
     return missing;
 }
 
-// where a timpanist's tips are: over heads in front, up to 0.6 m above them, a little across the middle
+// where a timpanist's tips are: over heads in front, up to 0.6 m above them, a little across the
+// middle
 static himc_vec3 playing_place(himc_hand hand)
 {
-    double x = uniform(0.35, 0.75), y = uniform(-0.15, 0.35), z = uniform(LEVEL - 0.03, LEVEL + 0.6);
+    double x = uniform(0.35, 0.75), y = uniform(-0.15, 0.35),
+           z = uniform(LEVEL - 0.03, LEVEL + 0.6);
     return himc_vec3_make(x, hand == HIMC_LEFT ? y : -y, z);
 }
 
@@ -85,7 +88,8 @@ static void test_arms_have_their_lengths_and_elbows_hang_below_and_outside(void)
     himc_body_state s;
     for (int n = 0; n < 1000; n++) {
         himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
-        for (int hand = 0; hand < HIMC_HANDS; hand++) { // a wrist below its shoulder leaves no outside
+        for (int hand = 0; hand < HIMC_HANDS;
+             hand++) { // a wrist below its shoulder leaves no outside
             tip[hand].x = fmax(tip[hand].x, 0.45);
             tip[hand].y = fmin(fmax(tip[hand].y, -0.15), 0.15);
         }

@@ -53,6 +53,7 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     c->world = dWorldCreate();
     dWorldSetGravity(c->world, 0, 0, -9.80665);
     dWorldSetERP(c->world, JOINT_ERP);
+    dWorldSetCFM(c->world, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         make_body(c, i);
     himc_body_state state;

@@ -105,18 +105,7 @@ static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jac
     scatter_arm(arm, hand, all);
 }
 
-// in contact no error counts along the normal, neither of place nor of rate
-static void release_errors(const himc_reference *reference, const himc_arm_jacobian *jacobian,
-                           errors *e)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (reference->released[hand]) {
-            release(e->angle, (himc_hand)hand, &jacobian[hand], reference->normal[hand], 0);
-            release(e->rate, (himc_hand)hand, &jacobian[hand], reference->normal[hand], 0);
-        }
-}
-
-// nor is the tip accelerated along it, whatever the gains of the joints are
+// in contact the tip is not accelerated along the normal, whatever the gains of the joints are
 static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
                                  const himc_reference *reference, const himc_arm_jacobian *jacobian,
                                  himc_vec3 wanted[HIMC_JOINTS])
@@ -176,6 +165,28 @@ static void wanted_accelerations(const himc_controller *c, const himc_body_state
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
 }
 
+// the same for torques already made: the force at the tip that would stop its acceleration along
+// the normal, m_eff a, passed down the arm and the trunk
+static void release_torques(const himc_skeleton *skeleton, const himc_body_state *s,
+                            const himc_reference *reference, himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_articulation art;
+    himc_vec3 relative[HIMC_JOINTS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        if (!reference->released[hand])
+            continue;
+        himc_vec3 n = reference->normal[hand];
+        himc_articulate(skeleton, s, &art);
+        himc_forward_dynamics(skeleton, s, &art, torque, NULL, relative);
+        double a = himc_vec3_dot(n, himc_tip_acceleration(skeleton, s, (himc_hand)hand, relative));
+        double mass = himc_effective_mass(skeleton, s, &art, (himc_hand)hand, n);
+        himc_vec3 force = himc_vec3_scale(n, -mass * a);
+        for (int i = himc_stick_segment((himc_hand)hand); i > 0; i = skeleton->segment[i].parent)
+            torque[i - 1] = himc_vec3_add(
+                torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
+    }
+}
+
 // the printed law damps the rate itself, not its error
 static void forget_target_rates(const himc_skeleton *skeleton, const himc_body_state *s, errors *e)
 {
@@ -203,8 +214,8 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         release_acceleration(skeleton, s, reference, jacobian, wanted);
         himc_inverse_dynamics(skeleton, s, wanted, false, torque);
     } else {
-        release_errors(reference, jacobian, &e);
         servo_torques(c, skeleton, s, &e, torque);
+        release_torques(skeleton, s, reference, torque);
     }
 }
 

@@ -132,9 +132,9 @@ void himc_ik_release(const himc_arm_jacobian *jacobian, himc_vec3 direction, dou
     // f = (J J')^-1 n takes away along n and nothing across it
     double along = himc_vec3_dot(direction, himc_ik_forward(jacobian, rotation)) - remain;
     himc_vec3 f = himc_mat3_apply(&jacobian->inverse, direction);
-    double effect = himc_vec3_dot(direction, himc_mat3_apply(&jacobian->gram, f));
-    if (effect <= 0)
+    if (himc_vec3_dot(direction, f) > 1e4) // a straight arm along n: nothing moves the tip that way
         return;
+    double effect = himc_vec3_dot(direction, himc_mat3_apply(&jacobian->gram, f));
     f = himc_vec3_scale(f, along / effect);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         rotation[k] = himc_vec3_sub(rotation[k], himc_vec3_cross(jacobian->lever[k], f));

@@ -459,20 +459,39 @@ static const action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_MAKE_DRUM] = do_drum,
 };
 
+// commands that act at their sample; the others, which may allocate or read files, act at once
+static bool waits(himc_command_id id)
+{
+    return id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_TARGET || id == HIMC_COMMAND_TEMPO ||
+           id == HIMC_COMMAND_PLAY || id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK ||
+           id == HIMC_COMMAND_MODE || id == HIMC_COMMAND_LAW || id == HIMC_COMMAND_SOLVER ||
+           id == HIMC_COMMAND_DAMPING || id == HIMC_COMMAND_COUPLING;
+}
+
+// drums that a waiting command will want are made now, not in the audio callback
+static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
+{
+    int index;
+    if (command->id == HIMC_COMMAND_HIT)
+        return performance_ensure_drum(p, command->stroke.drum, &index, error);
+    return command->id != HIMC_COMMAND_PLAY || performance_ensure_drum(p, "", &index, error);
+}
+
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)
 {
     action act = actions[command->id];
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    bool reads_file = command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
-    if (delay <= 0 || reads_file)
+    if (delay <= 0 || !waits(command->id))
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
     if (p->waiting_count == WAITING_COMMANDS)
         return himc_error_set(error, "more than %d commands at once: this one is dropped",
                               WAITING_COMMANDS);
+    if (!prepare(p, command, error))
+        return false;
     waiting_command *w = &p->waiting[p->waiting_count++];
     w->due = p->sample + (uint64_t)delay;
     himc_command_copy(&w->command, command);
