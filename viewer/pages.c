@@ -22,6 +22,7 @@ FILE_IN(main, "viewer/page/main.js")
 FILE_IN(stream, "viewer/page/stream.js")
 FILE_IN(performer, "viewer/page/performer.js")
 FILE_IN(figure, "viewer/page/figure.js")
+FILE_IN(color, "viewer/page/color.js")
 FILE_IN(sculpt, "viewer/page/sculpt.js")
 FILE_IN(skeleton, "viewer/page/skeleton.js")
 FILE_IN(drum, "viewer/page/drum.js")
@@ -40,7 +41,7 @@ static const page pages[] = {
     {"/", "text/html; charset=utf-8", page_index, page_index_end},
     {"/style.css", "text/css", page_style, page_style_end},
     {"/icon.svg", "image/svg+xml", page_icon, page_icon_end},
-    SCRIPT(main), SCRIPT(stream), SCRIPT(performer), SCRIPT(figure), SCRIPT(sculpt), SCRIPT(skeleton), SCRIPT(drum),
+    SCRIPT(main), SCRIPT(stream), SCRIPT(performer), SCRIPT(figure), SCRIPT(sculpt), SCRIPT(color), SCRIPT(skeleton), SCRIPT(drum),
     SCRIPT(modes), SCRIPT(strike), SCRIPT(stage), SCRIPT(camera), SCRIPT(motion), SCRIPT(panel), SCRIPT(record),
     SCRIPT(three),
 };

@@ -159,7 +159,7 @@ static int send_news(struct lws *wsi, session *own)
     return 0;
 }
 
-static const struct lws_protocols protocols[];
+static const struct lws_protocols protocols[3];
 
 static void wake(web *w)
 {
@@ -204,7 +204,7 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
     }
 }
 
-static const struct lws_protocols protocols[] = {
+static const struct lws_protocols protocols[3] = {
     {.name = "http", .callback = on_http, .per_session_data_size = sizeof(session), .rx_buffer_size = 1024},
     {.name = "scene", .callback = on_stream, .per_session_data_size = sizeof(session), .rx_buffer_size = 256},
     {0},
