@@ -1,31 +1,36 @@
 /// air.c: closed forms for every mode, and a table that corrects them where the drum is a timpano.
 ///
-/// In the head's own measures (x = w a/c, tau, epsilon, l = L/a; air.h) a mode of wavenumber j obeys
+/// In the head's own measures (air.h; x = w a/c, l = L/a) a mode whose zero is j = j_mn obeys
 ///     x^2 (1 + epsilon beta(x)) = tau j^2,   beta = (beta_out + beta_in)/sqrt(1 - x^2/j^2)
-/// with beta the added mass of the two sides: at rest from the table, else 1.07/j each, the infinite membrane's 1/j and a
-/// little for the rim; near the speed of sound it grows as an infinite membrane's does. For m = 0 the kettle's air couples
-/// the modes by one spring k(x) = (1/l) f(x l) for the volume, so they are the roots of
+/// with beta the added mass of the two sides: at rest from the table, else 1.07/j each, the
+/// infinite membrane's 1/j and a little for the rim; near the speed of sound it grows as an
+/// infinite membrane's does. For m = 0 the kettle's air couples the modes by one spring k(x) =
+/// (1/l) f(x l) for the volume, so they are the roots of
 ///     1 + epsilon k sum_n 4/(j_n^2 d_n) = 0,   d_n = tau j_n^2 - x^2 (1 + epsilon beta_n)
-/// one between each two zeros of d. f falls as the kettle's air begins to move as a column: x l cot(x l), kept positive.
-/// Radiation is that of the shape in a baffle: R = (2/j^2) I_m(x)/(1 - g x^2/j^2)^2 with g = (2m+2)/(2m+3) and
-/// I_m(x) = int_0^{pi/2} J_m(x sin t)^2 x sin t dt = J_{2m+1}(2x) + J_{2m+3}(2x) + ... (Watson 1944, section 5.43);
-/// delta = x epsilon R/(2 (1 + epsilon beta)). For small x this is the monopole, dipole ... x^(2m+1).
+/// one between each two zeros of d. f(x l) = x l cot(x l), kept positive: it falls as the kettle's
+/// air begins to move as a column. Radiation is that of the shape in a baffle,
+///     delta = x epsilon R/(2 (1 + epsilon beta)),   R = (2/j^2) I_m(x)/(1 - g x^2/j^2)^2
+///     I_m(x) = int_0^{pi/2} J_m(x sin t)^2 x sin t dt = J_{2m+1}(2x) + J_{2m+3}(2x) + ...
+/// (by Neumann's integral for J_m^2; Watson 1944, section 5.43), g = (2m+2)/(2m+3) the mean of
+/// sin^2 t for small x, where this is the monopole, dipole ... in x^(2m+1).
 ///
-/// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension; monotone cubics (Fritsch & Butland 1984) along
-/// the tension, where a mode that meets a sloshing of the kettle jumps from below it to above, lines between drums.
-/// Its ratio to the closed form at the table's own kettle multiplies the closed form at the actual one, and outside the
-/// table goes to 1 over a factor of four in tension, or two in epsilon: no step and no bend as the pedal moves.
+/// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension; monotone cubics
+/// (Fritsch & Butland 1984) along the tension, where a mode that meets a sloshing of the kettle
+/// jumps from below it to above, lines between drums. Its ratio to the closed form at the table's
+/// own kettle multiplies the closed form at the actual one, and outside the table goes to 1 over a
+/// factor of four in tension, or two in epsilon: no step and no bend as the pedal moves.
 ///
-/// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, the kettle's slow spring 4 epsilon/(l j^2); its mass
-/// is what gives the frequency. Thus static deflections are exact and, for the principal modes, mass is within a tenth of
-/// what the whole problem answers to a blow with (its residue).
+/// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, the kettle's slow spring 4
+/// epsilon/(l j^2); its mass is what gives the frequency. Thus static deflections are exact and,
+/// for the preferred modes of a tuned drum, mass is within a tenth of that with which the whole
+/// problem answers a blow (its residue).
 #include "himc/air.h"
 
 #include "air_table.h"
 
 #include <math.h>
 
-#define KETTLES 2.0       // times the usual volume at most, and one part of it at least
+#define KETTLES 2.0       // the largest kettle by the usual one, and that by the smallest
 #define FADE 1.3862943611 // of the table beyond its tensions, in log tension
 #define FADE_DRUM 0.6931471806
 #define RIM 1.07
@@ -35,8 +40,9 @@
 static const double SPEED2 = HIMC_AIR_SPEED * HIMC_AIR_SPEED;
 
 // j_0n
-static const double ZERO[VOLUMES] = {2.404825557695773, 5.520078110286311, 8.653727912911013, 11.79153443901428,
-                                     14.93091770848779, 18.07106396791092, 21.21163662987926, 24.35247153074930};
+static const double ZERO[VOLUMES] = {2.404825557695773, 5.520078110286311, 8.653727912911013,
+                                     11.79153443901428, 14.93091770848779, 18.07106396791092,
+                                     21.21163662987926, 24.35247153074930};
 
 // a mode's logarithms of frequency per bare frequency and of delta a/c + HIMC_AIR_FLOOR
 typedef struct pair {
@@ -118,8 +124,10 @@ static pair alone(const himc_air *air, double depth, spectrum s)
 {
     double square = s.zero * s.zero, b = air->loading * added(s.m, s.n, s.zero, depth);
     double spring = s.m == 0 ? 4 * air->loading / (depth * square * square) : 0;
-    double y = below_sound(b, air->tension + spring), x = s.zero * sqrt(y), d = directed(s.m, x, s.zero);
-    double decay = air->loading * x * radiated(s.m, 2 * x) / (square * d * d * (1 + b / sqrt(1 - y)));
+    double y = below_sound(b, air->tension + spring), x = s.zero * sqrt(y),
+           d = directed(s.m, x, s.zero);
+    double decay =
+        air->loading * x * radiated(s.m, 2 * x) / (square * d * d * (1 + b / sqrt(1 - y)));
     return logarithms(x, decay, s.zero * sqrt(air->tension));
 }
 
@@ -189,7 +197,8 @@ static double end_slope(double at, double beside)
     return slope * at <= 0 ? 0 : fabs(slope) > 3 * fabs(at) ? 3 * at : slope;
 }
 
-// a row of the table at node + t, with `rise` a node added so that frequencies are monotone, and taken off again
+// a row of the table at node + t, with `rise` a node added so that frequencies are monotone, and
+// taken off again
 static double along_row(const short *row, double unit, double rise, int node, double t)
 {
     double step = unit * (row[node + 1] - row[node]) + rise;
@@ -198,7 +207,8 @@ static double along_row(const short *row, double unit, double rise, int node, do
     double first = node > 0 ? node_slope(before, step) : end_slope(step, after);
     double last = node + 2 < HIMC_AIR_NODES ? node_slope(step, after) : end_slope(step, before);
     double u = 1 - t;
-    return unit * row[node] + t * t * (1 + 2 * u) * step + t * u * (u * first - t * last) - t * rise;
+    return unit * row[node] + t * t * (1 + 2 * u) * step + t * u * (u * first - t * last) -
+           t * rise;
 }
 
 // the table at a place along the tensions
@@ -211,7 +221,8 @@ static pair tabulated(const himc_air *air, spectrum s, int node, double t)
         value[i][1] = along_row(himc_air_decay + row, HIMC_AIR_DECAY_UNIT, 0, node, t);
     }
     double u = 1 - air->between;
-    return (pair){u * value[0][0] + air->between * value[1][0], u * value[0][1] + air->between * value[1][1]};
+    return (pair){u * value[0][0] + air->between * value[1][0],
+                  u * value[0][1] + air->between * value[1][1]};
 }
 
 // what the table says beyond the closed form, at a tension and an epsilon that it holds
@@ -221,7 +232,8 @@ static pair excess(const himc_air *air, spectrum s, double t)
     double log_low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
     there.tension = exp(log_low + (air->node + t) * log_step());
     const double *a = himc_air_radius + air->drum;
-    there.loading = (a[0] + air->between * (a[1] - a[0])) * (HIMC_AIR_DENSITY / HIMC_AIR_TABLE_FILM);
+    there.loading =
+        (a[0] + air->between * (a[1] - a[0])) * (HIMC_AIR_DENSITY / HIMC_AIR_TABLE_FILM);
     pair table = tabulated(air, s, air->node, t), form = closed(&there, usual_depth(), s);
     return (pair){table.ratio - form.ratio, table.decay - form.decay};
 }
@@ -238,7 +250,8 @@ static pair correction(const himc_air *air, spectrum s)
     double cells = fabs(air->beyond) / log_step();
     if (cells > 0) {
         // the end's own slope, which may be a steep one, is lost within a cell
-        double inward = air->beyond > 0 ? -SLOPE : SLOPE, kept = fade_out(cells * log_step() / FADE);
+        double inward = air->beyond > 0 ? -SLOPE : SLOPE,
+               kept = fade_out(cells * log_step() / FADE);
         double run = cells < 1 ? cells * (1 - cells) * (1 - cells) / SLOPE : 0;
         pair inside = excess(air, s, air->along + inward);
         q.ratio = kept * q.ratio + run * (q.ratio - inside.ratio);
@@ -251,12 +264,14 @@ static pair correction(const himc_air *air, spectrum s)
 static void locate(himc_air *air)
 {
     double low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
-    double at = (log(air->tension) - low) / log_step(), inside = fmin(fmax(at, 0), HIMC_AIR_NODES - 1);
+    double at = (log(air->tension) - low) / log_step(),
+           inside = fmin(fmax(at, 0), HIMC_AIR_NODES - 1);
     air->node = (int)fmin(inside, HIMC_AIR_NODES - 2);
     air->along = inside - air->node;
     air->beyond = (at - inside) * log_step();
 
-    double like = air->loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY; // a head of the table's film
+    double like =
+        air->loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY; // a head of the table's film
     const double *a = himc_air_radius;
     double held = fmin(fmax(like, a[0]), a[HIMC_AIR_DRUMS - 1]);
     while (air->drum < HIMC_AIR_DRUMS - 2 && held > a[air->drum + 1])
@@ -303,7 +318,6 @@ himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_m
     mode.mass *= load.mass;
     mode.stiffness *= load.stiffness;
     double omega = 2 * HIMC_PI * mode.frequency;
-    double decay = head->decay_constant + head->decay_square * omega * omega + load.radiation;
-    mode.decay = fmin(decay, 0.9 * omega);
+    mode.decay = fmin(himc_head_decay(head, omega, load.mass) + load.radiation, 0.9 * omega);
     return mode;
 }

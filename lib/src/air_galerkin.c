@@ -1,20 +1,25 @@
 /// air_galerkin.c: a head between the open air and its kettle, by Galerkin's method.
 ///
-/// The shape is sum_n c_n J_m(alpha_n r/a). Outside, an infinite baffle; inside, a rigid cylinder of the kettle's volume. In the
-/// head's own measures, per sigma a^2, with x = w a/c and D(x) = tau diag(alpha^2 N) + epsilon K - x^2 (diag(N) + epsilon A(x)),
+/// The shape is sum_n c_n J_m(alpha_n r/a). Outside, an infinite baffle; inside, a rigid cylinder
+/// of the kettle's volume. In the head's own measures, per sigma a^2, with x = w a/c and D(x) = tau
+/// diag(alpha^2 N) + epsilon K - x^2 (diag(N) + epsilon A(x)),
 ///     D(x) c = 0,   N_n = J_{m+1}(alpha_n)^2/2,   A = A_out + A_in
-///     A_out = int_0^inf W W' dg |kap^2 = g^2 + x^2  +  i int_0^{pi/2} W W' x sin t dt |kap = x sin t
-///     A_in = sum_s C_s C_s'/n_s coth(mu L/a)/mu,   mu^2 = beta_s^2 - x^2   (cot(|mu| L/a)/-|mu| above cut-off)
-/// with the Hankel transform W_n(kap) = alpha_n J_{m+1}(alpha_n) J_m(kap)/(alpha_n^2 - kap^2) (Morse & Ingard 1968, sections 7.4 and
-/// 9.2; Christian et al. 1984 solve the same by a Green function). For m = 0 the uniform cavity mode is a spring, K = x C C'
-/// 2 cot(x L/a), and stands beside the tension: as a mass it would be negative.
+///     Re A_out = int_0^inf W W' dg           at kap^2 = g^2 + x^2
+///     Im A_out = int_0^{pi/2} W W' x sin t dt   at kap = x sin t
+///     A_in = sum_s C_s C_s'/n_s coth(mu L/a)/mu,   mu^2 = beta_s^2 - x^2
+/// (above cut-off, for imaginary mu, -cot(|mu| L/a)/|mu|)
+/// with the Hankel transform W_n(kap) = alpha_n J_{m+1}(alpha_n) J_m(kap)/(alpha_n^2 - kap^2)
+/// (Morse & Ingard 1968; the drum is that of Christian et al. 1984). For m = 0 the uniform cavity mode is a spring, K = x C C' 2 cot(x L/a), and stands
+/// beside the tension: as a mass it would be negative.
 ///
-/// A's poles are the kettle's own resonances, x^2 = beta_s^2 + (q pi a/L)^2. Between two of them the eigenvalues of the real part of
-/// D(x) fall as x grows (Foster 1924), so sign changes between poles find every root and no iteration can fall into a
-/// wrong one. A root is then made complex, with A and K taken at Re x. Many roots belong to the kettle: what a force of shape
-/// n excites most has the smallest inertia c'(-dD/dx)c/(2 x N_n c_n^2). Where a sloshing of the kettle splits a shape in
-/// two roots of like inertia, within a factor of two, its own is the lower: it rings long, the upper dies in a tenth of a
-/// second, and the lower is what was measured (314 Hz for (1,2) of a 26 inch drum, here 311 and 352).
+/// A's poles are the kettle's own resonances, x^2 = beta_s^2 + (q pi a/L)^2. Between two of them
+/// the eigenvalues of the real part of D(x) fall as x grows (Foster 1924), so sign changes between
+/// poles find every root and no iteration can fall into a wrong one. A root is then made complex,
+/// with A and K taken at Re x. Many roots belong to the kettle: what a force of shape n excites
+/// most has the smallest inertia c'(-dD/dx)c/(2 x N_n c_n^2). Where a sloshing of the kettle splits
+/// a shape in two roots of like inertia, within a factor of two, its own is the lower: it rings
+/// long, the upper dies in a tenth of a second, and the lower is what was measured (314 Hz for
+/// (1,2) of a 26 inch drum, here 311 and 352).
 #include "air_galerkin.h"
 
 #include "bessel.h"
@@ -37,28 +42,33 @@
 typedef double matrix[SIZE][SIZE];
 
 // Gauss-Legendre, 10 points on [-1, 1] (Abramowitz & Stegun 1964, table 25.4)
-static const double NODE[5] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
-                               0.9739065285171717};
-static const double WEIGHT[5] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
-                                 0.0666713443086881};
+static const double NODE[5] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
+                               0.8650633666889845, 0.9739065285171717};
+static const double WEIGHT[5] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
+                                 0.1494513491505806, 0.0666713443086881};
 
-static double slope(int m, double z)
-{
-    return m > 0 ? 0.5 * (himc_bessel_j(m - 1, z) - himc_bessel_j(m + 1, z)) : -himc_bessel_j(1, z);
-}
-
-// J_m' changes sign once in the interval
+// J_m' changes sign once in the interval; J_m'' = -J_m'/z - (1 - m^2/z^2) J_m
 static double slope_zero(int m, double low, double high)
 {
-    bool rising = slope(m, low) > 0;
-    for (int i = 0; i < 60; i++) {
-        double z = 0.5 * (low + high);
-        if ((slope(m, z) > 0) == rising)
+    double z = 0.5 * (low + high), j[32];
+    for (int i = 0, rising = -1; i < 60; i++) {
+        himc_bessel_orders(z, m + 1, j);
+        double slope = m / z * j[m] - j[m + 1], bend = -slope / z - (1 - m * m / (z * z)) * j[m];
+        if (rising < 0) {
+            himc_bessel_orders(low, m + 1, j);
+            rising = m / low * j[m] > j[m + 1];
+        }
+        if ((slope > 0) == rising)
             low = z;
         else
             high = z;
+        double next = z - slope / bend;
+        next = next > low && next < high ? next : 0.5 * (low + high);
+        if (fabs(next - z) < 1e-15 * z)
+            return next;
+        z = next;
     }
-    return 0.5 * (low + high);
+    return z;
 }
 
 void himc_air_order_make(himc_air_order *order, int m)
@@ -93,7 +103,8 @@ static void hankel(const himc_air_order *order, double kap, double *w)
     for (int n = 0; n < SIZE; n++) {
         double a = order->alpha[n];
         bool limit = fabs(kap - a) < 1e-6;
-        w[n] = limit ? order->next[n] * order->next[n] / 2 : a * order->next[n] * j / (a * a - kap * kap);
+        w[n] = limit ? order->next[n] * order->next[n] / 2
+                     : a * order->next[n] * j / (a * a - kap * kap);
     }
 }
 
@@ -136,13 +147,13 @@ void himc_air_inside(const himc_air_order *order, double x, double depth, matrix
 }
 
 // the parts of D at real x
-typedef struct operator_ {
+typedef struct parts {
     matrix stiffness; // tau diag(alpha^2 N) + epsilon K
     matrix mass;      // diag(N) + epsilon Re A
     matrix loss;      // epsilon Im A
-} operator_;
+} parts;
 
-static void assemble(const himc_air_order *order, const himc_air_problem *p, double x, operator_ *d)
+static void assemble(const himc_air_order *order, const himc_air_problem *p, double x, parts *d)
 {
     matrix inside;
     himc_air_outside(order, x, d->mass, d->loss);
@@ -164,7 +175,7 @@ static void assemble(const himc_air_order *order, const himc_air_problem *p, dou
 // Re D(x)
 static void real_part(const himc_air_order *order, const himc_air_problem *p, double x, matrix d)
 {
-    operator_ o;
+    parts o;
     assemble(order, p, x, &o);
     for (int i = 0; i < SIZE; i++)
         for (int j = 0; j < SIZE; j++)
@@ -172,7 +183,8 @@ static void real_part(const himc_air_order *order, const himc_air_problem *p, do
 }
 
 // its eigenvalues, rising; NaN if LAPACK fails, which then brackets nothing
-static void eigenvalues(const himc_air_order *order, const himc_air_problem *p, double x, double *values)
+static void eigenvalues(const himc_air_order *order, const himc_air_problem *p, double x,
+                        double *values)
 {
     matrix d;
     real_part(order, p, x, d);
@@ -182,7 +194,8 @@ static void eigenvalues(const himc_air_order *order, const himc_air_problem *p, 
 }
 
 // the resonances of the kettle alone in (low, high), rising, after low and before high
-static int find_poles(const himc_air_order *order, double depth, double low, double high, double *pole)
+static int find_poles(const himc_air_order *order, double depth, double low, double high,
+                      double *pole)
 {
     int count = 0;
     pole[count++] = low;
@@ -202,9 +215,10 @@ static int find_poles(const himc_air_order *order, double depth, double low, dou
     return count;
 }
 
-// eigenvalue k changes sign in [low, high], where it is `at_low` and `at_high`: regula falsi (Illinois)
-static double bracketed(const himc_air_order *order, const himc_air_problem *p, int k, double low, double high,
-                        double at_low, double at_high)
+// eigenvalue k changes sign in [low, high], where it is `at_low` and `at_high`: regula falsi
+// (Illinois)
+static double bracketed(const himc_air_order *order, const himc_air_problem *p, int k, double low,
+                        double high, double at_low, double at_high)
 {
     double values[SIZE], x = low;
     for (int i = 0, side = 0; i < 40 && high - low > 1e-9 * high; i++) {
@@ -228,8 +242,10 @@ static double bracketed(const himc_air_order *order, const himc_air_problem *p, 
     return x;
 }
 
-// inertia of shape n at a root of Re D, for all shapes: the eigenvector is the one of the smallest eigenvalue
-static bool inertias(const himc_air_order *order, const himc_air_problem *p, double x, double *inertia)
+// inertia of shape n at a root of Re D, for all shapes: the eigenvector is the one of the smallest
+// eigenvalue
+static bool inertias(const himc_air_order *order, const himc_air_problem *p, double x,
+                     double *inertia)
 {
     matrix d, above, below;
     double values[SIZE], h = 1e-5 * x, turn = 0;
@@ -252,9 +268,10 @@ static bool inertias(const himc_air_order *order, const himc_air_problem *p, dou
 }
 
 // the complex eigenvalue nearest to x, with the air as it is at x
-static bool complex_at(const himc_air_order *order, const himc_air_problem *p, double x, double complex *nearest)
+static bool complex_at(const himc_air_order *order, const himc_air_problem *p, double x,
+                       double complex *nearest)
 {
-    operator_ o;
+    parts o;
     double complex k[SIZE][SIZE], m[SIZE][SIZE], top[SIZE], bottom[SIZE];
     assemble(order, p, x, &o);
     for (int i = 0; i < SIZE; i++)
@@ -262,7 +279,8 @@ static bool complex_at(const himc_air_order *order, const himc_air_problem *p, d
             k[i][j] = o.stiffness[i][j];
             m[i][j] = o.mass[i][j] + I * o.loss[i][j];
         }
-    if (LAPACKE_zggev(LAPACK_ROW_MAJOR, 'N', 'N', SIZE, k[0], SIZE, m[0], SIZE, top, bottom, NULL, 1, NULL, 1) != 0)
+    if (LAPACKE_zggev(LAPACK_ROW_MAJOR, 'N', 'N', SIZE, k[0], SIZE, m[0], SIZE, top, bottom, NULL,
+                      1, NULL, 1) != 0)
         return false;
     double best = INFINITY;
     for (int i = 0; i < SIZE; i++) {
@@ -276,7 +294,8 @@ static bool complex_at(const himc_air_order *order, const himc_air_problem *p, d
 }
 
 // x with Re w(x) = x, by secant from a root of the real part
-static bool polish(const himc_air_order *order, const himc_air_problem *p, double x, himc_air_root *root)
+static bool polish(const himc_air_order *order, const himc_air_problem *p, double x,
+                   himc_air_root *root)
 {
     double complex w;
     if (!complex_at(order, p, x, &w))
@@ -303,7 +322,8 @@ typedef struct finds {
 } finds;
 
 // all roots of Re D between two neighbouring poles
-static bool search(const himc_air_order *order, const himc_air_problem *p, double low, double high, finds *f)
+static bool search(const himc_air_order *order, const himc_air_problem *p, double low, double high,
+                   finds *f)
 {
     double before[SIZE], after[SIZE];
     int steps = 2 + (int)(log(high / low) / STEP);
@@ -335,8 +355,8 @@ static int own(const finds *f, int n, int last)
     return found;
 }
 
-bool himc_air_solve(const himc_air_order *order, const himc_air_problem *p, int count, himc_air_root *roots,
-                    himc_error *error)
+bool himc_air_solve(const himc_air_order *order, const himc_air_problem *p, int count,
+                    himc_air_root *roots, himc_error *error)
 {
     // air makes modes lower, by less than to a third; the kettle's spring raises those of m = 0
     double low = 0.33 * order->alpha[0] * sqrt(p->tension), top = order->alpha[count - 1];
@@ -353,6 +373,7 @@ bool himc_air_solve(const himc_air_order *order, const himc_air_problem *p, int 
         solved = i >= 0 && polish(order, p, f.x[i], &roots[n]);
         roots[n].inertia = solved ? f.inertia[i][n] : 0;
     }
-    return solved || himc_error_set(error, "air: no solution for order %d, tension %g, loading %g, depth %g", order->m,
-                                    p->tension, p->loading, p->depth);
+    return solved ||
+           himc_error_set(error, "air: no solution for order %d, tension %g, loading %g, depth %g",
+                          order->m, p->tension, p->loading, p->depth);
 }

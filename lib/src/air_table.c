@@ -1,4 +1,4 @@
-/// air_table.c: the modes of four timpani in air. Made by `make air-table` (tools/air/table.c).
+/// air_table.c: the modes of four timpani in air (make air-table).
 ///
 /// A row is a mode over the tensions; rows go by n, then m, then drum.
 #include "air_table.h"

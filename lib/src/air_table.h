@@ -23,7 +23,8 @@
 extern const double himc_air_radius[HIMC_AIR_DRUMS]; ///< (m)
 extern const short himc_air_ratio[HIMC_AIR_ENTRIES], himc_air_decay[HIMC_AIR_ENTRIES];
 
-/// Added mass of a mode at rest per rho a and area, outside and in the kettle (without its change of volume).
+/// Added mass of a mode at rest per rho a and area, outside and in the kettle (without its change
+/// of volume).
 extern const double himc_air_outer[HIMC_AIR_ORDERS][HIMC_AIR_RANKS];
 extern const double himc_air_inner[HIMC_AIR_ORDERS][HIMC_AIR_RANKS];
 /// First zero of J_m' after 0.
