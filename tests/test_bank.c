@@ -38,6 +38,13 @@ void tearDown(void)
     himc_bank_free(bank);
 }
 
+static void run(int n, int at)
+{
+    const himc_tap *const taps[] = {&sound, &place};
+    double *const read[] = {heard + at, seen + at};
+    himc_bank_run(bank, n, taps, 2, read);
+}
+
 // q and v of an oscillator that starts at (q0, v0) under the constant force f, by the textbook
 static void textbook(const himc_oscillator *p, double f, double t, double *q, double *v)
 {
@@ -57,7 +64,7 @@ static void test_bank_step_is_the_exact_solution_free_and_forced(void)
             himc_bank_state(bank, i, &q[i], &v[i]);
             textbook(&o[i], force * shape[i], 1 / RATE, &q[i], &v[i]);
         }
-        himc_bank_run(bank, 1, &sound, &place, heard, seen);
+        run(1, 0);
         himc_bank_push(bank, shape, force);
         for (int i = 0; i < COUNT; i++) {
             double got_q, got_v;
@@ -80,7 +87,7 @@ static void test_bank_taps_read_what_the_states_say(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_read(bank, &place));
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, expected_v, himc_bank_read(bank, &sound));
     double next = himc_bank_peek(bank, &sound);
-    himc_bank_run(bank, 1, &sound, &place, heard, seen);
+    run(1, 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, next, heard[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_displacement(bank, &place), seen[0]);
 }
@@ -103,7 +110,7 @@ static void test_bank_work_of_a_force_is_the_energy_gained(void)
     double work = 0, before = 0;
     for (int n = 0; n < 2000; n++) {
         double force = 10 * sin(0.01 * n);
-        himc_bank_run(bank, 1, &sound, &place, heard, seen);
+        run(1, 0);
         himc_bank_push(bank, shape, force);
         double after = himc_bank_displacement(bank, &place);
         work += force * (after - before);
@@ -125,13 +132,61 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
         himc_bank_push(bank, shape, 100);
         for (int done = 0; done < 4096; done += sizes[k]) {
             int n = 4096 - done < sizes[k] ? 4096 - done : sizes[k];
-            himc_bank_run(bank, n, &sound, &place, heard + done, seen + done);
+            run(n, done);
         }
         if (k == 0)
             memcpy(reference, heard, sizeof heard);
         TEST_ASSERT_EQUAL_MEMORY(reference, heard, sizeof heard);
     }
     free(reference);
+}
+
+static void test_bank_reads_as_many_taps_as_asked_and_each_as_if_alone(void)
+{
+    static double read[5][500], alone[2][500];
+    const himc_tap *const taps[] = {&place, &sound, &place, &sound, &sound};
+    double *const out[] = {read[0], read[1], read[2], read[3], read[4]};
+    himc_bank_push(bank, shape, 100);
+    himc_bank_run(bank, 500, taps, 5, out);
+    tearDown();
+    setUp();
+    himc_bank_push(bank, shape, 100);
+    for (int i = 0; i < 500; i++) {
+        double *const one[] = {&alone[0][i], &alone[1][i]};
+        himc_bank_run(bank, 1, taps, 2, one);
+    }
+    for (int k = 0; k < 5; k++)
+        TEST_ASSERT_EQUAL_MEMORY(alone[taps[k] == &sound], read[k], sizeof read[k]);
+}
+
+// Q = sum a q^2/2 and its gradient, by hand
+static void test_bank_tells_what_a_spring_on_the_sum_of_squares_meets(void)
+{
+    static _Alignas(64) double a[8], weight[8], g[8];
+    double q0[COUNT], q1[COUNT], v, climb = 0, compliance = 0;
+    himc_pull pull = {.shape = g};
+    for (int i = 0; i < COUNT; i++) {
+        a[i] = 1 + i * i;
+        himc_bank_excite(bank, i, 1e-3 * (i + 1), 0.2 * i - 0.5);
+        himc_bank_state(bank, i, &q0[i], &v);
+    }
+    himc_bank_weigh(bank, a, weight);
+    himc_bank_run_pulled(bank, weight, &pull);
+    for (int i = 0; i < COUNT; i++) {
+        double slope = 0, before, after;
+        himc_bank_state(bank, i, &q1[i], &v);
+        slope = 0.5 * a[i] * (q0[i] + q1[i]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, slope, g[i]);
+        climb += 0.5 * a[i] * (q1[i] * q1[i] - q0[i] * q0[i]);
+        before = q1[i];
+        for (int k = 0; k < 8; k++)
+            shape[k] = k == i ? g[i] : 0;
+        himc_bank_push(bank, shape, 1);
+        himc_bank_state(bank, i, &after, &v);
+        compliance += g[i] * (after - before);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * fabs(climb), climb, pull.climb);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * compliance, compliance, pull.compliance);
 }
 
 static void test_bank_leaves_out_what_would_alias(void)
@@ -172,11 +227,11 @@ static void test_bank_comes_to_exact_rest(void)
     himc_bank_set(bank, o, COUNT, RATE);
     aim();
     for (int k = 0; k < 12; k++)
-        himc_bank_run(bank, 4096, &sound, &place, heard, seen);
+        run(4096, 0);
     TEST_ASSERT_EQUAL_DOUBLE(0, heard[4095]);
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_bank_energy(bank));
     himc_bank_push(bank, shape, 1);
-    himc_bank_run(bank, 1, &sound, &place, heard, seen);
+    run(1, 0);
     TEST_ASSERT_TRUE(heard[0] != 0);
 }
 
@@ -188,6 +243,8 @@ int main(void)
     RUN_TEST(test_bank_response_is_what_a_newton_adds);
     RUN_TEST(test_bank_work_of_a_force_is_the_energy_gained);
     RUN_TEST(test_bank_runs_give_the_same_bits_in_any_blocks);
+    RUN_TEST(test_bank_reads_as_many_taps_as_asked_and_each_as_if_alone);
+    RUN_TEST(test_bank_tells_what_a_spring_on_the_sum_of_squares_meets);
     RUN_TEST(test_bank_leaves_out_what_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);
     RUN_TEST(test_bank_comes_to_exact_rest);

@@ -23,6 +23,8 @@ static void christian(int modes)
     head.tension = 3990;
     head.density = 0.2653 / (0.66 * 0.66);
     head.modes = modes;
+    head.air = false;
+    head.glide = 0;
 }
 
 static void place(int i, double x, double y, double velocity)

@@ -230,6 +230,7 @@ static void test_drum_commands_set_what_they_say(void)
     says("tension 4000");
     says("density 0.3");
     says("modes 2000");
+    says("air 0");
     says("decay 1.5");
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, log(1000) / 1.5, himc_membrane_mode(membrane, 1999).decay);
     says("decay 3 1e-7");

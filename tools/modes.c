@@ -44,17 +44,6 @@ static himc_drum *open_drum(const char *path, himc_error *error)
     return drum;
 }
 
-/// Of the principal mode (1,1), whether or not the drum's list reaches it.
-static double principal(const himc_head *head, himc_error *error)
-{
-    himc_modes *modes = himc_modes_new(2, error);
-    if (!modes)
-        return NAN;
-    double frequency = himc_modes_get(modes, head, 1).frequency;
-    himc_modes_free(modes);
-    return frequency;
-}
-
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
@@ -63,11 +52,7 @@ static int run(const cli_arguments *arguments)
         return cli_fail(&cli_modes, "%s", error.text);
     const himc_membrane *membrane = himc_drum_membrane(drum);
     const himc_head *head = himc_membrane_head(membrane);
-    double reference = principal(head, &error);
-    if (isnan(reference)) {
-        himc_drum_release(drum);
-        return cli_fail(&cli_modes, "%s", error.text);
-    }
+    double reference = himc_membrane_principal(head);
     printf("m,n,frequency_hz,ratio,t60_s\n");
     for (int i = 0; i < head->modes; i++) {
         himc_mode mode = himc_membrane_mode(membrane, i);

@@ -48,16 +48,33 @@ HIMC_RT double himc_bank_peek(const himc_bank *bank, const himc_tap *tap);
 /// himc_bank_read for a tap on displacements alone.
 HIMC_RT double himc_bank_displacement(const himc_bank *bank, const himc_tap *tap);
 
-/// `n` samples without force: heard[i] is what `sound` reads after sample i, seen[i] what `place`
-/// does, a tap on displacements alone.
-HIMC_RT void himc_bank_run(himc_bank *bank, int n, const himc_tap *sound, const himc_tap *place,
-                           double *heard, double *seen);
+/// `n` samples without force: read[k][i] is what taps[k] (1 .. HIMC_BANK_TAPS) reads after sample i.
+#define HIMC_BANK_TAPS 10
+HIMC_RT void himc_bank_run(himc_bank *bank, int n, const himc_tap *const *taps, int count,
+                           double *const *read);
+
+/// What a spring on the sum of squares Q = sum_i a_i q_i^2/2 meets in a sample.
+typedef struct himc_pull {
+    double *shape;     ///< g_i, the mean of dQ/dq_i before and after (padded); owned by the caller
+    double climb;      ///< g . (q after - q before), which is the change of Q exactly
+    double compliance; ///< what g . q moves per unit of force through g (sum g_i^2 b1_i)
+} himc_pull;
+
+/// The weights (padded) that himc_bank_run_pulled takes for these a_i; until the next himc_bank_set.
+HIMC_RT void himc_bank_weigh(const himc_bank *bank, const double *on_square, double *weight);
+/// One sample without force, and its `pull`.
+HIMC_RT void himc_bank_run_pulled(himc_bank *bank, const double *weight, himc_pull *pull);
+
 /// After a sample was run: what `force` (N) during it has added, spread by the weights `shape`
 /// (padded).
 HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);
 /// What `tap` reads at the end of a sample per newton through `shape` (padded) during it; of a tap
 /// on displacements at one place and a shape of another, the compliance sum phi_a phi_b b1 (m/N).
 HIMC_RT double himc_bank_response(const himc_bank *bank, const double *shape, const himc_tap *tap);
+
+/// The same once for any shape: response = sum_i shape_i answer_i, `answer` and the sum (padded).
+HIMC_RT void himc_bank_answer(const himc_bank *bank, const himc_tap *tap, double *answer);
+HIMC_RT double himc_bank_sum(const himc_bank *bank, const double *shape, const double *answer);
 
 /// Kinetic and potential energy (J).
 HIMC_RT double himc_bank_energy(const himc_bank *bank);

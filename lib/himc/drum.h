@@ -53,6 +53,10 @@ HIMC_RT void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks
 #define HIMC_DRUM_RING 32768
 HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                             double *displacement);
+/// The sound of one pickup, 0 .. HIMC_PICKUPS - 1 (`pickups CHANNELS` sets how many there are;
+/// silence for those that are not).
+HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
+                                    double *sound);
 /// Samples advanced since the last realign.
 HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
 /// Counts from 0 again, the last `ahead` samples already made becoming samples 0 .. ahead - 1; the

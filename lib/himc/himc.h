@@ -43,6 +43,7 @@
 
 // what is struck
 #include "himc/modes.h"
+#include "himc/air.h"
 #include "himc/bank.h"
 #include "himc/membrane.h"
 #include "himc/contact.h"

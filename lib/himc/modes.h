@@ -18,6 +18,10 @@ typedef struct himc_head {
     double decay_constant; ///< S0 (1/s), 0 .. 1000: a mode decays as exp(-(S0 + S1 omega^2) t)
     double decay_square;   ///< S1 (s), 0 .. 1
     int modes;             ///< both members of a pair count, 1 .. HIMC_MODES_MAX
+    bool air;              ///< whether air and kettle load it (air.h)
+    double kettle;         ///< volume under it (m^3); 0 is the usual for its radius
+    double glide;          ///< tension modulation: 0 none, 1 a Mylar film's
+    double damp;           ///< a hand on the head: 0 none .. 1 dead at once
 } himc_head;
 
 /// A member of the list. One of m > 0 comes as a pair of equal frequency: cosine, then sine. A
@@ -28,7 +32,7 @@ typedef struct himc_mode {
     double zero;      ///< j_mn
     double norm;      ///< integral of phi^2 over the head, per pi a^2
     double frequency; ///< undamped (Hz)
-    double decay;     ///< (1/s): S0 + S1 omega^2, at most 0.9 omega so that every mode still swings
+    double decay;     ///< (1/s): S0 + S1 omega^2 and the hand's, at most 0.9 omega: it still swings
     double mass;      ///< sigma pi a^2 norm (kg)
     double stiffness; ///< mass omega^2 (N/m)
 } himc_mode;
@@ -37,15 +41,22 @@ typedef struct himc_mode {
 #define HIMC_TENSION_MIN 10.0 ///< (N/m)
 #define HIMC_TENSION_MAX 1e5  ///< (N/m)
 
-/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes; tension and decay as modes.c
+/// What a hand's whole weight adds to the decay of a bare head (1/s): T60 = 0.1 s.
+#define HIMC_DAMP 69.0
+
+/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes, in air; tension and decay as modes.c
 /// explains.
 himc_head himc_head_default(void);
 
 /// Every field of `head` in its range, or false with the field, the value and the range.
 bool himc_head_check(const himc_head *head, himc_error *error);
 
-/// The tension (N/m) at which the principal mode (1,1) sounds at `frequency` (Hz).
+/// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
 double himc_head_tension_for(const himc_head *head, double frequency);
+
+/// What a mode of that frequency (rad/s) loses, radiation not counted (1/s): S0 + S1 omega^2 and
+/// the hand's resistance over its mass, `loading` times a bare head's; at most 0.9 omega.
+HIMC_RT double himc_head_decay(const himc_head *head, double omega, double loading);
 
 typedef struct himc_modes himc_modes;
 

@@ -318,7 +318,6 @@ himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_m
     mode.mass *= load.mass;
     mode.stiffness *= load.stiffness;
     double omega = 2 * HIMC_PI * mode.frequency;
-    double decay = head->decay_constant + head->decay_square * omega * omega + load.radiation;
-    mode.decay = fmin(decay, 0.9 * omega);
+    mode.decay = fmin(himc_head_decay(head, omega, load.mass) + load.radiation, 0.9 * omega);
     return mode;
 }

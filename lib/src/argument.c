@@ -50,6 +50,13 @@ static const himc_argument arguments[] = {
     {"SIGMA1", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "s", NULL},
     {"K", NULL, HIMC_ARGUMENT_NUMBER, 1e3, 1e13, "N/m^alpha", NULL},
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
+    {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10, "m^3", NULL},
+    {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
+    {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
+    {"LENGTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
+    {"WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
+    {"CHANNELS", NULL, HIMC_ARGUMENT_COUNT, 1, 8, "", NULL},
+    {"CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, 8, "", NULL},
     {"AZIMUTH", NULL, HIMC_ARGUMENT_NUMBER, -6.2832, 6.2832, "rad", NULL},
     {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, 1.5708, "rad", NULL},
     {"DISTANCE", NULL, HIMC_ARGUMENT_NUMBER, 0.3, 100, "m", NULL},
@@ -107,7 +114,8 @@ static bool is_name(const char *word)
     if (himc_word_index("comment center normal rim", word) >= 0)
         return false;
     for (int i = 0; himc_command_table(i); i++)
-        if (strcmp(himc_command_table(i)->name, word) == 0)
+        if (himc_command_table(i)->receiver == HIMC_PERFORMER &&
+            strcmp(himc_command_table(i)->name, word) == 0)
             return false;
     return true;
 }
@@ -142,7 +150,7 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     switch (argument->kind) {
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", argument->words); break;
     case HIMC_ARGUMENT_NAME:
-        snprintf(text, size, "a drum's name: up to %d letters and digits, none of the commands",
+        snprintf(text, size, "a drum's name: up to %d letters and digits, none of the performer's commands",
                  HIMC_NAME_SIZE - 1);
         break;
     case HIMC_ARGUMENT_TEXT:

@@ -6,6 +6,10 @@
 ///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
 ///     solve r = b - G F(r) (meeting.c);  push the head by -F, the sticks by F.
 ///
+/// The film's stretching (membrane_step.c) pulls with base - half (P . F) through its own shape, which
+/// moves place i by P_i per newton: b_i loses P_i base, G_ij loses half P_i P_j (and stays positive,
+/// by Cauchy and Schwarz), and the equation is the same.
+///
 /// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own
 /// acceleration - losses of the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive
 /// body under constant force gains just force times displacement, and the forces' work on head and
@@ -25,6 +29,7 @@ typedef struct near {
     himc_stick *stick;
     spot *spot;
     double before; // displacement of the head there (m)
+    double pull;   // P, what the film's pull moves there (m/N)
 } near;
 
 void himc_stick_fly(himc_stick *stick, double h)
@@ -113,22 +118,26 @@ static meeting meet(const himc_membrane *m, const near *n, double from, double h
 }
 
 static void compliances(const himc_membrane *m, const near *nears, int count, double (*g)[MEETINGS],
-                        double h)
+                        double half, double h)
 {
     for (int i = 0; i < count; i++) {
         const himc_stick *s = nears[i].stick;
         // a hair more for one-way sticks keeps the matrix regular when two are at one place
         double own = s->one_way ? 1e-12 * nears[i].spot->compliance + 1e-30 : 0.5 * h * h / s->mass;
-        g[i][i] = nears[i].spot->compliance + own;
+        double p = nears[i].pull;
+        g[i][i] = nears[i].spot->compliance + own - half * p * p;
         for (int j = 0; j < i; j++)
-            g[i][j] = g[j][i] = himc_spot_compliance(m, nears[i].spot, nears[j].spot);
+            g[i][j] = g[j][i] = himc_spot_compliance(m, nears[i].spot, nears[j].spot) -
+                                half * p * nears[j].pull;
     }
 }
 
-static void step_near(himc_membrane *membrane, near *nears, int count, double h)
+// `taken` is P . F of the forces so far, and afterwards of the sticks' too
+static void step_near(himc_membrane *membrane, near *nears, int count, double *taken, double h)
 {
     meeting meetings[MEETINGS];
-    double g[MEETINGS][MEETINGS], from[MEETINGS];
+    double g[MEETINGS][MEETINGS], from[MEETINGS], half;
+    double pull = himc_membrane_tension(membrane, &half) - half * *taken;
     bool apart = true;
     for (int i = 0; i < count; i++) {
         himc_stick *s = nears[i].stick;
@@ -136,21 +145,20 @@ static void step_near(himc_membrane *membrane, near *nears, int count, double h)
         if (s->one_way)
             strike_rigid(s, h);
         meetings[i] = meet(membrane, &nears[i], from[i], h);
+        nears[i].pull = himc_spot_pull(membrane, nears[i].spot);
+        meetings[i].b -= nears[i].pull * pull;
         apart = apart && meetings[i].c0 <= 0 && meetings[i].c0 + meetings[i].b <= 0;
     }
     if (!apart)
-        compliances(membrane, nears, count, g, h);
+        compliances(membrane, nears, count, g, half, h);
     himc_meetings_solve(meetings, count, g, h);
     for (int i = 0; i < count; i++) {
         himc_stick *s = nears[i].stick;
         himc_spot_apply(membrane, nears[i].spot, -meetings[i].force);
+        *taken += nears[i].pull * meetings[i].force;
         if (!s->one_way)
             move(s, meetings[i].force, h);
     }
-    for (int i = 0; i < count; i++)
-        if (!nears[i].stick->one_way)
-            hold(nears[i].stick,
-                 himc_spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
 }
 
 void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
@@ -166,11 +174,16 @@ void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int c
         }
         double x = s->touching ? s->touch_x : s->x, y = s->touching ? s->touch_y : s->y;
         spot *place = himc_membrane_spot(membrane, x, y);
-        nears[near_count++] = (near){s, place, himc_spot_displacement(membrane, place)};
+        nears[near_count++] = (near){s, place, himc_spot_displacement(membrane, place), 0};
     }
-    himc_membrane_free_step(membrane);
+    double taken = himc_membrane_free_step(membrane);
     if (near_count > 0)
-        step_near(membrane, nears, near_count, h);
+        step_near(membrane, nears, near_count, &taken, h);
+    himc_membrane_settle(membrane, taken);
+    for (int i = 0; i < near_count; i++)
+        if (!nears[i].stick->one_way)
+            hold(nears[i].stick,
+                 himc_spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
 }
 
 double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick)

@@ -152,11 +152,20 @@ static int outside_quiet(const himc_drum *drum, const outside *o)
     return i - o->at;
 }
 
-static void keep(himc_drum *drum, double heard, double seen)
+static int channels(const himc_drum *drum)
 {
-    drum->sound[drum->time % HIMC_DRUM_RING] = heard;
-    drum->seen[drum->time % HIMC_DRUM_RING] = seen;
-    drum->time++;
+    int count;
+    himc_membrane_pickups(drum->membrane, &count);
+    return count;
+}
+
+// the membrane's last sample; a channel that nobody hears is silent
+static void keep(himc_drum *drum)
+{
+    size_t at = drum->time++ % HIMC_DRUM_RING;
+    for (int k = 0, count = channels(drum); k < HIMC_PICKUPS; k++)
+        drum->sound[k][at] = k < count ? himc_membrane_heard_by(drum->membrane, k) : 0;
+    drum->seen[at] = himc_membrane_seen(drum->membrane);
 }
 
 #define CHUNK 64
@@ -165,10 +174,16 @@ static void keep(himc_drum *drum, double heard, double seen)
 static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                       double *const *forces, int at)
 {
-    double heard[CHUNK], seen[CHUNK], h = 1 / drum->rate;
-    himc_membrane_run(drum->membrane, n, heard, seen);
-    for (int i = 0; i < n; i++)
-        keep(drum, heard[i], seen[i]);
+    double heard[HIMC_PICKUPS][CHUNK] = {{0}}, seen[CHUNK], h = 1 / drum->rate;
+    double *into[HIMC_PICKUPS];
+    for (int k = 0; k < HIMC_PICKUPS; k++)
+        into[k] = heard[k];
+    himc_membrane_run_all(drum->membrane, n, into, seen);
+    for (int i = 0; i < n; i++, drum->time++) {
+        for (int k = 0; k < HIMC_PICKUPS; k++)
+            drum->sound[k][drum->time % HIMC_DRUM_RING] = heard[k][i];
+        drum->seen[drum->time % HIMC_DRUM_RING] = seen[i];
+    }
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < n; i++)
             himc_stick_fly(sticks[k], h);
@@ -188,7 +203,7 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
-    keep(drum, himc_membrane_heard(drum->membrane), himc_membrane_seen(drum->membrane));
+    keep(drum);
     himc_drum_follow_mallets(drum);
 }
 
@@ -214,18 +229,29 @@ void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int st
     }
 }
 
-void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
-                    double *displacement)
+// samples [start, start + n) of a ring
+static void copy(const himc_drum *drum, const double *ring, uint64_t start, int n, double *out)
 {
     uint64_t oldest = drum->time > HIMC_DRUM_RING ? drum->time - HIMC_DRUM_RING : 0;
     for (int i = 0; i < n; i++) {
         uint64_t at = drum->zero + start + (uint64_t)i;
-        bool there = at >= oldest && at < drum->time;
-        if (sound)
-            sound[i] = there ? drum->sound[at % HIMC_DRUM_RING] : 0;
-        if (displacement)
-            displacement[i] = there ? drum->seen[at % HIMC_DRUM_RING] : 0;
+        out[i] = at >= oldest && at < drum->time ? ring[at % HIMC_DRUM_RING] : 0;
     }
+}
+
+void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
+                    double *displacement)
+{
+    if (sound)
+        copy(drum, drum->sound[0], start, n, sound);
+    if (displacement)
+        copy(drum, drum->seen, start, n, displacement);
+}
+
+void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
+                            double *sound)
+{
+    copy(drum, drum->sound[channel], start, n, sound);
 }
 
 uint64_t himc_drum_time(const himc_drum *drum)

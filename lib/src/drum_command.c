@@ -3,6 +3,7 @@
 #include "drum_state.h"
 
 #include "argument.h"
+#include "himc/air.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -53,6 +54,18 @@ static bool numbers(const himc_command *c, const char *name, int count, himc_err
            himc_error_set(error, "%s: takes %d number%s", name, count, count == 1 ? "" : "s");
 }
 
+// the first atom is a whole number in range
+static bool is_whole(const himc_command *c, const char *name, double low, double high,
+                     himc_error *error)
+{
+    if (c->count < 1 || c->atom[0].kind != HIMC_ATOM_NUMBER)
+        return himc_error_set(error, "%s: takes a number", name);
+    return himc_check_range(name, number(c, 0), low, high, "", error) &&
+           (number(c, 0) == floor(number(c, 0)) ||
+            himc_error_set(error, "%s: %g, allowed a whole number %g .. %g", name, number(c, 0),
+                           low, high));
+}
+
 static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
 {
     if (!himc_membrane_set_head(drum->membrane, head, error))
@@ -78,12 +91,8 @@ static bool set_field(himc_drum *drum, const himc_command *c, const char *name, 
 static bool set_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
-    if (!numbers(c, "modes", 1, error) ||
-        !himc_check_range("modes", number(c, 0), 1, HIMC_MODES_MAX, "", error))
+    if (!is_whole(c, "modes", 1, HIMC_MODES_MAX, error))
         return false;
-    if (number(c, 0) != floor(number(c, 0)))
-        return himc_error_set(error, "modes: %g, allowed a whole number 1 .. %d", number(c, 0),
-                              HIMC_MODES_MAX);
     head.modes = (int)number(c, 0);
     return set_head(drum, &head, error);
 }
@@ -115,11 +124,13 @@ static bool tune(himc_drum *drum, const himc_command *c, himc_error *error)
                               c->atom[0].symbol);
     if (c->count != 1)
         return himc_error_set(error, "tune: takes a frequency or a note name");
-    double per_hz = himc_head_tension_for(&head, 1);
-    if (!himc_check_range("tune", hz, sqrt(HIMC_TENSION_MIN / per_hz),
-                          sqrt(HIMC_TENSION_MAX / per_hz), "Hz", error))
+    himc_head lowest = head, highest = head;
+    lowest.tension = HIMC_TENSION_MIN;
+    highest.tension = HIMC_TENSION_MAX;
+    if (!himc_check_range("tune", hz, himc_membrane_principal(&lowest),
+                          himc_membrane_principal(&highest), "Hz", error))
         return false;
-    head.tension = per_hz * hz * hz;
+    head.tension = himc_membrane_tension_for(&head, hz);
     return set_head(drum, &head, error);
 }
 
@@ -163,29 +174,87 @@ static bool set_place(himc_drum *drum, const himc_command *c, himc_error *error)
     return true;
 }
 
+// `X Y` or `air AZIMUTH ELEVATION DISTANCE`, from atom `first` on
+static bool read_pickup(const himc_command *c, int first, himc_pickup *pickup, himc_error *error)
+{
+    int count = c->count - first;
+    bool air = is_symbol(c, first) && strcmp(c->atom[first].symbol, "air") == 0;
+    bool good = count == (air ? 4 : 2);
+    for (int i = first + air; i < c->count; i++)
+        good = good && c->atom[i].kind == HIMC_ATOM_NUMBER;
+    if (!good)
+        return himc_error_set(
+            error, "pickup: %s, allowed X Y or air AZIMUTH ELEVATION DISTANCE (m, rad, rad, m)",
+            is_symbol(c, first) ? c->atom[first].symbol : "something else");
+    pickup->kind = air ? HIMC_PICKUP_AIR : HIMC_PICKUP_POINT;
+    if (air) {
+        pickup->azimuth = number(c, first + 1);
+        pickup->elevation = number(c, first + 2);
+        pickup->distance = number(c, first + 3);
+    } else {
+        pickup->x = number(c, first);
+        pickup->y = number(c, first + 1);
+    }
+    return true;
+}
+
 static bool set_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_pickup pickup = *himc_membrane_pickup(drum->membrane);
-    if (!is_symbol(c, 0)) {
-        if (!numbers(c, "pickup", 2, error))
-            return false;
-        pickup.kind = HIMC_PICKUP_POINT;
-        pickup.x = number(c, 0);
-        pickup.y = number(c, 1);
-        return himc_membrane_set_pickup(drum->membrane, &pickup, error);
+    return read_pickup(c, 0, &pickup, error) &&
+           himc_membrane_set_pickup(drum->membrane, &pickup, error);
+}
+
+// a new one hears from further round the drum, 60 degrees to the right of the one before
+static bool set_pickups(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_pickup all[HIMC_PICKUPS];
+    int count;
+    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
+    if (!is_whole(c, "pickups", 1, HIMC_PICKUPS, error))
+        return false;
+    memcpy(all, now, sizeof *all * (size_t)count);
+    for (int i = count; i < (int)number(c, 0); i++) {
+        all[i] = all[i - 1];
+        all[i].kind = HIMC_PICKUP_AIR;
+        all[i].distance = fmax(all[i].distance, himc_pickup_default().distance);
+        all[i].azimuth = remainder(all[i].azimuth - HIMC_PI / 3, 2 * HIMC_PI);
     }
-    if (strcmp(c->atom[0].symbol, "air") != 0 || c->count != 4)
-        return himc_error_set(error, "pickup: %s, allowed X Y or air AZIMUTH ELEVATION DISTANCE",
-                              c->atom[0].symbol);
-    if (c->atom[1].kind != HIMC_ATOM_NUMBER || c->atom[2].kind != HIMC_ATOM_NUMBER ||
-        c->atom[3].kind != HIMC_ATOM_NUMBER)
-        return himc_error_set(error,
-                              "pickup: AZIMUTH ELEVATION DISTANCE are numbers (rad, rad, m)");
-    pickup.kind = HIMC_PICKUP_AIR;
-    pickup.azimuth = number(c, 1);
-    pickup.elevation = number(c, 2);
-    pickup.distance = number(c, 3);
-    return himc_membrane_set_pickup(drum->membrane, &pickup, error);
+    return himc_membrane_set_pickups(drum->membrane, all, (int)number(c, 0), error);
+}
+
+static bool set_channel(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_pickup all[HIMC_PICKUPS];
+    int count;
+    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
+    if (!is_whole(c, "channel", 1, count, error))
+        return false;
+    memcpy(all, now, sizeof *all * (size_t)count);
+    return read_pickup(c, 1, &all[(int)number(c, 0) - 1], error) &&
+           himc_membrane_set_pickups(drum->membrane, all, count, error);
+}
+
+static bool set_air(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    if (!is_whole(c, "air", 0, 1, error))
+        return false;
+    head.air = number(c, 0) == 1;
+    return set_head(drum, &head, error);
+}
+
+static bool set_kettle(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    head.kettle = 0;
+    if (is_symbol(c, 0) && c->count == 1 && strcmp(c->atom[0].symbol, "usual") == 0)
+        return set_head(drum, &head, error);
+    if (!numbers(c, "kettle", 1, error) ||
+        !himc_air_check(number(c, 0), head.radius, error))
+        return false;
+    head.kettle = number(c, 0);
+    return set_head(drum, &head, error);
 }
 
 static bool strike(himc_drum *drum, const himc_command *c, himc_error *error)
@@ -206,9 +275,17 @@ bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error 
     case HIMC_COMMAND_TUNE: return tune(drum, command, error);
     case HIMC_COMMAND_MODES: return set_modes(drum, command, error);
     case HIMC_COMMAND_DECAY: return set_decay(drum, command, error);
+    case HIMC_COMMAND_AIR: return set_air(drum, command, error);
+    case HIMC_COMMAND_KETTLE: return set_kettle(drum, command, error);
+    case HIMC_COMMAND_GLIDE:
+        return set_field(drum, command, "glide", offsetof(himc_head, glide), error);
+    case HIMC_COMMAND_DAMP:
+        return set_field(drum, command, "damp", offsetof(himc_head, damp), error);
     case HIMC_COMMAND_MALLET: return set_mallet(drum, command, error);
     case HIMC_COMMAND_PLACE: return set_place(drum, command, error);
     case HIMC_COMMAND_PICKUP: return set_pickup(drum, command, error);
+    case HIMC_COMMAND_PICKUPS: return set_pickups(drum, command, error);
+    case HIMC_COMMAND_CHANNEL: return set_channel(drum, command, error);
     case HIMC_COMMAND_STRIKE: return strike(drum, command, error);
     default: return himc_error_set(error, "command %d: not one to a drum", (int)command->id);
     }
@@ -218,7 +295,7 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
 {
     const himc_head *head = himc_membrane_head(drum->membrane);
     const himc_place *p = &drum->place;
-    double principal = sqrt(head->tension / himc_head_tension_for(head, 1));
+    double principal = himc_membrane_principal(head);
     snprintf(text, size,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), "

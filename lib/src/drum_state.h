@@ -38,7 +38,7 @@ struct himc_drum {
     double rate;
     uint64_t time; ///< samples since it was made; what sample counts in here are
     uint64_t zero; ///< the one that counts as 0 outside, since the last realign
-    double sound[HIMC_DRUM_RING], seen[HIMC_DRUM_RING];
+    double sound[HIMC_PICKUPS][HIMC_DRUM_RING], seen[HIMC_DRUM_RING];
     double spot_x, spot_y;              ///< of the force from outside
     drum_waiting waiting[DRUM_WAITING]; ///< unordered
     int waiting_count;

@@ -1,48 +1,23 @@
-/// membrane.c: modes, bank, ear and spots put together.
+/// membrane.c: what a membrane is: modes, bank, ears and spots put together, and changed as it sounds.
 ///
 /// A force f at (x, y) drives mode i with phi_i(x, y) f; the displacement there is sum phi_i q_i.
 /// Both use the same phi, from the same table, so work done on the head is energy in its modes to
 /// the last bit but rounding, whatever the table's error. A place is looked up or computed once
-/// (spot.h) and kept while it is used.
-#include "spot.h"
+/// (spot.h) and kept while it is used. In air each mode has another frequency, decay and mass and
+/// keeps its shape (air.h), so all of this holds there too.
+#include "membrane_state.h"
 
-#include "fade.h"
+#include "bessel.h"
 #include "pickup.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define PUSHES 8
-
-// what depends on the number of modes and is allocated with it
-typedef struct core {
-    himc_modes *modes;
-    himc_bank *bank;
-    himc_oscillator *oscillators;   // (modes)
-    double *memory;                 // all arrays below, (padded) each, and the spots'
-    double *on_q, *on_v, *on_force; // what the ear hears of each mode
-    double *scratch;
-    himc_tap ear, watch;
-} core;
-
-typedef struct push {
-    double x, y, force;
-} push;
-
-struct himc_membrane {
-    himc_head head;
-    himc_pickup pickup;
-    double rate;
-    core core;
-    double watch_x, watch_y;
-    spot spots[SPOTS];
-    unsigned long clock; // of the spots' use
-    push pushes[PUSHES];
-    int push_count;
-    fade fade;
-    double heard, seen; // of the last sample
-};
+// Mylar: Young's modulus, Poisson's ratio and density of the film, whose thickness follows from its mass
+#define YOUNG 4e9        // (Pa)
+#define POISSON 0.38     //
+#define FILM 1390.0      // (kg/m^3)
 
 static void core_free(core *c)
 {
@@ -60,12 +35,18 @@ static double *take(double **memory, int length)
     return array;
 }
 
+static himc_tap take_tap(double **memory, int length)
+{
+    double *p = take(memory, length);
+    return (himc_tap){p, take(memory, length)};
+}
+
 static bool core_new(core *c, spot spots[SPOTS], int count, himc_error *error)
 {
     *c = (core){.modes = himc_modes_new(count, error), .bank = himc_bank_new(count, error)};
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     int padded = c->bank ? himc_bank_padded(c->bank) : 0;
-    size_t bytes = sizeof(double) * (size_t)padded * (8 + 3 * SPOTS);
+    size_t bytes = sizeof(double) * (size_t)padded * (10 + 3 * (HIMC_PICKUPS + SPOTS));
     double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!c->modes || !c->bank || !c->oscillators || !memory) {
         core_free(c);
@@ -76,32 +57,52 @@ static bool core_new(core *c, spot spots[SPOTS], int count, himc_error *error)
     c->on_v = take(&memory, padded);
     c->on_force = take(&memory, padded);
     c->scratch = take(&memory, padded);
-    c->ear = (himc_tap){take(&memory, padded), take(&memory, padded)};
-    c->watch = (himc_tap){take(&memory, padded), take(&memory, padded)};
-    for (int i = 0; i < SPOTS; i++) {
-        double *shape = take(&memory, padded), *p = take(&memory, padded),
-               *s = take(&memory, padded);
-        spots[i] = (spot){.shape = shape, .tap = {p, s}};
-    }
+    c->watch_answer = take(&memory, padded);
+    c->stretch = take(&memory, padded);
+    c->weight = take(&memory, padded);
+    c->pull.shape = take(&memory, padded);
+    c->watch = take_tap(&memory, padded);
+    for (int i = 0; i < HIMC_PICKUPS; i++)
+        c->ears[i] = (ear){take_tap(&memory, padded), take(&memory, padded)};
+    for (int i = 0; i < SPOTS; i++)
+        spots[i] = (spot){.shape = take(&memory, padded), .tap = take_tap(&memory, padded)};
     return true;
 }
 
-static void find_oscillators(himc_membrane *m)
+static double kettle_of(const himc_head *head)
 {
-    for (int i = 0; i < m->head.modes; i++) {
-        himc_mode mode = himc_modes_get(m->core.modes, &m->head, i);
-        m->core.oscillators[i] =
-            (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
-    }
+    return head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius);
 }
 
-// sound per newton at a spot: through the state and, for accelerations, directly
-static double response(const himc_membrane *m, const double *shape)
+// a mode as it sounds
+static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
 {
-    double direct = 0;
-    for (int i = 0; i < himc_bank_count(m->core.bank); i++)
-        direct += m->core.on_force[i] * shape[i];
-    return himc_bank_response(m->core.bank, shape, &m->core.ear) + direct;
+    return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
+}
+
+double himc_membrane_film(const himc_membrane *m)
+{
+    double thickness = m->head.density / FILM, area = HIMC_PI * m->head.radius * m->head.radius;
+    return m->head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
+}
+
+// frequencies, decays and masses, and how the film is stretched: Lam_i is a bare mode's stiffness
+// per tension
+static void find_oscillators(himc_membrane *m)
+{
+    core *c = &m->core;
+    double root = sqrt(2 * himc_membrane_film(m));
+    for (int i = 0; i < m->head.modes; i++) {
+        himc_mode bare = himc_modes_get(c->modes, &m->head, i);
+        c->stretch[i] = root * bare.stiffness / m->head.tension;
+        // both of a pair are alike
+        if (bare.sine && i > 0) {
+            c->oscillators[i] = c->oscillators[i - 1];
+            continue;
+        }
+        himc_mode mode = loaded(m, &bare);
+        c->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
+    }
 }
 
 static void aim_watch(himc_membrane *m)
@@ -109,56 +110,105 @@ static void aim_watch(himc_membrane *m)
     core *c = &m->core;
     himc_modes_shapes(c->modes, m->head.radius, m->watch_x, m->watch_y, c->scratch);
     himc_bank_tap(c->bank, c->scratch, NULL, &c->watch);
+    himc_bank_answer(c->bank, &c->watch, c->watch_answer);
     for (int i = 0; i < SPOTS; i++)
         if (m->spots[i].used)
-            m->spots[i].seen = himc_bank_response(c->bank, m->spots[i].shape, &c->watch);
+            m->spots[i].seen = himc_bank_sum(c->bank, m->spots[i].shape, c->watch_answer);
 }
 
-static void aim_ear(himc_membrane *m)
+static void aim_ear(himc_membrane *m, int index)
 {
     core *c = &m->core;
-    himc_modes_shapes(c->modes, m->head.radius, m->pickup.x, m->pickup.y, c->scratch);
+    ear *e = &c->ears[index];
+    const himc_pickup *pickup = &m->pickups[index];
+    himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
     for (int i = 0; i < m->head.modes; i++) {
+        const himc_oscillator *o = &c->oscillators[i];
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        hearing h = himc_pickup_hears(&m->pickup, &m->head, &mode, c->scratch[i]);
+        mode.frequency = o->omega / (2 * HIMC_PI);
+        mode.decay = o->decay;
+        mode.mass = o->mass;
+        hearing h = himc_pickup_hears(pickup, &m->head, &mode, c->scratch[i]);
         c->on_q[i] = h.displacement;
         c->on_v[i] = h.velocity;
         c->on_force[i] = h.force;
     }
-    himc_bank_tap(c->bank, c->on_q, c->on_v, &c->ear);
+    himc_bank_tap(c->bank, c->on_q, c->on_v, &e->tap);
+    // through the state and, for accelerations, directly
+    himc_bank_answer(c->bank, &e->tap, e->answer);
+    for (int i = 0; i < himc_bank_count(c->bank); i++)
+        e->answer[i] += c->on_force[i];
     for (int i = 0; i < SPOTS; i++)
         if (m->spots[i].used)
-            m->spots[i].heard = response(m, m->spots[i].shape);
+            m->spots[i].heard[index] = himc_bank_sum(c->bank, m->spots[i].shape, e->answer);
+}
+
+// the film's energy as the state has it
+static void find_tension(himc_membrane *m)
+{
+    tension *t = &m->tension;
+    t->s = 0;
+    for (int i = 0; i < m->head.modes; i++) {
+        double q, v;
+        himc_bank_state(m->core.bank, i, &q, &v);
+        t->s += 0.5 * m->core.stretch[i] * q * q;
+    }
+    t->on = t->s > 0;
 }
 
 // after head or rate changed: oscillators, taps; spots are computed again when asked for
 static void retune(himc_membrane *m)
 {
+    core *c = &m->core;
+    m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
-    himc_bank_set(m->core.bank, m->core.oscillators, m->head.modes, m->rate);
+    himc_bank_set(c->bank, c->oscillators, m->head.modes, m->rate);
+    himc_bank_weigh(c->bank, c->stretch, c->weight);
     for (int i = 0; i < SPOTS; i++)
         m->spots[i].used = false;
-    aim_ear(m);
+    for (int i = 0; i < m->pickup_count; i++)
+        aim_ear(m, i);
     aim_watch(m);
+    if (m->tension.on || m->head.glide > 0)
+        find_tension(m);
 }
 
-static sound listen(const himc_membrane *m)
+// what every pickup reads now and next
+typedef struct hearings {
+    sound of[HIMC_PICKUPS];
+} hearings;
+
+static hearings listen(const himc_membrane *m)
 {
-    const core *c = &m->core;
-    return (sound){himc_bank_read(c->bank, &c->ear) + fade_at(&m->fade, m->fade.at - 1),
-                   himc_bank_peek(c->bank, &c->ear) + fade_at(&m->fade, m->fade.at)};
+    hearings h = {0};
+    for (int i = 0; i < m->pickup_count; i++) {
+        const himc_tap *tap = &m->core.ears[i].tap;
+        const fade *f = &m->fades[i];
+        h.of[i] = (sound){himc_bank_read(m->core.bank, tap) + fade_at(f, f->at - 1),
+                          himc_bank_peek(m->core.bank, tap) + fade_at(f, f->at)};
+    }
+    return h;
 }
 
-// makes the sound go on from `before`
-static void splice(himc_membrane *m, sound before)
+// makes the sounds go on from `before`
+static void splice(himc_membrane *m, hearings before)
 {
-    m->fade = (fade){0};
-    m->fade = fade_between(before, listen(m), m->rate);
+    memset(m->fades, 0, sizeof m->fades);
+    hearings after = listen(m);
+    for (int i = 0; i < m->pickup_count; i++)
+        m->fades[i] = fade_between(before.of[i], after.of[i], m->rate);
+}
+
+// a head that a membrane can be made of
+static bool check_head(const himc_head *head, himc_error *error)
+{
+    return himc_head_check(head, error) &&
+           (!head->air || head->kettle == 0 || himc_air_check(head->kettle, head->radius, error));
 }
 
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
 {
-    if (!himc_head_check(head, error) ||
+    if (!check_head(head, error) ||
         !himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
@@ -169,7 +219,8 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
         return NULL;
     }
     m->head = *head;
-    m->pickup = himc_pickup_default();
+    m->pickups[0] = himc_pickup_default();
+    m->pickup_count = 1;
     m->rate = rate;
     retune(m);
     return m;
@@ -203,9 +254,9 @@ static bool resize(himc_membrane *m, int count, himc_error *error)
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
 {
-    if (!himc_head_check(head, error))
+    if (!check_head(head, error))
         return false;
-    sound before = listen(membrane);
+    hearings before = listen(membrane);
     if (head->modes != membrane->head.modes && !resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
@@ -214,23 +265,42 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
     return true;
 }
 
-bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup, himc_error *error)
+bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
+                               himc_error *error)
 {
-    if (!himc_pickup_check(pickup, &membrane->head, error))
+    if (!himc_check_range("pickups", count, 1, HIMC_PICKUPS, "", error))
         return false;
-    sound before = listen(membrane);
-    membrane->pickup = *pickup;
-    aim_ear(membrane);
+    for (int i = 0; i < count; i++)
+        if (!himc_pickup_check(&pickups[i], &membrane->head, error))
+            return false;
+    hearings before = listen(membrane);
+    memcpy(membrane->pickups, pickups, sizeof *pickups * (size_t)count);
+    membrane->pickup_count = count;
+    for (int i = 0; i < SPOTS; i++)
+        membrane->spots[i].used = false;
+    for (int i = 0; i < count; i++)
+        aim_ear(membrane, i);
     splice(membrane, before);
     return true;
+}
+
+bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup, himc_error *error)
+{
+    himc_pickup all[HIMC_PICKUPS];
+    memcpy(all, membrane->pickups, sizeof all);
+    all[0] = *pickup;
+    return himc_membrane_set_pickups(membrane, all, membrane->pickup_count, error);
 }
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
 {
     if (!himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
         return false;
-    sound before = listen(membrane);
-    before.next = before.now + (before.next - before.now) * (membrane->rate / rate);
+    hearings before = listen(membrane);
+    for (int i = 0; i < HIMC_PICKUPS; i++) {
+        sound *s = &before.of[i];
+        s->next = s->now + (s->next - s->now) * (membrane->rate / rate);
+    }
     membrane->rate = rate;
     retune(membrane);
     splice(membrane, before);
@@ -244,7 +314,13 @@ const himc_head *himc_membrane_head(const himc_membrane *membrane)
 
 const himc_pickup *himc_membrane_pickup(const himc_membrane *membrane)
 {
-    return &membrane->pickup;
+    return &membrane->pickups[0];
+}
+
+const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count)
+{
+    *count = membrane->pickup_count;
+    return membrane->pickups;
 }
 
 double himc_membrane_rate(const himc_membrane *membrane)
@@ -254,7 +330,30 @@ double himc_membrane_rate(const himc_membrane *membrane)
 
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
-    return himc_modes_get(membrane->core.modes, &membrane->head, index);
+    himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
+    return loaded(membrane, &bare);
+}
+
+double himc_membrane_principal(const himc_head *head)
+{
+    double zero = himc_bessel_zero(1, 1);
+    double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
+    himc_air air = himc_air_around(head, kettle_of(head));
+    return head->air ? bare * himc_air_on(&air, 1, 1, zero).frequency : bare;
+}
+
+double himc_membrane_tension_for(const himc_head *head, double frequency)
+{
+    himc_head trial = *head;
+    double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
+    for (int i = 0; i < 60; i++) {
+        trial.tension = exp(0.5 * (low + high));
+        if (himc_membrane_principal(&trial) < frequency)
+            low = log(trial.tension);
+        else
+            high = log(trial.tension);
+    }
+    return trial.tension;
 }
 
 int himc_membrane_audible(const himc_membrane *membrane)
@@ -277,92 +376,14 @@ void himc_membrane_push(himc_membrane *membrane, double x, double y, double forc
         membrane->pushes[membrane->push_count++] = (push){x, y, force};
 }
 
-// finds the spot's shapes and what a newton there does
-static void place_spot(himc_membrane *m, spot *s, double x, double y)
-{
-    const core *c = &m->core;
-    s->used = true;
-    s->x = x;
-    s->y = y;
-    himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
-    himc_bank_tap(c->bank, s->shape, NULL, &s->tap);
-    s->compliance = himc_bank_response(c->bank, s->shape, &s->tap);
-    s->heard = response(m, s->shape);
-    s->seen = himc_bank_response(c->bank, s->shape, &c->watch);
-}
-
-spot *himc_membrane_spot(himc_membrane *membrane, double x, double y)
-{
-    spot *oldest = &membrane->spots[0];
-    for (int i = 0; i < SPOTS; i++) {
-        spot *s = &membrane->spots[i];
-        if (s->used && s->x == x && s->y == y) {
-            s->age = ++membrane->clock;
-            return s;
-        }
-        if (!s->used || (oldest->used && s->age < oldest->age))
-            oldest = s;
-    }
-    place_spot(membrane, oldest, x, y);
-    oldest->age = ++membrane->clock;
-    return oldest;
-}
-
-double himc_spot_displacement(const himc_membrane *membrane, const spot *s)
-{
-    return himc_bank_displacement(membrane->core.bank, &s->tap);
-}
-
-double himc_spot_compliance(const himc_membrane *membrane, const spot *a, const spot *b)
-{
-    return himc_bank_response(membrane->core.bank, b->shape, &a->tap);
-}
-
-void himc_spot_apply(himc_membrane *membrane, const spot *s, double force)
-{
-    if (force == 0)
-        return;
-    himc_bank_push(membrane->core.bank, s->shape, force);
-    membrane->heard += s->heard * force;
-    membrane->seen += s->seen * force;
-}
-
-// n samples of the bank, the fade added
-static void advance(himc_membrane *m, int n, double *heard, double *seen)
-{
-    himc_bank_run(m->core.bank, n, &m->core.ear, &m->core.watch, heard, seen);
-    for (int i = 0; i < n && m->fade.at < m->fade.length; i++)
-        heard[i] += fade_at(&m->fade, m->fade.at++);
-    m->heard = heard[n - 1];
-    m->seen = seen[n - 1];
-}
-
-void himc_membrane_free_step(himc_membrane *membrane)
-{
-    double heard, seen;
-    advance(membrane, 1, &heard, &seen);
-    for (int i = 0; i < membrane->push_count; i++) {
-        const push *p = &membrane->pushes[i];
-        himc_spot_apply(membrane, himc_membrane_spot(membrane, p->x, p->y), -p->force);
-    }
-    membrane->push_count = 0;
-}
-
-void himc_membrane_run(himc_membrane *membrane, int n, double *heard, double *seen)
-{
-    if (n > 0 && membrane->push_count > 0) {
-        himc_membrane_free_step(membrane);
-        *heard++ = membrane->heard;
-        *seen++ = membrane->seen;
-        n--;
-    }
-    if (n > 0)
-        advance(membrane, n, heard, seen);
-}
-
 double himc_membrane_heard(const himc_membrane *membrane)
 {
-    return membrane->heard;
+    return membrane->heard[0];
+}
+
+double himc_membrane_heard_by(const himc_membrane *membrane, int pickup)
+{
+    return membrane->heard[pickup];
 }
 
 double himc_membrane_seen(const himc_membrane *membrane)
@@ -378,7 +399,8 @@ double himc_membrane_displacement(const himc_membrane *membrane, double x, doubl
 
 double himc_membrane_energy(const himc_membrane *membrane)
 {
-    return himc_bank_energy(membrane->core.bank);
+    double s = membrane->tension.s;
+    return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
 }
 
 void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
@@ -389,11 +411,13 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)
 {
     himc_bank_excite(membrane->core.bank, index, q, v);
+    find_tension(membrane);
 }
 
 void himc_membrane_rest(himc_membrane *membrane)
 {
-    sound before = listen(membrane);
+    hearings before = listen(membrane);
     himc_bank_rest(membrane->core.bank);
+    membrane->tension = (tension){0};
     splice(membrane, before);
 }

@@ -8,12 +8,11 @@
 /// Weyl's law counts the modes below z: z^2/4 - z/2 (pairs twice), so the table ends at 1 + sqrt(1
 /// + 4 count) and a little more (H. Weyl 1911; the second term is the rim's).
 ///
-/// The default head. 23 inches, Christian et al.'s Mylar, and 3700 N/m, the tension of a 23 inch
-/// timpano in the middle of its range: a mallet of 45 g then meets 65 N at 3.7 m/s and 108 N at 6
-/// m/s, the forces the 2012 paper reports. Without the air's mass, which about halves such a head's
-/// frequencies, its principal mode is B3 (247 Hz). Decay: viscoelastic film, eta omega^2/2 with eta
-/// = 0.6e-6 s (Rhaouti, Chaigne & Joly 1999), and 2.2 1/s, the order of what the preferred modes
-/// radiate: 2.4 s to -60 dB for (1,1), 0.5 s at 1 kHz.
+/// The default head. 23 inches, Christian et al.'s Mylar, and 3107 N/m: in air its principal mode is
+/// E flat 3 (155.6 Hz), in the lower half of such a timpano's range, and a mallet of 45 g meets 62.5 N
+/// at 3.7 m/s and 110 N at 6 m/s, about the forces the 2012 paper reports (62 .. 65 and 107 N).
+/// Decay: what the air carries away (air.c), a viscoelastic film's eta omega^2/2 with eta = 0.6e-6 s
+/// (Rhaouti, Chaigne & Joly 1999), and 0.5 1/s for the rest.
 #include "himc/modes.h"
 
 #include "bessel.h"
@@ -44,11 +43,13 @@ struct himc_modes {
 himc_head himc_head_default(void)
 {
     return (himc_head){.radius = 0.2921,
-                       .tension = 3700,
+                       .tension = 3107,
                        .density = 0.2653,
-                       .decay_constant = 2.2,
+                       .decay_constant = 0.5,
                        .decay_square = 3e-7,
-                       .modes = 200};
+                       .modes = 200,
+                       .air = true,
+                       .glide = 1};
 }
 
 bool himc_head_check(const himc_head *head, himc_error *error)
@@ -59,13 +60,22 @@ bool himc_head_check(const himc_head *head, himc_error *error)
            himc_check_range("density", head->density, 0.001, 10, "kg/m2", error) &&
            himc_check_range("decay S0", head->decay_constant, 0, 1000, "1/s", error) &&
            himc_check_range("decay S1", head->decay_square, 0, 1, "s", error) &&
-           himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error);
+           himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error) &&
+           himc_check_range("kettle", head->kettle, 0, 10, "m3", error) &&
+           himc_check_range("glide", head->glide, 0, 1, "", error) &&
+           himc_check_range("damp", head->damp, 0, 1, "", error);
 }
 
 double himc_head_tension_for(const himc_head *head, double frequency)
 {
     double speed = 2 * HIMC_PI * frequency * head->radius / himc_bessel_zero(1, 1);
     return head->density * speed * speed;
+}
+
+double himc_head_decay(const himc_head *head, double omega, double loading)
+{
+    double decay = head->decay_constant + head->decay_square * omega * omega;
+    return fmin(decay + head->damp * HIMC_DAMP / loading, 0.9 * omega);
 }
 
 static int by_frequency(const void *a, const void *b)
@@ -193,7 +203,7 @@ himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int ind
     int i = modes->of[index];
     const zero *z = &modes->zeros[i];
     double omega = z->z / head->radius * sqrt(head->tension / head->density);
-    double decay = head->decay_constant + head->decay_square * omega * omega;
+    double decay = himc_head_decay(head, omega, 1);
     double mass = head->density * HIMC_PI * head->radius * head->radius * z->norm;
     return (himc_mode){.m = z->m,
                        .n = z->n,
@@ -201,7 +211,7 @@ himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int ind
                        .zero = z->z,
                        .norm = z->norm,
                        .frequency = omega / (2 * HIMC_PI),
-                       .decay = fmin(decay, 0.9 * omega),
+                       .decay = decay,
                        .mass = mass,
                        .stiffness = mass * omega * omega};
 }

@@ -1,7 +1,8 @@
 /// spot.h: places where sticks meet a membrane; what contact.c needs of membrane.c.
 ///
 /// A sample with contact is: find the spots, read their displacement, himc_membrane_free_step, read
-/// again (what the head would do alone), solve, himc_spot_apply for each force.
+/// again (what the head would do alone), solve, himc_spot_apply for each force, and
+/// himc_membrane_settle.
 #ifndef HIMC_SPOT_H
 #define HIMC_SPOT_H
 
@@ -17,7 +18,7 @@ typedef struct spot {
     double *shape;     ///< phi_i there, owned by the membrane
     himc_tap tap;      ///< reads the displacement there
     double compliance; ///< displacement there per newton there during a sample (m/N)
-    double heard;      ///< sound per newton there
+    double heard[HIMC_PICKUPS]; ///< sound per newton there
     double seen;       ///< displacement of the watched place per newton there (m/N)
 } spot;
 
@@ -29,9 +30,16 @@ HIMC_RT spot *himc_membrane_spot(himc_membrane *membrane, double x, double y);
 HIMC_RT double himc_spot_displacement(const himc_membrane *membrane, const spot *s);
 /// Displacement at `a` per newton at `b` during a sample (m/N).
 HIMC_RT double himc_spot_compliance(const himc_membrane *membrane, const spot *a, const spot *b);
-/// One sample with the pushed forces only.
-HIMC_RT void himc_membrane_free_step(himc_membrane *membrane);
+/// One sample with the pushed forces only, the film's pull still to come. Returns P . F of these
+/// forces, down positive.
+HIMC_RT double himc_membrane_free_step(himc_membrane *membrane);
+/// P: what the film's pull moves at a spot in this sample (m/J^1/2).
+HIMC_RT double himc_spot_pull(const himc_membrane *membrane, const spot *s);
+/// The film's pull in this sample (J^1/2): the value returned less `half` times P . F.
+HIMC_RT double himc_membrane_tension(const himc_membrane *membrane, double *half);
 /// What `force` (N, up positive) at the spot during that sample adds to it.
 HIMC_RT void himc_spot_apply(himc_membrane *membrane, const spot *s, double force);
+/// Lets the film pull, `taken` being P . F of all forces (down positive). Ends the sample.
+HIMC_RT void himc_membrane_settle(himc_membrane *membrane, double taken);
 
 #endif
