@@ -34,7 +34,7 @@ himc_pickup himc_pickup_default(void);
 
 typedef struct himc_membrane himc_membrane;
 
-/// A head at rest at `rate` (Hz, 4000 .. 384000).
+/// A head at rest at `rate` (Hz, 4000 .. 480000).
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error);
 void himc_membrane_free(himc_membrane *membrane);
 

@@ -216,7 +216,7 @@ static bool check_head(const himc_head *head, himc_outline kind, himc_error *err
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
 {
     if (!check_head(head, HIMC_CIRCLE, error) ||
-        !himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
+        !himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
     if (!m || !core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
@@ -325,7 +325,7 @@ bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
 {
-    if (!himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
+    if (!himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return false;
     hearings before = listen(membrane);
     for (int i = 0; i < HIMC_PICKUPS; i++) {
