@@ -52,7 +52,7 @@ static int run(const cli_arguments *arguments)
         return cli_fail(&cli_modes, "%s", error.text);
     const himc_membrane *membrane = himc_drum_membrane(drum);
     const himc_head *head = himc_membrane_head(membrane);
-    double reference = himc_membrane_principal(head);
+    double reference = himc_membrane_principal(membrane, head);
     printf("m,n,frequency_hz,ratio,t60_s\n");
     for (int i = 0; i < head->modes; i++) {
         himc_mode mode = himc_membrane_mode(membrane, i);

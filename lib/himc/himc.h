@@ -42,6 +42,7 @@
 #include "himc/character.h"
 
 // what is struck
+#include "himc/grid.h"
 #include "himc/modes.h"
 #include "himc/air.h"
 #include "himc/bank.h"

@@ -34,7 +34,7 @@ himc_pickup himc_pickup_default(void);
 
 typedef struct himc_membrane himc_membrane;
 
-/// A head at rest at `rate` (Hz, 4000 .. 384000).
+/// A head at rest at `rate` (Hz, 4000 .. 480000).
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error);
 void himc_membrane_free(himc_membrane *membrane);
 
@@ -42,6 +42,11 @@ void himc_membrane_free(himc_membrane *membrane);
 /// in 5 ms, and the sound does not jump. Allocates only when the number of modes changes. False,
 /// and nothing changed, if a value is not allowed.
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
+/// A head of another outline, at rest; the old sound fades in 5 ms. Retains a grid. Air is known for
+/// round heads alone.
+bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
+                             const himc_head *head, himc_error *error);
+HIMC_RT const himc_shape *himc_membrane_shape(const himc_membrane *membrane);
 /// From now on it is heard by these `count` (1 .. HIMC_PICKUPS); fades over 5 ms.
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
                                himc_error *error);
@@ -58,10 +63,12 @@ HIMC_RT const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, 
 HIMC_RT double himc_membrane_rate(const himc_membrane *membrane);
 /// Mode `index` (0 .. head.modes-1) as it sounds, with its air.
 HIMC_RT himc_mode himc_membrane_mode(const himc_membrane *membrane, int index);
-/// Where the principal mode (1,1) of such a head sounds (Hz), whether or not it is in the list.
-HIMC_RT double himc_membrane_principal(const himc_head *head);
+/// Where the principal mode of such a head with this outline sounds (Hz): (1,1) if round, whether or
+/// not it is in the list, else the lowest.
+HIMC_RT double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head);
 /// The tension (N/m, HIMC_TENSION_MIN .. HIMC_TENSION_MAX) that brings it nearest to `frequency`.
-HIMC_RT double himc_membrane_tension_for(const himc_head *head, double frequency);
+HIMC_RT double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
+                                         double frequency);
 /// Modes below 0.49 of the rate; those above are silent, not aliased.
 HIMC_RT int himc_membrane_audible(const himc_membrane *membrane);
 

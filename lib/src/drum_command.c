@@ -127,10 +127,10 @@ static bool tune(himc_drum *drum, const himc_command *c, himc_error *error)
     himc_head lowest = head, highest = head;
     lowest.tension = HIMC_TENSION_MIN;
     highest.tension = HIMC_TENSION_MAX;
-    if (!himc_check_range("tune", hz, himc_membrane_principal(&lowest),
-                          himc_membrane_principal(&highest), "Hz", error))
+    if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
+                          himc_membrane_principal(drum->membrane, &highest), "Hz", error))
         return false;
-    head.tension = himc_membrane_tension_for(&head, hz);
+    head.tension = himc_membrane_tension_for(drum->membrane, &head, hz);
     return set_head(drum, &head, error);
 }
 
@@ -257,6 +257,53 @@ static bool set_kettle(himc_drum *drum, const himc_command *c, himc_error *error
     return set_head(drum, &head, error);
 }
 
+static bool take_shape(himc_drum *drum, const himc_shape *shape, himc_head *head, himc_error *error)
+{
+    head->air = head->air && shape->kind == HIMC_CIRCLE;
+    if (!himc_membrane_set_shape(drum->membrane, shape, head, error))
+        return false;
+    drum->place.radius = head->radius;
+    drum->revision++;
+    return true;
+}
+
+static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    himc_shape shape = {.kind = HIMC_GRID, .grid = himc_grid_load(path, error)};
+    if (!shape.grid)
+        return false;
+    head.radius = shape.grid->radius;
+    head.tension = shape.grid->tension;
+    head.density = shape.grid->density;
+    head.modes = head.modes < shape.grid->modes ? head.modes : shape.grid->modes;
+    bool good = take_shape(drum, &shape, &head, error) || himc_error_prefix(error, "%s", path);
+    himc_grid_release(shape.grid);
+    return good;
+}
+
+// a round head again is in air again; only a round one may be
+static bool set_shape(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    const char *word = is_symbol(c, 0) ? c->atom[0].symbol : "";
+    if (strcmp(word, "circle") == 0) {
+        head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
+        return take_shape(drum, &(himc_shape){.kind = HIMC_CIRCLE}, &head, error);
+    }
+    if (strcmp(word, "rectangle") != 0 && word[0])
+        return load_shape(drum, word, error);
+    if (c->count != 3 || c->atom[1].kind != HIMC_ATOM_NUMBER ||
+        c->atom[2].kind != HIMC_ATOM_NUMBER)
+        return himc_error_set(error, "shape: allowed circle, rectangle LENGTH WIDTH, or a file");
+    himc_shape shape = {HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
+    if (!himc_check_range("shape rectangle LENGTH", shape.length, 0.05, 1.4, "m", error) ||
+        !himc_check_range("shape rectangle WIDTH", shape.width, 0.05, 1.4, "m", error))
+        return false;
+    head.radius = 0.5 * hypot(shape.length, shape.width);
+    return take_shape(drum, &shape, &head, error);
+}
+
 static bool strike(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     return numbers(c, "strike", 3, error) &&
@@ -281,6 +328,7 @@ bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error 
         return set_field(drum, command, "glide", offsetof(himc_head, glide), error);
     case HIMC_COMMAND_DAMP:
         return set_field(drum, command, "damp", offsetof(himc_head, damp), error);
+    case HIMC_COMMAND_SHAPE: return set_shape(drum, command, error);
     case HIMC_COMMAND_MALLET: return set_mallet(drum, command, error);
     case HIMC_COMMAND_PLACE: return set_place(drum, command, error);
     case HIMC_COMMAND_PICKUP: return set_pickup(drum, command, error);
@@ -295,7 +343,7 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
 {
     const himc_head *head = himc_membrane_head(drum->membrane);
     const himc_place *p = &drum->place;
-    double principal = himc_membrane_principal(head);
+    double principal = himc_membrane_principal(drum->membrane, head);
     snprintf(text, size,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), "

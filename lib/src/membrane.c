@@ -41,16 +41,19 @@ static himc_tap take_tap(double **memory, int length)
     return (himc_tap){p, take(memory, length)};
 }
 
-static bool core_new(core *c, spot spots[SPOTS], int count, himc_error *error)
+static bool core_new(core *c, spot spots[SPOTS], const himc_shape *shape, int count,
+                     himc_error *error)
 {
-    *c = (core){.modes = himc_modes_new(count, error), .bank = himc_bank_new(count, error)};
+    *c = (core){.modes = himc_modes_new_of(shape, count, error), .bank = himc_bank_new(count, error)};
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     int padded = c->bank ? himc_bank_padded(c->bank) : 0;
     size_t bytes = sizeof(double) * (size_t)padded * (10 + 3 * (HIMC_PICKUPS + SPOTS));
     double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!c->modes || !c->bank || !c->oscillators || !memory) {
+        if (c->modes)
+            himc_error_set(error, "modes: no memory for %d modes", count);
         core_free(c);
-        return himc_error_set(error, "modes: no memory for %d modes", count);
+        return false;
     }
     memset(memory, 0, bytes);
     c->on_q = take(&memory, padded);
@@ -82,7 +85,8 @@ static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
 
 double himc_membrane_film(const himc_membrane *m)
 {
-    double thickness = m->head.density / FILM, area = HIMC_PI * m->head.radius * m->head.radius;
+    double thickness = m->head.density / FILM;
+    double area = himc_modes_area(m->core.modes, m->head.radius);
     return m->head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
 }
 
@@ -128,7 +132,7 @@ static void aim_ear(himc_membrane *m, int index)
         mode.frequency = o->omega / (2 * HIMC_PI);
         mode.decay = o->decay;
         mode.mass = o->mass;
-        hearing h = himc_pickup_hears(pickup, &m->head, &mode, c->scratch[i]);
+        hearing h = himc_pickup_hears(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
         c->on_q[i] = h.displacement;
         c->on_v[i] = h.velocity;
         c->on_force[i] = h.force;
@@ -199,20 +203,23 @@ static void splice(himc_membrane *m, hearings before)
         m->fades[i] = fade_between(before.of[i], after.of[i], m->rate);
 }
 
-// a head that a membrane can be made of
-static bool check_head(const himc_head *head, himc_error *error)
+// a head of that outline
+static bool check_head(const himc_head *head, himc_outline kind, himc_error *error)
 {
-    return himc_head_check(head, error) &&
-           (!head->air || head->kettle == 0 || himc_air_check(head->kettle, head->radius, error));
+    if (!himc_head_check(head, error))
+        return false;
+    if (head->air && kind != HIMC_CIRCLE)
+        return himc_error_set(error, "air: 1, allowed 0 on a head that is not round");
+    return !head->air || head->kettle == 0 || himc_air_check(head->kettle, head->radius, error);
 }
 
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
 {
-    if (!check_head(head, error) ||
-        !himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
+    if (!check_head(head, HIMC_CIRCLE, error) ||
+        !himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
-    if (!m || !core_new(&m->core, m->spots, head->modes, error)) {
+    if (!m || !core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
         if (!m)
             himc_error_set(error, "membrane: no memory");
         free(m);
@@ -238,7 +245,7 @@ void himc_membrane_free(himc_membrane *membrane)
 static bool resize(himc_membrane *m, int count, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!core_new(&fresh, m->spots, count, error))
+    if (!core_new(&fresh, m->spots, himc_modes_outline(old.modes), count, error))
         return false;
     int common = count < m->head.modes ? count : m->head.modes;
     himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
@@ -254,7 +261,7 @@ static bool resize(himc_membrane *m, int count, himc_error *error)
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
 {
-    if (!check_head(head, error))
+    if (!check_head(head, himc_membrane_shape(membrane)->kind, error))
         return false;
     hearings before = listen(membrane);
     if (head->modes != membrane->head.modes && !resize(membrane, head->modes, error))
@@ -263,6 +270,30 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
     retune(membrane);
     splice(membrane, before);
     return true;
+}
+
+bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
+                             const himc_head *head, himc_error *error)
+{
+    core fresh, old = membrane->core;
+    spot spots[SPOTS];
+    if (!check_head(head, shape->kind, error) ||
+        !core_new(&fresh, spots, shape, head->modes, error))
+        return false;
+    hearings before = listen(membrane);
+    memcpy(membrane->spots, spots, sizeof spots);
+    membrane->core = fresh;
+    membrane->head = *head;
+    membrane->tension = (tension){0};
+    retune(membrane);
+    splice(membrane, before);
+    core_free(&old);
+    return true;
+}
+
+const himc_shape *himc_membrane_shape(const himc_membrane *membrane)
+{
+    return himc_modes_outline(membrane->core.modes);
 }
 
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
@@ -294,7 +325,7 @@ bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
 {
-    if (!himc_check_range("sample rate", rate, 4000, 384000, "Hz", error))
+    if (!himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return false;
     hearings before = listen(membrane);
     for (int i = 0; i < HIMC_PICKUPS; i++) {
@@ -334,21 +365,26 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
     return loaded(membrane, &bare);
 }
 
-double himc_membrane_principal(const himc_head *head)
+double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
 {
-    double zero = himc_bessel_zero(1, 1);
+    bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
+    double zero = round ? himc_bessel_zero(1, 1)
+                        : himc_modes_get(membrane->core.modes, head, 0).zero;
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
+    if (!head->air)
+        return bare;
     himc_air air = himc_air_around(head, kettle_of(head));
-    return head->air ? bare * himc_air_on(&air, 1, 1, zero).frequency : bare;
+    return bare * himc_air_on(&air, 1, 1, zero).frequency;
 }
 
-double himc_membrane_tension_for(const himc_head *head, double frequency)
+double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
+                                 double frequency)
 {
     himc_head trial = *head;
     double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
     for (int i = 0; i < 60; i++) {
         trial.tension = exp(0.5 * (low + high));
-        if (himc_membrane_principal(&trial) < frequency)
+        if (himc_membrane_principal(membrane, &trial) < frequency)
             low = log(trial.tension);
         else
             high = log(trial.tension);

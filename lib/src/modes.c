@@ -16,6 +16,7 @@
 #include "himc/modes.h"
 
 #include "bessel.h"
+#include "outline.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,6 +31,8 @@ typedef struct zero {
 } zero;
 
 struct himc_modes {
+    himc_shape shape;
+    outline_mode *outline; // (count), unless round; then nothing below is used
     int count;      // modes
     int zero_count; // zeros used by them
     int top;        // largest order used
@@ -167,14 +170,28 @@ static bool build(himc_modes *modes)
     return enlist(modes, found);
 }
 
+static bool build_outline(himc_modes *modes)
+{
+    modes->outline = malloc(sizeof *modes->outline * (size_t)modes->count);
+    return modes->outline && himc_outline_modes(&modes->shape, modes->count, modes->outline);
+}
+
 himc_modes *himc_modes_new(int count, himc_error *error)
 {
-    if (!himc_check_range("modes", count, 1, HIMC_MODES_MAX, "", error))
+    return himc_modes_new_of(&(himc_shape){.kind = HIMC_CIRCLE}, count, error);
+}
+
+himc_modes *himc_modes_new_of(const himc_shape *shape, int count, himc_error *error)
+{
+    int most = shape->kind == HIMC_GRID ? shape->grid->modes : HIMC_MODES_MAX;
+    if (!himc_check_range("modes", count, 1, most, "", error))
         return NULL;
     himc_modes *modes = calloc(1, sizeof *modes);
     if (modes) {
         modes->count = count;
-        if (build(modes))
+        modes->shape = *shape;
+        himc_grid_retain(shape->grid);
+        if (shape->kind == HIMC_CIRCLE ? build(modes) : build_outline(modes))
             return modes;
     }
     himc_modes_free(modes);
@@ -186,6 +203,8 @@ void himc_modes_free(himc_modes *modes)
 {
     if (!modes)
         return;
+    himc_grid_release(modes->shape.grid);
+    free(modes->outline);
     free(modes->zeros);
     free(modes->first);
     free(modes->of);
@@ -198,26 +217,53 @@ int himc_modes_count(const himc_modes *modes)
     return modes->count;
 }
 
+const himc_shape *himc_modes_outline(const himc_modes *modes)
+{
+    return &modes->shape;
+}
+
+double himc_modes_area(const himc_modes *modes, double radius)
+{
+    return radius * radius * (modes->outline ? himc_outline_area(&modes->shape) : HIMC_PI);
+}
+
+// what depends on the shape alone
+static himc_mode bare_shape(const himc_modes *modes, int index)
+{
+    if (modes->outline) {
+        const outline_mode *o = &modes->outline[index];
+        return (himc_mode){.m = o->m, .n = o->n, .zero = o->z, .norm = o->norm};
+    }
+    const zero *z = &modes->zeros[modes->of[index]];
+    bool sine = index > modes->first[modes->of[index]];
+    return (himc_mode){.m = z->m, .n = z->n, .sine = sine, .zero = z->z, .norm = z->norm};
+}
+
 himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index)
 {
-    int i = modes->of[index];
-    const zero *z = &modes->zeros[i];
-    double omega = z->z / head->radius * sqrt(head->tension / head->density);
-    double decay = himc_head_decay(head, omega, 1);
-    double mass = head->density * HIMC_PI * head->radius * head->radius * z->norm;
-    return (himc_mode){.m = z->m,
-                       .n = z->n,
-                       .sine = index > modes->first[i],
-                       .zero = z->z,
-                       .norm = z->norm,
-                       .frequency = omega / (2 * HIMC_PI),
-                       .decay = decay,
-                       .mass = mass,
-                       .stiffness = mass * omega * omega};
+    himc_mode mode = bare_shape(modes, index);
+    double omega = mode.zero / head->radius * sqrt(head->tension / head->density);
+    mode.frequency = omega / (2 * HIMC_PI);
+    mode.decay = himc_head_decay(head, omega, 1);
+    mode.mass = head->density * HIMC_PI * head->radius * head->radius * mode.norm;
+    mode.stiffness = mode.mass * omega * omega;
+    return mode;
+}
+
+void himc_modes_beam(const himc_modes *modes, double radius, int index, double kx, double ky,
+                     double *even, double *odd)
+{
+    himc_outline_beam(&modes->shape, &modes->outline[index], index, kx * radius, ky * radius, even,
+                      odd);
+    *even *= radius * radius;
+    *odd *= radius * radius;
 }
 
 double himc_modes_shape(const himc_modes *modes, double radius, int index, double x, double y)
 {
+    if (modes->outline)
+        return himc_outline_shape(&modes->shape, &modes->outline[index], index, x / radius,
+                                  y / radius);
     int i = modes->of[index], m = modes->zeros[i].m;
     double r = hypot(x, y) / radius, angle = m * atan2(y, x);
     if (!(r < 1))
@@ -236,6 +282,11 @@ static double hermite(const double *cell, double t)
 
 void himc_modes_shapes(const himc_modes *modes, double radius, double x, double y, double *shapes)
 {
+    if (modes->outline) {
+        himc_outline_shapes(&modes->shape, modes->outline, modes->count, x / radius, y / radius,
+                            shapes);
+        return;
+    }
     double distance = hypot(x, y), r = distance / radius;
     if (!(r < 1)) {
         for (int i = 0; i < modes->count; i++)

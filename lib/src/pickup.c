@@ -56,11 +56,27 @@ static double radiation(const himc_mode *mode, const himc_head *head, const himc
            overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
-hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_mode *mode,
-                          double point_shape)
+// a shape of any outline: the integral itself, in phase and a quarter of a period apart
+static hearing outlined(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
+                        int index, const himc_mode *mode)
+{
+    double even, odd, omega = 2 * HIMC_PI * mode->frequency;
+    double k = omega / SOUND_SPEED * cos(pickup->elevation);
+    himc_modes_beam(modes, head->radius, index, k * cos(pickup->azimuth), k * sin(pickup->azimuth),
+                    &even, &odd);
+    double weight = AIR_DENSITY / (2 * HIMC_PI * pickup->distance) / HIMC_PICKUP_PRESSURE;
+    return (hearing){.displacement = -weight * even * omega * omega,
+                     .velocity = -weight * (2 * mode->decay * even + omega * odd),
+                     .force = weight * even / mode->mass};
+}
+
+hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
+                          int index, const himc_mode *mode, double point_shape)
 {
     if (pickup->kind == HIMC_PICKUP_POINT)
         return (hearing){.velocity = point_shape / HIMC_PICKUP_VELOCITY};
+    if (himc_modes_outline(modes)->kind != HIMC_CIRCLE)
+        return outlined(pickup, head, modes, index, mode);
     double weight = radiation(mode, head, pickup) / HIMC_PICKUP_PRESSURE;
     double omega = 2 * HIMC_PI * mode->frequency;
     double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;

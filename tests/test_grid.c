@@ -1,0 +1,235 @@
+/// test_grid.c: heads of other outlines: a rectangle, and masses and springs.
+#define _DEFAULT_SOURCE // mkdtemp
+#include "himc/contact.h"
+#include "himc/drum.h"
+
+#include "disc_mesh.h"
+#include "bessel.h"
+
+#define RADIUS 0.3
+#define TENSION 3000.0
+#define DENSITY 0.26
+
+static char folder[] = "/tmp/himc-grid-XXXXXX";
+static himc_error error;
+static himc_drum *drum;
+
+void setUp(void)
+{
+    error.text[0] = '\0';
+    drum = himc_drum_new("head", 23, 48000, &error);
+}
+
+void tearDown(void)
+{
+    himc_drum_release(drum);
+}
+
+static bool say(const char *text)
+{
+    himc_command command;
+    return himc_command_parse_text(&command, HIMC_DRUM, text, &error) &&
+           himc_drum_command(drum, &command, &error);
+}
+
+static bool shape_of(const char *name)
+{
+    char text[400];
+    snprintf(text, sizeof text, "shape %s/%s", folder, name);
+    return say(text);
+}
+
+static void put(const char *name, const char *text)
+{
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *f = fopen(path, "w");
+    fputs(text, f);
+    fclose(f);
+}
+
+// largest errors, in cents, of the first 10 and 20 modes against Bessel's
+static void compare(const himc_grid *g, double *ten, double *twenty)
+{
+    himc_modes *round = himc_modes_new(20, NULL);
+    himc_head head = himc_head_default();
+    *ten = *twenty = 0;
+    for (int i = 0; i < 20; i++) {
+        double z = himc_modes_get(round, &head, i).zero;
+        double cents = fabs(1200 * log2(g->zero[i] / z));
+        *ten = i < 10 ? fmax(*ten, cents) : *ten;
+        *twenty = fmax(*twenty, cents);
+    }
+    himc_modes_free(round);
+}
+
+static void load_disc(int rings, double ten_most, double twenty_most)
+{
+    char path[300];
+    double ten, twenty;
+    disc_mesh d = disc_mesh_new(rings, RADIUS, TENSION, DENSITY);
+    disc_mesh_write(&d, folder, TENSION, DENSITY);
+    snprintf(path, sizeof path, "%s/head.txt", folder);
+    himc_grid *g = himc_grid_load(path, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(g, error.text);
+    TEST_ASSERT_EQUAL_INT(d.inner, g->places);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, RADIUS, g->radius);
+    compare(g, &ten, &twenty);
+    printf("%d places: first 10 within %.2f cents, first 20 within %.2f\n", d.all, ten, twenty);
+    TEST_ASSERT_TRUE(ten < ten_most && twenty < twenty_most);
+    himc_grid_release(g);
+    disc_mesh_free(&d);
+}
+
+static void test_grid_of_a_disc_has_bessels_modes(void)
+{
+    if (getenv("HIMC_LONG"))
+        load_disc(26, 10, 20);
+    load_disc(12, 10, 20);
+}
+
+static void test_grid_disc_is_struck_and_sounds_as_the_round_head_does(void)
+{
+    static double sound[2][9600];
+    double peak[2] = {0}, force[2];
+    const char *lines[] = {"air 0", "modes 60", "decay 3 1e-6"};
+    for (int k = 0; k < 2; k++) {
+        char text[100];
+        tearDown();
+        setUp();
+        for (int i = 0; i < 3; i++)
+            TEST_ASSERT_TRUE_MESSAGE(say(lines[i]), error.text);
+        snprintf(text, sizeof text, "radius %g", RADIUS);
+        TEST_ASSERT_TRUE(k == 1 ? shape_of("head.txt") : say(text));
+        snprintf(text, sizeof text, "tension %g", TENSION);
+        TEST_ASSERT_TRUE(say(text) && (k == 1 || say("density 0.26")));
+        TEST_ASSERT_TRUE(say("strike -0.2 0.03 4"));
+        himc_drum_advance(drum, 9600, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_read(drum, 0, 9600, sound[k], NULL);
+        himc_contact_report report;
+        TEST_ASSERT_TRUE(himc_drum_strike_next(drum, &report));
+        force[k] = report.force;
+        for (int i = 0; i < 9600; i++)
+            peak[k] = fmax(peak[k], fabs(sound[k][i]));
+    }
+    printf("force %.1f and %.1f N, peak %.3f and %.3f\n", force[0], force[1], peak[0], peak[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.03 * force[0], force[0], force[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1 * peak[0], peak[0], peak[1]);
+}
+
+static void test_grid_blow_never_makes_energy(void)
+{
+    TEST_ASSERT_TRUE_MESSAGE(shape_of("head.txt"), error.text);
+    himc_membrane *m = himc_drum_membrane(drum);
+    himc_stick stick = {.head = {1e10, 2.5, 0, 0.03, 0.0175}, .mass = 0.03, .x = -0.1, .velocity = -6};
+    himc_stick *sticks[] = {&stick};
+    double before = himc_contact_energy(m, &stick), start = before, rise = 0;
+    for (int i = 0; i < 3000; i++) {
+        himc_contact_step(m, sticks, 1);
+        double now = himc_membrane_energy(m) + himc_contact_energy(m, &stick);
+        rise = fmax(rise, (now - before) / start);
+        before = now;
+    }
+    TEST_ASSERT_TRUE(rise < 1e-13 && himc_membrane_rise(m) >= 0);
+}
+
+static void refuses(const char *file, const char *text, const char *says)
+{
+    put(file, text);
+    TEST_ASSERT_FALSE_MESSAGE(shape_of("bad.txt"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, says), error.text);
+    TEST_ASSERT_EQUAL_INT(HIMC_CIRCLE, himc_membrane_shape(himc_drum_membrane(drum))->kind);
+}
+
+static void test_grid_refuses_what_is_no_head_and_says_why(void)
+{
+    put("p", "0 0\n0.2 0\n0 0.2\n");
+    put("m", "1 0\n0 1\n");
+    put("k", "2 -1\n-1 2\n");
+#define GOOD "tension 1000\ndensity 0.3\nplaces p\nmass m\nstiffness k\n"
+    put("bad.txt", GOOD);
+    TEST_ASSERT_TRUE_MESSAGE(shape_of("bad.txt"), error.text);
+    TEST_ASSERT_TRUE(say("shape circle"));
+    refuses("k", "2 -1\n-0.9 2\n", "stiffness: not symmetric: (1, 2) is -1, (2, 1) is -0.9");
+    refuses("k", "1 1\n1 1\n", "stiffness: not positive");
+    refuses("k", "1 2\n2 1\n", "stiffness: not positive");
+    refuses("k", "1 2\n2\n", "k:2: number 2 of 2 is missing");
+    refuses("k", "1 2\n2 x\n", "k:2: number 2 of 2 is missing");
+    refuses("k", "1 2\n2 1 3\n", "k:2: more than 2");
+    refuses("k", "1 2\n", "stiffness: 1 rows of 2");
+    refuses("k", "%%MatrixMarket matrix coordinate real symmetric\n99999 99999 1\n1 1 1\n",
+            "rows: 99999, allowed 1 .. 4000");
+    refuses("k", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n3 1 1\n",
+            "k:4: row or column outside");
+    refuses("k", "%%MatrixMarket matrix coordinate complex general\n", "k:1: allowed");
+    refuses("k", "", "empty");
+    put("k", "2 -1\n-1 2\n");
+    refuses("m", "1 2\n2 1\n", "mass: not positive");
+    put("m", "1 0\n0 1\n");
+    refuses("p", "0 0\n", "mass: 2 rows but 1 places");
+    put("p", "0 0\n0.2 0\n0 0.2\n");
+    refuses("bad.txt", "tension 1000\ndensity 0\n", "bad.txt:2: density: 0");
+    refuses("bad.txt", "tension 1000\nplaces p\nmass m\nstiffness k\n", "density: missing");
+    refuses("bad.txt", "shape round\n", "bad.txt:1: shape: unknown");
+    refuses("bad.txt", "places nowhere\n", "nowhere: No such file");
+    TEST_ASSERT_FALSE(shape_of("none.txt"));
+}
+
+static void test_rectangle_has_the_modes_of_a_string_in_both_directions(void)
+{
+    TEST_ASSERT_TRUE_MESSAGE(say("shape rectangle 0.6 0.4"), error.text);
+    himc_membrane *m = himc_drum_membrane(drum);
+    const himc_head *head = himc_membrane_head(m);
+    double c = sqrt(head->tension / head->density), before = 0;
+    for (int i = 0; i < head->modes; i++) {
+        himc_mode mode = himc_membrane_mode(m, i);
+        double f = 0.5 * c * hypot(mode.m / 0.6, mode.n / 0.4);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6 * f, f, mode.frequency);
+        TEST_ASSERT_TRUE(mode.frequency >= before);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, head->density * 0.06, mode.mass);
+        before = mode.frequency;
+    }
+    TEST_ASSERT_TRUE(say("tune 150"));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 150, himc_membrane_mode(m, 0).frequency);
+    TEST_ASSERT_FALSE(say("air 1"));
+    TEST_ASSERT_EQUAL_STRING("air: 1, allowed 0 on a head that is not round", error.text);
+    TEST_ASSERT_FALSE(say("shape rectangle"));
+    TEST_ASSERT_FALSE(say("shape rectangle 0.6 nan"));
+    TEST_ASSERT_TRUE(say("shape circle"));
+    TEST_ASSERT_TRUE(himc_membrane_head(m)->air);
+}
+
+// the transform against a sum over a fine raster
+static void test_rectangle_is_heard_as_rayleighs_integral_says(void)
+{
+    himc_shape shape = {HIMC_RECTANGLE, 0.6, 0.4, NULL};
+    himc_modes *modes = himc_modes_new_of(&shape, 30, &error);
+    double radius = 0.5 * hypot(0.6, 0.4), kx = 7, ky = -5;
+    for (int i = 0; i < 30; i++) {
+        double even = 0, odd = 0, e, o;
+        for (int a = 0; a < 300; a++)
+            for (int b = 0; b < 300; b++) {
+                double x = 0.6 * ((a + 0.5) / 300 - 0.5), y = 0.4 * ((b + 0.5) / 300 - 0.5);
+                double w = himc_modes_shape(modes, radius, i, x, y) * 0.24 / 90000;
+                even += w * cos(kx * x + ky * y);
+                odd += w * sin(kx * x + ky * y);
+            }
+        himc_modes_beam(modes, radius, i, kx, ky, &e, &o);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, even, e);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, odd, o);
+    }
+    himc_modes_free(modes);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    RUN_TEST(test_grid_of_a_disc_has_bessels_modes);
+    RUN_TEST(test_grid_disc_is_struck_and_sounds_as_the_round_head_does);
+    RUN_TEST(test_grid_blow_never_makes_energy);
+    RUN_TEST(test_grid_refuses_what_is_no_head_and_says_why);
+    RUN_TEST(test_rectangle_has_the_modes_of_a_string_in_both_directions);
+    RUN_TEST(test_rectangle_is_heard_as_rayleighs_integral_says);
+    return UNITY_END();
+}
