@@ -7,7 +7,8 @@
 /// rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 9 from ppp to
 /// fff gives 21 dB. A quintic from rest at the height H to the speed v in the time T falls without
 /// turning as long as s = v T/H <= 2.5; s here is 1.9 to 2.1. A stroke given the share r < 1 of its
-/// time is r^2 as high.
+/// time keeps its speed and s and so is r as high, as long as nobody must be stronger for it than
+/// STRONGEST: v/T grows with 1/r, and is bent towards that limit smoothly, so that louder stays louder.
 #include "gesture.h"
 
 #include <math.h>
@@ -18,7 +19,8 @@
 #define LONGEST_DOWN 0.30
 #define HIGHEST 0.75
 #define LOWEST 0.03
-#define STEEPEST 2.4 // largest s used
+#define STEEPEST 2.4   // largest s used
+#define STRONGEST 55.0 // speed over time of a downstroke in a hurry (m/s^2)
 #define LEAST_SPEED 1.0
 
 /// At f. `shape` is s; `reach` says how height follows speed: height ~ speed^reach.
@@ -54,23 +56,26 @@ double himc_gesture_time(const himc_gesture *gesture, double height)
     return gesture->down + gesture->dwell + climb * gesture->lift;
 }
 
+/// `speed` bent so that it stays below `most`, hardly changed while it is far below.
+static double bend(double speed, double most)
+{
+    return speed / pow(1 + pow(speed / most, 4), 0.25);
+}
+
 himc_gesture himc_gesture_squeeze(himc_gesture g, double time, double height)
 {
     double share = time / himc_gesture_time(&g, height);
     if (share >= 1)
         return g;
-    double least = fmin(g.speed, LEAST_SPEED);
-    double square = share * share;
-    // a tip that is high already stays there
-    g.height *= fmax(square, fmin(fmax(height / g.height, 0), 1) * share);
+    double shape = g.speed * g.down / g.height, full = g.height;
     g.down *= share;
     g.dwell *= share;
     g.lift *= share;
-    g.depth *= square;
-    g.speed = fmin(g.speed, STEEPEST * g.height / g.down);
-    if (g.speed < least) {
-        g.speed = least;
-        g.height = least * g.down / STEEPEST;
-    }
+    g.depth *= share * share;
+    g.speed = fmax(bend(g.speed, STRONGEST * g.down), fmin(g.speed, LEAST_SPEED));
+    g.height = g.speed * g.down / shape;
+    // a tip that is high already stays there
+    double stay = fmin(fmax(height / full, 0), 1) * share * full;
+    g.height = fmin(fmax(g.height, stay), g.speed * g.down / 1.6);
     return g;
 }
