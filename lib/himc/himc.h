@@ -26,6 +26,7 @@
 #include "himc/command.h"
 #include "himc/score.h"
 #include "himc/take.h"
+#include "himc/recording.h"
 #include "himc/body.h"
 #include "himc/planner.h"
 #include "himc/track.h"

@@ -20,6 +20,7 @@ himc_performance_config himc_performance_default(void);
 typedef struct himc_performance himc_performance;
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error);
+/// A recording under way is written first.
 void himc_performance_free(himc_performance *performance);
 
 /// Takes a drum to play on (its own reference; its rate must be the performance's). Replaces one of the same name. The

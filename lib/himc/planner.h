@@ -13,10 +13,12 @@
 /// Where a drumhead stands.
 typedef struct himc_place {
     himc_vec3 center; ///< centre of the head at rest (m)
-    double tilt;      ///< about the y axis, positive lifts the far side (rad)
+    double tilt;      ///< positive lifts the side away from the performer (rad)
     double radius;    ///< of the head (m)
 } himc_place;
 
+/// Unit vector in the head's plane away from the performer, who sits at the world's origin.
+HIMC_RT himc_vec3 himc_place_away(const himc_place *place);
 /// Unit normal of the head, up.
 HIMC_RT himc_vec3 himc_place_normal(const himc_place *place);
 /// Point (x, y) of the head (m, x away from the performer) in the world.
@@ -71,6 +73,18 @@ HIMC_RT void himc_planner_play(himc_planner *planner, double t);
 HIMC_RT void himc_planner_stop(himc_planner *planner, double t);
 /// Goes to a beat, playing or not.
 HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
+/// Whether the score begins again at the whole beat after its last stroke, until told otherwise. The
+/// tempo map begins again too; a score that is switched off plays to its end.
+HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
+/// The whole beat after the last stroke: where a loop turns round; 0 without strokes.
+HIMC_RT double himc_planner_length(const himc_planner *planner);
+/// What another score must begin at to follow this one: its length, or later if that is past or too
+/// near to prepare for at `t`.
+HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
+/// Appends a tempo map (copied) that holds from `beat` on; what the old one says after that is
+/// dropped.
+bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
+                               double beat, himc_error *error);
 /// At this tempo (1 .. 1000 beats per minute) from `t` (s) to the next change the tempo map has.
 /// The motion under way is bent, C2, never jumped; a stroke less than 80 ms away keeps its time.
 HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
@@ -99,7 +113,8 @@ HIMC_RT void himc_planner_separated(himc_planner *planner, himc_hand hand, doubl
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 
-/// Beat at time `t`, or a negative number when stopped. Before the first beat it is that beat.
+/// Beat at time `t`, or a negative number when stopped. Before the first beat it is that beat; in a
+/// loop it begins again.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// Time after which nothing is left to play (s): the last stroke and its coming to rest. Infinite
 /// while stopped.

@@ -9,6 +9,7 @@
 
 #define APPROACH 1.0   // from wherever the sticks are to the beginning of a take (s)
 #define LONGEST_DELAY 8192 // samples
+#define LONGEST_RECORDING 1200.0 // (s)
 
 typedef bool (*action)(himc_performance *p, const himc_command *command, himc_error *error);
 
@@ -82,6 +83,14 @@ void himc_performance_remove_drum(himc_performance *p, const char *name)
 himc_drum *himc_performance_drum(himc_performance *p, int index)
 {
     return index >= 0 && index < p->drums ? p->drum[index].drum : NULL;
+}
+
+static bool do_loop(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_planner_loop(p->planner, step_time(p), c->atom[0].number != 0);
+    p->replan = true;
+    return true;
 }
 
 static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
@@ -194,12 +203,19 @@ static bool fill_from_score(himc_performance *p, const himc_score *score, const 
         if (!run_line(p, &score->lines[i], error))
             return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
     performance_notice_drums(p);
-    himc_planner_clear(p->planner);
-    if (!himc_planner_set_tempi(p->planner, score->tempi, score->tempo_count, error))
+    // while one is played the next one waits for its end
+    bool queued = p->playing && !p->track;
+    if (!queued)
+        himc_planner_clear(p->planner);
+    double from = queued ? himc_planner_next_start(p->planner, step_time(p)) : 0;
+    if (!himc_planner_append_tempi(p->planner, score->tempi, score->tempo_count, from, error))
         return himc_error_prefix(error, "%s", path);
-    for (int i = 0; i < score->stroke_count; i++)
-        if (!add_stroke(p, &score->strokes[i], error))
+    for (int i = 0; i < score->stroke_count; i++) {
+        himc_stroke stroke = score->strokes[i];
+        stroke.beat += from;
+        if (!add_stroke(p, &stroke, error))
             return himc_error_prefix(error, "%s", path);
+    }
     return true;
 }
 
@@ -350,6 +366,9 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
     } else {
         if (!himc_check_range("rate task", hz, 50, 2000, "Hz", error))
             return false;
+        if (p->recording)
+            return himc_error_set(error, "rate task: %g: not while recording %s", hz,
+                                  himc_recording_path(p->recording));
         p->config.task_rate = hz;
     }
     performance_reset_clock(p);
@@ -360,6 +379,13 @@ static bool do_coupling(himc_performance *p, const himc_command *c, himc_error *
 {
     (void)error;
     p->one_way = strcmp(c->atom[0].symbol, "one-way") == 0;
+    return true;
+}
+
+static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    p->grip = strcmp(c->atom[0].symbol, "french") == 0 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
     return true;
 }
 
@@ -374,10 +400,40 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
     return false;
 }
 
+// writes what has been recorded; a recording that cannot be written is lost, and that is said
+static bool finish_recording(himc_performance *p, himc_error *error)
+{
+    bool written = himc_recording_write(p->recording, error);
+    if (written)
+        performance_note(p, "recorded %.2f s in %s", himc_recording_frames(p->recording) / p->config.task_rate,
+                         himc_recording_path(p->recording));
+    himc_recording_free(p->recording);
+    p->recording = NULL;
+    return written || himc_error_prefix(error, "record");
+}
+
+static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    const char *path = c->atom[0].symbol;
+    bool stop = strcmp(path, "stop") == 0;
+    if (stop && !p->recording)
+        return himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
+    if (stop)
+        return finish_recording(p, error);
+    if (p->recording)
+        return himc_error_set(error, "record: %s: already recording %s, allowed stop", path,
+                              himc_recording_path(p->recording));
+    p->recording = himc_recording_new(path, &p->skeleton, p->config.task_rate, LONGEST_RECORDING, error);
+    p->recording_full = false;
+    return p->recording || himc_error_prefix(error, "record");
+}
+
 static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_skeleton_config old = p->body;
     (void)c;
+    if (p->recording && !finish_recording(p, error))
+        return false;
     p->body = himc_skeleton_default();
     if (!performance_build_body(p, error)) {
         p->body = old;
@@ -386,6 +442,8 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     drop_track(p);
     himc_planner_stop(p->planner, step_time(p));
     himc_planner_clear(p->planner);
+    himc_planner_loop(p->planner, step_time(p), false);
+    p->grip = HIMC_GRIP_GERMAN;
     p->controller.mode = HIMC_PIPELINE_HIMC;
     p->controller.law = HIMC_LAW_COMPUTED_TORQUE;
     p->controller.solver = HIMC_SOLVER_DLS;
@@ -416,6 +474,8 @@ static bool do_info(himc_performance *p, const himc_command *c, himc_error *erro
 static const action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_STROKE] = do_stroke,       [HIMC_COMMAND_HIT] = do_hit,
     [HIMC_COMMAND_TEMPO] = do_tempo,         [HIMC_COMMAND_CLEAR] = do_clear,
+    [HIMC_COMMAND_GRIP] = do_grip,           [HIMC_COMMAND_LOOP] = do_loop,
+    [HIMC_COMMAND_RECORD] = do_record,
     [HIMC_COMMAND_PLAY] = do_play,           [HIMC_COMMAND_STOP] = do_stop,
     [HIMC_COMMAND_SEEK] = do_seek,           [HIMC_COMMAND_SCORE] = do_score,
     [HIMC_COMMAND_TAKE] = do_take,           [HIMC_COMMAND_TARGET] = do_target,
@@ -432,13 +492,15 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     action act = actions[command->id];
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    bool reads_file = command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
-    if (delay <= 0 || reads_file)
+    bool file = command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE ||
+                command->id == HIMC_COMMAND_RECORD;
+    if (delay <= 0 || file)
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
-    if (p->waiting_count == WAITING_COMMANDS)
-        return himc_error_set(error, "more than %d commands at once: this one is dropped", WAITING_COMMANDS);
+    if (p->waiting_count == WAITING_COMMANDS) // one line for a storm: the rest is counted
+        return p->commands_dropped++ > 0 ||
+               himc_error_set(error, "more than %d commands at once: this one is dropped", WAITING_COMMANDS);
     waiting_command *w = &p->waiting[p->waiting_count++];
     w->due = p->sample + (uint64_t)delay;
     himc_command_copy(&w->command, command);
@@ -461,6 +523,10 @@ void performance_run_due_commands(himc_performance *p)
         }
     }
     p->waiting_count = kept;
+    if (p->commands_dropped > 0 && kept < WAITING_COMMANDS / 2) {
+        performance_note(p, "%ld commands dropped: more than %d waited", p->commands_dropped, WAITING_COMMANDS);
+        p->commands_dropped = 0;
+    }
 }
 
 void himc_performance_make_drums(himc_performance *p, bool make_drums)

@@ -83,7 +83,7 @@ static void watch_beats(himc_performance *p, double t)
 {
     double beat = himc_planner_beat(p->planner, t);
     long whole = p->track || !(beat >= 0) ? -1 : (long)floor(beat + 1e-9);
-    if (whole > p->last_beat) {
+    if (whole >= 0 && whole != p->last_beat) {
         himc_event event = {.kind = HIMC_EVENT_BEAT, .beat = (double)whole};
         performance_emit(p, &event);
     }
@@ -126,6 +126,10 @@ void performance_motion_row(himc_performance *p, double t)
         row.joint[j] = himc_quat_log(pose.joint[j]);
     if (p->on_motion)
         p->on_motion(p->motion_user, &row);
+    if (p->recording && !himc_recording_add(p->recording, &p->state) && !p->recording_full) {
+        p->recording_full = true;
+        performance_note(p, "%s: no more room, recorded up to %.3f s", himc_recording_path(p->recording), t);
+    }
 }
 
 static void describe_drums(const himc_performance *p, void (*line)(void *, const char *), void *user)

@@ -6,11 +6,12 @@
 #include "himc/body.h"
 #include "himc/character.h"
 #include "himc/performance.h"
+#include "himc/recording.h"
 #include "himc/task.h"
 #include "himc/track.h"
 
 #define LONGEST_STEP 512  // samples of one physics step
-#define WAITING_COMMANDS 64
+#define WAITING_COMMANDS 256
 #define WAITING_EVENTS 1024
 #define PLAYED_TIME 0.005  // a stroke has landed if it touches within this of its time (s) ...
 #define PLAYED_PLACE 0.02  // ... and within this of its place (m)
@@ -58,6 +59,11 @@ struct himc_performance {
     himc_skeleton_config body;
     himc_skeleton skeleton;
     himc_posture posture;
+    himc_grip grip;
+    struct {
+        himc_bearing from, goal;
+        double time; // of `from` (s)
+    } course;        // of trunk and grip
     himc_controller controller;
     himc_character *character;
     himc_body_state state, good; // now; when last known to be sound
@@ -91,9 +97,13 @@ struct himc_performance {
     himc_task_tick from, to;
     bool replan;
 
+    himc_recording *recording; // owned; NULL when nothing is recorded
+    bool recording_full;
+
     // what came in and what goes out
     waiting_command waiting[WAITING_COMMANDS];
     int waiting_count;
+    long commands_dropped;
     himc_event event[WAITING_EVENTS];
     int event_first, event_count;
     long events_lost;
