@@ -39,6 +39,10 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
 
+/// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a block, with the block's last
+/// sample of each coordinate: a stream of blocks of 64 samples comes at 750 Hz, which is more often than tasks do.
+HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand hand, himc_vec3 tip);
+
 /// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n), each may be NULL; the drums' sound is in
 /// their rings (himc_drum_read).
 HIMC_RT void himc_performance_process(himc_performance *performance, int n, double *const force[HIMC_HANDS]);

@@ -95,6 +95,8 @@ HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke,
                                 int drum);
 /// A live target: the tip goes there, smoothly, and stays until the next one or the next stroke.
+/// Targets that come within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows it one
+/// period late and comes to rest when it ends. A stroke less than 0.6 s away is played first.
 HIMC_RT void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x);
 
 /// Brings plans up to time `t` (s, never backwards): drops what is past, plans at least 30 ms (in

@@ -9,6 +9,7 @@
 
 #define APPROACH 1.0   // from wherever the sticks are to the beginning of a take (s)
 #define LONGEST_DELAY 8192 // samples
+#define DEEPEST_TARGET 0.01 // of a live target under the head (m)
 #define LONGEST_RECORDING 1200.0 // (s)
 
 typedef bool (*action)(himc_performance *p, const himc_command *command, himc_error *error);
@@ -265,17 +266,38 @@ static bool do_take(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
+// a tip is sent no further into a head than this
+static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
+{
+    for (int i = 0; i < p->drums; i++) {
+        const himc_place *place = himc_drum_place(p->drum[i].drum);
+        himc_vec3 local = himc_place_from_world(place, x);
+        double under = p->skeleton.mallet_radius - DEEPEST_TARGET - local.z;
+        if (hypot(local.x, local.y) < place->radius && under > 0 && under < 0.3)
+            return himc_vec3_madd(x, under, himc_place_normal(place));
+    }
+    return x;
+}
+
+void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 asked)
+{
+    if (!himc_vec3_finite(asked))
+        return;
+    himc_vec3 x = himc_posture_reachable(&p->posture, hand, asked);
+    bool beyond = himc_vec3_length(himc_vec3_sub(x, asked)) > 1e-3;
+    if (beyond && !p->beyond[hand]) // one line each time a stream leaves what can be reached
+        performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f", himc_hand_name(hand), asked.x,
+                         asked.y, asked.z, x.x, x.y, x.z);
+    p->beyond[hand] = beyond;
+    himc_planner_reach(p->planner, step_time(p), hand, above_heads(p, x));
+    p->replan = true;
+}
+
 static bool do_target(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_hand hand = strcmp(c->atom[0].symbol, "left") == 0 ? HIMC_LEFT : HIMC_RIGHT;
-    himc_vec3 asked = {c->atom[1].number, c->atom[2].number, c->atom[3].number};
-    himc_vec3 x = himc_posture_reachable(&p->posture, hand, asked);
     (void)error;
-    if (himc_vec3_length(himc_vec3_sub(x, asked)) > 1e-3)
-        performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f", himc_hand_name(hand), asked.x,
-                         asked.y, asked.z, x.x, x.y, x.z);
-    himc_planner_reach(p->planner, step_time(p), hand, x);
-    p->replan = true;
+    himc_performance_target(p, hand, himc_vec3_make(c->atom[1].number, c->atom[2].number, c->atom[3].number));
     return true;
 }
 

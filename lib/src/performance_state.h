@@ -96,6 +96,7 @@ struct himc_performance {
     int force_count;
     himc_task_tick from, to;
     bool replan;
+    bool beyond[HIMC_HANDS]; // the last live target was out of reach
 
     himc_recording *recording; // owned; NULL when nothing is recorded
     bool recording_full;

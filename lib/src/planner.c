@@ -44,8 +44,10 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     planner->tempo_count = 1;
     for (int i = 0; i < HIMC_DRUMS; i++)
         planner->place[i] = (himc_place){{0.75, 0, 0.85}, 0, 0.2921};
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_hand_place(&planner->hand[hand].plan, 0, config->rest[hand]);
+        planner->hand[hand].stream.time = -HUGE_VAL;
+    }
     return planner;
 }
 

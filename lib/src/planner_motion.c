@@ -258,15 +258,6 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     return touch;
 }
 
-void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
-{
-    if (!isfinite(t) || !himc_vec3_finite(x))
-        return;
-    planner_cut(planner, hand, t);
-    himc_hand_reach(&planner->hand[hand].plan, x);
-    planner_extend(planner, hand, t + PLANNER_HORIZON);
-}
-
 /// Until when a touch is the current one, given the next.
 static double window_end(const planner_touch *touch, double next)
 {

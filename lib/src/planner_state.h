@@ -31,6 +31,14 @@ typedef struct planner_touch {
     himc_goal goal;
 } planner_touch;
 
+/// Live targets as they come in.
+typedef struct planner_stream {
+    double time;   ///< of the last one (s)
+    double period; ///< between them (s), 0 before the second
+    bool moving;   ///< `v` has been seen
+    himc_vec3 x, v;
+} planner_stream;
+
 typedef struct planner_hand {
     planner_stroke *list; ///< owned, sorted by beat
     int count, room;
@@ -40,6 +48,7 @@ typedef struct planner_hand {
     int hits; ///< that wait, sorted by time
     planner_touch touch[PLANNER_TOUCHES];
     int touches; ///< planned, and the last one past
+    planner_stream stream;
     himc_hand_plan plan;
 } planner_hand;
 
