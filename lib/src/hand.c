@@ -164,6 +164,7 @@ double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
     double T = 0.7 * himc_gesture_time(&goal->gesture, c.at.h);
     if (c.at.h >= 0.6 * goal->gesture.height)
         T = fmin(T, RAISED_TIME);
+    T = fmax(T, SLOWEST_FALL * c.at.h / goal->gesture.speed); // a soft stroke does not fall fast
     return fmax(fmax(T, RAISED_TIME), 1.4 * move_time(distance_to(&c, goal), QUICK_MOVE));
 }
 
