@@ -27,6 +27,7 @@
 #include "himc/score.h"
 #include "himc/take.h"
 #include "himc/recording.h"
+#include "himc/units.h"
 #include "himc/body.h"
 #include "himc/planner.h"
 #include "himc/track.h"

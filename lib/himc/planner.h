@@ -9,6 +9,7 @@
 
 #include "himc/quintic.h"
 #include "himc/score.h"
+#include "himc/units.h"
 
 /// Where a drumhead stands.
 typedef struct himc_place {
@@ -52,6 +53,17 @@ void himc_planner_free(himc_planner *planner);
 /// Drum `index` (0 .. HIMC_DRUMS-1) stands there from now on; strokes planned but not begun go to
 /// the new place.
 HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_place *place);
+
+#define HIMC_UNITS 256
+
+/// Motion units to be played in place of the built-in strokes of their nuance and hand (copied, added
+/// to those there are). False, and nothing added, if there are more than HIMC_UNITS.
+bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
+                            himc_error *error);
+/// Back to the built-in strokes.
+HIMC_RT void himc_planner_clear_units(himc_planner *planner);
+/// Units of this grip (himc_grip) are preferred.
+HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
 
 /// Adds a stroke of the score at its beat, for drum `index`; may allocate. Strokes may come in any
 /// order; two strokes of one hand closer than 40 ms are refused.

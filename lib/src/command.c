@@ -37,6 +37,8 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_SCORE, HIMC_PERFORMER, "score", "FILE",
      "loads a score; while one plays, the new one follows it"},
     {HIMC_COMMAND_TAKE, HIMC_PERFORMER, "take", "FILE", "loads a motion capture and tracks it"},
+    {HIMC_COMMAND_UNITS, HIMC_PERFORMER, "units", "clear | FILE NUANCE [SPOT]",
+     "cuts strokes out of a take and plays them instead of the built-in ones"},
     {HIMC_COMMAND_TARGET, HIMC_PERFORMER, "target", "HAND X Y Z",
      "moves a drumstick's tip to a place; many of them, it follows"},
     {HIMC_COMMAND_MODE, HIMC_PERFORMER, "mode", "himc|id|ik", "chooses the control pipeline"},

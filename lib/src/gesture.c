@@ -50,6 +50,24 @@ himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
     return g;
 }
 
+himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance, double dynamic)
+{
+    himc_gesture g = himc_gesture_of(nuance, dynamic);
+    double shape = unit->speed * unit->down / unit->height;
+    // between a softer fall in the same time and one as long as its height asks for
+    g.down = unit->down * sqrt(fmin(unit->speed / g.speed, 1));
+    g.height = fmax(fmin(g.speed * g.down / shape, HIGHEST), LOWEST);
+    g.down = shape * g.height / g.speed;
+    g.dwell = 0;
+    g.lift = unit->lift;
+    g.depth = unit->depth * fmin(g.height / unit->height, 1.2);
+    g.arc = fmin(fmax(-unit->start, 0), 4);
+    g.rebound = unit->rebound;
+    g.pull = unit->pull;
+    g.unit = unit;
+    return g;
+}
+
 double himc_gesture_time(const himc_gesture *gesture, double height)
 {
     double climb = fmin(fmax(1 - height / gesture->height, 0.3), 1);

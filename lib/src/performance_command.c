@@ -404,10 +404,42 @@ static bool do_coupling(himc_performance *p, const himc_command *c, himc_error *
     return true;
 }
 
+static bool add_units(himc_performance *p, himc_take *take, const himc_command *c, himc_error *error)
+{
+    static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};
+    static const char *const spots[] = {"center", "normal", "rim"};
+    himc_unit units[HIMC_UNITS];
+    int count = himc_units_cut(take, &p->take_options, units, HIMC_UNITS, error);
+    for (int i = 0; i < count; i++) {
+        units[i].nuance = (himc_nuance)word_index(c->atom[1].symbol, nuances, HIMC_NUANCES);
+        units[i].grip = p->grip;
+        if (c->count > 2 && c->atom[2].kind == HIMC_ATOM_SYMBOL)
+            units[i].spot = (himc_spot)word_index(c->atom[2].symbol, spots, 3);
+    }
+    if (count < 0 || !himc_planner_add_units(p->planner, units, count, error))
+        return false;
+    performance_note(p, "%s: %d motion units of %s", c->atom[0].symbol, count, c->atom[1].symbol);
+    return true;
+}
+
+static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    p->replan = true;
+    if (c->count == 1) {
+        himc_planner_clear_units(p->planner);
+        return true;
+    }
+    himc_take *take = himc_take_load(c->atom[0].symbol, &p->take_options, error);
+    bool added = take && (add_units(p, take, c, error) || himc_error_prefix(error, "%s", c->atom[0].symbol));
+    himc_take_free(take);
+    return added;
+}
+
 static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     p->grip = strcmp(c->atom[0].symbol, "french") == 0 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
+    himc_planner_set_grip(p->planner, p->grip);
     return true;
 }
 
@@ -466,6 +498,8 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     himc_planner_clear(p->planner);
     himc_planner_loop(p->planner, step_time(p), false);
     p->grip = HIMC_GRIP_GERMAN;
+    himc_planner_set_grip(p->planner, p->grip);
+    himc_planner_clear_units(p->planner);
     p->controller.mode = HIMC_PIPELINE_HIMC;
     p->controller.law = HIMC_LAW_COMPUTED_TORQUE;
     p->controller.solver = HIMC_SOLVER_DLS;
@@ -497,7 +531,7 @@ static const action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_STROKE] = do_stroke,       [HIMC_COMMAND_HIT] = do_hit,
     [HIMC_COMMAND_TEMPO] = do_tempo,         [HIMC_COMMAND_CLEAR] = do_clear,
     [HIMC_COMMAND_GRIP] = do_grip,           [HIMC_COMMAND_LOOP] = do_loop,
-    [HIMC_COMMAND_RECORD] = do_record,
+    [HIMC_COMMAND_RECORD] = do_record,       [HIMC_COMMAND_UNITS] = do_units,
     [HIMC_COMMAND_PLAY] = do_play,           [HIMC_COMMAND_STOP] = do_stop,
     [HIMC_COMMAND_SEEK] = do_seek,           [HIMC_COMMAND_SCORE] = do_score,
     [HIMC_COMMAND_TAKE] = do_take,           [HIMC_COMMAND_TARGET] = do_target,
@@ -514,7 +548,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     action act = actions[command->id];
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    bool file = command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE ||
+    bool file = command->id == HIMC_COMMAND_UNITS || command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE ||
                 command->id == HIMC_COMMAND_RECORD;
     if (delay <= 0 || file)
         return act(p, command, error);

@@ -196,6 +196,28 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     return true;
 }
 
+bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
+                            himc_error *error)
+{
+    if (planner->unit_count + count > HIMC_UNITS)
+        return himc_error_set(error, "units: %d more, allowed %d in all", count, HIMC_UNITS);
+    memcpy(planner->unit + planner->unit_count, units, (size_t)count * sizeof *units);
+    planner->unit_count += count;
+    return true;
+}
+
+void himc_planner_clear_units(himc_planner *planner)
+{
+    // what is planned may still look at the array, which stays where it is
+    planner->unit_count = 0;
+    planner_replan(planner, planner->now + PLANNER_AHEAD);
+}
+
+void himc_planner_set_grip(himc_planner *planner, int grip)
+{
+    planner->grip = grip;
+}
+
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                                double beat, himc_error *error)
 {

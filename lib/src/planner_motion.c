@@ -20,6 +20,33 @@ static double touch_end(const planner_touch *touch)
     return touch->goal.time + HIMC_CONTACT_TIME;
 }
 
+/// The unit that fits best: of that nuance and hand, if possible of that grip and spot, and near in
+/// speed.
+static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke *stroke)
+{
+    double speed = himc_gesture_of(stroke->nuance, stroke->dynamic).speed, least = HUGE_VAL;
+    const himc_unit *best = NULL;
+    for (int i = 0; i < planner->unit_count; i++) {
+        const himc_unit *unit = &planner->unit[i];
+        if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
+            continue;
+        bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
+        double away = fabs(log(unit->speed / speed)) + 10 * elsewhere + 20 * (unit->grip != planner->grip);
+        if (away < least) {
+            least = away;
+            best = unit;
+        }
+    }
+    return best;
+}
+
+static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *stroke)
+{
+    const himc_unit *unit = planner->unit_count > 0 ? find_unit(planner, stroke) : NULL;
+    return unit ? himc_gesture_from(unit, stroke->nuance, stroke->dynamic)
+                : himc_gesture_of(stroke->nuance, stroke->dynamic);
+}
+
 himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
     const himc_place *place = &planner->place[drum];
@@ -37,7 +64,7 @@ himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int dru
     goal.spot = himc_vec3_madd(himc_place_to_world(place, x, y), planner->config.mallet_radius,
                                goal.normal);
     goal.back = himc_vec3_scale(himc_place_away(place), -1);
-    goal.gesture = himc_gesture_of(stroke->nuance, stroke->dynamic);
+    goal.gesture = gesture_of(planner, stroke);
     return goal;
 }
 

@@ -73,6 +73,8 @@ struct himc_planner {
     bool loop;
     int rounds; ///< without loop: the last one to be played
     double now;    ///< of the last advance (s)
+    himc_unit unit[HIMC_UNITS];
+    int unit_count, grip;
     himc_planner_note note[PLANNER_NOTES];
     int note_first, note_count, note_lost;
     unsigned said; ///< kinds
