@@ -107,6 +107,9 @@ typedef struct himc_performance_stats {
     double stroke_height;   ///< mean over strokes, apex to contact (m)
     double tip_rms_percent; ///< tip_rms / stroke_height (%)
     double peak_force;      ///< (N)
+    int hits;               ///< asked for
+    double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)
+    double longest_latency; ///< of all hits (s)
     long recoveries;        ///< times a non-finite state was met and the last good one restored
 } himc_performance_stats;
 

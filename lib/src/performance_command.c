@@ -111,7 +111,12 @@ static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error
     int drum;
     if (!performance_ensure_drum(p, c->stroke.drum, &drum, error))
         return false;
-    himc_planner_hit(p->planner, step_time(p), &c->stroke, drum);
+    double now = step_time(p), at = himc_planner_hit(p->planner, now, &c->stroke, drum);
+    if (isfinite(at)) {
+        p->hit_latency = at - now;
+        p->longest_latency = fmax(p->longest_latency, p->hit_latency);
+        p->hits++;
+    }
     p->replan = true;
     return true;
 }
@@ -508,7 +513,8 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     p->one_way = p->playing = false;
     p->square_sum = p->height_sum = p->peak_force = 0;
     p->square_count = p->height_count = p->recoveries = 0;
-    p->strokes = p->played = 0;
+    p->strokes = p->played = p->hits = 0;
+    p->hit_latency = p->longest_latency = 0;
     performance_reset_clock(p);
     return true;
 }

@@ -72,6 +72,9 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
                                 .played = p->played,
                                 .missed = p->strokes - p->played,
                                 .peak_force = p->peak_force,
+                                 .hits = p->hits,
+                                 .hit_latency = p->hit_latency,
+                                 .longest_latency = p->longest_latency,
                                 .recoveries = p->recoveries};
     s.tip_rms = p->square_count ? sqrt(p->square_sum / (double)p->square_count) : 0;
     s.stroke_height = p->height_count ? p->height_sum / (double)p->height_count : 0;
@@ -160,6 +163,9 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
              p->config.sample_rate);
     line(user, text);
     describe_drums(p, line, user);
+    snprintf(text, sizeof text, "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",
+             p->grip == HIMC_GRIP_FRENCH ? "french" : "german", s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
+    line(user, text);
     snprintf(text, sizeof text,
              "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, peak force %.1f N, recoveries %ld",
              p->playing ? "playing" : "stopped", s.seconds, s.strokes, s.played, 1e3 * s.tip_rms, s.peak_force,

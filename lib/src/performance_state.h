@@ -114,7 +114,8 @@ struct himc_performance {
     // what is measured
     double square_sum, height_sum;
     long square_count, height_count;
-    int strokes, played;
+    int strokes, played, hits;
+    double hit_latency, longest_latency; // from a hit's command to its touch, of the last and of all (s)
     double peak_force;
     long recoveries;
 };

@@ -89,7 +89,7 @@ const planner_stroke *planner_next(const himc_planner *planner, const planner_ha
     long at = (long)h->next + ahead;
     *round = h->round + (int)(at / h->count);
     *index = (int)(at % h->count);
-    if (*round > h->round && !planner->loop && *round > planner->rounds)
+    if (!planner->loop && *round > planner->rounds)
         return NULL;
     double begun = *round == 0 ? 0 : *round * planner_turn(planner);
     *t = begun + planner_time_of(planner, h->list[*index].stroke.beat);
@@ -102,6 +102,11 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
         return;
     cut_both(planner, t);
     planner->rounds = on || !planner->playing ? 0 : round_at(planner, t);
+    // a stroke of the next round that can no longer be taken back brings that round with it
+    for (int hand = 0; hand < HIMC_HANDS && !on; hand++)
+        for (int i = 0; i < planner->hand[hand].touches; i++)
+            if (planner->hand[hand].touch[i].round > planner->rounds)
+                planner->rounds = planner->hand[hand].touch[i].round;
     planner->loop = on;
     planner_replan(planner, t);
 }
