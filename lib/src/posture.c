@@ -7,7 +7,7 @@
 /// wrist seen in players; everything is a smooth function of the tip, so rates come from differences of the map.
 ///
 /// Palms down (german) the hand is lifted by the wrist's flexion; thumbs up (french) forearm, hand and stick are rolled
-/// about their lengths, the hand rises less and the fingers turn the stick more. The trunk turns and leans towards
+/// about their lengths, the hand follows the forearm and the fingers turn the stick more. The trunk turns and leans towards
 /// where the sticks shall strike, not after each motion of the tips: a player's trunk is slow.
 #include "himc/posture.h"
 
@@ -16,7 +16,8 @@
 #define HAND_RISE 1.3         // the hand's
 #define HAND_MOST 0.6         // (rad)
 #define HAND_LEVEL (-0.25)    // the hand's elevation at impact: fingers a little down (rad)
-#define FRENCH_HAND_RISE 0.35 // with thumbs up
+#define FRENCH_STICK_RISE 3.5 // with thumbs up: the stick's
+#define FRENCH_HAND_RISE 1.35 // and the hand's
 #define FRENCH_ROLL 1.25      // of forearm, hand and stick, thumbs up (rad)
 #define ELBOW_OUT 0.35        // turn of the elbow out of the vertical plane (rad)
 #define FRENCH_ELBOW_OUT 0.15 // (rad)
@@ -154,7 +155,8 @@ static void place_hand(const himc_posture *posture, himc_hand hand, himc_vec3 ti
     double azimuth = atan2(dy, dx), height = tip.z - posture->level;
     double hand_rise = between(HAND_RISE, FRENCH_HAND_RISE, a->french);
     a->tip = tip;
-    a->stick = elevated(azimuth, rise(height, STICK_RISE, STICK_MOST));
+    double stick_rise = between(STICK_RISE, FRENCH_STICK_RISE, a->french);
+    a->stick = elevated(azimuth, rise(height, stick_rise, STICK_MOST));
     a->hand = elevated(azimuth, HAND_LEVEL + rise(height, hand_rise, HAND_MOST));
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     a->grip = himc_vec3_madd(tip, -himc_vec3_length(posture->skeleton.tip), a->stick);
