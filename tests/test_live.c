@@ -17,7 +17,8 @@ static void test_hit_touches_within_a_quarter_second_from_rest_and_120_ms_raised
     session_play(p, 1, &h);
     TEST_ASSERT_EQUAL_INT(1, h.strikes);
     TEST_ASSERT_TRUE(h.strike[0].time - 0.6 <= 0.25);
-    TEST_ASSERT_DOUBLE_WITHIN(0.005, h.strike[0].time - 0.6, himc_performance_measure(p).hit_latency);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005, h.strike[0].time - 0.6,
+                              himc_performance_measure(p).hit_latency);
     session_do(p, "target right 0.53 -0.015 1.22");
     session_play(p, 1, NULL);
     session_do(p, "hit right legato mf");
@@ -71,7 +72,8 @@ static void test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_en
         session_do(p, "rate task 1000");
         himc_performance_on_motion(p, keep_height, f);
         for (int i = 0; i < 3 * rates[k]; i++) {
-            himc_performance_target(p, HIMC_RIGHT, himc_vec3_make(0.5, -0.1, SWAY((double)i / rates[k])));
+            himc_performance_target(p, HIMC_RIGHT,
+                                    himc_vec3_make(0.5, -0.1, SWAY((double)i / rates[k])));
             himc_performance_process(p, 48000 / rates[k], NULL);
         }
         double lag = lag_of(f, 3, &rms);
@@ -111,7 +113,9 @@ static himc_performance *with_timpani(void)
         const char *name;
         int inches;
         double x, y;
-    } drum[] = {{"low", 32, 0.251, 0.843}, {"second", 29, 0.832, 0.287}, {"third", 26, 0.763, -0.439},
+    } drum[] = {{"low", 32, 0.251, 0.843},
+                {"second", 29, 0.832, 0.287},
+                {"third", 26, 0.763, -0.439},
                 {"high", 23, 0.251, -0.843}};
     himc_performance *p = session_new();
     for (int i = 0; i < 4; i++) {
@@ -130,7 +134,8 @@ static void test_four_timpani_are_reached_by_turning(void)
     himc_performance *p = with_timpani();
     heard h = {0};
     for (int i = 0; i < 18; i++)
-        session_do(p, "stroke %g %s legato mf normal %s", 3 + 0.4 * i, i & 1 ? "right" : "left", names[i / 2 % 6]);
+        session_do(p, "stroke %g %s legato mf normal %s", 3 + 0.4 * i, i & 1 ? "right" : "left",
+                   names[i / 2 % 6]);
     session_do(p, "play");
     session_play(p, 11, &h);
     himc_performance_stats s = himc_performance_measure(p);
@@ -201,8 +206,10 @@ static void keep_range(void *user, const himc_motion_row *row)
     range *r = user;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 v = row->joint[j];
-        r->low[j] = himc_vec3_make(fmin(r->low[j].x, v.x), fmin(r->low[j].y, v.y), fmin(r->low[j].z, v.z));
-        r->high[j] = himc_vec3_make(fmax(r->high[j].x, v.x), fmax(r->high[j].y, v.y), fmax(r->high[j].z, v.z));
+        r->low[j] =
+            himc_vec3_make(fmin(r->low[j].x, v.x), fmin(r->low[j].y, v.y), fmin(r->low[j].z, v.z));
+        r->high[j] = himc_vec3_make(fmax(r->high[j].x, v.x), fmax(r->high[j].y, v.y),
+                                    fmax(r->high[j].z, v.z));
     }
 }
 
@@ -236,11 +243,13 @@ static range play_with_grip(const char *grip)
 static void test_french_grip_plays_with_the_fingers_german_with_the_wrist(void)
 {
     range german = play_with_grip("german"), french = play_with_grip("french");
-    double wrist = span(&german, 2) / span(&french, 2), fingers = span(&french, 3) / span(&german, 3);
+    double wrist = span(&german, 2) / span(&french, 2),
+           fingers = span(&french, 3) / span(&german, 3);
     int elbow = himc_arm_joint(HIMC_RIGHT, 1);
     double roll = fabs(french.high[elbow].z - german.high[elbow].z);
-    printf("wrist %.2f times as much in german, fingers %.2f times in french, forearm turned %.0f degrees\n", wrist,
-           fingers, roll * 180 / HIMC_PI);
+    printf(
+        "wrist %.2f times as much in german, fingers %.2f times in french, forearm turned %.0f degrees\n",
+        wrist, fingers, roll * 180 / HIMC_PI);
     TEST_ASSERT_TRUE(fingers > 1.2);
     TEST_ASSERT_TRUE(fingers * wrist > 1.3);
     TEST_ASSERT_TRUE(roll > 0.4);
@@ -335,7 +344,8 @@ static void test_units_of_a_real_stroke_are_played_on_the_beat(void)
 {
     const char *shared = getenv("HIMC_SHARED");
     char path[400];
-    snprintf(path, sizeof path, "%s/mocap/drumstroke_pearl_240hz/stroke.trc", shared ? shared : "../shared");
+    snprintf(path, sizeof path, "%s/mocap/drumstroke_pearl_240hz/stroke.trc",
+             shared ? shared : "../shared");
     if (access(path, R_OK) != 0)
         TEST_IGNORE_MESSAGE("no captures here");
     himc_performance *p = with_kettle();

@@ -71,7 +71,8 @@ static void make_atoms(void)
         while ((word = strsep(&rest, " []"))) {
             if (islower((unsigned char)word[0]) && !strchr(word, '|'))
                 context = word;
-            const himc_argument *a = isupper((unsigned char)word[0]) ? himc_argument_find(word, context) : NULL;
+            const himc_argument *a =
+                isupper((unsigned char)word[0]) ? himc_argument_find(word, context) : NULL;
             if (!a)
                 continue;
             snprintf(key, sizeof key, ";%s/%s;", a->name, a->context ? a->context : "");
@@ -79,7 +80,8 @@ static void make_atoms(void)
                 continue;
             strncat(seen, key, sizeof seen - strlen(seen) - 1);
             himc_argument_describe(a, allowed, sizeof allowed);
-            snprintf(line, sizeof line, "| %s | %s | %s |\n", a->name, a->context ? a->context : "", allowed);
+            snprintf(line, sizeof line, "| %s | %s | %s |\n", a->name, a->context ? a->context : "",
+                     allowed);
             say(line);
         }
     }

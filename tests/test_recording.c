@@ -1,9 +1,9 @@
 /// test_recording.c: what is played, written as a take, plays back to the same strokes.
 #include "session.h"
 
-#define PIECE                                                                                      \
-    "tempo 100; drum kettle; stroke 2 right legato mf; stroke 3 left tenuto f; "                   \
-    "stroke 4 right accent ff; stroke 5 left vertical-accent mf; stroke 6 right staccato f; "      \
+#define PIECE                                                                                 \
+    "tempo 100; drum kettle; stroke 2 right legato mf; stroke 3 left tenuto f; "              \
+    "stroke 4 right accent ff; stroke 5 left vertical-accent mf; stroke 6 right staccato f; " \
     "stroke 7 left legato mf; stroke 8 right legato f;"
 
 #define STROKES 7
@@ -98,7 +98,8 @@ static void expect_same_points(const himc_take *take, const char *suffix)
         int other = himc_take_find(back, himc_take_point_name(take, i));
         TEST_ASSERT_TRUE_MESSAGE(other >= 0, himc_take_point_name(take, i));
         for (int f = 0; f < himc_take_frames(take); f += 7) {
-            himc_vec3 d = himc_vec3_sub(himc_take_point(take, f, i), himc_take_point(back, f, other));
+            himc_vec3 d =
+                himc_vec3_sub(himc_take_point(take, f, i), himc_take_point(back, f, other));
             TEST_ASSERT_TRUE_MESSAGE(himc_vec3_length(d) < 1e-5, suffix);
         }
     }

@@ -18,8 +18,8 @@ static void test_random_strokes_land_within_2_ms_and_on_their_spot(void)
     himc_performance *p = with_kettle();
     heard h = {0};
     for (int i = 0; i < 40; i++, beat += 0.15 + 0.25 * chance(&seed))
-        session_do(p, "stroke %.5f %s %s %.3f", beat, i & 1 ? "right" : "left", nuances[choose(&seed, 5)],
-                   chance(&seed));
+        session_do(p, "stroke %.5f %s %s %.3f", beat, i & 1 ? "right" : "left",
+                   nuances[choose(&seed, 5)], chance(&seed));
     session_do(p, "play");
     session_play(p, beat + 0.5, &h);
     TEST_ASSERT_EQUAL_INT(40, h.strikes);
@@ -152,7 +152,8 @@ static void test_scores_that_are_queued_follow_each_other_at_their_own_tempi(voi
 {
     himc_performance *p = with_kettle();
     heard h = {0};
-    load(p, "tempo 120; stroke 1 left legato mf; stroke 2 right legato mf; stroke 3 left legato mf;");
+    load(p,
+         "tempo 120; stroke 1 left legato mf; stroke 2 right legato mf; stroke 3 left legato mf;");
     session_do(p, "play");
     session_play(p, 0.5, &h);
     load(p, "tempo 60; stroke 0 right accent f; stroke 1 left accent f;");
@@ -195,7 +196,8 @@ static double apex_before(const char *nuance, double gap, const char *before)
         himc_command c;
         char text[64];
         snprintf(text, sizeof text, "stroke %g right %s mf", 2 + i * gap, strokes[i]);
-        TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_PERFORMER, text, &error), error.text);
+        TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_PERFORMER, text, &error),
+                                 error.text);
         TEST_ASSERT_TRUE(himc_planner_add(planner, &c.stroke, 0, &error));
     }
     himc_planner_play(planner, 0);
@@ -219,7 +221,8 @@ static void test_accent_is_prepared_higher_than_legato_in_every_context(void)
 }
 
 // largest jump of the tips' acceleration between task ticks, as a share of its range
-static void watch_acceleration(himc_planner *planner, double t, himc_vec3 last[HIMC_HANDS], bool touching, double *jump)
+static void watch_acceleration(himc_planner *planner, double t, himc_vec3 last[HIMC_HANDS],
+                               bool touching, double *jump)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_vec3 a = himc_planner_target(planner, (himc_hand)hand, t).a;
@@ -237,8 +240,11 @@ static void test_acceleration_has_no_jumps_at_any_join_even_when_the_tempo_chang
     himc_vec3 last[HIMC_HANDS] = {{0, 0, 0}};
     double jump = 0, range = 0, tick = 4e-6;
     for (int i = 0; i < 60; i++) {
-        himc_stroke s = {.beat = 2 + 0.5 * i + 0.1 * chance(&seed), .hand = (himc_hand)(i & 1),
-                         .nuance = (himc_nuance)choose(&seed, 5), .dynamic = chance(&seed), .spot = HIMC_SPOT_NORMAL};
+        himc_stroke s = {.beat = 2 + 0.5 * i + 0.1 * chance(&seed),
+                         .hand = (himc_hand)(i & 1),
+                         .nuance = (himc_nuance)choose(&seed, 5),
+                         .dynamic = chance(&seed),
+                         .spot = HIMC_SPOT_NORMAL};
         TEST_ASSERT_TRUE_MESSAGE(himc_planner_add(planner, &s, 0, &error), error.text);
     }
     himc_planner_play(planner, 0);

@@ -12,24 +12,24 @@
 typedef struct himc_unit {
     himc_nuance nuance;
     himc_hand hand;
-    himc_spot spot;    ///< HIMC_SPOT_XY: any
-    int grip;          ///< himc_grip
-    double height;     ///< of the apex over the touch (m)
-    double speed;      ///< of impact (m/s)
-    double down;       ///< time of the fall (s)
-    double lift;       ///< time of the rise before it (s)
-    double depth;      ///< largest distance from the place of the touch along the floor (m)
-    double rebound;    ///< height of the rebound, in heights
-    double pull;       ///< its time, in rebound heights over rebound speed
-    double start;      ///< acceleration at the apex (heights/down^2)
-    double bend[3];    ///< the fall's own shape (unit.c)
+    himc_spot spot; ///< HIMC_SPOT_XY: any
+    int grip;       ///< himc_grip
+    double height;  ///< of the apex over the touch (m)
+    double speed;   ///< of impact (m/s)
+    double down;    ///< time of the fall (s)
+    double lift;    ///< time of the rise before it (s)
+    double depth;   ///< largest distance from the place of the touch along the floor (m)
+    double rebound; ///< height of the rebound, in heights
+    double pull;    ///< its time, in rebound heights over rebound speed
+    double start;   ///< acceleration at the apex (heights/down^2)
+    double bend[3]; ///< the fall's own shape (unit.c)
 } himc_unit;
 
 /// Cuts the strokes of both hands out of a take into `units`, at most `capacity`; nuance, spot and
 /// grip are for the caller to say. Strokes that are not one clear fall are left out. Returns how
 /// many, or -1 with the reason: no tips, no strokes.
-int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit *units, int capacity,
-                   himc_error *error);
+int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit *units,
+                   int capacity, himc_error *error);
 
 /// Height (heights), speed and acceleration (by the share of the fall) at the share 0 .. 1 of the
 /// fall, if it is to land with the speed `landing` (heights per fall).

@@ -1,5 +1,6 @@
-/// performance_state.h: what a performance holds, shared by the four files that are its rooms: performance.c (the step),
-/// performance_touch.c (sticks on heads), performance_command.c (what is asked), performance_report.c (what is told).
+/// performance_state.h: what a performance holds, shared by the five files that are its rooms: performance.c (the step),
+/// performance_touch.c (sticks on heads), performance_command.c and performance_play.c (what is asked),
+/// performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -140,8 +141,19 @@ void performance_release(himc_performance *p, double t);
 void performance_forget_touch(himc_performance *p);
 
 // performance_command.c
+/// Carries out a command now; false, and nothing changed, with the reason.
+typedef bool performance_action(himc_performance *p, const himc_command *command, himc_error *error);
+/// Which of the words it is; the parser has checked that it is one.
+int performance_word(const char *word, const char *const *words, int count);
 void performance_run_due_commands(himc_performance *p);
 bool performance_ensure_drum(himc_performance *p, const char *name, int *index, himc_error *error);
+
+// performance_play.c
+performance_action performance_do_loop, performance_do_stroke, performance_do_hit,
+    performance_do_tempo, performance_do_clear, performance_do_play, performance_do_stop,
+    performance_do_seek, performance_do_score, performance_do_take, performance_do_target,
+    performance_do_units;
+void performance_drop_track(himc_performance *p);
 
 // performance_report.c
 void performance_emit(himc_performance *p, const himc_event *event);

@@ -29,10 +29,10 @@ struct himc_recording {
 };
 
 static const char *const names[POINTS] = {
-    "Hips",        "Spine",         "Neck",         "Head",         "LeftArm",   "RightArm",
-    "LeftForeArm", "RightForeArm",  "LeftHand",     "RightHand",    "LeftStick", "RightStick",
-    "LeftUpLeg",   "RightUpLeg",    "LeftLeg",      "RightLeg",     "LeftFoot",  "RightFoot",
-    "LeftToeBase", "RightToeBase",  "LeftStick_end", "RightStick_end"};
+    "Hips",        "Spine",        "Neck",          "Head",          "LeftArm",   "RightArm",
+    "LeftForeArm", "RightForeArm", "LeftHand",      "RightHand",     "LeftStick", "RightStick",
+    "LeftUpLeg",   "RightUpLeg",   "LeftLeg",       "RightLeg",      "LeftFoot",  "RightFoot",
+    "LeftToeBase", "RightToeBase", "LeftStick_end", "RightStick_end"};
 
 // opened as if to append: what is there stays until there is something to write
 static bool check_path(const char *path, himc_error *error)
@@ -119,8 +119,7 @@ static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton
     himc_pose pose;
     himc_body_state state;
     for (int j = 0; j < HIMC_JOINTS; j++)
-        pose.joint[j] =
-            himc_quat_unit((himc_quat){f->q[j][0], f->q[j][1], f->q[j][2], f->q[j][3]});
+        pose.joint[j] = himc_quat_unit((himc_quat){f->q[j][0], f->q[j][1], f->q[j][2], f->q[j][3]});
     himc_pose_to_state(skeleton, &pose, NULL, &state);
     himc_quat *rotation = take->rotations + (size_t)index * POINTS;
     for (int i = 0; i < POINTS; i++)

@@ -179,7 +179,8 @@ static writer writer_of(const char *path)
 
 bool himc_take_is_writable(const char *path, himc_error *error)
 {
-    return writer_of(path) || himc_error_set(error, "%s: not a take by its name, allowed .bvh .c3d .trc", path);
+    return writer_of(path) ||
+           himc_error_set(error, "%s: not a take by its name, allowed .bvh .c3d .trc", path);
 }
 
 bool himc_take_save(const himc_take *take, const char *path, himc_error *error)

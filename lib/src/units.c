@@ -128,7 +128,8 @@ static bool fit_fall(const cut *c, int first, himc_unit *unit)
 static void measure_rebound(const cut *c, himc_unit *unit)
 {
     int first = c->strike->frame, top = first;
-    for (int i = first; i < c->frames && i / c->rate < fmin(c->strike->time + LONGEST_REBOUND, c->after); i++)
+    for (int i = first;
+         i < c->frames && i / c->rate < fmin(c->strike->time + LONGEST_REBOUND, c->after); i++)
         if (height(c, i) > height(c, top))
             top = i;
     double high = height(c, top), time = top / c->rate - c->strike->time;
@@ -145,8 +146,8 @@ static void measure_lift(const cut *c, int top, himc_unit *unit)
     unit->lift = fmin(fmax((top - low) / c->rate, 0.15), 0.4);
     unit->depth = 0;
     for (int i = low; i < c->strike->frame; i++)
-        unit->depth = fmax(unit->depth,
-                           hypot(c->x[i].x - c->strike->x.x, c->x[i].y - c->strike->x.y));
+        unit->depth =
+            fmax(unit->depth, hypot(c->x[i].x - c->strike->x.x, c->x[i].y - c->strike->x.y));
     unit->depth = fmin(unit->depth, 0.25);
 }
 
@@ -178,8 +179,8 @@ static double touch_of_hand(const himc_take_strike *strikes, int count, int i, i
     return step < 0 ? -HUGE_VAL : HUGE_VAL;
 }
 
-int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit *units, int capacity,
-                   himc_error *error)
+int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit *units,
+                   int capacity, himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))

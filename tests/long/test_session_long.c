@@ -41,8 +41,8 @@ static void expect_on_time(const figures *f)
 {
     int good = f->found - f->off;
     double f1 = 2.0 * good / (f->asked + f->found + f->unasked);
-    printf("%d strokes: mean %.3f ms, 99 %% %.3f ms, worst %.3f ms, F1 %.4f, place %.2f mm\n", f->asked, 1e3 * f->mean,
-           1e3 * f->p99, 1e3 * f->worst, f1, 1e3 * f->place);
+    printf("%d strokes: mean %.3f ms, 99 %% %.3f ms, worst %.3f ms, F1 %.4f, place %.2f mm\n",
+           f->asked, 1e3 * f->mean, 1e3 * f->p99, 1e3 * f->worst, f1, 1e3 * f->place);
     TEST_ASSERT_TRUE(f->mean <= 0.002);
     TEST_ASSERT_TRUE(f->p99 <= 0.005);
     TEST_ASSERT_EQUAL_DOUBLE(1, f1);
@@ -50,7 +50,8 @@ static void expect_on_time(const figures *f)
 }
 
 // a line of `count` strokes, hands in turn, at the performer's present tempo
-static double write_strokes(himc_performance *p, unsigned *seed, int count, double beat, double seconds_per_beat)
+static double write_strokes(himc_performance *p, unsigned *seed, int count, double beat,
+                            double seconds_per_beat)
 {
     static const double steps[] = {0.25, 0.5, 0.5, 1, 1, 1.5, 2};
     for (int i = 0; i < count; i++) {
@@ -58,8 +59,8 @@ static double write_strokes(himc_performance *p, unsigned *seed, int count, doub
         while (step * seconds_per_beat < 0.15) // each hand then has 0.3 s
             step *= 2;
         beat += step;
-        session_do(p, "stroke %.6f %s %s %.3f %s", beat, i & 1 ? "right" : "left", nuances[choose(seed, 5)],
-                   chance(seed), spots[choose(seed, 3)]);
+        session_do(p, "stroke %.6f %s %s %.3f %s", beat, i & 1 ? "right" : "left",
+                   nuances[choose(seed, 5)], chance(seed), spots[choose(seed, 3)]);
     }
     return beat;
 }
@@ -110,8 +111,8 @@ static void test_dynamics_rise_from_ppp_to_fff_for_each_nuance_and_spot(void)
             session_do(p, "tempo 60");
             for (int i = 0; i < COUNT; i++) {
                 asked[i] = (i * 5 % COUNT) / (COUNT - 1.0); // not in order
-                session_do(p, "stroke %g %s %s %.4f %s", 2 + 0.9 * i, i & 1 ? "right" : "left", nuances[n], asked[i],
-                           spots[s]);
+                session_do(p, "stroke %g %s %s %.4f %s", 2 + 0.9 * i, i & 1 ? "right" : "left",
+                           nuances[n], asked[i], spots[s]);
             }
             session_do(p, "play");
             session_play(p, 2 + 0.9 * COUNT + 1, &h);
@@ -127,7 +128,8 @@ static void test_dynamics_rise_from_ppp_to_fff_for_each_nuance_and_spot(void)
             worst_rank = fmin(worst_rank, spearman(force, asked, COUNT));
             heard_free(&h);
         }
-    printf("210 strokes: smallest range %.1f dB, smallest Spearman %.4f\n", worst_range, worst_rank);
+    printf("210 strokes: smallest range %.1f dB, smallest Spearman %.4f\n", worst_range,
+           worst_rank);
     TEST_ASSERT_TRUE(worst_range >= 20);
     TEST_ASSERT_TRUE(worst_rank >= 0.98);
 }
@@ -170,7 +172,8 @@ static void features_of(const watch *w, const himc_strike *s, double f[FEATURES]
     f[3] = (s->x - w->away[back][s->hand]);
 }
 
-static int nearest(double centre[5][FEATURES], const double spread[FEATURES], const double f[FEATURES])
+static int nearest(double centre[5][FEATURES], const double spread[FEATURES],
+                   const double f[FEATURES])
 {
     int best = 0;
     double least = HUGE_VAL;
@@ -230,14 +233,14 @@ static void test_nuances_are_recognised_by_height_speed_rebound_and_depth(void)
     session_do(p, "drum kettle");
     session_do(p, "tempo 60");
     for (int i = 0; i < COUNT; i++)
-        session_do(p, "stroke %g %s %s %.3f", 2 + 0.6 * i, i & 1 ? "right" : "left", nuances[choose(&seed, 5)],
-                   0.5 + 0.25 * chance(&seed));
+        session_do(p, "stroke %g %s %s %.3f", 2 + 0.6 * i, i & 1 ? "right" : "left",
+                   nuances[choose(&seed, 5)], 0.5 + 0.25 * chance(&seed));
     himc_performance_on_motion(p, keep_row, &w);
     session_do(p, "play");
     session_play(p, 2 + 0.6 * COUNT + 1, &h);
     himc_performance_free(p);
     TEST_ASSERT_EQUAL_INT(COUNT, h.strikes);
-    double (*f)[FEATURES] = calloc(COUNT, sizeof *f);
+    double(*f)[FEATURES] = calloc(COUNT, sizeof *f);
     for (int i = 0; i < COUNT; i++)
         features_of(&w, &h.strike[i], f[i]);
     double share = recognised(f, &h);
@@ -263,8 +266,8 @@ static void test_ten_minutes_of_4000_strokes_load_at_once_and_land(void)
     fprintf(file, "tempo 60; drum kettle;\n");
     double beat = 2;
     for (int i = 0; i < COUNT; i++, beat += 0.15 * (0.95 + 0.1 * chance(&seed)))
-        fprintf(file, "stroke %.5f %s %s %.3f %s;\n", beat, i & 1 ? "right" : "left", nuances[choose(&seed, 5)],
-                chance(&seed), spots[choose(&seed, 3)]);
+        fprintf(file, "stroke %.5f %s %s %.3f %s;\n", beat, i & 1 ? "right" : "left",
+                nuances[choose(&seed, 5)], chance(&seed), spots[choose(&seed, 3)]);
     fclose(file);
     himc_performance *p = session_new();
     heard h = {0};
@@ -276,8 +279,8 @@ static void test_ten_minutes_of_4000_strokes_load_at_once_and_land(void)
     session_do(p, "play");
     session_play(p, beat + 4, &h);
     himc_performance_stats s = himc_performance_measure(p);
-    printf("%.0f s, loaded in %.3f s, played %d, tips within %.4f mm, recoveries %ld\n", s.seconds, took, s.played,
-           1e3 * s.tip_rms, s.recoveries);
+    printf("%.0f s, loaded in %.3f s, played %d, tips within %.4f mm, recoveries %ld\n", s.seconds,
+           took, s.played, 1e3 * s.tip_rms, s.recoveries);
     himc_performance_free(p);
     figures f = measure(&h, COUNT);
     expect_on_time(&f);
