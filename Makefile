@@ -98,6 +98,9 @@ check-bench: all $(BENCH)
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
 ##@ Style
+manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
+	@HIMC_WRITE_MANUAL=1 $< >/dev/null && echo "wrote docs/manual.md"
+
 lint: ## formatting, warnings as errors, cppcheck, the one-way order of the rooms
 	@tools/deps.sh tools/deps.txt tools/deps-lint.txt
 	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
@@ -111,7 +114,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
 .PHONY: all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
-        lint format help
+        manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)

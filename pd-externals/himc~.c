@@ -209,6 +209,34 @@ static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t si
     return true;
 }
 
+/* Gives a command that names a file its full name: one that is there for reading, or beside the patch for writing. */
+static bool himc_tilde_file(t_himc *x, himc_command *command, himc_error *error)
+{
+    char path[HIMC_PATH_SIZE];
+    himc_atom atom[HIMC_COMMAND_ATOMS];
+    himc_command found;
+    bool record =
+        command->id == HIMC_COMMAND_RECORD && strcmp(command->atom[0].symbol, "stop") != 0;
+    bool units = command->id == HIMC_COMMAND_UNITS && command->count > 1;
+    bool read = units || command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
+    if (!record && !read)
+        return true;
+    if (read && !himc_tilde_locate(x, command->atom[0].symbol, path, sizeof path, error))
+        return false;
+    if (record)
+        canvas_makefilename(x->x_canvas, command->atom[0].symbol, path, sizeof path);
+    memcpy(atom, command->atom, sizeof atom);
+    atom[0].symbol = path;
+    const char *name = record                              ? "record"
+                       : units                             ? "units"
+                       : command->id == HIMC_COMMAND_SCORE ? "score"
+                                                           : "take";
+    if (!himc_command_parse(&found, HIMC_PERFORMER, name, atom, command->count, error))
+        return false;
+    himc_command_copy(command, &found);
+    return true;
+}
+
 static void himc_tilde_line(void *object, const char *line)
 {
     outlet_words(((t_himc *)object)->x_messages, "info", line);
@@ -223,15 +251,8 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         himc_performance_describe(x->x_performance, himc_tilde_line, x);
         return true;
     }
-    if (command.id == HIMC_COMMAND_SCORE || command.id == HIMC_COMMAND_TAKE) {
-        const char *name = command.id == HIMC_COMMAND_SCORE ? "score" : "take";
-        char path[HIMC_PATH_SIZE];
-        himc_atom file = {HIMC_ATOM_SYMBOL, 0, path};
-        if (!himc_tilde_locate(x, command.atom[0].symbol, path, sizeof path, error))
-            return himc_error_prefix(error, "%s", name);
-        if (!himc_command_parse(&command, HIMC_PERFORMER, name, &file, 1, error))
-            return false;
-    }
+    if (!himc_tilde_file(x, &command, error))
+        return himc_error_prefix(error, "%s", s->s_name);
     /* a command may come before DSP is on, and its drums should be there */
     himc_tilde_resolve(x, false);
     int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));

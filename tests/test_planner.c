@@ -134,7 +134,7 @@ static void test_impact_speeds_are_the_nuances_own_when_there_is_time(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1.39 * forte[nuance],
                                   at(planner, HIMC_LEFT, 3 - 1e-9).v.z);
         himc_planner_advance(planner, 3.9);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -forte[nuance] / 6.5, at(planner, HIMC_LEFT, 4 - 1e-9).v.z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -forte[nuance] / 7.2, at(planner, HIMC_LEFT, 4 - 1e-9).v.z);
     }
 }
 

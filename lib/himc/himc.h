@@ -29,6 +29,8 @@
 #include "himc/command.h"
 #include "himc/score.h"
 #include "himc/take.h"
+#include "himc/recording.h"
+#include "himc/units.h"
 #include "himc/body.h"
 #include "himc/planner.h"
 #include "himc/track.h"

@@ -22,6 +22,7 @@ himc_performance_config himc_performance_default(void);
 typedef struct himc_performance himc_performance;
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error);
+/// A recording under way is written first.
 void himc_performance_free(himc_performance *performance);
 
 /// Takes a drum to play on (its own reference; its rate must be the performance's). Replaces one
@@ -42,6 +43,11 @@ bool himc_performance_command(himc_performance *performance, const himc_command 
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
+
+/// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a
+/// block, with the block's last sample of each coordinate: a stream of blocks of 64 samples comes
+/// at 750 Hz, which is more often than tasks do.
+HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand hand, himc_vec3 tip);
 
 /// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n), each may be NULL;
 /// the drums' sound is in their rings (himc_drum_read).
@@ -110,6 +116,9 @@ typedef struct himc_performance_stats {
     double stroke_height;   ///< mean over strokes, apex to contact (m)
     double tip_rms_percent; ///< tip_rms / stroke_height (%)
     double peak_force;      ///< (N)
+    int hits;               ///< asked for
+    double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)
+    double longest_latency; ///< of all hits (s)
     long recoveries;        ///< times a non-finite state was met and the last good one restored
 } himc_performance_stats;
 

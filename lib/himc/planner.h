@@ -9,14 +9,17 @@
 
 #include "himc/quintic.h"
 #include "himc/score.h"
+#include "himc/units.h"
 
 /// Where a drumhead stands.
 typedef struct himc_place {
     himc_vec3 center; ///< centre of the head at rest (m)
-    double tilt;      ///< about the y axis, positive lifts the far side (rad)
+    double tilt;      ///< positive lifts the side away from the performer (rad)
     double radius;    ///< of the head (m)
 } himc_place;
 
+/// Unit vector in the head's plane away from the performer, who sits at the world's origin.
+HIMC_RT himc_vec3 himc_place_away(const himc_place *place);
 /// Unit normal of the head, up.
 HIMC_RT himc_vec3 himc_place_normal(const himc_place *place);
 /// Point (x, y) of the head (m, x away from the performer) in the world.
@@ -51,6 +54,17 @@ void himc_planner_free(himc_planner *planner);
 /// the new place.
 HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_place *place);
 
+#define HIMC_UNITS 256
+
+/// Motion units to be played in place of the built-in strokes of their nuance and hand (copied, added
+/// to those there are). False, and nothing added, if there are more than HIMC_UNITS.
+bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
+                            himc_error *error);
+/// Back to the built-in strokes.
+HIMC_RT void himc_planner_clear_units(himc_planner *planner);
+/// Units of this grip (himc_grip) are preferred.
+HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
+
 /// Adds a stroke of the score at its beat, for drum `index`; may allocate. Strokes may come in any
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
@@ -71,6 +85,18 @@ HIMC_RT void himc_planner_play(himc_planner *planner, double t);
 HIMC_RT void himc_planner_stop(himc_planner *planner, double t);
 /// Goes to a beat, playing or not.
 HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
+/// Whether the score begins again at the whole beat after its last stroke, until told otherwise. The
+/// tempo map begins again too; a score that is switched off plays to its end.
+HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
+/// The whole beat after the last stroke: where a loop turns round; 0 without strokes.
+HIMC_RT double himc_planner_length(const himc_planner *planner);
+/// What another score must begin at to follow this one: its length, or later if that is past or too
+/// near to prepare for at `t`.
+HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
+/// Appends a tempo map (copied) that holds from `beat` on; what the old one says after that is
+/// dropped.
+bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
+                               double beat, himc_error *error);
 /// At this tempo (1 .. 1000 beats per minute) from `t` (s) to the next change the tempo map has.
 /// The motion under way is bent, C2, never jumped; a stroke less than 80 ms away keeps its time.
 HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
@@ -81,6 +107,8 @@ HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke,
                                 int drum);
 /// A live target: the tip goes there, smoothly, and stays until the next one or the next stroke.
+/// Targets that come within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows it one
+/// period late and comes to rest when it ends. A stroke less than 0.6 s away is played first.
 HIMC_RT void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x);
 
 /// Brings plans up to time `t` (s, never backwards): drops what is past, plans at least 30 ms (in
@@ -99,7 +127,8 @@ HIMC_RT void himc_planner_separated(himc_planner *planner, himc_hand hand, doubl
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 
-/// Beat at time `t`, or a negative number when stopped. Before the first beat it is that beat.
+/// Beat at time `t`, or a negative number when stopped. Before the first beat it is that beat; in a
+/// loop it begins again.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// Time after which nothing is left to play (s): the last stroke and its coming to rest. Infinite
 /// while stopped.

@@ -14,17 +14,44 @@ typedef struct himc_posture_motion {
     himc_vec3 acceleration[HIMC_JOINTS]; ///< its derivative (rad/s^2)
 } himc_posture_motion;
 
-/// What postures are made from; plain constants.
+/// How the sticks are held: palms down and the wrist bends, or thumbs up and the fingers do.
+typedef enum himc_grip { HIMC_GRIP_GERMAN, HIMC_GRIP_FRENCH } himc_grip;
+
+/// How the body bears itself, apart from the arms; it changes slowly.
+typedef enum himc_bearing_part {
+    HIMC_BEARING_TURN,   ///< of the trunk to the left (rad)
+    HIMC_BEARING_LEAN,   ///< and forward (rad)
+    HIMC_BEARING_FRENCH, ///< of the grip: 0 german .. 1 french
+    HIMC_BEARINGS
+} himc_bearing_part;
+
+/// A bearing and how it moves.
+typedef struct himc_bearing {
+    double value[HIMC_BEARINGS];
+    double rate[HIMC_BEARINGS];         ///< (1/s)
+    double acceleration[HIMC_BEARINGS]; ///< (1/s^2)
+} himc_bearing;
+
+/// What postures are made from.
 typedef struct himc_posture {
     himc_skeleton skeleton;
-    himc_pose rest;                 ///< trunk, neck, head and legs as they are held
-    himc_vec3 shoulder[HIMC_HANDS]; ///< in that rest posture (m)
-    himc_quat trunk;                ///< orientation of the trunk in the world
-    double level; ///< height of the tips at impact, where the sticks lie level (m)
+    himc_pose rest;       ///< neck, head and legs as they are held
+    himc_bearing bearing; ///< of trunk and grip: set it as often as it moves
+    double level;         ///< height of the tips at impact, where the sticks lie level (m)
 } himc_posture;
 
 /// A performer on a stool, as timpanists sit: a little forward, looking at the head.
 HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, double level);
+
+/// How to bear oneself to strike at these places (m), one for each hand: turned towards their
+/// middle, leaning forward as far as the farther one asks for. At rest.
+HIMC_RT himc_bearing himc_posture_bearing(const himc_vec3 place[HIMC_HANDS], himc_grip grip);
+
+/// Goes on from `now` for `dt` seconds (up to 0.02), towards where `goal` is: a critically damped
+/// motion of third order, so the acceleration has no jumps. Half a second from one drum to
+/// another.
+HIMC_RT himc_bearing himc_bearing_approach(const himc_bearing *now, const himc_bearing *goal,
+                                           double dt);
 
 /// The whole body's posture with both tips at `tip` (m). A smooth function of the tips. A tip out
 /// of reach is met by the arm stretched towards it; returns the largest distance left over (m), 0
@@ -32,12 +59,13 @@ HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skele
 HIMC_RT double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],
                                himc_pose *pose);
 
-/// The same with velocity and acceleration of the joints for tips in motion (central differences
-/// of the map).
+/// The same with velocity and acceleration of the joints for tips and bearing in motion (central
+/// differences of the map).
 HIMC_RT void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                                  himc_posture_motion *motion);
 
-/// Nearest place to `tip` that the arm of `hand` reaches with a little to spare (m).
+/// Nearest place to `tip` that the arm of `hand` reaches with a little to spare, the trunk turned
+/// towards it (m).
 HIMC_RT himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand,
                                          himc_vec3 tip);
 

@@ -41,6 +41,11 @@ himc_take *himc_take_load(const char *path, const himc_take_options *options, hi
 himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
                           const himc_take_options *options, himc_error *error);
 void himc_take_free(himc_take *take);
+/// Writes by suffix: .bvh needs a skeleton whose joints keep their offsets; .c3d and .trc have the
+/// points. False with the reason, and no file, if it cannot be written completely.
+bool himc_take_save(const himc_take *take, const char *path, himc_error *error);
+/// Whether the suffix is one of those; the error says which are.
+bool himc_take_is_writable(const char *path, himc_error *error);
 
 double himc_take_rate(const himc_take *take);     ///< frames per second (Hz)
 int himc_take_frames(const himc_take *take);      ///< at least 1

@@ -20,6 +20,7 @@ static const himc_argument arguments[] = {
     {"DRUM", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"BPM", NULL, HIMC_ARGUMENT_NUMBER, 1, 1000, "beats per minute", NULL},
+    {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
     {"JOINT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
     {"KS", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e5, "N m/rad", NULL},

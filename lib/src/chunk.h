@@ -6,6 +6,7 @@
 
 #define LOW 0.12            // where it waits (m)
 #define SWAY 0.008          // (m)
+#define SLOWEST_FALL 0.9    // speed of a touch over the mean speed of its fall, at the least
 #define MIN_JERK_PEAK 5.774 // peak acceleration of a minimum-jerk move, in D/T^2
 
 /// Height and its derivatives along a normal.

@@ -4,21 +4,23 @@
 /// legato 4.3, tenuto 4.2, accent 4.5, vertical accent 7.5, staccato 2.8 m/s, and 1.39 times that
 /// in the louder takes); heights and depths keep what Bouënard, Gibet & Wanderley 2012 (section 3)
 /// tell nuances apart by: the accent highest and shallow, vertical accent and staccato deep, tenuto
-/// rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 9 from ppp to
-/// fff gives 21 dB. A quintic from rest at the height H to the speed v in the time T falls without
+/// rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 10 from ppp to
+/// fff gives 22 dB. A quintic from rest at the height H to the speed v in the time T falls without
 /// turning as long as s = v T/H <= 2.5; s here is 1.9 to 2.1. A stroke given the share r < 1 of its
-/// time is r^2 as high.
+/// time keeps its speed and s and so is r as high, as long as nobody must be stronger for it than
+/// STRONGEST: v/T grows with 1/r, and is bent towards that limit smoothly, so that louder stays louder.
 #include "gesture.h"
 
 #include <math.h>
 
 #define FORTE (5.0 / 7)
-#define SOFTEST 6.5
+#define SOFTEST 7.2
 #define LOUDEST 1.39
 #define LONGEST_DOWN 0.30
 #define HIGHEST 0.75
 #define LOWEST 0.03
-#define STEEPEST 2.4 // largest s used
+#define STEEPEST 2.4   // largest s used
+#define STRONGEST 55.0 // speed over time of a downstroke in a hurry (m/s^2)
 #define LEAST_SPEED 1.0
 
 /// At f. `shape` is s; `reach` says how height follows speed: height ~ speed^reach.
@@ -48,10 +50,34 @@ himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
     return g;
 }
 
+himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance, double dynamic)
+{
+    himc_gesture g = himc_gesture_of(nuance, dynamic);
+    double shape = unit->speed * unit->down / unit->height;
+    // between a softer fall in the same time and one as long as its height asks for
+    g.down = unit->down * sqrt(fmin(unit->speed / g.speed, 1));
+    g.height = fmax(fmin(g.speed * g.down / shape, HIGHEST), LOWEST);
+    g.down = shape * g.height / g.speed;
+    g.dwell = 0;
+    g.lift = unit->lift;
+    g.depth = unit->depth * fmin(g.height / unit->height, 1.2);
+    g.arc = fmin(fmax(-unit->start, 0), 4);
+    g.rebound = unit->rebound;
+    g.pull = unit->pull;
+    g.unit = unit;
+    return g;
+}
+
 double himc_gesture_time(const himc_gesture *gesture, double height)
 {
     double climb = fmin(fmax(1 - height / gesture->height, 0.3), 1);
     return gesture->down + gesture->dwell + climb * gesture->lift;
+}
+
+/// `speed` bent so that it stays below `most`, hardly changed while it is far below.
+static double bend(double speed, double most)
+{
+    return speed / pow(1 + pow(speed / most, 4), 0.25);
 }
 
 himc_gesture himc_gesture_squeeze(himc_gesture g, double time, double height)
@@ -59,18 +85,15 @@ himc_gesture himc_gesture_squeeze(himc_gesture g, double time, double height)
     double share = time / himc_gesture_time(&g, height);
     if (share >= 1)
         return g;
-    double least = fmin(g.speed, LEAST_SPEED);
-    double square = share * share;
-    // a tip that is high already stays there
-    g.height *= fmax(square, fmin(fmax(height / g.height, 0), 1) * share);
+    double shape = g.speed * g.down / g.height, full = g.height;
     g.down *= share;
     g.dwell *= share;
     g.lift *= share;
-    g.depth *= square;
-    g.speed = fmin(g.speed, STEEPEST * g.height / g.down);
-    if (g.speed < least) {
-        g.speed = least;
-        g.height = least * g.down / STEEPEST;
-    }
+    g.depth *= share * share;
+    g.speed = fmax(bend(g.speed, STRONGEST * g.down), fmin(g.speed, LEAST_SPEED));
+    g.height = g.speed * g.down / shape;
+    // a tip that is high already stays there
+    double stay = fmin(fmax(height / full, 0), 1) * share * full;
+    g.height = fmin(fmax(g.height, stay), g.speed * g.down / 1.6);
     return g;
 }

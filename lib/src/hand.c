@@ -17,7 +17,8 @@
 #define QUICK_MOVE 80.0    // (m/s^2)
 #define RAISED_TIME 0.115  // a raised stick falls at once (s)
 #define ABSORB 0.02        // in which the acceleration a contact left dies out (s)
-#define MOST_PIECES 12     // of a chunk
+#define KNOTS 5            // of a unit's fall
+#define MOST_PIECES 16     // of a chunk
 #define LONGEST_COAST 0.3  // way a tip would go by its speed before it is halted (m)
 #define SWING_PEAK 60.0    // acceleration of the swing behind the spot (m/s^2)
 
@@ -164,6 +165,7 @@ double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
     double T = 0.7 * himc_gesture_time(&goal->gesture, c.at.h);
     if (c.at.h >= 0.6 * goal->gesture.height)
         T = fmin(T, RAISED_TIME);
+    T = fmax(T, SLOWEST_FALL * c.at.h / goal->gesture.speed); // a soft stroke does not fall fast
     return fmax(fmax(T, RAISED_TIME), 1.4 * move_time(distance_to(&c, goal), QUICK_MOVE));
 }
 
@@ -189,6 +191,20 @@ static void go_with(const chunk *c, double t, himc_gesture *g)
     g->speed = fmin(fmax(g->speed, 0.8 * g->height / g->down), 2.4 * g->height / g->down);
 }
 
+/// The fall from the top: one quintic, or through the knots of a unit's.
+static void fall(chunk *c, double t, const himc_gesture *g, bool from_top)
+{
+    double landing = g->speed * g->down / g->height;
+    for (int k = 1; g->unit && from_top && k < KNOTS; k++) {
+        double f[3], u = (double)k / KNOTS;
+        himc_unit_at(g->unit, u, landing, f);
+        chunk_height knot = {g->height * f[0], g->height * f[1] / g->down,
+                             g->height * f[2] / (g->down * g->down)};
+        chunk_lift_to(c, t - g->down * (1 - u), knot);
+    }
+    chunk_lift_to(c, t, (chunk_height){0, -g->speed, 0});
+}
+
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
     chunk c = chunk_begin(plan, goal->spot, goal->normal);
@@ -197,7 +213,8 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     himc_gesture g = goal->gesture;
     double begin = c.lift_end;
     c.approach = fmax(0.5, move_time(distance_to(&c, goal), GENTLE_MOVE));
-    if (!chunk_falls(&c, goal->time, &g)) {
+    bool from_top = !chunk_falls(&c, goal->time, &g);
+    if (from_top) {
         g = himc_gesture_squeeze(goal->gesture, goal->time - plan->end, c.at.h);
         go_with(&c, goal->time, &g);
         double top = goal->time - g.down - g.dwell;
@@ -205,7 +222,7 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
         if (c.at.a == 0)
             chunk_lift_to(&c, top + g.dwell, c.at);
     }
-    chunk_lift_to(&c, goal->time, (chunk_height){0, -g.speed, 0});
+    fall(&c, goal->time, &g, from_top);
     chunk_lift_to(&c, goal->time + HIMC_CONTACT_TIME, (chunk_height){0, RESTITUTION * g.speed, 0});
     swing(&c, goal, &g, begin);
     chunk_finish(&c);

@@ -60,4 +60,9 @@ HIMC_RT void himc_hand_wait(himc_hand_plan *plan, double until, bool ready);
 /// Appends the way to x, which becomes home.
 HIMC_RT void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x);
 
+/// Forgets what is planned from t on and follows: within `blend` seconds the tip is at `aim` and
+/// moves as it says, goes on so for `hold` seconds and, if nothing else comes, comes to rest.
+HIMC_RT void himc_hand_follow(himc_hand_plan *plan, double t, const himc_target *aim, double blend,
+                              double hold);
+
 #endif

@@ -143,7 +143,7 @@ bool chunk_falls(const chunk *c, double t, himc_gesture *g)
     double longest = (c->at.v < -0.2 ? 3.5 : 2.5) * h / g->speed;
     if (h <= 0.01 || T > fmax(longest, LEAST_DOWN))
         return false;
-    double speed = fmin(fmax(g->speed, 1.2 * h / T), 2.4 * h / T);
+    double speed = fmin(fmax(g->speed, SLOWEST_FALL * h / T), 2.4 * h / T);
     if (!chunk_stays(c, t, (chunk_height){0, -speed, 0}, -1e-6, 1.1 * h + 0.02))
         return false;
     g->speed = speed;

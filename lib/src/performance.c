@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define FORESIGHT 1.2 // a stroke further ahead does not turn the trunk yet (s)
+
 himc_performance_config himc_performance_default(void)
 {
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
@@ -43,8 +45,35 @@ himc_target performance_target(const himc_performance *p, himc_hand hand, double
     return himc_planner_target(p->planner, hand, t);
 }
 
+// where a hand strikes next, or where it is
+static himc_vec3 attention(const himc_performance *p, himc_hand hand, double t)
+{
+    stroke_plan next = performance_plan(p, hand, t);
+    if (!next.any || next.time > t + FORESIGHT)
+        return performance_target(p, hand, t).x;
+    return himc_place_to_world(himc_drum_place(p->drum[next.drum].drum), next.x, next.y);
+}
+
+// trunk and grip as they are at a time not before the course was set
+static himc_bearing bearing_at(const himc_performance *p, double t)
+{
+    return himc_bearing_approach(&p->course.from, &p->course.goal, fmin(fmax(t - p->course.time, 0), 0.02));
+}
+
+// sets the course of trunk and grip anew, from how they are at `t` to how the next strokes want them
+static void set_course(himc_performance *p, double t)
+{
+    himc_vec3 place[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        place[hand] = attention(p, (himc_hand)hand, t);
+    p->course.from = bearing_at(p, t);
+    p->course.goal = himc_posture_bearing(place, p->grip);
+    p->course.time = t;
+}
+
 static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
 {
+    p->posture.bearing = bearing_at(p, t);
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick->tip[hand] = performance_target(p, (himc_hand)hand, t);
@@ -57,6 +86,7 @@ static void read_task(himc_performance *p, double t)
 {
     uint64_t period = steps_per_task(p), next = (p->step / period + 1) * period;
     himc_planner_advance(p->planner, t);
+    set_course(p, t);
     if (p->replan)
         fill_tick(p, &p->from, t);
     else
@@ -86,6 +116,8 @@ bool performance_build_body(himc_performance *p, himc_error *error)
     p->character = character;
     p->skeleton = skeleton;
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
+    if (p->course.time == 0)
+        p->course.from = p->course.goal = p->posture.bearing;
     fill_tick(p, &p->from, step_time(p));
     memcpy(p->reference.tip, p->from.tip, sizeof p->from.tip);
     place_body(p);
@@ -258,6 +290,9 @@ void himc_performance_free(himc_performance *p)
         return;
     while (p->drums > 0)
         himc_drum_release(p->drum[--p->drums].drum);
+    if (p->recording)
+        himc_recording_write(p->recording, NULL);
+    himc_recording_free(p->recording);
     himc_character_free(p->character);
     himc_planner_free(p->planner);
     himc_track_free(p->track);

@@ -75,6 +75,9 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
                                 .played = p->played,
                                 .missed = p->strokes - p->played,
                                 .peak_force = p->peak_force,
+                                 .hits = p->hits,
+                                 .hit_latency = p->hit_latency,
+                                 .longest_latency = p->longest_latency,
                                 .recoveries = p->recoveries};
     s.tip_rms = p->square_count ? sqrt(p->square_sum / (double)p->square_count) : 0;
     s.stroke_height = p->height_count ? p->height_sum / (double)p->height_count : 0;
@@ -86,7 +89,7 @@ static void watch_beats(himc_performance *p, double t)
 {
     double beat = himc_planner_beat(p->planner, t);
     long whole = p->track || !(beat >= 0) ? -1 : (long)floor(beat + 1e-9);
-    if (whole > p->last_beat) {
+    if (whole >= 0 && whole != p->last_beat) {
         himc_event event = {.kind = HIMC_EVENT_BEAT, .beat = (double)whole};
         performance_emit(p, &event);
     }
@@ -131,6 +134,10 @@ void performance_motion_row(himc_performance *p, double t)
         row.joint[j] = himc_quat_log(pose.joint[j]);
     if (p->on_motion)
         p->on_motion(p->motion_user, &row);
+    if (p->recording && !himc_recording_add(p->recording, &p->state) && !p->recording_full) {
+        p->recording_full = true;
+        performance_note(p, "%s: no more room, recorded up to %.3f s", himc_recording_path(p->recording), t);
+    }
 }
 
 static void describe_drums(const himc_performance *p, void (*line)(void *, const char *),
@@ -164,6 +171,9 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
              p->config.task_rate, p->config.sample_rate);
     line(user, text);
     describe_drums(p, line, user);
+    snprintf(text, sizeof text, "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",
+             p->grip == HIMC_GRIP_FRENCH ? "french" : "german", s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
+    line(user, text);
     snprintf(text, sizeof text,
              "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, "
              "peak force %.1f N, recoveries %ld",

@@ -1,17 +1,18 @@
-/// performance_state.h: what a performance holds, shared by the four files that are its rooms:
-/// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c (what
-/// is asked), performance_report.c (what is told).
+/// performance_state.h: what a performance holds, shared by the five files that are its rooms:
+/// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c and
+/// performance_play.c (what is asked), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
 #include "himc/body.h"
 #include "himc/character.h"
 #include "himc/performance.h"
+#include "himc/recording.h"
 #include "himc/task.h"
 #include "himc/track.h"
 
 #define LONGEST_STEP 512 // samples of one physics step
-#define WAITING_COMMANDS 64
+#define WAITING_COMMANDS 256
 #define WAITING_EVENTS 1024
 #define PLAYED_TIME 0.005 // a stroke has landed if it touches within this of its time (s) ...
 #define PLAYED_PLACE 0.02 // ... and within this of its place (m)
@@ -60,6 +61,11 @@ struct himc_performance {
     himc_skeleton_config body;
     himc_skeleton skeleton;
     himc_posture posture;
+    himc_grip grip;
+    struct {
+        himc_bearing from, goal;
+        double time; // of `from` (s)
+    } course;        // of trunk and grip
     himc_controller controller;
     himc_character *character;
     himc_body_state state;
@@ -92,10 +98,15 @@ struct himc_performance {
     int force_count;
     himc_task_tick from, to;
     bool replan;
+    bool beyond[HIMC_HANDS]; // the last live target was out of reach
+
+    himc_recording *recording; // owned; NULL when nothing is recorded
+    bool recording_full;
 
     // what came in and what goes out
     waiting_command waiting[WAITING_COMMANDS];
     int waiting_count;
+    long commands_dropped;
     himc_event event[WAITING_EVENTS];
     int event_first, event_count;
     long events_lost;
@@ -105,7 +116,9 @@ struct himc_performance {
     // what is measured
     double square_sum, height_sum;
     long square_count, height_count;
-    int strokes, played;
+    int strokes, played, hits;
+    double hit_latency,
+        longest_latency; // from a hit's command to its touch, of the last and of all (s)
     double peak_force;
     long recoveries;
 };
@@ -130,8 +143,20 @@ void performance_release(himc_performance *p, double t);
 void performance_forget_touch(himc_performance *p);
 
 // performance_command.c
+/// Carries out a command now; false, and nothing changed, with the reason.
+typedef bool performance_action(himc_performance *p, const himc_command *command,
+                                himc_error *error);
+/// Which of the words it is; the parser has checked that it is one.
+int performance_word(const char *word, const char *const *words, int count);
 void performance_run_due_commands(himc_performance *p);
 bool performance_ensure_drum(himc_performance *p, const char *name, int *index, himc_error *error);
+
+// performance_play.c
+performance_action performance_do_loop, performance_do_stroke, performance_do_hit,
+    performance_do_tempo, performance_do_clear, performance_do_play, performance_do_stop,
+    performance_do_seek, performance_do_score, performance_do_take, performance_do_target,
+    performance_do_units;
+void performance_drop_track(himc_performance *p);
 
 // performance_report.c
 void performance_emit(himc_performance *p, const himc_event *event);

@@ -44,8 +44,10 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     planner->tempo_count = 1;
     for (int i = 0; i < HIMC_DRUMS; i++)
         planner->place[i] = (himc_place){{0.75, 0, 0.85}, 0, 0.2921};
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_hand_place(&planner->hand[hand].plan, 0, config->rest[hand]);
+        planner->hand[hand].stream.time = -HUGE_VAL;
+    }
     return planner;
 }
 
@@ -144,9 +146,10 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
     if (!planner->playing)
         return;
     planner_cut(planner, hand, t);
-    if (at < h->next && planner_time_of(planner, h->list[at].stroke.beat) > h->plan.end)
+    double turn = h->round * planner_turn(planner);
+    if (at < h->next && planner_time_of(planner, h->list[at].stroke.beat) + turn > h->plan.end)
         h->next = at;
-    else if (at < h->next)
+    else if (at < h->next && !planner->loop)
         planner_say(planner, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, that beat is past",
                     h->list[at].stroke.beat, himc_hand_name(hand));
     planner_extend(planner, hand, t + PLANNER_HORIZON);
@@ -158,6 +161,8 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     int at = place_of(h, stroke->beat);
     if (!check_stroke(planner, stroke, drum, at, error) || !grow(h, error))
         return false;
+    if (planner->playing)
+        planner_rebase(planner, planner->now);
     memmove(h->list + at + 1, h->list + at, (size_t)(h->count - at) * sizeof *h->list);
     h->list[at] = (planner_stroke){*stroke, drum};
     h->count++;
@@ -180,6 +185,7 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
         return himc_error_set(error, "tempo: %d changes, allowed 1 or more", count);
     memcpy(copy, tempi, (size_t)count * sizeof *copy);
     double t = planner->now + PLANNER_AHEAD, beat = planner_beat_at(planner, t);
+    planner_rebase(planner, t);
     free(planner->tempi);
     planner->tempi = copy;
     planner->tempo_count = count;
@@ -190,6 +196,48 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     return true;
 }
 
+bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
+                            himc_error *error)
+{
+    if (planner->unit_count + count > HIMC_UNITS)
+        return himc_error_set(error, "units: %d more, allowed %d in all", count, HIMC_UNITS);
+    memcpy(planner->unit + planner->unit_count, units, (size_t)count * sizeof *units);
+    planner->unit_count += count;
+    return true;
+}
+
+void himc_planner_clear_units(himc_planner *planner)
+{
+    // what is planned may still look at the array, which stays where it is
+    planner->unit_count = 0;
+    planner_replan(planner, planner->now + PLANNER_AHEAD);
+}
+
+void himc_planner_set_grip(himc_planner *planner, int grip)
+{
+    planner->grip = grip;
+}
+
+bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
+                               double beat, himc_error *error)
+{
+    int kept = 1;
+    while (kept < planner->tempo_count && planner->tempi[kept].beat < beat)
+        kept++;
+    if (beat <= 0 || count < 1)
+        return himc_planner_set_tempi(planner, tempi, count, error);
+    himc_tempo_change *all = malloc((size_t)(kept + count) * sizeof *all);
+    if (!all)
+        return himc_error_set(error, "tempo: out of memory for %d changes", kept + count);
+    memcpy(all, planner->tempi, (size_t)kept * sizeof *all);
+    for (int i = 0; i < count; i++)
+        all[kept + i] = (himc_tempo_change){tempi[i].beat + beat, tempi[i].bpm};
+    free(planner->tempi);
+    planner->tempi = all;
+    planner->tempo_count = kept + count;
+    return true;
+}
+
 void himc_planner_clear(himc_planner *planner)
 {
     double t = planner->now + PLANNER_AHEAD;
@@ -197,7 +245,7 @@ void himc_planner_clear(himc_planner *planner)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_hand *h = &planner->hand[hand];
         planner_cut(planner, (himc_hand)hand, t);
-        h->count = h->next = h->hits = 0;
+        h->count = h->next = h->round = h->hits = 0;
         for (int i = 0; i < h->touches; i++)
             h->touch[i].index = -1;
         planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);

@@ -20,6 +20,33 @@ static double touch_end(const planner_touch *touch)
     return touch->goal.time + HIMC_CONTACT_TIME;
 }
 
+/// The unit that fits best: of that nuance and hand, if possible of that grip and spot, and near in
+/// speed.
+static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke *stroke)
+{
+    double speed = himc_gesture_of(stroke->nuance, stroke->dynamic).speed, least = HUGE_VAL;
+    const himc_unit *best = NULL;
+    for (int i = 0; i < planner->unit_count; i++) {
+        const himc_unit *unit = &planner->unit[i];
+        if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
+            continue;
+        bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
+        double away = fabs(log(unit->speed / speed)) + 10 * elsewhere + 20 * (unit->grip != planner->grip);
+        if (away < least) {
+            least = away;
+            best = unit;
+        }
+    }
+    return best;
+}
+
+static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *stroke)
+{
+    const himc_unit *unit = planner->unit_count > 0 ? find_unit(planner, stroke) : NULL;
+    return unit ? himc_gesture_from(unit, stroke->nuance, stroke->dynamic)
+                : himc_gesture_of(stroke->nuance, stroke->dynamic);
+}
+
 himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
     const himc_place *place = &planner->place[drum];
@@ -36,8 +63,8 @@ himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int dru
     himc_goal goal = {.time = t, .normal = himc_place_normal(place)};
     goal.spot = himc_vec3_madd(himc_place_to_world(place, x, y), planner->config.mallet_radius,
                                goal.normal);
-    goal.back = himc_vec3_make(-goal.normal.z, 0, goal.normal.x);
-    goal.gesture = himc_gesture_of(stroke->nuance, stroke->dynamic);
+    goal.back = himc_vec3_scale(himc_place_away(place), -1);
+    goal.gesture = gesture_of(planner, stroke);
     return goal;
 }
 
@@ -45,17 +72,17 @@ himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int dru
 static bool next_touch(himc_planner *planner, himc_hand hand, planner_touch *touch)
 {
     planner_hand *h = &planner->hand[hand];
-    bool scored = planner->playing && h->next < h->count;
-    double t = scored ? planner_time_of(planner, h->list[h->next].stroke.beat) : HUGE_VAL;
+    int index = 0, round = 0;
+    double t = HUGE_VAL;
+    const planner_stroke *s = planner_next(planner, h, 0, &index, &round, &t);
     if (h->hits > 0 && h->hit[0].goal.time < t) {
         *touch = h->hit[0];
         touch->goal = planner_goal(planner, &touch->stroke, touch->drum, touch->goal.time);
         return true;
     }
-    if (!scored)
+    if (!s)
         return false;
-    const planner_stroke *s = &h->list[h->next];
-    *touch = (planner_touch){.stroke = s->stroke, .drum = s->drum, .index = h->next};
+    *touch = (planner_touch){.stroke = s->stroke, .drum = s->drum, .index = index, .round = round};
     touch->goal = planner_goal(planner, &s->stroke, s->drum, t);
     return true;
 }
@@ -63,7 +90,8 @@ static bool next_touch(himc_planner *planner, himc_hand hand, planner_touch *tou
 static void consume(planner_hand *h, const planner_touch *touch)
 {
     if (touch->index >= 0) {
-        h->next++;
+        h->next = touch->index + 1;
+        h->round = touch->round;
         return;
     }
     h->hits--;
@@ -126,7 +154,8 @@ void planner_extend(himc_planner *planner, himc_hand hand, double until)
 static void unplan(planner_hand *h, const planner_touch *touch)
 {
     if (touch->index >= 0) {
-        h->next = touch->index < h->next ? touch->index : h->next;
+        h->next = touch->index;
+        h->round = touch->round;
         return;
     }
     if (h->hits == PLANNER_HITS)
@@ -217,9 +246,10 @@ static bool find_gap(const himc_planner *planner, const planner_hand *h, double 
         for (int i = 0; i < h->hits; i++)
             if (fabs(h->hit[i].goal.time - *t) < HIT_GAP)
                 clash = fmax(clash, h->hit[i].goal.time);
-        for (int i = h->next; planner->playing && i < h->count && i < h->next + MOST_TRIES; i++) {
-            double scored = planner_time_of(planner, h->list[i].stroke.beat);
-            if (scored > *t + HIT_GAP)
+        for (int i = 0; i < MOST_TRIES; i++) {
+            int index, round;
+            double scored;
+            if (!planner_next(planner, h, i, &index, &round, &scored) || scored > *t + HIT_GAP)
                 break;
             if (scored > *t - HIT_GAP)
                 clash = fmax(clash, scored);
@@ -255,15 +285,6 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     return touch;
 }
 
-void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
-{
-    if (!isfinite(t) || !himc_vec3_finite(x))
-        return;
-    planner_cut(planner, hand, t);
-    himc_hand_reach(&planner->hand[hand].plan, x);
-    planner_extend(planner, hand, t + PLANNER_HORIZON);
-}
-
 /// Until when a touch is the current one, given the next.
 static double window_end(const planner_touch *touch, double next)
 {
@@ -283,10 +304,11 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
         *contact_time = h->touch[i].goal.time;
         return true;
     }
-    if (!planner->playing || h->next >= h->count)
+    int index, round;
+    const planner_stroke *s = planner_next(planner, h, 0, &index, &round, contact_time);
+    if (!s)
         return false;
-    *stroke = h->list[h->next].stroke;
-    *drum = h->list[h->next].drum;
-    *contact_time = planner_time_of(planner, stroke->beat);
+    *stroke = s->stroke;
+    *drum = s->drum;
     return true;
 }

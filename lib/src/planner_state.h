@@ -26,18 +26,29 @@ typedef struct planner_touch {
     himc_stroke stroke;
     int drum;
     int index;   ///< in the hand's score, -1 for a hit
+    int round;   ///< of the loop
     bool parted; ///< the tip has left the head again
     himc_goal goal;
 } planner_touch;
 
+/// Live targets as they come in.
+typedef struct planner_stream {
+    double time;   ///< of the last one (s)
+    double period; ///< between them (s), 0 before the second
+    bool moving;   ///< `v` has been seen
+    himc_vec3 x, v;
+} planner_stream;
+
 typedef struct planner_hand {
     planner_stroke *list; ///< owned, sorted by beat
     int count, room;
-    int next; ///< first of the list that is not planned
+    int next;  ///< first of the list that is not planned
+    int round; ///< of the loop that it belongs to
     planner_touch hit[PLANNER_HITS];
     int hits; ///< that wait, sorted by time
     planner_touch touch[PLANNER_TOUCHES];
     int touches; ///< planned, and the last one past
+    planner_stream stream;
     himc_hand_plan plan;
 } planner_hand;
 
@@ -59,7 +70,11 @@ struct himc_planner {
     bool playing;
     double origin; ///< time of beat 0 while playing (s)
     double beat;   ///< where play begins or began
+    bool loop;
+    int rounds; ///< without loop: the last one to be played
     double now;    ///< of the last advance (s)
+    himc_unit unit[HIMC_UNITS];
+    int unit_count, grip;
     himc_planner_note note[PLANNER_NOTES];
     int note_first, note_count, note_lost;
     unsigned said; ///< kinds
@@ -69,7 +84,14 @@ struct himc_planner {
 HIMC_RT void planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/// The stroke a hand comes to next, in which round, and when; NULL if there is none.
+HIMC_RT const planner_stroke *planner_next(const himc_planner *planner, const planner_hand *h,
+                                           int ahead, int *index, int *round, double *t);
 HIMC_RT double planner_time_of(const himc_planner *planner, double beat);
+/// How long a round of the loop takes (s).
+HIMC_RT double planner_turn(const himc_planner *planner);
+/// Makes the round of the loop at `t` the first, before its length changes.
+HIMC_RT void planner_rebase(himc_planner *planner, double t);
 HIMC_RT double planner_beat_at(const himc_planner *planner, double t);
 HIMC_RT himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                double t);

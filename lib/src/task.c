@@ -112,8 +112,9 @@ void himc_task_between(const himc_task_tick *from, const himc_task_tick *to, dou
         tip->v = mix3(b.value[1], &from->tip[hand], &to->tip[hand]);
         tip->a = mix3(b.value[2], &from->tip[hand], &to->tip[hand]);
     }
-    // trunk, neck, head and legs are held still: only arms move
+    // neck, head and legs are held as they are: only trunk and arms move
     reference->posture = to->posture;
+    joint_between(&b, &from->posture, &to->posture, HIMC_TRUNK - 1, &reference->posture);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             joint_between(&b, &from->posture, &to->posture, himc_arm_joint((himc_hand)hand, k),

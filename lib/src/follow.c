@@ -1,0 +1,93 @@
+/// follow.c: live targets: a mouse at 10 Hz or a tracker at 1 kHz, made into smooth motion.
+///
+/// Each target x_k that comes T after the one before is met T later with the speed v_k the targets
+/// have, on a quintic from wherever the tip is: so the tip lags by one period, whatever the rate,
+/// and moves steadily while the targets do. Faster streams than 1/SHORTEST are met on longer
+/// quintics, carried on by v_k to the same lag; v_k is smoothed over SMOOTHING, so that a tracker's
+/// noise is not differentiated. A target after a pause is a place to go to. When no more come,
+/// the tip goes on for half a period and comes to rest. Invariant: position, velocity and
+/// acceleration are continuous.
+#include "chunk.h"
+#include "planner_state.h"
+
+#define LOST 0.3         // a target later than this after the last begins anew (s)
+#define SHORTEST 0.010   // quintic to meet a target on (s)
+#define SMOOTHING 0.010  // of the speed (s)
+#define PERIODS 0.25     // share of a new period in the estimate
+#define HARDEST 250.0    // peak acceleration to meet a target (m/s^2)
+#define BRAKING 20.0     // (m/s^2)
+#define SHORT_BRAKE 0.15 // (s)
+#define STROKE_AHEAD 0.6 // a stroke so near is played, not the targets (s)
+
+void himc_hand_follow(himc_hand_plan *plan, double t, const himc_target *aim, double blend,
+                      double hold)
+{
+    himc_hand_cut(plan, t);
+    t = fmax(t, plan->end);
+    himc_target from = himc_hand_at(plan, t), nothing = {0}, held = *aim, rest = {0};
+    double brake = fmax(SHORT_BRAKE, himc_vec3_length(aim->v) / BRAKING);
+    double coast = himc_vec3_length(himc_vec3_sub(aim->x, himc_vec3_madd(from.x, blend, from.v)));
+    blend = fmax(blend, move_time(coast, HARDEST));
+    held.x = himc_vec3_madd(aim->x, hold, aim->v);
+    rest.x = himc_vec3_madd(held.x, 0.5 * brake, held.v);
+    plan->end = t + blend + hold + brake;
+    himc_chain_add(&plan->ground, t, &from, t + blend, aim);
+    himc_chain_add(&plan->ground, t + blend, aim, t + blend + hold, &held);
+    himc_chain_add(&plan->ground, t + blend + hold, &held, plan->end, &rest);
+    himc_chain_add(&plan->lift, t, &nothing, plan->end, &nothing);
+    plan->home = rest.x;
+    plan->struck = false;
+    plan->away = true;
+}
+
+// whether a stroke of the hand comes so soon that it must be prepared now
+static bool stroke_near(const himc_planner *planner, const planner_hand *h, double t)
+{
+    int index, round;
+    double next;
+    for (int i = 0; i < h->touches; i++)
+        if (h->touch[i].goal.time > t && h->touch[i].goal.time < t + STROKE_AHEAD)
+            return true;
+    if (h->hits > 0 && h->hit[0].goal.time < t + STROKE_AHEAD)
+        return true;
+    return planner_next(planner, h, 0, &index, &round, &next) && next < t + STROKE_AHEAD;
+}
+
+// what the stream does with one more target; true if it is a stream already
+static bool listen(planner_stream *s, double t, himc_vec3 x)
+{
+    double gap = t - s->time;
+    bool on = gap < LOST;
+    if (!on)
+        *s = (planner_stream){.period = 0};
+    if (on && gap > 0) {
+        himc_vec3 v = himc_vec3_scale(himc_vec3_sub(x, s->x), 1 / gap);
+        s->period = s->period > 0 ? s->period + PERIODS * (gap - s->period) : gap;
+        double share = s->moving ? gap / (gap + SMOOTHING) : 1;
+        s->v = himc_vec3_madd(himc_vec3_scale(s->v, 1 - share), share, v);
+        s->moving = true;
+    }
+    s->time = t;
+    s->x = x;
+    return on && s->period > 0;
+}
+
+void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    if (!isfinite(t) || !himc_vec3_finite(x))
+        return;
+    planner_hand *h = &planner->hand[hand];
+    bool stream = listen(&h->stream, t, x);
+    if (stroke_near(planner, h, t))
+        return;
+    planner_cut(planner, hand, t);
+    if (stream && himc_hand_room(&h->plan)) {
+        const planner_stream *s = &h->stream;
+        double blend = fmax(s->period, SHORTEST);
+        himc_target aim = {himc_vec3_madd(x, blend - s->period, s->v), s->v, {0, 0, 0}};
+        himc_hand_follow(&h->plan, t, &aim, blend, 0.5 * s->period);
+    } else {
+        himc_hand_reach(&h->plan, x);
+    }
+    planner_extend(planner, hand, t + PLANNER_HORIZON);
+}

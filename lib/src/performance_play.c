@@ -1,0 +1,291 @@
+/// performance_play.c: the commands that say what to play: strokes and hits, transport, scores, takes, units of motion, live
+/// targets.
+///
+/// Files are read here and now; what comes of them is given to the planner or the track. A score is checked as a whole
+/// before any of it is played, and while one plays the next one's beats are put behind its own.
+#include "performance_state.h"
+
+#include <string.h>
+
+#define APPROACH 1.0        // from wherever the sticks are to the beginning of a take (s)
+#define DEEPEST_TARGET 0.01 // of a live target under the head (m)
+
+bool performance_do_loop(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_planner_loop(p->planner, step_time(p), c->atom[0].number != 0);
+    p->replan = true;
+    return true;
+}
+
+static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+{
+    int drum;
+    return performance_ensure_drum(p, stroke->drum, &drum, error) &&
+           himc_planner_add(p->planner, stroke, drum, error);
+}
+
+bool performance_do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    p->replan = true;
+    return add_stroke(p, &c->stroke, error);
+}
+
+bool performance_do_hit(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    int drum;
+    if (!performance_ensure_drum(p, c->stroke.drum, &drum, error))
+        return false;
+    double now = step_time(p), at = himc_planner_hit(p->planner, now, &c->stroke, drum);
+    if (isfinite(at)) {
+        p->hit_latency = at - now;
+        p->longest_latency = fmax(p->longest_latency, p->hit_latency);
+        p->hits++;
+    }
+    p->replan = true;
+    return true;
+}
+
+bool performance_do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    if (c->count > 1)
+        return himc_error_set(error,
+                              "tempo: BEAT: only in a score file; here a tempo holds from now on");
+    himc_planner_tempo(p->planner, step_time(p), c->atom[0].number);
+    p->replan = true;
+    return true;
+}
+
+void performance_drop_track(himc_performance *p)
+{
+    himc_track_free(p->track);
+    p->track = NULL;
+    p->track_start = INFINITY;
+}
+
+bool performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)c, (void)error;
+    himc_planner_clear(p->planner);
+    p->replan = true;
+    return true;
+}
+
+static void start_track(himc_performance *p, double t)
+{
+    double start = t + APPROACH;
+    himc_track_rewind(p->track);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (himc_track_present(p->track, (himc_hand)hand)) {
+            himc_target now = p->reference.tip[hand];
+            himc_track_approach(p->track, (himc_hand)hand, &now, APPROACH);
+        }
+    p->track_start = start;
+}
+
+bool performance_do_play(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    int index;
+    (void)c;
+    if (!performance_ensure_drum(p, "", &index, error))
+        return false;
+    p->piece_start = step_time(p);
+    if (p->track)
+        start_track(p, p->piece_start);
+    else
+        himc_planner_play(p->planner, p->piece_start);
+    p->playing = true;
+    p->replan = true;
+    return true;
+}
+
+bool performance_do_stop(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)c, (void)error;
+    if (p->track)
+        himc_track_stop(p->track, step_time(p) - p->track_start, p->reference.tip);
+    himc_planner_stop(p->planner, step_time(p));
+    p->playing = false;
+    p->replan = true;
+    return true;
+}
+
+bool performance_do_seek(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_planner_seek(p->planner, step_time(p), c->atom[0].number);
+    p->replan = true;
+    return true;
+}
+
+// a line of a score that is not a stroke: for the performer or one of its drums
+static bool run_line(himc_performance *p, const himc_score_line *line, himc_error *error)
+{
+    int index;
+    if (!line->drum[0])
+        return himc_performance_command(p, &line->command, 0, error);
+    return performance_ensure_drum(p, line->drum, &index, error) &&
+           himc_drum_command(p->drum[index].drum, &line->command, error);
+}
+
+static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
+                            himc_error *error)
+{
+    for (int i = 0; i < score->line_count; i++)
+        if (!run_line(p, &score->lines[i], error))
+            return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
+    performance_notice_drums(p);
+    // while one is played the next one waits for its end
+    bool queued = p->playing && !p->track;
+    if (!queued)
+        himc_planner_clear(p->planner);
+    double from = queued ? himc_planner_next_start(p->planner, step_time(p)) : 0;
+    if (!himc_planner_append_tempi(p->planner, score->tempi, score->tempo_count, from, error))
+        return himc_error_prefix(error, "%s", path);
+    for (int i = 0; i < score->stroke_count; i++) {
+        himc_stroke stroke = score->strokes[i];
+        stroke.beat += from;
+        if (!add_stroke(p, &stroke, error))
+            return himc_error_prefix(error, "%s", path);
+    }
+    return true;
+}
+
+bool performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    const char *path = c->atom[0].symbol;
+    himc_score *score = himc_score_load(path, error);
+    if (!score)
+        return false;
+    bool ok = fill_from_score(p, score, path, error);
+    himc_score_free(score);
+    if (ok)
+        performance_drop_track(p);
+    p->replan = true;
+    return ok;
+}
+
+// says how much of a take the player cannot follow; the arm then stretches towards it
+static void note_reach(himc_performance *p, const himc_track *track, const char *path)
+{
+    double length = himc_track_length(track), farthest = 0;
+    int far = 0, count = 0;
+    for (double t = 0; t < length; t += 0.01)
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            if (!himc_track_present(track, (himc_hand)hand))
+                continue;
+            himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
+            himc_vec3 near = himc_posture_reachable(&p->posture, (himc_hand)hand, x);
+            double missing = himc_vec3_length(himc_vec3_sub(x, near));
+            count++;
+            far += missing > 1e-3;
+            farthest = fmax(farthest, missing);
+        }
+    if (far > 0)
+        performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", path,
+                         100.0 * far / count, farthest);
+}
+
+bool performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    int drum;
+    const char *path = c->atom[0].symbol;
+    himc_take *take = himc_take_load(path, &p->take_options, error);
+    if (!take)
+        return false;
+    himc_track *track = NULL;
+    if (performance_ensure_drum(p, "", &drum, error)) {
+        const himc_place *place = himc_drum_place(p->drum[drum].drum);
+        track = himc_track_new(take, &p->take_options, place, p->skeleton.mallet_radius, error);
+        if (!track && error && strncmp(error->text, path, strlen(path)) != 0)
+            himc_error_prefix(error, "%s", path);
+    }
+    himc_skeleton_config old = p->body;
+    int measured = track ? himc_body_measure(take, &p->body) : 0;
+    himc_take_free(take);
+    if (!track)
+        return false;
+    if (measured > 0 && !performance_build_body(p, error)) {
+        p->body = old;
+        himc_track_free(track);
+        return himc_error_prefix(error, "%s", path);
+    }
+    if (measured > 0)
+        performance_note(p, "%s: the player's body has %d lengths from it", path, measured);
+    note_reach(p, track, path);
+    performance_drop_track(p);
+    p->track = track;
+    p->replan = true;
+    return true;
+}
+
+// a tip is sent no further into a head than this
+static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
+{
+    for (int i = 0; i < p->drums; i++) {
+        const himc_place *place = himc_drum_place(p->drum[i].drum);
+        himc_vec3 local = himc_place_from_world(place, x);
+        double under = p->skeleton.mallet_radius - DEEPEST_TARGET - local.z;
+        if (hypot(local.x, local.y) < place->radius && under > 0 && under < 0.3)
+            return himc_vec3_madd(x, under, himc_place_normal(place));
+    }
+    return x;
+}
+
+void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 asked)
+{
+    if (!himc_vec3_finite(asked))
+        return;
+    himc_vec3 x = himc_posture_reachable(&p->posture, hand, asked);
+    bool beyond = himc_vec3_length(himc_vec3_sub(x, asked)) > 1e-3;
+    if (beyond && !p->beyond[hand]) // one line each time a stream leaves what can be reached
+        performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
+                         himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
+    p->beyond[hand] = beyond;
+    himc_planner_reach(p->planner, step_time(p), hand, above_heads(p, x));
+    p->replan = true;
+}
+
+bool performance_do_target(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_hand hand = strcmp(c->atom[0].symbol, "left") == 0 ? HIMC_LEFT : HIMC_RIGHT;
+    (void)error;
+    himc_performance_target(
+        p, hand, himc_vec3_make(c->atom[1].number, c->atom[2].number, c->atom[3].number));
+    return true;
+}
+
+static bool add_units(himc_performance *p, himc_take *take, const himc_command *c,
+                      himc_error *error)
+{
+    static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent",
+                                          "staccato"};
+    static const char *const spots[] = {"center", "normal", "rim"};
+    himc_unit units[HIMC_UNITS];
+    int count = himc_units_cut(take, &p->take_options, units, HIMC_UNITS, error);
+    for (int i = 0; i < count; i++) {
+        units[i].nuance = (himc_nuance)performance_word(c->atom[1].symbol, nuances, HIMC_NUANCES);
+        units[i].grip = p->grip;
+        if (c->count > 2 && c->atom[2].kind == HIMC_ATOM_SYMBOL)
+            units[i].spot = (himc_spot)performance_word(c->atom[2].symbol, spots, 3);
+    }
+    if (count < 0 || !himc_planner_add_units(p->planner, units, count, error))
+        return false;
+    performance_note(p, "%s: %d motion units of %s", c->atom[0].symbol, count, c->atom[1].symbol);
+    return true;
+}
+
+bool performance_do_units(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    p->replan = true;
+    if (c->count == 1) {
+        himc_planner_clear_units(p->planner);
+        return true;
+    }
+    himc_take *take = himc_take_load(c->atom[0].symbol, &p->take_options, error);
+    bool added =
+        take && (add_units(p, take, c, error) || himc_error_prefix(error, "%s", c->atom[0].symbol));
+    himc_take_free(take);
+    return added;
+}

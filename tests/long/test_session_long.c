@@ -1,0 +1,301 @@
+/// test_session_long.c: the figures of a session at full length.
+#include "../session.h"
+
+#include <time.h>
+
+static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};
+static const char *const spots[] = {"center", "normal", "rim"};
+
+typedef struct figures {
+    int asked, found, unasked;
+    double mean, p99, worst; // of |onset - score| (s)
+    int off;                 // beyond 10 ms
+    double place;            // RMS (m)
+} figures;
+
+static figures measure(const heard *h, int asked)
+{
+    figures f = {.asked = asked};
+    double *away = calloc((size_t)h->strikes + 1, sizeof *away);
+    for (int i = 0; i < h->strikes; i++) {
+        const himc_strike *s = &h->strike[i];
+        if (!isfinite(s->planned_time)) {
+            f.unasked++;
+            continue;
+        }
+        away[f.found] = fabs(s->time - s->planned_time);
+        f.mean += away[f.found];
+        f.off += away[f.found++] > 0.010;
+        f.place += pow(s->x - s->planned_x, 2) + pow(s->y - s->planned_y, 2);
+    }
+    qsort(away, (size_t)f.found, sizeof *away, by_size);
+    f.mean /= f.found;
+    f.place = sqrt(f.place / f.found);
+    f.p99 = away[(int)(0.99 * (f.found - 1))];
+    f.worst = away[f.found - 1];
+    free(away);
+    return f;
+}
+
+static void expect_on_time(const figures *f)
+{
+    int good = f->found - f->off;
+    double f1 = 2.0 * good / (f->asked + f->found + f->unasked);
+    printf("%d strokes: mean %.3f ms, 99 %% %.3f ms, worst %.3f ms, F1 %.4f, place %.2f mm\n",
+           f->asked, 1e3 * f->mean, 1e3 * f->p99, 1e3 * f->worst, f1, 1e3 * f->place);
+    TEST_ASSERT_TRUE(f->mean <= 0.002);
+    TEST_ASSERT_TRUE(f->p99 <= 0.005);
+    TEST_ASSERT_EQUAL_DOUBLE(1, f1);
+    TEST_ASSERT_TRUE(f->place <= 0.015);
+}
+
+// a line of `count` strokes, hands in turn, at the performer's present tempo
+static double write_strokes(himc_performance *p, unsigned *seed, int count, double beat,
+                            double seconds_per_beat)
+{
+    static const double steps[] = {0.25, 0.5, 0.5, 1, 1, 1.5, 2};
+    for (int i = 0; i < count; i++) {
+        double step = steps[choose(seed, 7)];
+        while (step * seconds_per_beat < 0.15) // each hand then has 0.3 s
+            step *= 2;
+        beat += step;
+        session_do(p, "stroke %.6f %s %s %.3f %s", beat, i & 1 ? "right" : "left",
+                   nuances[choose(seed, 5)], chance(seed), spots[choose(seed, 3)]);
+    }
+    return beat;
+}
+
+static void test_500_random_strokes_from_40_to_200_beats_land_on_time_and_place(void)
+{
+    static const int tempi[] = {40, 72, 100, 140, 200};
+    unsigned seed = 5;
+    heard h = {0};
+    for (int i = 0; i < 5; i++) {
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "tempo %d", tempi[i]);
+        double beat = write_strokes(p, &seed, 100, 2, 60.0 / tempi[i]);
+        session_do(p, "play");
+        session_play(p, (beat + 1) * 60 / tempi[i] + 3, &h);
+        himc_performance_free(p);
+    }
+    figures f = measure(&h, 500);
+    expect_on_time(&f);
+    heard_free(&h);
+}
+
+static double spearman(const double *force, const double *asked, int count)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        int a = 0, b = 0;
+        for (int j = 0; j < count; j++) {
+            a += force[j] < force[i];
+            b += asked[j] < asked[i];
+        }
+        sum += (double)(a - b) * (a - b);
+    }
+    return 1 - 6 * sum / ((double)count * ((double)count * count - 1));
+}
+
+static void test_dynamics_rise_from_ppp_to_fff_for_each_nuance_and_spot(void)
+{
+    double worst_range = 1e9, worst_rank = 1;
+    for (int n = 0; n < 5; n++)
+        for (int s = 0; s < 3; s++) {
+            enum { COUNT = 14 };
+            double force[COUNT], asked[COUNT];
+            himc_performance *p = session_new();
+            heard h = {0};
+            session_do(p, "drum kettle");
+            session_do(p, "tempo 60");
+            for (int i = 0; i < COUNT; i++) {
+                asked[i] = (i * 5 % COUNT) / (COUNT - 1.0); // not in order
+                session_do(p, "stroke %g %s %s %.4f %s", 2 + 0.9 * i, i & 1 ? "right" : "left",
+                           nuances[n], asked[i], spots[s]);
+            }
+            session_do(p, "play");
+            session_play(p, 2 + 0.9 * COUNT + 1, &h);
+            himc_performance_free(p);
+            TEST_ASSERT_EQUAL_INT(COUNT, h.strikes);
+            double soft = 0, loud = 0;
+            for (int i = 0; i < COUNT; i++) {
+                force[i] = h.strike[i].force;
+                soft = asked[i] == 0 ? force[i] : soft;
+                loud = asked[i] == 1 ? force[i] : loud;
+            }
+            worst_range = fmin(worst_range, 20 * log10(loud / soft));
+            worst_rank = fmin(worst_rank, spearman(force, asked, COUNT));
+            heard_free(&h);
+        }
+    printf("210 strokes: smallest range %.1f dB, smallest Spearman %.4f\n", worst_range,
+           worst_rank);
+    TEST_ASSERT_TRUE(worst_range >= 20);
+    TEST_ASSERT_TRUE(worst_rank >= 0.98);
+}
+
+// the tips of a session, at the task rate
+typedef struct watch {
+    double (*height)[HIMC_HANDS], (*away)[HIMC_HANDS];
+    int count, room;
+} watch;
+
+static void keep_row(void *user, const himc_motion_row *row)
+{
+    watch *w = user;
+    himc_place place = {{0.75, 0, 0.85}, 0, 0.2921};
+    for (int hand = 0; hand < HIMC_HANDS && w->count < w->room; hand++) {
+        himc_vec3 at = himc_place_from_world(&place, row->tip[hand]);
+        w->height[w->count][hand] = at.z;
+        w->away[w->count][hand] = at.x;
+    }
+    w->count += w->count < w->room;
+}
+
+#define FEATURES 4
+
+static void features_of(const watch *w, const himc_strike *s, double f[FEATURES])
+{
+    int touch = (int)(s->time * 250), top = touch, back = touch, bounce = touch;
+    for (int i = touch - 120; i < touch; i++)
+        if (w->height[i][s->hand] > w->height[top][s->hand])
+            top = i;
+    for (int i = touch - 120; i < touch; i++)
+        if (w->away[i][s->hand] < w->away[back][s->hand])
+            back = i;
+    for (int i = touch; i < touch + 60; i++)
+        if (w->height[i][s->hand] > w->height[bounce][s->hand])
+            bounce = i;
+    f[0] = log(w->height[top][s->hand]);
+    f[1] = log(s->velocity);
+    f[2] = w->height[bounce][s->hand] / w->height[top][s->hand];
+    f[3] = (s->x - w->away[back][s->hand]);
+}
+
+static int nearest(double centre[5][FEATURES], const double spread[FEATURES],
+                   const double f[FEATURES])
+{
+    int best = 0;
+    double least = HUGE_VAL;
+    for (int n = 0; n < 5; n++) {
+        double d = 0;
+        for (int k = 0; k < FEATURES; k++)
+            d += pow((f[k] - centre[n][k]) / spread[k], 2);
+        if (d < least) {
+            least = d;
+            best = n;
+        }
+    }
+    return best;
+}
+
+static int nuance_of(const himc_strike *s)
+{
+    for (int n = 0; n < 5; n++)
+        if (strcmp(s->nuance, nuances[n]) == 0)
+            return n;
+    return 0;
+}
+
+// centroids from every second stroke, the others are recognised
+static double recognised(double (*f)[FEATURES], const heard *h)
+{
+    double centre[5][FEATURES] = {{0}}, spread[FEATURES] = {0};
+    int of[5] = {0}, right = 0, tried = 0;
+    for (int i = 0; i < h->strikes; i += 2) {
+        int n = nuance_of(&h->strike[i]);
+        of[n]++;
+        for (int k = 0; k < FEATURES; k++)
+            centre[n][k] += f[i][k];
+    }
+    for (int n = 0; n < 5; n++)
+        for (int k = 0; k < FEATURES; k++)
+            centre[n][k] /= of[n];
+    for (int i = 0; i < h->strikes; i += 2)
+        for (int k = 0; k < FEATURES; k++)
+            spread[k] += pow(f[i][k] - centre[nuance_of(&h->strike[i])][k], 2);
+    for (int k = 0; k < FEATURES; k++)
+        spread[k] = sqrt(spread[k] / h->strikes);
+    for (int i = 1; i < h->strikes; i += 2, tried++)
+        right += nearest(centre, spread, f[i]) == nuance_of(&h->strike[i]);
+    return (double)right / tried;
+}
+
+static void test_nuances_are_recognised_by_height_speed_rebound_and_depth(void)
+{
+    enum { COUNT = 250 };
+    unsigned seed = 11;
+    himc_performance *p = session_new();
+    heard h = {0};
+    watch w = {.room = 250 * 200};
+    w.height = calloc((size_t)w.room, sizeof *w.height);
+    w.away = calloc((size_t)w.room, sizeof *w.away);
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 60");
+    for (int i = 0; i < COUNT; i++)
+        session_do(p, "stroke %g %s %s %.3f", 2 + 0.6 * i, i & 1 ? "right" : "left",
+                   nuances[choose(&seed, 5)], 0.5 + 0.25 * chance(&seed));
+    himc_performance_on_motion(p, keep_row, &w);
+    session_do(p, "play");
+    session_play(p, 2 + 0.6 * COUNT + 1, &h);
+    himc_performance_free(p);
+    TEST_ASSERT_EQUAL_INT(COUNT, h.strikes);
+    double(*f)[FEATURES] = calloc(COUNT, sizeof *f);
+    for (int i = 0; i < COUNT; i++)
+        features_of(&w, &h.strike[i], f[i]);
+    double share = recognised(f, &h);
+    printf("nuances recognised: %.1f %%\n", 100 * share);
+    free(f), free(w.height), free(w.away);
+    heard_free(&h);
+    TEST_ASSERT_TRUE(share >= 0.95);
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void test_ten_minutes_of_4000_strokes_load_at_once_and_land(void)
+{
+    enum { COUNT = 4000 };
+    char path[] = "/tmp/himc-piece-XXXXXX";
+    unsigned seed = 21;
+    FILE *file = fdopen(mkstemp(path), "w");
+    fprintf(file, "tempo 60; drum kettle;\n");
+    double beat = 2;
+    for (int i = 0; i < COUNT; i++, beat += 0.15 * (0.95 + 0.1 * chance(&seed)))
+        fprintf(file, "stroke %.5f %s %s %.3f %s;\n", beat, i & 1 ? "right" : "left",
+                nuances[choose(&seed, 5)], chance(&seed), spots[choose(&seed, 3)]);
+    fclose(file);
+    himc_performance *p = session_new();
+    heard h = {0};
+    double began = now();
+    bool loaded = session_try(p, "score %s", path);
+    double took = now() - began;
+    unlink(path);
+    TEST_ASSERT_TRUE_MESSAGE(loaded, error.text);
+    session_do(p, "play");
+    session_play(p, beat + 4, &h);
+    himc_performance_stats s = himc_performance_measure(p);
+    printf("%.0f s, loaded in %.3f s, played %d, tips within %.4f mm, recoveries %ld\n", s.seconds,
+           took, s.played, 1e3 * s.tip_rms, s.recoveries);
+    himc_performance_free(p);
+    figures f = measure(&h, COUNT);
+    expect_on_time(&f);
+    TEST_ASSERT_TRUE(took < 0.2);
+    TEST_ASSERT_EQUAL_INT(1, h.dones);
+    TEST_ASSERT_EQUAL_INT(0, (int)s.recoveries);
+    heard_free(&h);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_500_random_strokes_from_40_to_200_beats_land_on_time_and_place);
+    RUN_TEST(test_dynamics_rise_from_ppp_to_fff_for_each_nuance_and_spot);
+    RUN_TEST(test_nuances_are_recognised_by_height_speed_rebound_and_depth);
+    RUN_TEST(test_ten_minutes_of_4000_strokes_load_at_once_and_land);
+    return UNITY_END();
+}

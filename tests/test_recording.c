@@ -1,0 +1,177 @@
+/// test_recording.c: what is played, written as a take, plays back to the same strokes.
+#include "session.h"
+
+#define PIECE                                                                                 \
+    "tempo 100; drum kettle; stroke 2 right legato mf; stroke 3 left tenuto f; "              \
+    "stroke 4 right accent ff; stroke 5 left vertical-accent mf; stroke 6 right staccato f; " \
+    "stroke 7 left legato mf; stroke 8 right legato f;"
+
+#define STROKES 7
+
+static void load(himc_performance *p, const char *text)
+{
+    char path[] = "/tmp/himc-recording-XXXXXX";
+    int file = mkstemp(path);
+    TEST_ASSERT_TRUE(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    bool ok = session_try(p, "score %s", path);
+    unlink(path);
+    TEST_ASSERT_TRUE_MESSAGE(ok, error.text);
+}
+
+static heard record(const char *path)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    load(p, PIECE);
+    session_do(p, "record %s", path);
+    session_do(p, "play");
+    session_play(p, 7, &h);
+    session_do(p, "record stop");
+    himc_performance_free(p);
+    return h;
+}
+
+static heard play_take(const char *path)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "drum kettle");
+    session_do(p, "take %s", path);
+    session_do(p, "play");
+    session_play(p, 9, &h);
+    himc_performance_free(p);
+    return h;
+}
+
+static void expect_same_strokes(const char *suffix)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/himc-recording-%d.%s", (int)getpid(), suffix);
+    heard first = record(path), again = play_take(path);
+    unlink(path);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(STROKES, first.strikes, suffix);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(STROKES, again.strikes, suffix);
+    double since = again.strike[0].time - first.strike[0].time, time = 0, level = 0;
+    for (int i = 0; i < STROKES; i++) {
+        const himc_strike *a = &first.strike[i], *b = &again.strike[i];
+        TEST_ASSERT_EQUAL_INT(a->hand, b->hand);
+        time = fmax(time, fabs(b->time - a->time - since));
+        level = fmax(level, fabs(20 * log10(b->force / a->force)));
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, a->x, b->x);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, a->y, b->y);
+    }
+    printf("%s: within %.2f ms and %.2f dB\n", suffix, 1e3 * time, level);
+    TEST_ASSERT_TRUE(time < 0.002);
+    TEST_ASSERT_TRUE(level < 1.5);
+    heard_free(&first);
+    heard_free(&again);
+}
+
+static void test_bvh_plays_back_to_the_same_strokes(void)
+{
+    expect_same_strokes("bvh");
+}
+
+static void test_c3d_plays_back_to_the_same_strokes(void)
+{
+    expect_same_strokes("c3d");
+}
+
+static void test_trc_plays_back_to_the_same_strokes(void)
+{
+    expect_same_strokes("trc");
+}
+
+// every point of every frame, whatever the format
+static void expect_same_points(const himc_take *take, const char *suffix)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/himc-points-%d.%s", (int)getpid(), suffix);
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, path, &error), error.text);
+    himc_take *back = himc_take_load(path, NULL, &error);
+    unlink(path);
+    TEST_ASSERT_NOT_NULL_MESSAGE(back, error.text);
+    TEST_ASSERT_EQUAL_INT(himc_take_frames(take), himc_take_frames(back));
+    TEST_ASSERT_EQUAL_INT(himc_take_points(take), himc_take_points(back));
+    for (int i = 0; i < himc_take_points(take); i++) {
+        int other = himc_take_find(back, himc_take_point_name(take, i));
+        TEST_ASSERT_TRUE_MESSAGE(other >= 0, himc_take_point_name(take, i));
+        for (int f = 0; f < himc_take_frames(take); f += 7) {
+            himc_vec3 d =
+                himc_vec3_sub(himc_take_point(take, f, i), himc_take_point(back, f, other));
+            TEST_ASSERT_TRUE_MESSAGE(himc_vec3_length(d) < 1e-5, suffix);
+        }
+    }
+    himc_take_free(back);
+}
+
+static himc_take *swinging_body(void)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_skeleton skeleton;
+    himc_body_state state;
+    TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
+    himc_recording *r = himc_recording_new("/tmp/himc-swinging.bvh", &skeleton, 250, 1, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(r, error.text);
+    for (int f = 0; f < 250; f++) {
+        himc_pose pose = himc_pose_zero();
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            if (j < 3 || (j >= HIMC_LEFT_UPPER_ARM - 1 && j < HIMC_LEFT_UPPER_LEG - 1))
+                pose.joint[j] = himc_quat_exp(himc_vec3_make(
+                    0.1 * sin(0.02 * f + j), -0.6 * fabs(sin(0.03 * f + j)), 0.001 * j));
+        himc_pose_to_state(&skeleton, &pose, NULL, &state);
+        TEST_ASSERT_TRUE(himc_recording_add(r, &state));
+    }
+    TEST_ASSERT_FALSE(himc_recording_add(r, &state)); // a second is full
+    himc_take *take = himc_recording_take(r, &error);
+    himc_recording_free(r);
+    return take;
+}
+
+static void test_any_body_is_read_back_point_by_point(void)
+{
+    himc_take *take = swinging_body();
+    // the heading is found from the body, so this one must look along x on the average
+    static const char *const suffixes[] = {"bvh", "c3d", "trc"};
+    for (int i = 0; i < 3; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/tmp/himc-first-%d.%s", (int)getpid(), suffixes[i]);
+        TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, path, &error), error.text);
+        himc_take *settled = himc_take_load(path, NULL, &error);
+        unlink(path);
+        TEST_ASSERT_NOT_NULL_MESSAGE(settled, error.text);
+        expect_same_points(settled, suffixes[i]);
+        himc_take_free(settled);
+    }
+    himc_take_free(take);
+}
+
+static void test_bad_names_and_places_are_refused_in_a_line(void)
+{
+    himc_performance *p = session_new();
+    TEST_ASSERT_FALSE(session_try(p, "record stop"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "nothing"));
+    TEST_ASSERT_FALSE(session_try(p, "record /tmp/a.wav"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ".bvh .c3d .trc"), error.text);
+    TEST_ASSERT_FALSE(session_try(p, "record /no/such/folder/a.bvh"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "/no/such/folder/a.bvh"), error.text);
+    session_do(p, "record /tmp/himc-bad.bvh");
+    TEST_ASSERT_FALSE(session_try(p, "record /tmp/himc-bad2.bvh"));
+    TEST_ASSERT_FALSE(session_try(p, "rate task 500"));
+    session_play(p, 0.1, NULL);
+    session_do(p, "record stop");
+    unlink("/tmp/himc-bad.bvh");
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_bvh_plays_back_to_the_same_strokes);
+    RUN_TEST(test_c3d_plays_back_to_the_same_strokes);
+    RUN_TEST(test_trc_plays_back_to_the_same_strokes);
+    RUN_TEST(test_any_body_is_read_back_point_by_point);
+    RUN_TEST(test_bad_names_and_places_are_refused_in_a_line);
+    return UNITY_END();
+}
