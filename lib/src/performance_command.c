@@ -423,6 +423,15 @@ static bool do_info(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
+static bool do_network(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)p;
+    return himc_error_set(error, "%s: allowed as a message to [himc~] or over OSC",
+                          c->id == HIMC_COMMAND_SUBSCRIBE     ? "subscribe"
+                          : c->id == HIMC_COMMAND_UNSUBSCRIBE ? "unsubscribe"
+                                                              : "listen");
+}
+
 static const action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_STROKE] = do_stroke,     [HIMC_COMMAND_HIT] = do_hit,
     [HIMC_COMMAND_TEMPO] = do_tempo,       [HIMC_COMMAND_CLEAR] = do_clear,
@@ -434,7 +443,8 @@ static const action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_GAIN] = do_gain,         [HIMC_COMMAND_RATE] = do_rate,
     [HIMC_COMMAND_COUPLING] = do_coupling, [HIMC_COMMAND_PLAYER] = do_player,
     [HIMC_COMMAND_INFO] = do_info,         [HIMC_COMMAND_RESET] = do_reset,
-    [HIMC_COMMAND_MAKE_DRUM] = do_drum,
+    [HIMC_COMMAND_MAKE_DRUM] = do_drum,    [HIMC_COMMAND_SUBSCRIBE] = do_network,
+    [HIMC_COMMAND_UNSUBSCRIBE] = do_network, [HIMC_COMMAND_LISTEN] = do_network,
 };
 
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
