@@ -512,7 +512,7 @@ static void test_a_storm_is_counted_and_the_pose_goes_on(void)
                 for (size = 0; size < (i % 3 == 1 ? 20 : seed % 64); size++)
                     data[size] = (char)((seed = seed * 1664525 + 1013904223) >> 24);
             if (i % 3 == 1)
-                memcpy(data, "/himc/stroke", 12);
+                memcpy(data, "/himc/tempo\0,f\0\0", 16);
             sent += sendto(storm, data, size, 0, (struct sockaddr *)&to, sizeof to) >= 0;
         }
         play(0.004);
