@@ -112,7 +112,7 @@ static bool read_atoms(lo_message message, himc_atom atom[ATOMS], int *count)
         if (lo_is_numerical_type(type))
             atom[i] = (himc_atom){HIMC_ATOM_NUMBER, (double)lo_hires_val(type, args[i]), NULL};
         else if (lo_is_string_type(type))
-            atom[i] = (himc_atom){HIMC_ATOM_SYMBOL, 0, &args[i]->s};
+            atom[i] = (himc_atom){HIMC_ATOM_SYMBOL, 0, (const char *)args[i]};
         else
             return false;
     }
