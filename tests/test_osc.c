@@ -349,10 +349,13 @@ static void test_vmc_bones_lead_to_the_wrist_mirrored(void)
     for (int k = 0; k < 7; k++)
         for (int i = heard_count - 1; i >= 0; i--) {
             lo_arg **a = lo_message_get_argv(heard[i].message);
-            if (strcmp(heard[i].path, "/VMC/Ext/Bone/Pos") != 0 || strcmp(word(a[0]), chain[k]) != 0)
+            if (strcmp(heard[i].path, "/VMC/Ext/Bone/Pos") != 0 ||
+                strcmp(word(a[0]), chain[k]) != 0)
                 continue;
-            x = himc_vec3_add(x, himc_quat_rotate(q, (himc_vec3){number(a[1]), number(a[2]), number(a[3])}));
-            q = himc_quat_mul(q, (himc_quat){number(a[7]), number(a[4]), number(a[5]), number(a[6])});
+            x = himc_vec3_add(
+                x, himc_quat_rotate(q, (himc_vec3){number(a[1]), number(a[2]), number(a[3])}));
+            q = himc_quat_mul(q,
+                              (himc_quat){number(a[7]), number(a[4]), number(a[5]), number(a[6])});
             break;
         }
     subscribe("pose");
@@ -387,8 +390,9 @@ static void test_files_outside_the_folder_are_refused_however_they_are_named(voi
     snprintf(path, sizeof path, "%s/link.txt", folder);
     TEST_ASSERT_EQUAL_INT(0, symlink("/etc/passwd", path));
     restart(&(himc_osc_config){.files = folder});
-    static const char *const bad[] = {"/etc/passwd", "../../etc/passwd", "link.txt", "good.txt/../../x",
-                                      ".", "/dev/zero", "missing.txt"};
+    static const char *const bad[] = {
+        "/etc/passwd", "../../etc/passwd", "link.txt",   "good.txt/../../x",
+        ".",           "/dev/zero",        "missing.txt"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         forget();
         say("/himc/score", bad[i]);
@@ -410,8 +414,9 @@ static void test_files_outside_the_folder_are_refused_however_they_are_named(voi
 
 static void test_nobody_makes_it_send_to_a_third_host(void)
 {
-    static const char *const bad[] = {"192.0.2.1 9 pose", "example.org 9 pose", "::1%lo 9 pose",
-                                      "255.255.255.255 9 pose", "224.0.0.1 9 vmc", "0.0.0.0 9 pose"};
+    static const char *const bad[] = {"192.0.2.1 9 pose", "example.org 9 pose",
+                                      "::1%lo 9 pose",    "255.255.255.255 9 pose",
+                                      "224.0.0.1 9 vmc",  "0.0.0.0 9 pose"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         forget();
         say("/himc/subscribe", bad[i]);
@@ -456,7 +461,8 @@ static void test_an_unknown_name_of_a_host_stalls_nobody(void)
     himc_command command;
     himc_error error;
     char line[HIMC_OSC_LINE];
-    himc_command_parse_text(&command, HIMC_PERFORMER, "subscribe nowhere.invalid 9000 pose", &error);
+    himc_command_parse_text(&command, HIMC_PERFORMER, "subscribe nowhere.invalid 9000 pose",
+                            &error);
     TEST_ASSERT_TRUE(himc_osc_command(osc, &command, &error));
     subscribe("pose");
     play(0.5);

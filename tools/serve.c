@@ -23,7 +23,8 @@ enum { PORT, BIND, FILES, ALLOW };
 
 static const cli_option options[] = {
     {"port", 'p', "P", "UDP port, 0 .. 65535, 0 any free one (9000)"},
-    {"bind", 0, "ADDR", "numeric address to listen at; 0.0.0.0 is all of this machine's (127.0.0.1)"},
+    {"bind", 0, "ADDR",
+     "numeric address to listen at; 0.0.0.0 is all of this machine's (127.0.0.1)"},
     {"files", 0, "DIR", "folder that `score` and `take` over the network are confined to (none)"},
     {"allow", 0, "HOST[,HOST]", "hosts that anyone may subscribe for (only one's own)"},
     {0},
@@ -102,7 +103,7 @@ static void play_block(himc_performance *performance, himc_osc *osc)
 
 /// What a run was like.
 typedef struct punctuality {
-    long blocks, late; ///< ended after the next was due
+    long blocks, late;       ///< ended after the next was due
     double latest, given_up; ///< (s)
 } punctuality;
 
@@ -168,8 +169,8 @@ const cli_call cli_serve = {
     "[SOURCE]",
     "",
     "the physics manager alone, driven and heard over OSC",
-    "Loads a score or a take if one is given and waits: /himc/play begins, /himc/subscribe 127.0.0.1 9001 pose\n"
-    "sends the body there. SIGINT or SIGTERM ends it; the last line printed is one JSON object.",
+    "Loads a score or a take if one is given and waits: /himc/play begins,\n"
+    "/himc/subscribe 127.0.0.1 9001 pose sends the body there. SIGINT or SIGTERM ends it; the last line printed is one JSON object.",
     options,
     run,
 };

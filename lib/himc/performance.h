@@ -109,8 +109,8 @@ typedef struct himc_tick {
 
 /// Calls `tick` in himc_performance_process at each task tick, beside himc_performance_on_motion;
 /// NULL stops it. `tick` must be HIMC_RT.
-void himc_performance_on_tick(himc_performance *performance, void (*tick)(void *, const himc_tick *),
-                              void *user);
+void himc_performance_on_tick(himc_performance *performance,
+                              void (*tick)(void *, const himc_tick *), void *user);
 
 typedef struct himc_performance_stats {
     double seconds;         ///< played

@@ -50,7 +50,8 @@ void himc_osc_tick(void *object, const himc_tick *tick)
 {
     himc_osc *osc = object;
     int hz = atomic_load_explicit(&osc->pose_hz, memory_order_relaxed);
-    osc_record *r = due(&osc->next_pose, hz, tick->time) ? begin(osc, RECORD_POSE, tick->time) : NULL;
+    osc_record *r =
+        due(&osc->next_pose, hz, tick->time) ? begin(osc, RECORD_POSE, tick->time) : NULL;
     if (!r)
         return;
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
@@ -89,7 +90,8 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
     osc_record *r = begin(osc, RECORD_HEAD, time);
     if (!r)
         return;
-    memcpy(r->head.name, himc_drum_name(drum), strnlen(himc_drum_name(drum), HIMC_NAME_SIZE - 1) + 1);
+    memcpy(r->head.name, himc_drum_name(drum),
+           strnlen(himc_drum_name(drum), HIMC_NAME_SIZE - 1) + 1);
     r->head.count = modes < HEAD_MODES ? modes : HEAD_MODES;
     for (int i = 0; i < r->head.count; i++) {
         double q, v;
@@ -106,7 +108,8 @@ static void put_drum(himc_osc *osc, himc_drum *drum, double time)
     osc_record *r = begin(osc, RECORD_DRUM, time);
     if (!r)
         return;
-    memcpy(r->drum.name, himc_drum_name(drum), strnlen(himc_drum_name(drum), HIMC_NAME_SIZE - 1) + 1);
+    memcpy(r->drum.name, himc_drum_name(drum),
+           strnlen(himc_drum_name(drum), HIMC_NAME_SIZE - 1) + 1);
     put(r->drum.place, place->center);
     r->drum.place[3] = (float)place->tilt;
     r->drum.place[4] = (float)place->radius;
@@ -132,7 +135,8 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
     osc->last_publish = t + osc->offset;
     osc->busy += busy;
     int hz = atomic_load_explicit(&osc->head_hz, memory_order_relaxed);
-    bool heads = due(&osc->next_head, hz, t), state = now >= osc->next_state || osc->next_state > now + 2;
+    bool heads = due(&osc->next_head, hz, t),
+         state = now >= osc->next_state || osc->next_state > now + 2;
     himc_drum *drum;
     for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
         if (heads)

@@ -140,7 +140,7 @@ static bool read_path(const char *path, osc_order *order, const char **name)
 
 static bool is_ours(himc_receiver receiver, const char *name)
 {
-    static const char *const sent[] = {"error", "pose", "body",  "targets", "strike",
+    static const char *const sent[] = {"error", "pose",   "body", "targets", "strike",
                                        "beat",  "status", "head", "info"};
     if (receiver == HIMC_DRUM)
         return strcmp(name, "head") == 0;
@@ -234,7 +234,8 @@ static void drop_strangers(himc_osc *osc, int fd)
 {
     char data[16];
     osc_address from;
-    for (int i = 0; fd >= 0 && i < BATCH && next_packet(osc, fd, &from, data, sizeof data) >= 0; i++)
+    for (int i = 0; fd >= 0 && i < BATCH && next_packet(osc, fd, &from, data, sizeof data) >= 0;
+         i++)
         osc_counted(osc, COUNT_FOREIGN, 1);
 }
 

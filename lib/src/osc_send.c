@@ -181,9 +181,7 @@ void himc_osc_send_record(himc_osc *osc, const osc_record *r)
     case RECORD_HEAD: send_head(osc, &r->head, &p); break;
     case RECORD_DRUM: send_drum(osc, &r->drum, &p); break;
     case RECORD_STATE: send_state(osc, &r->state, &p); break;
-    case RECORD_ANSWER:
-        himc_osc_answer(osc, &r->answer.to, r->answer.error, r->answer.text);
-        break;
+    case RECORD_ANSWER: himc_osc_answer(osc, &r->answer.to, r->answer.error, r->answer.text); break;
     case RECORD_WISH: himc_osc_wish(osc, &r->wish); break;
     }
 }

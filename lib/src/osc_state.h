@@ -88,8 +88,16 @@ typedef struct osc_answer {
 } osc_answer;
 
 typedef struct osc_record {
-    enum { RECORD_POSE, RECORD_STRIKE, RECORD_BEAT, RECORD_HEAD, RECORD_DRUM, RECORD_STATE,
-           RECORD_ANSWER, RECORD_WISH } kind;
+    enum {
+        RECORD_POSE,
+        RECORD_STRIKE,
+        RECORD_BEAT,
+        RECORD_HEAD,
+        RECORD_DRUM,
+        RECORD_STATE,
+        RECORD_ANSWER,
+        RECORD_WISH
+    } kind;
     double time; // of the performance (s)
     double wall; // the same on the wall clock (s since 1970)
     union {
@@ -116,9 +124,9 @@ typedef struct osc_subscriber {
     bool used, lead; // lead: first of its address that wants more than vmc
     osc_address to;
     osc_what what;
-    double hz, due;       // (Hz; s, monotonic clock)
+    double hz, due;                     // (Hz; s, monotonic clock)
     double refused_since, refused_last; // (s); 0 while somebody listens
-    bool local;           // on loopback
+    bool local;                         // on loopback
 } osc_subscriber;
 
 // one state in OSC, cut into packets
@@ -139,8 +147,19 @@ typedef struct osc_bucket {
     double level, rate, size, last;
 } osc_bucket;
 
-enum { COUNT_PACKETS, COUNT_COMMANDS, COUNT_MALFORMED, COUNT_FOREIGN, COUNT_REFUSED,
-       COUNT_FREQUENT, COUNT_OVERRUN, COUNT_SENT, COUNT_UNSENT, COUNT_SUBSCRIPTIONS, COUNTERS };
+enum {
+    COUNT_PACKETS,
+    COUNT_COMMANDS,
+    COUNT_MALFORMED,
+    COUNT_FOREIGN,
+    COUNT_REFUSED,
+    COUNT_FREQUENT,
+    COUNT_OVERRUN,
+    COUNT_SENT,
+    COUNT_UNSENT,
+    COUNT_SUBSCRIPTIONS,
+    COUNTERS
+};
 
 struct himc_osc {
     osc_ring records, orders, lines;
@@ -169,7 +188,7 @@ struct himc_osc {
     unsigned dropped; // the system's counter, last seen
     osc_drum drum[HIMC_DRUMS];
     int drums;
-    osc_record pose; // the last one
+    osc_record pose;          // the last one
     osc_packets packet[2][2]; // pose, vmc; small, large
     bool packed[2][2];
 };

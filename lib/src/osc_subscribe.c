@@ -44,8 +44,8 @@ bool himc_osc_wish_from(osc_wish *wish, const himc_command *c)
 static void refuse(himc_osc *osc, const osc_wish *wish, const char *why)
 {
     char line[HIMC_OSC_LINE];
-    snprintf(line, sizeof line, "%s: %.200s port %d: %s", wish->remove ? "unsubscribe" : "subscribe",
-             wish->host, wish->port, why);
+    snprintf(line, sizeof line, "%s: %.200s port %d: %s",
+             wish->remove ? "unsubscribe" : "subscribe", wish->host, wish->port, why);
     osc_counted(osc, COUNT_REFUSED, 1);
     if (wish->local)
         himc_osc_tell(osc, "%s", line);
@@ -85,8 +85,8 @@ static void take_stock(himc_osc *osc)
         osc_subscriber *s = &osc->subscriber[i];
         s->lead = s->used && s->what != OSC_VMC;
         for (int k = 0; k < i && s->lead; k++)
-            s->lead = !(osc->subscriber[k].lead &&
-                        himc_osc_address_same(&osc->subscriber[k].to, &s->to));
+            s->lead =
+                !(osc->subscriber[k].lead && himc_osc_address_same(&osc->subscriber[k].to, &s->to));
         if (!s->used)
             continue;
         count++;
@@ -167,8 +167,10 @@ void himc_osc_refused(himc_osc *osc, const osc_address *to)
         if (told)
             continue;
         himc_osc_address_print(to, text);
-        himc_osc_tell(osc, "%s: not to be reached, or nobody listens; tried once a second, forgotten after %g s",
-                      text, PATIENCE);
+        himc_osc_tell(
+            osc,
+            "%s: not to be reached, or nobody listens; tried once a second, forgotten after %g s",
+            text, PATIENCE);
         told = true;
     }
 }
@@ -201,8 +203,10 @@ int himc_osc_allowed_hosts(himc_osc *osc, const char *list, himc_error *error)
         if (count == ALLOWED || n >= sizeof host ||
             (!himc_osc_address_parse(host, 1, &osc->allowed[count]) &&
              !himc_osc_address_find(host, 1, &osc->allowed[count]))) {
-            himc_error_set(error, count == ALLOWED ? "allow: %s is one host too many, allowed 32"
-                                                   : "allow: %s: no host of that name", host);
+            himc_error_set(error,
+                           count == ALLOWED ? "allow: %s is one host too many, allowed 32"
+                                            : "allow: %s: no host of that name",
+                           host);
             return -1;
         }
         count++;

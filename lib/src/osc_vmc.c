@@ -19,9 +19,30 @@ typedef struct bone {
     int towards;
 } bone;
 
-enum { HIPS, SPINE, CHEST, NECK, HEAD, SHOULDER_L, SHOULDER_R, UPPER_ARM_L, UPPER_ARM_R, LOWER_ARM_L,
-       LOWER_ARM_R, HAND_L, HAND_R, UPPER_LEG_L, UPPER_LEG_R, LOWER_LEG_L, LOWER_LEG_R, FOOT_L,
-       FOOT_R, TOES_L, TOES_R, BONES };
+enum {
+    HIPS,
+    SPINE,
+    CHEST,
+    NECK,
+    HEAD,
+    SHOULDER_L,
+    SHOULDER_R,
+    UPPER_ARM_L,
+    UPPER_ARM_R,
+    LOWER_ARM_L,
+    LOWER_ARM_R,
+    HAND_L,
+    HAND_R,
+    UPPER_LEG_L,
+    UPPER_LEG_R,
+    LOWER_LEG_L,
+    LOWER_LEG_R,
+    FOOT_L,
+    FOOT_R,
+    TOES_L,
+    TOES_R,
+    BONES
+};
 
 static const bone bones[BONES] = {
     {"Hips", HIMC_PELVIS, -1, 0, 0, 0},

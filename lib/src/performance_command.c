@@ -433,17 +433,17 @@ static bool do_network(himc_performance *p, const himc_command *c, himc_error *e
 }
 
 static const action actions[HIMC_COMMANDS] = {
-    [HIMC_COMMAND_STROKE] = do_stroke,     [HIMC_COMMAND_HIT] = do_hit,
-    [HIMC_COMMAND_TEMPO] = do_tempo,       [HIMC_COMMAND_CLEAR] = do_clear,
-    [HIMC_COMMAND_PLAY] = do_play,         [HIMC_COMMAND_STOP] = do_stop,
-    [HIMC_COMMAND_SEEK] = do_seek,         [HIMC_COMMAND_SCORE] = do_score,
-    [HIMC_COMMAND_TAKE] = do_take,         [HIMC_COMMAND_TARGET] = do_target,
-    [HIMC_COMMAND_MODE] = do_mode,         [HIMC_COMMAND_SOLVER] = do_solver,
-    [HIMC_COMMAND_DAMPING] = do_damping,   [HIMC_COMMAND_LAW] = do_law,
-    [HIMC_COMMAND_GAIN] = do_gain,         [HIMC_COMMAND_RATE] = do_rate,
-    [HIMC_COMMAND_COUPLING] = do_coupling, [HIMC_COMMAND_PLAYER] = do_player,
-    [HIMC_COMMAND_INFO] = do_info,         [HIMC_COMMAND_RESET] = do_reset,
-    [HIMC_COMMAND_MAKE_DRUM] = do_drum,    [HIMC_COMMAND_SUBSCRIBE] = do_network,
+    [HIMC_COMMAND_STROKE] = do_stroke,       [HIMC_COMMAND_HIT] = do_hit,
+    [HIMC_COMMAND_TEMPO] = do_tempo,         [HIMC_COMMAND_CLEAR] = do_clear,
+    [HIMC_COMMAND_PLAY] = do_play,           [HIMC_COMMAND_STOP] = do_stop,
+    [HIMC_COMMAND_SEEK] = do_seek,           [HIMC_COMMAND_SCORE] = do_score,
+    [HIMC_COMMAND_TAKE] = do_take,           [HIMC_COMMAND_TARGET] = do_target,
+    [HIMC_COMMAND_MODE] = do_mode,           [HIMC_COMMAND_SOLVER] = do_solver,
+    [HIMC_COMMAND_DAMPING] = do_damping,     [HIMC_COMMAND_LAW] = do_law,
+    [HIMC_COMMAND_GAIN] = do_gain,           [HIMC_COMMAND_RATE] = do_rate,
+    [HIMC_COMMAND_COUPLING] = do_coupling,   [HIMC_COMMAND_PLAYER] = do_player,
+    [HIMC_COMMAND_INFO] = do_info,           [HIMC_COMMAND_RESET] = do_reset,
+    [HIMC_COMMAND_MAKE_DRUM] = do_drum,      [HIMC_COMMAND_SUBSCRIBE] = do_network,
     [HIMC_COMMAND_UNSUBSCRIBE] = do_network, [HIMC_COMMAND_LISTEN] = do_network,
 };
 
