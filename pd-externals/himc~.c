@@ -9,9 +9,14 @@ Glue only: commands go to a himc_performance with the sample on which they arriv
 brings it forward and puts out what the sticks felt. A [membrane~] that comes earlier in the tick
 asks for its sound first and so brings the performance forward itself (himc_tilde_advance); so the
 forces wait in a ring. Nothing is sent from perform: a clock does, at the start of the next tick. */
+#define _POSIX_C_SOURCE 200809L
 #include "drum-link.h"
 
+#include <time.h>
+
 #define FORCE_RING HIMC_DRUM_RING
+#define LOOK 2.0          /* how often the network's commands are taken (ms) */
+#define COMMANDS_A_LOOK 8 /* and how many, so that no block is late for them */
 
 static t_class *himc_tilde_class;
 
@@ -38,9 +43,19 @@ typedef struct t_himc {
     t_sample *x_out[HIMC_HANDS];
     double x_force[HIMC_HANDS][FORCE_RING];
 
+    himc_osc *x_osc;    /* NULL until somebody subscribes or listens */
+    t_clock *x_network; /* looks for what came from there */
+
     bool x_waiting; /* x_event is to be sent */
     himc_event x_event;
 } t_himc;
+
+static double himc_tilde_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 /* Brings the performance to sample `time`, for x's own perform or that of one of its drums. */
 static void himc_tilde_advance(void *player, uint64_t time)
@@ -50,7 +65,10 @@ static void himc_tilde_advance(void *player, uint64_t time)
         uint64_t at = now % FORCE_RING;
         uint64_t n = time - now < FORCE_RING - at ? time - now : FORCE_RING - at;
         double *force[HIMC_HANDS] = {x->x_force[HIMC_LEFT] + at, x->x_force[HIMC_RIGHT] + at};
+        double start = x->x_osc ? himc_tilde_seconds() : 0;
         himc_performance_process(x->x_performance, (int)n, force);
+        if (x->x_osc)
+            himc_osc_publish(x->x_osc, x->x_performance, himc_tilde_seconds() - start);
     }
     x->x_player.p_time = himc_performance_time(x->x_performance);
     if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
@@ -160,6 +178,8 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
 
 static void himc_tilde_send(t_himc *x, const himc_event *event)
 {
+    if (x->x_osc)
+        himc_osc_event(x->x_osc, event);
     const himc_strike *strike = &event->strike;
     t_atom atom[8];
     switch (event->kind) {
@@ -242,6 +262,42 @@ static void himc_tilde_line(void *object, const char *line)
     outlet_words(((t_himc *)object)->x_messages, "info", line);
 }
 
+/* What came over OSC, in Pd's own time, also while DSP is off. */
+static void himc_tilde_network(t_himc *x)
+{
+    char line[HIMC_OSC_LINE];
+    himc_osc_receive(x->x_osc, x->x_performance, COMMANDS_A_LOOK);
+    while (himc_osc_line(x->x_osc, line))
+        pd_error(x, "himc~: %s", line);
+    if (x->x_osc)
+        clock_delay(x->x_network, LOOK);
+}
+
+static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
+{
+    himc_osc_config config = himc_osc_default();
+    config.port = port;
+    himc_osc *osc = himc_osc_new(&config, error);
+    if (!osc)
+        return false;
+    himc_osc_free(x->x_osc);
+    x->x_osc = osc;
+    himc_performance_on_tick(x->x_performance, himc_osc_tick, osc);
+    clock_delay(x->x_network, LOOK);
+    return true;
+}
+
+/* `listen PORT` begins anew; `subscribe` and `unsubscribe` need no port of our own. */
+static bool himc_tilde_osc(t_himc *x, const himc_command *command, himc_error *error)
+{
+    if (command->id == HIMC_COMMAND_LISTEN) {
+        int port = (int)command->atom[0].number;
+        return himc_tilde_open(x, port > 0 ? port : -1, error);
+    }
+    return (x->x_osc || himc_tilde_open(x, -1, error)) &&
+           himc_osc_command(x->x_osc, command, error);
+}
+
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
@@ -251,6 +307,9 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         himc_performance_describe(x->x_performance, himc_tilde_line, x);
         return true;
     }
+    if (command.id == HIMC_COMMAND_SUBSCRIBE || command.id == HIMC_COMMAND_UNSUBSCRIBE ||
+        command.id == HIMC_COMMAND_LISTEN)
+        return himc_tilde_osc(x, &command, error);
     if (!himc_tilde_file(x, &command, error))
         return himc_error_prefix(error, "%s", s->s_name);
     /* a command may come before DSP is on, and its drums should be there */
@@ -301,6 +360,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     t_himc *x = (t_himc *)pd_new(himc_tilde_class);
     x->x_canvas = canvas_getcurrent();
     x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
+    x->x_network = clock_new(x, (t_method)himc_tilde_network);
     x->x_performance = performance;
     x->x_player.p_himc = x;
     x->x_rate = config.sample_rate;
@@ -317,7 +377,9 @@ static void himc_tilde_free(t_himc *x)
 {
     for (int i = 0; i < x->x_count; i++)
         himc_tilde_let_go(x, x->x_drum + i);
+    himc_osc_free(x->x_osc);
     himc_performance_free(x->x_performance);
+    clock_free(x->x_network);
     clock_free(x->x_clock);
 }
 

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-static const cli_call *const calls[] = {&cli_render, &cli_info, &cli_modes};
+static const cli_call *const calls[] = {&cli_render, &cli_info, &cli_modes, &cli_serve};
 #define CALLS (sizeof calls / sizeof *calls)
 
 static void print_help(void)

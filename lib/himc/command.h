@@ -78,6 +78,9 @@ typedef enum himc_command_id {
     HIMC_COMMAND_INFO,
     HIMC_COMMAND_RESET,
     HIMC_COMMAND_MAKE_DRUM, ///< `drum NAME [INCHES]`
+    HIMC_COMMAND_SUBSCRIBE, // the next three are for osc.h
+    HIMC_COMMAND_UNSUBSCRIBE,
+    HIMC_COMMAND_LISTEN,
     // to a drum
     HIMC_COMMAND_RADIUS,
     HIMC_COMMAND_TENSION,

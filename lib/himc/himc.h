@@ -4,7 +4,7 @@
 ///     take ─┴→ planner, track → task → controller (ik → invdyn) → character (ODE)
 ///                                                                     ⇅
 ///     samples ←──────────────────────────── drum (membrane ⇄ contact) ┘
-///     command (Pd, OSC, file) → performance: the clock of it all
+///     command (Pd, OSC, file) → performance: the clock of it all → osc: what others see of it
 ///
 /// A percussionist of 20 segments and 57 degrees of freedom is driven, from nothing but the
 /// trajectories of its two drumstick tips, by Hybrid Inverse Motion Control (Bouënard, Gibet and
@@ -54,5 +54,6 @@
 
 // all of it together
 #include "himc/performance.h"
+#include "himc/osc.h"
 
 #endif

@@ -107,6 +107,18 @@ typedef struct himc_motion_row {
 void himc_performance_on_motion(himc_performance *performance,
                                 void (*row)(void *, const himc_motion_row *), void *user);
 
+/// What moves, at a task tick; borrowed for the call.
+typedef struct himc_tick {
+    double time;                  ///< (s since the performance was made)
+    const himc_body_state *body;  ///< all segments in the world
+    himc_vec3 target[HIMC_HANDS]; ///< of the tips (m)
+} himc_tick;
+
+/// Calls `tick` in himc_performance_process at each task tick, beside himc_performance_on_motion;
+/// NULL stops it. `tick` must be HIMC_RT.
+void himc_performance_on_tick(himc_performance *performance,
+                              void (*tick)(void *, const himc_tick *), void *user);
+
 typedef struct himc_performance_stats {
     double seconds;         ///< played
     int strokes;            ///< asked for by the score so far
@@ -120,6 +132,8 @@ typedef struct himc_performance_stats {
     double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)
     double longest_latency; ///< of all hits (s)
     long recoveries;        ///< times a non-finite state was met and the last good one restored
+    long events_lost;       ///< because nobody took them
+    double sample_rate, physics_rate, task_rate; ///< in force (Hz)
 } himc_performance_stats;
 
 HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *performance);

@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define WHAT "pose|targets|strikes|head|vmc"
 #define STROKE_ATOMS "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
 
 static const himc_command_row table[] = {
@@ -61,6 +62,12 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_RESET, HIMC_PERFORMER, "reset", "", "makes everything as when just made"},
     {HIMC_COMMAND_MAKE_DRUM, HIMC_PERFORMER, "drum", "NAME [INCHES]",
      "makes a drum, 23 inches by default"},
+    {HIMC_COMMAND_SUBSCRIBE, HIMC_PERFORMER, "subscribe", "HOST PORT " WHAT " [HZ] | HOST vmc [HZ]",
+     "sends that to an address over OSC, 33 times a second by default; vmc to port 39539"},
+    {HIMC_COMMAND_UNSUBSCRIBE, HIMC_PERFORMER, "unsubscribe",
+     "HOST PORT [" WHAT "] [HZ] | HOST vmc", "stops sending that, or anything, to an address"},
+    {HIMC_COMMAND_LISTEN, HIMC_PERFORMER, "listen", "PORT",
+     "takes commands over OSC at that port of this machine; 0 ends it"},
     {HIMC_COMMAND_RADIUS, HIMC_DRUM, "radius", "RADIUS", "sets the head's radius"},
     {HIMC_COMMAND_TENSION, HIMC_DRUM, "tension", "TENSION", "sets the head's tension"},
     {HIMC_COMMAND_DENSITY, HIMC_DRUM, "density", "DENSITY", "sets the head's mass per area"},

@@ -287,6 +287,15 @@ static bool do_info(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
+static bool do_network(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)p;
+    return himc_error_set(error, "%s: allowed as a message to [himc~] or over OSC",
+                          c->id == HIMC_COMMAND_SUBSCRIBE     ? "subscribe"
+                          : c->id == HIMC_COMMAND_UNSUBSCRIBE ? "unsubscribe"
+                                                              : "listen");
+}
+
 static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_STROKE] = performance_do_stroke,
     [HIMC_COMMAND_HIT] = performance_do_hit,
@@ -313,6 +322,9 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_INFO] = do_info,
     [HIMC_COMMAND_RESET] = do_reset,
     [HIMC_COMMAND_MAKE_DRUM] = do_drum,
+    [HIMC_COMMAND_SUBSCRIBE] = do_network,
+    [HIMC_COMMAND_UNSUBSCRIBE] = do_network,
+    [HIMC_COMMAND_LISTEN] = do_network,
 };
 
 // commands that act at their sample; the others, which may allocate or read files, act at once

@@ -75,10 +75,14 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
                                 .played = p->played,
                                 .missed = p->strokes - p->played,
                                 .peak_force = p->peak_force,
-                                 .hits = p->hits,
-                                 .hit_latency = p->hit_latency,
-                                 .longest_latency = p->longest_latency,
-                                .recoveries = p->recoveries};
+                                .hits = p->hits,
+                                .hit_latency = p->hit_latency,
+                                .longest_latency = p->longest_latency,
+                                .recoveries = p->recoveries,
+                                .events_lost = p->events_lost,
+                                .sample_rate = p->config.sample_rate,
+                                .physics_rate = p->physics_rate,
+                                .task_rate = p->config.task_rate};
     s.tip_rms = p->square_count ? sqrt(p->square_sum / (double)p->square_count) : 0;
     s.stroke_height = p->height_count ? p->height_sum / (double)p->height_count : 0;
     s.tip_rms_percent = s.stroke_height > 0 ? 100 * s.tip_rms / s.stroke_height : 0;
@@ -119,8 +123,25 @@ void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const h
     p->motion_user = user;
 }
 
+void himc_performance_on_tick(himc_performance *p, void (*tick)(void *, const himc_tick *),
+                              void *user)
+{
+    p->on_tick = tick;
+    p->tick_user = user;
+}
+
+static void tell_tick(himc_performance *p, double t)
+{
+    himc_tick tick = {.time = t, .body = &p->state};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        tick.target[hand] = p->reference.tip[hand].x;
+    if (p->on_tick)
+        p->on_tick(p->tick_user, &tick);
+}
+
 void performance_motion_row(himc_performance *p, double t)
 {
+    tell_tick(p, t);
     himc_motion_row row = {.time = t};
     himc_pose pose = himc_pose_from_state(&p->skeleton, &p->state);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -136,7 +157,8 @@ void performance_motion_row(himc_performance *p, double t)
         p->on_motion(p->motion_user, &row);
     if (p->recording && !himc_recording_add(p->recording, &p->state) && !p->recording_full) {
         p->recording_full = true;
-        performance_note(p, "%s: no more room, recorded up to %.3f s", himc_recording_path(p->recording), t);
+        performance_note(p, "%s: no more room, recorded up to %.3f s",
+                         himc_recording_path(p->recording), t);
     }
 }
 
@@ -171,8 +193,10 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
              p->config.task_rate, p->config.sample_rate);
     line(user, text);
     describe_drums(p, line, user);
-    snprintf(text, sizeof text, "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",
-             p->grip == HIMC_GRIP_FRENCH ? "french" : "german", s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
+    snprintf(text, sizeof text,
+             "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",
+             p->grip == HIMC_GRIP_FRENCH ? "french" : "german", s.hits, 1e3 * s.hit_latency,
+             1e3 * s.longest_latency);
     line(user, text);
     snprintf(text, sizeof text,
              "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, "

@@ -112,6 +112,8 @@ struct himc_performance {
     long events_lost;
     void (*on_motion)(void *, const himc_motion_row *);
     void *motion_user;
+    void (*on_tick)(void *, const himc_tick *);
+    void *tick_user;
 
     // what is measured
     double square_sum, height_sum;

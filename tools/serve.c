@@ -1,0 +1,176 @@
+/// serve.c: `himc serve`: the physics manager alone, in real time, driven and heard over OSC.
+///
+/// The sample count is the clock: blocks of 2 ms, each begun when its time has come on the
+/// monotonic clock. One that comes late is made up for by the next ones; when the machine was away
+/// for more than 0.2 s that time is given up, and counted. No sound goes out: sound managers play
+/// what `/himc/strike` says, wherever they are.
+#define _GNU_SOURCE // sched_setscheduler
+#include "cli.h"
+#include "himc/osc.h"
+
+#include <math.h>
+#include <sched.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+
+#define RATE 48000
+#define BLOCK 96
+#define GIVE_UP 0.2
+#define COMMANDS_A_BLOCK 8
+
+enum { PORT, BIND, FILES, ALLOW };
+
+static const cli_option options[] = {
+    {"port", 'p', "P", "UDP port, 0 .. 65535, 0 any free one (9000)"},
+    {"bind", 0, "ADDR",
+     "numeric address to listen at; 0.0.0.0 is all of this machine's (127.0.0.1)"},
+    {"files", 0, "DIR", "folder that `score` and `take` over the network are confined to (none)"},
+    {"allow", 0, "HOST[,HOST]", "hosts that anyone may subscribe for (only one's own)"},
+    {0},
+};
+
+static volatile sig_atomic_t stopped;
+
+static void stop(int signal)
+{
+    (void)signal;
+    stopped = 1;
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void sleep_until(double t)
+{
+    struct timespec at = {(time_t)t, (long)((t - floor(t)) * 1e9)};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
+}
+
+static bool tell(himc_performance *performance, const char *name, const char *word,
+                 himc_error *error)
+{
+    himc_command command;
+    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
+    return himc_command_parse(&command, HIMC_PERFORMER, name, &atom, 1, error) &&
+           himc_performance_command(performance, &command, 0, error);
+}
+
+static himc_performance *prepare(const char *source, himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = RATE;
+    himc_performance *performance = himc_performance_new(&config, error);
+    if (!performance)
+        return NULL;
+    himc_performance_make_drums(performance, true);
+    himc_score *score = source && !cli_is_take(source) ? himc_score_load(source, error) : NULL;
+    bool good = score || !source || cli_is_take(source);
+    if (good && !(score && cli_first_drum(score))) {
+        himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
+        good = drum && himc_performance_add_drum(performance, drum, error);
+        himc_drum_release(drum);
+    }
+    himc_score_free(score);
+    if (good && source)
+        good = tell(performance, cli_is_take(source) ? "take" : "score", source, error);
+    if (good)
+        return performance;
+    himc_performance_free(performance);
+    return NULL;
+}
+
+static void play_block(himc_performance *performance, himc_osc *osc)
+{
+    char line[HIMC_OSC_LINE];
+    himc_event event;
+    double start = now();
+    himc_osc_receive(osc, performance, COMMANDS_A_BLOCK);
+    himc_performance_process(performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
+    while (himc_performance_event(performance, &event)) {
+        himc_osc_event(osc, &event);
+        if (event.kind == HIMC_EVENT_NOTE)
+            fprintf(stderr, "himc serve: %s\n", event.text);
+    }
+    himc_osc_publish(osc, performance, now() - start);
+    while (himc_osc_line(osc, line))
+        fprintf(stderr, "himc serve: %s\n", line);
+}
+
+/// What a run was like.
+typedef struct punctuality {
+    long blocks, late;       ///< ended after the next was due
+    double latest, given_up; ///< (s)
+} punctuality;
+
+static punctuality serve(himc_performance *performance, himc_osc *osc)
+{
+    punctuality p = {0};
+    double period = (double)BLOCK / RATE, due = now();
+    while (!stopped) {
+        sleep_until(due);
+        play_block(performance, osc);
+        due += period;
+        double behind = now() - due;
+        p.blocks++;
+        p.late += behind > 0;
+        p.latest = fmax(p.latest, behind);
+        if (behind > GIVE_UP) {
+            p.given_up += behind;
+            due += behind;
+        }
+    }
+    return p;
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    himc_osc_config config = himc_osc_default();
+    config.bind = arguments->value[BIND];
+    config.files = arguments->value[FILES];
+    config.allow = arguments->value[ALLOW];
+    if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, &error))
+        return cli_fail(&cli_serve, "%s", error.text);
+    himc_performance *performance = prepare(arguments->operand, &error);
+    himc_osc *osc = performance ? himc_osc_new(&config, &error) : NULL;
+    if (!osc) {
+        himc_performance_free(performance);
+        return cli_fail(&cli_serve, "%s", error.text);
+    }
+    struct sigaction action = {.sa_handler = stop};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    // where the system lets us, ahead of what has no deadline
+    sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &(struct sched_param){10});
+    himc_performance_on_tick(performance, himc_osc_tick, osc);
+    printf("listening at %s port %d\n", config.bind ? config.bind : "127.0.0.1",
+           himc_osc_port(osc));
+    fflush(stdout);
+    punctuality p = serve(performance, osc);
+    himc_osc_counts c = himc_osc_count(osc);
+    himc_osc_free(osc);
+    himc_performance_free(performance);
+    printf("{\"blocks\": %ld, \"late\": %ld, \"latest_ms\": %.3f, \"given_up_s\": %.3f, "
+           "\"packets\": %ld, \"commands\": %ld, \"malformed\": %ld, \"foreign\": %ld, "
+           "\"refused\": %ld, \"frequent\": %ld, \"overrun\": %ld, \"sent\": %ld, \"unsent\": %ld, "
+           "\"lost\": %ld}\n",
+           p.blocks, p.late, 1e3 * fmax(p.latest, 0), p.given_up, c.packets, c.commands,
+           c.malformed, c.foreign, c.refused, c.frequent, c.overrun, c.sent, c.unsent, c.lost);
+    return cli_finish(&cli_serve);
+}
+
+const cli_call cli_serve = {
+    "serve",
+    "[SOURCE]",
+    "",
+    "the physics manager alone, driven and heard over OSC",
+    "Loads a score or a take if one is given and waits: /himc/play begins,\n"
+    "/himc/subscribe 127.0.0.1 9001 pose sends the body there. SIGINT or SIGTERM ends it; the last line printed is one JSON object.",
+    options,
+    run,
+};
