@@ -40,7 +40,8 @@ himc_vec3 himc_place_normal(const himc_place *place)
 
 himc_vec3 himc_place_to_world(const himc_place *place, double x, double y)
 {
-    return himc_vec3_madd(himc_vec3_madd(place->center, x, himc_place_away(place)), y, head_y(place));
+    return himc_vec3_madd(himc_vec3_madd(place->center, x, himc_place_away(place)), y,
+                          head_y(place));
 }
 
 himc_vec3 himc_place_from_world(const himc_place *place, himc_vec3 point)

@@ -31,7 +31,8 @@ static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke
         if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
             continue;
         bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
-        double away = fabs(log(unit->speed / speed)) + 10 * elsewhere + 20 * (unit->grip != planner->grip);
+        double away =
+            fabs(log(unit->speed / speed)) + 10 * elsewhere + 20 * (unit->grip != planner->grip);
         if (away < least) {
             least = away;
             best = unit;

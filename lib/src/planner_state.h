@@ -72,7 +72,7 @@ struct himc_planner {
     double beat;   ///< where play begins or began
     bool loop;
     int rounds; ///< without loop: the last one to be played
-    double now;    ///< of the last advance (s)
+    double now; ///< of the last advance (s)
     himc_unit unit[HIMC_UNITS];
     int unit_count, grip;
     himc_planner_note note[PLANNER_NOTES];

@@ -41,7 +41,8 @@ double planner_turn(const himc_planner *planner)
 double himc_planner_next_start(const himc_planner *planner, double t)
 {
     double length = himc_planner_length(planner);
-    return planner->playing ? fmax(length, ceil(planner_beat_at(planner, t + PREPARATION))) : length;
+    return planner->playing ? fmax(length, ceil(planner_beat_at(planner, t + PREPARATION)))
+                            : length;
 }
 
 static void cut_both(himc_planner *planner, double t)
@@ -226,7 +227,8 @@ double himc_planner_end(const himc_planner *planner)
 {
     if (!planner->playing || (planner->loop && last_beat(planner) >= 0))
         return HUGE_VAL;
-    double end = planner->origin, begun = planner->rounds ? planner->rounds * planner_turn(planner) : 0;
+    double end = planner->origin,
+           begun = planner->rounds ? planner->rounds * planner_turn(planner) : 0;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_hand *h = &planner->hand[hand];
         if (h->count > 0)
