@@ -81,7 +81,7 @@ printf 'PathFileType\t4\t(X/Y/Z)\tcut.trc\nDataRate\tCameraRate\n' >cut.trc
 version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/himc.h")
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
-check test_help_lists_render_info_modes_only [ "$calls" = "render info modes " ]
+check test_help_lists_all_calls [ "$calls" = "render info modes serve " ]
 for call in render info modes; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
@@ -90,7 +90,7 @@ done
 # how it refuses what it is given
 refuses test_no_call_is_refused "allowed: render, info, modes"
 refuses test_unknown_call_is_refused '"play"' play
-refuses test_call_of_a_later_day_is_refused '"serve"' serve
+refuses test_call_of_a_later_day_is_refused '"evaluate"' evaluate
 refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
     render piece.txt -o x.wav --speed 2
 refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q

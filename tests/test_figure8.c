@@ -14,9 +14,9 @@
 static const char *const score[] = {"tempo 60",
                                     "stroke 1 right accent 0.55",
                                     "stroke 3 right accent 0.75",
-                                    "stroke 5 right vertical-accent 0.75",
-                                    "stroke 5.75 left accent 0.76",
-                                    "stroke 10 left accent 0.76",
+                                    "stroke 5 right vertical-accent 0.70",
+                                    "stroke 5.75 left accent 0.735",
+                                    "stroke 10 left accent 0.735",
                                     "play"};
 
 static himc_strike blow[BLOWS];

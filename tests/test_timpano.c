@@ -14,25 +14,28 @@ static himc_drum *drum;
 static himc_error error;
 static double sound[LENGTH], other[LENGTH];
 
-void setUp(void)
-{
-    error.text[0] = '\0';
-    drum = himc_drum_new("timpano", 23, RATE, &error);
-    TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
-}
-
-void tearDown(void)
-{
-    himc_drum_release(drum);
-    drum = NULL;
-}
-
 static void says(const char *text)
 {
     himc_command command;
     TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&command, HIMC_DRUM, text, &error) &&
                                  himc_drum_command(drum, &command, &error),
                              error.text);
+}
+
+void setUp(void)
+{
+    error.text[0] = '\0';
+    drum = himc_drum_new("timpano", 23, RATE, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
+    says("air 1");
+    says("tension 3122");
+    says("decay 0.5 0.0000003");
+}
+
+void tearDown(void)
+{
+    himc_drum_release(drum);
+    drum = NULL;
 }
 
 static bool refuses(const char *text)
@@ -70,7 +73,7 @@ static double peak(const double *x, int from, int to)
     return most;
 }
 
-static void test_timpano_is_made_at_e_flat_3_and_tunes_with_its_air(void)
+static void test_timpano_of_3122_newtons_a_metre_is_at_e_flat_3_and_tunes_with_its_air(void)
 {
     static const struct {
         const char *text;
@@ -227,7 +230,7 @@ static void test_timpano_with_a_hard_mallet_struck_hard_is_brighter(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_timpano_is_made_at_e_flat_3_and_tunes_with_its_air);
+    RUN_TEST(test_timpano_of_3122_newtons_a_metre_is_at_e_flat_3_and_tunes_with_its_air);
     RUN_TEST(test_timpano_decays_in_the_order_of_real_ones);
     RUN_TEST(test_timpano_without_air_is_the_ideal_membrane);
     RUN_TEST(test_timpano_pedals_from_a2_to_e3_without_a_step);

@@ -50,6 +50,18 @@ static bool confine(himc_osc *osc, himc_command *command, himc_error *error)
     return good;
 }
 
+// commands that name a file and have no business with one from the network
+static bool names_file(const himc_command *c)
+{
+    const char *word = c->count > 0 && c->atom[0].kind == HIMC_ATOM_SYMBOL ? c->atom[0].symbol : "";
+    switch (c->id) {
+    case HIMC_COMMAND_RECORD: return strcmp(word, "stop") != 0;
+    case HIMC_COMMAND_UNITS: return strcmp(word, "clear") != 0;
+    case HIMC_COMMAND_SHAPE: return strcmp(word, "circle") != 0 && strcmp(word, "rectangle") != 0;
+    default: return false;
+    }
+}
+
 // what a command costs of the 1000 a second; those that take long cost more
 static double cost_of(himc_command_id id)
 {
@@ -92,6 +104,8 @@ static void take_command(himc_osc *osc, osc_order *order)
         himc_osc_wish(osc, &wish);
     } else if (order->receiver == HIMC_PERFORMER && c->id == HIMC_COMMAND_LISTEN) {
         refuse(osc, &order->from, "listen: not over the network");
+    } else if (names_file(c)) {
+        refuse(osc, &order->from, "record, units and shapes from files: not over the network");
     } else if ((c->id == HIMC_COMMAND_SCORE || c->id == HIMC_COMMAND_TAKE) &&
                !confine(osc, c, &error)) {
         refuse(osc, &order->from, error.text);
