@@ -5,22 +5,22 @@
 
 #include "unity.h"
 
-#include <string.h>
+#include <stdio.h>
 
 #define RATE 48000
 #define BLOWS 5
 #define SECONDS 13
 
-static const char *const score[] = {"tempo 60",
-                                    "stroke 1 right accent 0.55",
-                                    "stroke 3 right accent 0.75",
-                                    "stroke 5 right vertical-accent 0.70",
-                                    "stroke 5.75 left accent 0.735",
-                                    "stroke 10 left accent 0.735",
-                                    "play"};
+static const char *const experiment[] = {"tempo 60",
+                                         "stroke 1 right accent 0.55",
+                                         "stroke 3 right accent 0.75",
+                                         "stroke 5 right vertical-accent 0.70",
+                                         "stroke 5.4 left accent 0.735",
+                                         "stroke 10 left accent 0.735",
+                                         "play"};
 
 static himc_strike blow[BLOWS];
-static double loudness[BLOWS]; // largest amplitude in the half second after each blow
+static double loudness[BLOWS]; // RMS amplitude in the half second after each blow
 static int blows;
 
 void setUp(void)
@@ -31,15 +31,15 @@ void tearDown(void)
 {
 }
 
-static double peak(const double *x, int n)
+static double rms(const double *x, int n)
 {
-    double most = 0;
+    double sum = 0;
     for (int i = 0; i < n; i++)
-        most = fmax(most, fabs(x[i]));
-    return most;
+        sum += x[i] * x[i];
+    return sqrt(sum / n);
 }
 
-static void play_experiment(void)
+static void play(const char *const *score, int lines, double seconds)
 {
     static double sound[RATE * SECONDS];
     himc_error error = {""};
@@ -48,21 +48,22 @@ static void play_experiment(void)
     himc_performance *p = himc_performance_new(&config, &error);
     himc_drum *drum = himc_drum_new("kettle", 23, RATE, &error);
     TEST_ASSERT_TRUE_MESSAGE(p && drum && himc_performance_add_drum(p, drum, &error), error.text);
-    for (size_t i = 0; i < sizeof score / sizeof *score; i++) {
+    for (int i = 0; i < lines; i++) {
         himc_command c;
         TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_PERFORMER, score[i], &error) &&
                                      himc_performance_command(p, &c, 0, &error),
                                  error.text);
     }
-    for (int at = 0; at < RATE * SECONDS; at += 480) {
+    for (int at = 0; at < (int)(RATE * seconds); at += 480) {
         himc_performance_process(p, 480, NULL);
         himc_drum_read(drum, (uint64_t)at, 480, sound + at, NULL);
     }
+    blows = 0;
     while (himc_performance_event(p, &event))
         if (event.kind == HIMC_EVENT_STRIKE && blows < BLOWS)
             blow[blows++] = event.strike;
     for (int i = 0; i < blows; i++)
-        loudness[i] = peak(sound + (int)(blow[i].time * RATE), RATE / 2);
+        loudness[i] = rms(sound + (int)(blow[i].time * RATE), RATE / 2);
     himc_drum_release(drum);
     himc_performance_free(p);
 }
@@ -74,12 +75,6 @@ static void test_sound_amplitude_rises_with_the_force_of_three_blows(void)
         TEST_ASSERT_TRUE(blow[i + 1].force > 1.2 * blow[i].force);
         TEST_ASSERT_TRUE(loudness[i + 1] > 1.2 * loudness[i]);
     }
-}
-
-static void test_equal_blow_sounds_louder_on_the_ringing_head(void)
-{
-    TEST_ASSERT_DOUBLE_WITHIN(0.05 * blow[4].force, blow[4].force, blow[3].force);
-    TEST_ASSERT_TRUE(loudness[3] > 1.03 * loudness[4]);
 }
 
 // a pivoting 45 g stick has 0.0245 .. 0.028 kg at its tip: the forces of the paper ask for about
@@ -94,12 +89,31 @@ static void test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives(vo
     }
 }
 
+// how much louder depends on how the head happens to stand when it is struck, so the blow falls at
+// eight instants spread over two periods of the principal mode; on average energies add
+static void test_equal_blow_sounds_louder_on_the_ringing_head(void)
+{
+    double calm = loudness[4], force = blow[4].force, ringing = 0;
+    for (int i = 0; i < 8; i++) {
+        char second[64];
+        snprintf(second, sizeof second, "stroke %.5f left accent 0.735", 1.4 + 0.001 * i);
+        const char *const score[] = {"tempo 60", "stroke 1 right vertical-accent 0.70", second,
+                                     "play"};
+        play(score, 4, 2.5);
+        TEST_ASSERT_EQUAL_INT(2, blows);
+        TEST_ASSERT_DOUBLE_WITHIN(0.10 * force, force, blow[1].force); // the head moves under it
+        ringing += loudness[1] / 8;
+    }
+    printf("ringing %g calm %g\n", ringing, calm);
+    TEST_ASSERT_TRUE(ringing > 1.03 * calm);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
-    play_experiment();
+    play(experiment, sizeof experiment / sizeof *experiment, SECONDS);
     RUN_TEST(test_sound_amplitude_rises_with_the_force_of_three_blows);
-    RUN_TEST(test_equal_blow_sounds_louder_on_the_ringing_head);
     RUN_TEST(test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives);
+    RUN_TEST(test_equal_blow_sounds_louder_on_the_ringing_head);
     return UNITY_END();
 }
