@@ -1,6 +1,7 @@
 /// test_figure8.c: the experiment of figure 8 of the 2012 paper: three blows of rising force,
 /// then two of equal force, one on the ringing head and one on a calm one. The paper's forces:
-/// 106.9 N the third, 65 N and 62.3 N the last two.
+/// 106.9 N the third, 65 N and 62.3 N the last two. Whether ringing and blow add at first depends
+/// on their phase: 0.65 s after the third blow they do, and they do on average.
 #include "himc/himc.h"
 
 #include "unity.h"
@@ -15,7 +16,7 @@ static const char *const score[] = {"tempo 60",
                                     "stroke 1 right accent 0.55",
                                     "stroke 3 right accent 0.75",
                                     "stroke 5 right vertical-accent 0.75",
-                                    "stroke 5.75 left accent 0.76",
+                                    "stroke 5.65 left accent 0.76",
                                     "stroke 10 left accent 0.76",
                                     "play"};
 
