@@ -21,7 +21,7 @@ check() {
 
 sed -n '/^```c$/,/^```$/p' docs/hello.md | sed '1d;$d' >"$dir/hello.c"
 check test_hello_compiles_without_warnings "$CC" -std=c17 -Wall -Wextra -Wpedantic -Werror -Ilib "$dir/hello.c" \
-    "$HIMC_BUILD/libhimc.a" -lode -lm -o "$dir/hello"
+    "$HIMC_BUILD/libhimc.a" -lode -llapacke -lm -o "$dir/hello"
 "$dir/hello" >"$dir/hello.raw" 2>"$dir/strikes"
 check test_hello_plays [ $? = 0 ]
 strokes=$(grep -o '"stroke [^"]*"' docs/hello.md | wc -l)
