@@ -1,5 +1,5 @@
-/// test_two_way.c: a free arm's stick on a head: physics at 10 kHz with the contact at 48 kHz inside,
-/// against one in which engine and contact step together at 480 kHz.
+/// test_two_way.c: a free arm's stick on a head: physics at 10 kHz with the contact at 48 kHz
+/// inside, against one in which engine and contact step together at 480 kHz.
 ///
 /// The arm has no torques: what is compared is the coupling alone (effective mass, micro-steps and
 /// the impulse given back in the same step), for soft felt to a rigid mallet.
@@ -78,7 +78,8 @@ static result strike(double k, double rate, int samples, int steps)
     himc_membrane *membrane = himc_membrane_new(&head, rate, &error);
     TEST_ASSERT_TRUE_MESSAGE(body && membrane, error.text);
     himc_body_state state = start;
-    himc_stick stick = {.head = {k, 2.54, 0, 0.03, 0.0175}, .x = -0.75 * head.radius}, *one = &stick;
+    himc_stick stick = {.head = {k, 2.54, 0, 0.03, 0.0175}, .x = -0.75 * head.radius},
+               *one = &stick;
     himc_character_place(body, &start);
     double offset = 0;
     int played = 0;

@@ -8,11 +8,11 @@
 /// Weyl's law counts the modes below z: z^2/4 - z/2 (pairs twice), so the table ends at 1 + sqrt(1
 /// + 4 count) and a little more (H. Weyl 1911; the second term is the rim's).
 ///
-/// The default head. 23 inches, Christian et al.'s Mylar, and 3528 N/m: in air its principal mode is
-/// E3 (164.8 Hz), in the lower half of such a timpano's range, and a mallet of 45 g meets 65 N
+/// The default head. 23 inches, Christian et al.'s Mylar, and 3528 N/m: in air its principal mode
+/// is E3 (164.8 Hz), in the lower half of such a timpano's range, and a mallet of 45 g meets 65 N
 /// at 3.7 m/s and 114 N at 6 m/s, about the forces the 2012 paper reports (62 .. 65 and 107 N).
-/// Decay: what the air carries away (air.c), a viscoelastic film's eta omega^2/2 with eta = 0.6e-6 s
-/// (Rhaouti, Chaigne & Joly 1999), and 0.5 1/s for the rest.
+/// Decay: what the air carries away (air.c), a viscoelastic film's eta omega^2/2 with eta = 0.6e-6
+/// s (Rhaouti, Chaigne & Joly 1999), and 0.5 1/s for the rest.
 #include "himc/modes.h"
 
 #include "bessel.h"
@@ -33,14 +33,14 @@ typedef struct zero {
 struct himc_modes {
     himc_shape shape;
     outline_mode *outline; // (count), unless round; then nothing below is used
-    int count;      // modes
-    int zero_count; // zeros used by them
-    int top;        // largest order used
-    int columns;    // grid points
-    zero *zeros;    // sorted
-    int *first;     // (zero_count) index of the zero's first mode
-    int *of;        // (count) zero of a mode
-    double *table;  // (top + 1, columns, 2) J and J'/STEPS
+    int count;             // modes
+    int zero_count;        // zeros used by them
+    int top;               // largest order used
+    int columns;           // grid points
+    zero *zeros;           // sorted
+    int *first;            // (zero_count) index of the zero's first mode
+    int *of;               // (count) zero of a mode
+    double *table;         // (top + 1, columns, 2) J and J'/STEPS
 };
 
 himc_head himc_head_default(void)

@@ -90,7 +90,8 @@ static void glissando(player *p)
     say(p, "strike -0.219 0 5");
     play(p, 0.5);
     for (int i = 0; i < 200; i++) {
-        say_number(p, "tune %.6f", 146.832 * pow(2, 7 / 12.0 * (i < 140 ? i / 140.0 : (200 - i) / 60.0)));
+        say_number(p, "tune %.6f",
+                   146.832 * pow(2, 7 / 12.0 * (i < 140 ? i / 140.0 : (200 - i) / 60.0)));
         if (i == 100)
             say(p, "strike -0.219 0 4");
         play(p, 0.01);
@@ -100,7 +101,8 @@ static void glissando(player *p)
 
 static void mallets(player *p)
 {
-    static const char *const names[] = {"mallet soft", "mallet medium", "mallet hard", "mallet wood"};
+    static const char *const names[] = {"mallet soft", "mallet medium", "mallet hard",
+                                        "mallet wood"};
     for (int i = 0; i < 4; i++) {
         say(p, names[i]);
         say(p, "strike -0.219 0 4");
@@ -128,8 +130,7 @@ int main(int count, char **argument)
     static const struct {
         const char *name;
         void (*make)(player *);
-    } pieces[] = {
-        {"scale", scale}, {"roll", roll}, {"glissando", glissando}, {"mallets", mallets}};
+    } pieces[] = {{"scale", scale}, {"roll", roll}, {"glissando", glissando}, {"mallets", mallets}};
     if (count != 2)
         fail("takes a folder");
     for (int i = 0; i < 4; i++) {
