@@ -191,10 +191,10 @@ static double node_slope(double before, double after)
     return before * after > 0 ? 2 * before * after / (before + after) : 0;
 }
 
+// at an end the lesser of the two nearest: what lies beyond must not run away
 static double end_slope(double at, double beside)
 {
-    double slope = 1.5 * at - 0.5 * beside;
-    return slope * at <= 0 ? 0 : fabs(slope) > 3 * fabs(at) ? 3 * at : slope;
+    return at * beside <= 0 ? 0 : fabs(at) < fabs(beside) ? at : beside;
 }
 
 // a row of the table at node + t, with `rise` a node added so that frequencies are monotone, and

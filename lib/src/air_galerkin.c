@@ -9,8 +9,9 @@
 ///     A_in = sum_s C_s C_s'/n_s coth(mu L/a)/mu,   mu^2 = beta_s^2 - x^2
 /// (above cut-off, for imaginary mu, -cot(|mu| L/a)/|mu|)
 /// with the Hankel transform W_n(kap) = alpha_n J_{m+1}(alpha_n) J_m(kap)/(alpha_n^2 - kap^2)
-/// (Morse & Ingard 1968; the drum is that of Christian et al. 1984). For m = 0 the uniform cavity mode is a spring, K = x C C' 2 cot(x L/a), and stands
-/// beside the tension: as a mass it would be negative.
+/// (Morse & Ingard 1968; the drum is that of Christian et al. 1984). For m = 0 the uniform cavity
+/// mode is a spring, K = x C C' 2 cot(x L/a), and stands beside the tension: as a mass it would be
+/// negative.
 ///
 /// A's poles are the kettle's own resonances, x^2 = beta_s^2 + (q pi a/L)^2. Between two of them
 /// the eigenvalues of the real part of D(x) fall as x grows (Foster 1924), so sign changes between
