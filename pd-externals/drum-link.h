@@ -1,11 +1,13 @@
 /* drum-link.h: how [membrane~ NAME] and [himc~ NAME] meet, and what both do alike.
 
-A [membrane~] binds itself to the symbol "himc:NAME". [himc~] looks there, makes sure by class name, magic word and
-sizes that it found what it thinks, and takes the drum behind it. The two are separate binaries, each with its own
-hidden copy of libhimc: they share data through pointers, and no statics.
+A [membrane~] binds itself to the symbol "himc:NAME". [himc~] looks there, makes sure by class
+name, magic word, size and version that it found what it thinks, and takes the drum behind it. The
+two are separate binaries, each with its own hidden copy of libhimc: they share data through
+pointers, and no statics.
 
-Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The engine, a drum or
-a performance, counts in the same way; whoever comes first in a tick brings it forward, the other reads its ring. */
+Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The
+engine, a drum or a performance, counts in the same way; whoever comes first in a tick brings it
+forward, the other reads its ring. */
 #ifndef DRUM_LINK_H
 #define DRUM_LINK_H
 
@@ -22,7 +24,7 @@ a performance, counts in the same way; whoever comes first in a tick brings it f
 /* What a drum's object shows, right behind its t_object. */
 typedef struct t_drum_link {
     uint32_t l_magic;
-    uint32_t l_size;                 /* of this struct */
+    uint32_t l_size;                /* of this struct */
     char l_version[HIMC_NAME_SIZE]; /* of the library that made the drum */
     himc_drum *l_drum;
     double l_rate; /* the drum runs at this sample rate; kept by whoever drives it (Hz) */
@@ -53,6 +55,12 @@ static inline t_drum_link *drum_link_find(const char *name)
     return same ? link : NULL;
 }
 
+/* What a [himc~] gives a drum as its performer: [membrane~] can see how far it has played. */
+typedef struct t_player {
+    void *p_himc;
+    uint64_t p_time; /* of the performance; the head may be a few samples ahead (samples) */
+} t_player;
+
 /* An object's place in the stream of samples. */
 typedef struct t_stream {
     int s_length;     /* of a block (samples) */
@@ -62,7 +70,7 @@ typedef struct t_stream {
     double s_start;   /* logical time at which the next block starts */
 } t_stream;
 
-/* Samples of logical time since the last block ended; 0 when DSP is off or the object switched off. */
+/* Samples of logical time since the last block ended; 0 when DSP or the object is off. */
 static inline double stream_offset(const t_stream *s)
 {
     double limit = s->s_length > sys_getblksize() ? s->s_length : sys_getblksize();
@@ -80,11 +88,12 @@ static inline void stream_restart(t_stream *s, const t_signal *sp)
         s->s_start = clock_getlogicaltime();
 }
 
-/* Called first in a perform routine. After a time switched off, [switch~], the object rejoins the engine, which
-may have gone on without it, with the lag it had; otherwise it just goes on. */
+/* Called first in a perform routine. After a time switched off, [switch~], the object rejoins the
+engine, which may have gone on without it, with the lag it had; otherwise it just goes on. */
 static inline void stream_begin(t_stream *s, uint64_t engine)
 {
-    bool away = clock_gettimesince(s->s_start) * 0.001 * s->s_rate > 1.5 * (s->s_length + sys_getblksize());
+    bool away =
+        clock_gettimesince(s->s_start) * 0.001 * s->s_rate > 1.5 * (s->s_length + sys_getblksize());
     if (away && engine > s->s_count + s->s_lag)
         s->s_count = engine - s->s_lag;
     else if (engine >= s->s_count)
@@ -97,17 +106,20 @@ static inline void stream_end(t_stream *s)
     s->s_start = clock_getlogicaltime();
 }
 
-/* Samples from where the engine is to where a message that arrives now belongs (PD messages come between blocks
-but have a time of their own). An engine that was pulled ahead by a longer block can only take it at once. */
+#define STREAM_LONGEST_DELAY 8192 /* that the engine takes (samples) */
+
+/* Samples from where the engine is to where a message that arrives now belongs: messages come
+between blocks but have a time of their own. An engine that a longer block has pulled ahead can only
+take it at once. */
 static inline int stream_delay(const t_stream *s, uint64_t engine)
 {
     double delay = (double)s->s_count + stream_offset(s) - (double)engine;
-    return delay > 0 ? (int)lround(delay) : 0;
+    return (int)lround(fmin(fmax(delay, 0), STREAM_LONGEST_DELAY));
 }
 
 /* A Pd message as a checked command. `list stroke ...` is taken as `stroke ...`. */
-static inline bool command_from_pd(himc_command *command, himc_receiver receiver, t_symbol *s, int argc,
-                                   const t_atom *argv, himc_error *error)
+static inline bool command_from_pd(himc_command *command, himc_receiver receiver, t_symbol *s,
+                                   int argc, const t_atom *argv, himc_error *error)
 {
     himc_atom atom[2 * HIMC_COMMAND_ATOMS]; /* more than any command has: the parser says so */
     int count = 0;
@@ -120,13 +132,14 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
         if (a->a_type == A_FLOAT)
             atom[count] = (himc_atom){HIMC_ATOM_NUMBER, a->a_w.w_float, NULL};
         else
-            atom[count] = (himc_atom){HIMC_ATOM_SYMBOL, 0,
-                                      a->a_type == A_SYMBOL ? a->a_w.w_symbol->s_name : "(pointer)"};
+            atom[count] = (himc_atom){
+                HIMC_ATOM_SYMBOL, 0, a->a_type == A_SYMBOL ? a->a_w.w_symbol->s_name : "(pointer)"};
     }
     return himc_command_parse(command, receiver, s->s_name, atom, count, error);
 }
 
-/* Sends `selector` and the words of `line` as one message; commas and semicolons mean something else in Pd. */
+/* Sends `selector` and the words of `line` as one message, without commas and semicolons, which
+mean something else in Pd. */
 static inline void outlet_words(t_outlet *outlet, const char *selector, const char *line)
 {
     char text[MAXPDSTRING];

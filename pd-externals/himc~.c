@@ -1,14 +1,14 @@
-/* [himc~ DRUM ...]: the performer, a simulated percussionist who strikes the drums [membrane~ DRUM].
+/* [himc~ DRUM ...]: the performer, a simulated percussionist who strikes [membrane~ DRUM].
 
-inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h has the table)
+inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          beat N   done   info ...
 
-Glue only: commands go to a himc_performance with the sample on which they arrived; each block brings it forward and puts
-out what the sticks felt. A [membrane~] that comes earlier in the tick asks for its sound first and so brings the
-performance forward itself (himc_tilde_advance), so the forces wait in a ring. Nothing is sent from perform: a clock does,
-at the start of the next tick. */
+Glue only: commands go to a himc_performance with the sample on which they arrived; each block
+brings it forward and puts out what the sticks felt. A [membrane~] that comes earlier in the tick
+asks for its sound first and so brings the performance forward itself (himc_tilde_advance); so the
+forces wait in a ring. Nothing is sent from perform: a clock does, at the start of the next tick. */
 #include "drum-link.h"
 
 #define FORCE_RING HIMC_DRUM_RING
@@ -29,6 +29,7 @@ typedef struct t_himc {
     t_outlet *x_messages;
 
     himc_performance *x_performance;
+    t_player x_player;
     double x_rate; /* of the performance (Hz) */
     int x_count;
     t_himc_drum x_drum[HIMC_DRUMS];
@@ -41,16 +42,17 @@ typedef struct t_himc {
     himc_event x_event;
 } t_himc;
 
-/* Brings the performance to sample `time`, whoever needs it: x's perform or that of one of its drums. */
-static void himc_tilde_advance(void *object, uint64_t time)
+/* Brings the performance to sample `time`, for x's own perform or that of one of its drums. */
+static void himc_tilde_advance(void *player, uint64_t time)
 {
-    t_himc *x = object;
+    t_himc *x = ((t_player *)player)->p_himc;
     for (uint64_t now; (now = himc_performance_time(x->x_performance)) < time;) {
         uint64_t at = now % FORCE_RING;
         uint64_t n = time - now < FORCE_RING - at ? time - now : FORCE_RING - at;
         double *force[HIMC_HANDS] = {x->x_force[HIMC_LEFT] + at, x->x_force[HIMC_RIGHT] + at};
         himc_performance_process(x->x_performance, (int)n, force);
     }
+    x->x_player.p_time = himc_performance_time(x->x_performance);
     if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
         x->x_waiting = true;
         clock_delay(x->x_clock, 0);
@@ -62,7 +64,7 @@ static t_int *himc_tilde_perform(t_int *w)
     t_himc *x = (t_himc *)w[1];
     t_stream *s = &x->x_stream;
     stream_begin(s, himc_performance_time(x->x_performance));
-    himc_tilde_advance(x, s->s_count + (uint64_t)s->s_length);
+    himc_tilde_advance(&x->x_player, s->s_count + (uint64_t)s->s_length);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < s->s_length; i++)
             x->x_out[hand][i] = (t_sample)x->x_force[hand][(s->s_count + (uint64_t)i) % FORCE_RING];
@@ -73,7 +75,7 @@ static t_int *himc_tilde_perform(t_int *w)
 
 static void himc_tilde_let_go(t_himc *x, const t_himc_drum *d)
 {
-    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == x)
+    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == &x->x_player)
         himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
 }
 
@@ -82,7 +84,7 @@ static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_err
 {
     if (!himc_performance_add_drum(x->x_performance, drum, error))
         return false;
-    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, x});
+    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, &x->x_player});
     d->d_drum = drum;
     return true;
 }
@@ -96,7 +98,7 @@ static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error
         return NULL;
     }
     void *performer = himc_drum_get_driver(link->l_drum).performer;
-    if (performer && performer != x) {
+    if (performer && performer != &x->x_player) {
         himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);
         return NULL;
     }
@@ -138,7 +140,8 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
     himc_error error;
     if (sp[0]->s_n > FORCE_RING) {
         pd_error(x, "himc~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, FORCE_RING);
-    } else if (sp[0]->s_sr != x->x_rate && !himc_performance_set_rate(x->x_performance, sp[0]->s_sr, &error)) {
+    } else if (sp[0]->s_sr != x->x_rate &&
+               !himc_performance_set_rate(x->x_performance, sp[0]->s_sr, &error)) {
         pd_error(x, "himc~: %s", error.text);
     } else {
         x->x_rate = sp[0]->s_sr;
@@ -147,6 +150,7 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         stream_restart(&x->x_stream, sp[0]);
         himc_tilde_resolve(x, true);
         himc_performance_realign(x->x_performance);
+        x->x_player.p_time = 0;
         dsp_add(himc_tilde_perform, 1, x);
         return;
     }
@@ -174,12 +178,8 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
         SETFLOAT(atom, (t_float)event->beat);
         outlet_anything(x->x_messages, gensym("beat"), 1, atom);
         break;
-    case HIMC_EVENT_DONE:
-        outlet_anything(x->x_messages, gensym("done"), 0, NULL);
-        break;
-    case HIMC_EVENT_NOTE:
-        logpost(x, PD_NORMAL, "himc~: %s", event->text);
-        break;
+    case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
+    case HIMC_EVENT_NOTE: logpost(x, PD_NORMAL, "himc~: %s", event->text); break;
     }
 }
 
@@ -194,15 +194,18 @@ static void himc_tilde_tick(t_himc *x)
 }
 
 /* Pd's own way to a file: absolute, beside the patch, or along its search path. */
-static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size, himc_error *error)
+static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size,
+                              himc_error *error)
 {
     char folder[MAXPDSTRING], *base;
     int file = canvas_open(x->x_canvas, name, "", folder, &base, MAXPDSTRING, 0);
     if (file < 0)
-        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path", name);
+        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path",
+                              name);
     sys_close(file);
     if ((size_t)snprintf(path, size, "%s/%s", folder, base) >= size)
-        return himc_error_set(error, "%s: its full name is longer than %zu characters", name, size - 1);
+        return himc_error_set(error, "%s: its full name is longer than %zu characters", name,
+                              size - 1);
     return true;
 }
 
@@ -221,12 +224,12 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return true;
     }
     if (command.id == HIMC_COMMAND_SCORE || command.id == HIMC_COMMAND_TAKE) {
-        char path[HIMC_PATH_SIZE];
-        if (!himc_tilde_locate(x, command.atom[0].symbol, path, sizeof path, error))
-            return himc_error_prefix(error, "%s", command.id == HIMC_COMMAND_SCORE ? "score" : "take");
-        himc_atom atom = {HIMC_ATOM_SYMBOL, 0, path};
         const char *name = command.id == HIMC_COMMAND_SCORE ? "score" : "take";
-        if (!himc_command_parse(&command, HIMC_PERFORMER, name, &atom, 1, error))
+        char path[HIMC_PATH_SIZE];
+        himc_atom file = {HIMC_ATOM_SYMBOL, 0, path};
+        if (!himc_tilde_locate(x, command.atom[0].symbol, path, sizeof path, error))
+            return himc_error_prefix(error, "%s", name);
+        if (!himc_command_parse(&command, HIMC_PERFORMER, name, &file, 1, error))
             return false;
     }
     /* a command may come before DSP is on, and its drums should be there */
@@ -251,8 +254,9 @@ static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error
         char text[80];
         atom_string(argv + i, text, sizeof text);
         if (argv[i].a_type != A_SYMBOL || strlen(text) >= HIMC_NAME_SIZE)
-            return himc_error_set(error, "argument %d: %s, allowed: a drum's name of up to %d characters", i + 1, text,
-                                  HIMC_NAME_SIZE - 1);
+            return himc_error_set(error,
+                                  "argument %d: %s, allowed: a drum's name of up to %d characters",
+                                  i + 1, text, HIMC_NAME_SIZE - 1);
         for (int k = 0; k < i; k++)
             if (argv[k].a_w.w_symbol == argv[i].a_w.w_symbol)
                 return himc_error_set(error, "argument %d: %s is named twice", i + 1, text);
@@ -277,6 +281,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_canvas = canvas_getcurrent();
     x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
     x->x_performance = performance;
+    x->x_player.p_himc = x;
     x->x_rate = config.sample_rate;
     x->x_count = argc;
     for (int i = 0; i < argc; i++)
@@ -300,8 +305,9 @@ __attribute__((visibility("default"))) void himc_tilde_setup(void);
 
 void himc_tilde_setup(void)
 {
-    himc_tilde_class = class_new(gensym("himc~"), (t_newmethod)himc_tilde_new, (t_method)himc_tilde_free,
-                                 sizeof(t_himc), CLASS_DEFAULT, A_GIMME, A_NULL);
+    himc_tilde_class =
+        class_new(gensym("himc~"), (t_newmethod)himc_tilde_new, (t_method)himc_tilde_free,
+                  sizeof(t_himc), CLASS_DEFAULT, A_GIMME, A_NULL);
     if (!himc_tilde_class)
         return; /* a Pd of another float size has refused it and said so */
     class_addmethod(himc_tilde_class, (t_method)himc_tilde_dsp, gensym("dsp"), A_CANT, A_NULL);

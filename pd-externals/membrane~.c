@@ -1,17 +1,17 @@
-/* [membrane~ NAME [INCHES]]: a drum: a modal membrane that [himc~ NAME] strikes, or a force signal, or messages.
+/* [membrane~ NAME [INCHES]]: a drum: a membrane that [himc~ NAME], a signal or a message strikes.
 
-inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ... (himc/command.h has the
-         table); x and y of the spot (m from the head's centre, x away from the performer, signal or float)
+inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
+         (himc/command.h); x and y of the spot (m from the head's centre, x away from the
+         performer, signal or float)
 outlets  sound, displacement under the spot (m), messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
          info ...
 
-Glue only. Without a performer the object advances its drum itself. With one, the performer steps head and sticks together,
-and may have done so before the inlet's force for those samples is known; so that force plays on a second head of the
-same make (the layer). A membrane is linear: the sum is the sound of both, except that sticks do not feel the inlet. */
+Glue only. Without a performer the object advances its drum itself. With one, the performer steps
+head and sticks together, so the inlet's force plays on a second head beside it (layer.h), and the
+displacement outlet follows x and y from block to block. */
 #include "drum-link.h"
-
-#define CHUNK 64 /* samples at a time, on the stack of the perform routine */
+#include "layer.h"
 
 static t_class *membrane_class;
 
@@ -23,8 +23,7 @@ typedef struct t_membrane {
     t_clock *x_clock;
     t_outlet *x_messages;
 
-    himc_membrane *x_layer; /* plays the inlet's force while a performer plays the drum */
-    bool x_layer_sounds;    /* it has felt a force */
+    t_layer x_layer; /* plays the inlet's force while a performer plays the drum */
 
     t_stream x_stream;
     t_sample *x_in[3];
@@ -37,6 +36,8 @@ typedef struct t_membrane {
     bool x_told;    /* of either, since the graph was built */
 } t_membrane;
 
+_Static_assert(offsetof(t_membrane, x_link) == sizeof(t_object), "[himc~] looks for it there");
+
 /* What is not a number counts as 0, and is counted. */
 static double membrane_number(t_membrane *x, t_sample value)
 {
@@ -46,51 +47,16 @@ static double membrane_number(t_membrane *x, t_sample value)
     return 0;
 }
 
-/* Adds what the force from the inlet makes of the layer. */
-static void membrane_layer(t_membrane *x, int n, double in[3][CHUNK], double out[2][CHUNK])
-{
-    double heard[CHUNK], seen[CHUNK];
-    for (int i = 0; i < n && !x->x_layer_sounds; i++)
-        x->x_layer_sounds = in[0][i] != 0;
-    if (!x->x_layer_sounds)
-        return;
-    himc_membrane_watch(x->x_layer, in[1][0], in[2][0]);
-    for (int i = 0, run; i < n; i += run) {
-        for (run = 1; i + run < n && in[0][i + run] == 0;)
-            run++;
-        if (in[0][i] != 0)
-            himc_membrane_push(x->x_layer, in[1][i], in[2][i], in[0][i]);
-        himc_membrane_run(x->x_layer, run, heard + i, seen + i);
-    }
-    for (int i = 0; i < n; i++) {
-        out[0][i] += heard[i];
-        out[1][i] += seen[i];
-    }
-}
-
-/* Whether the layer is made and heard as the drum is. */
-static bool membrane_layer_fits(const t_membrane *x)
-{
-    himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
-    const himc_head *a = himc_membrane_head(drum), *b = himc_membrane_head(x->x_layer);
-    const himc_pickup *p = himc_membrane_pickup(drum), *q = himc_membrane_pickup(x->x_layer);
-    return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
-           a->decay_constant == b->decay_constant && a->decay_square == b->decay_square && a->modes == b->modes &&
-           p->kind == q->kind && p->x == q->x && p->y == q->y && p->azimuth == q->azimuth &&
-           p->elevation == q->elevation && p->distance == q->distance;
-}
-
-/* Setting a head may allocate: from a clock, never from perform. */
+/* Setting the layer may allocate: never from perform. */
 static void membrane_fit_layer(t_membrane *x)
 {
     himc_error error;
-    himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
-    if (!himc_membrane_set_head(x->x_layer, himc_membrane_head(drum), &error) ||
-        !himc_membrane_set_pickup(x->x_layer, himc_membrane_pickup(drum), &error))
+    if (!layer_fit(&x->x_layer, himc_drum_membrane(x->x_link.l_drum), &error))
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
-static void membrane_play(t_membrane *x, int n, double in[3][CHUNK], double out[2][CHUNK])
+static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
+                          double out[2][LAYER_CHUNK])
 {
     himc_drum *drum = x->x_link.l_drum;
     himc_drum_driver driver = himc_drum_get_driver(drum);
@@ -101,7 +67,7 @@ static void membrane_play(t_membrane *x, int n, double in[3][CHUNK], double out[
         himc_membrane_watch(himc_drum_membrane(drum), in[1][0], in[2][0]);
         driver.advance_to(driver.performer, x->x_stream.s_count + (uint64_t)n);
         himc_drum_read(drum, x->x_stream.s_count, n, out[0], out[1]);
-        membrane_layer(x, n, in, out);
+        layer_play(&x->x_layer, n, in, out);
     } else {
         himc_drum_advance(drum, n, NULL, 0, NULL, in[0], in[1], in[2]);
         himc_drum_read(drum, x->x_stream.s_count, n, out[0], out[1]);
@@ -118,10 +84,11 @@ static bool membrane_troubled(const t_membrane *x)
 static t_int *membrane_perform(t_int *w)
 {
     t_membrane *x = (t_membrane *)w[1];
-    double in[3][CHUNK], out[2][CHUNK];
-    stream_begin(&x->x_stream, himc_drum_time(x->x_link.l_drum));
+    double in[3][LAYER_CHUNK], out[2][LAYER_CHUNK];
+    const t_player *player = himc_drum_get_driver(x->x_link.l_drum).performer;
+    stream_begin(&x->x_stream, player ? player->p_time : himc_drum_time(x->x_link.l_drum));
     for (int done = 0, n; done < x->x_stream.s_length; done += n) {
-        n = x->x_stream.s_length - done < CHUNK ? x->x_stream.s_length - done : CHUNK;
+        n = x->x_stream.s_length - done < LAYER_CHUNK ? x->x_stream.s_length - done : LAYER_CHUNK;
         /* all inlets are read before an outlet is written: they may be the same memory */
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < n; i++)
@@ -134,7 +101,8 @@ static t_int *membrane_perform(t_int *w)
     stream_end(&x->x_stream);
     if (!x->x_waiting)
         x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
-    if (x->x_waiting || membrane_troubled(x) || !membrane_layer_fits(x))
+    if (x->x_waiting || membrane_troubled(x) ||
+        !layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
         clock_delay(x->x_clock, 0);
     return w + 2;
 }
@@ -144,8 +112,9 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
     himc_error error;
     bool driven = himc_drum_get_driver(x->x_link.l_drum).performer != NULL;
     if (sp[0]->s_n > HIMC_DRUM_RING) {
-        pd_error(x, "membrane~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, HIMC_DRUM_RING);
-    } else if (!himc_membrane_set_rate(x->x_layer, sp[0]->s_sr, &error) ||
+        pd_error(x, "membrane~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n,
+                 HIMC_DRUM_RING);
+    } else if (!himc_membrane_set_rate(x->x_layer.l_membrane, sp[0]->s_sr, &error) ||
                (!driven && !himc_drum_set_rate(x->x_link.l_drum, sp[0]->s_sr, &error))) {
         pd_error(x, "membrane~: %s", error.text);
     } else {
@@ -159,6 +128,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
             himc_drum_realign(x->x_link.l_drum, 0);
         }
         x->x_told = false;
+        membrane_fit_layer(x);
         dsp_add(membrane_perform, 1, x);
         return;
     }
@@ -168,7 +138,8 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
 
 static void membrane_send(t_membrane *x, const himc_contact_report *report)
 {
-    const double value[] = {report->time, report->x, report->y, report->velocity, report->force, report->duration};
+    const double value[] = {report->time,     report->x,     report->y,
+                            report->velocity, report->force, report->duration};
     t_atom atom[6];
     for (int i = 0; i < 6; i++)
         SETFLOAT(atom + i, (t_float)value[i]);
@@ -179,13 +150,13 @@ static void membrane_tick(t_membrane *x)
 {
     const char *name = himc_drum_name(x->x_link.l_drum);
     if (membrane_troubled(x) && x->x_apart)
-        pd_error(x, "membrane~: %s: silent at %g Hz, for [himc~] plays it at %g Hz", name, x->x_stream.s_rate,
-                 x->x_link.l_rate);
+        pd_error(x, "membrane~: %s: silent at %g Hz, for [himc~] plays it at %g Hz", name,
+                 x->x_stream.s_rate, x->x_link.l_rate);
     else if (membrane_troubled(x))
-        pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0", name);
+        pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0",
+                 name);
     x->x_told |= membrane_troubled(x);
-    if (!membrane_layer_fits(x))
-        membrane_fit_layer(x);
+    membrane_fit_layer(x);
     while (x->x_waiting) {
         /* what is sent may come back as a command, so the state is written first */
         himc_contact_report report = x->x_report;
@@ -216,7 +187,10 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
                                    command.atom[2].number, error);
     }
-    return himc_drum_command(drum, &command, error);
+    if (!himc_drum_command(drum, &command, error))
+        return false;
+    membrane_fit_layer(x);
+    return true;
 }
 
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
@@ -229,13 +203,15 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
 }
 
 /* NAME and INCHES, both optional: without a name no performer finds it. */
-static bool membrane_arguments(int argc, const t_atom *argv, const char **name, double *inches, himc_error *error)
+static bool membrane_arguments(int argc, const t_atom *argv, const char **name, double *inches,
+                               himc_error *error)
 {
     char text[80] = "";
     if (argc > 0)
         atom_string(argv, text, sizeof text);
     if (argc > 0 && argv[0].a_type != A_SYMBOL)
-        return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 23]", text);
+        return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 23]",
+                              text);
     if (argc > 0)
         *name = argv[0].a_w.w_symbol->s_name;
     if (argc > 1)
@@ -251,7 +227,9 @@ static void membrane_bind(t_membrane *x, const char *name)
 {
     t_symbol *symbol = drum_link_symbol(name);
     if (symbol->s_thing) {
-        pd_error(x, "membrane~: %s: there is one of this name already: no [himc~] will find this one", name);
+        pd_error(x,
+                 "membrane~: %s: there is one of this name already: no [himc~] will find this one",
+                 name);
         return;
     }
     pd_bind(&x->x_obj.ob_pd, symbol);
@@ -265,12 +243,13 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     const char *name = NULL;
     double inches = 23, rate = sys_getsr();
     himc_drum *drum = NULL;
-    himc_membrane *layer = NULL;
+    t_layer layer = {NULL, false};
     if (membrane_arguments(argc, argv, &name, &inches, &error))
         drum = himc_drum_new(name ? name : "nameless", inches, rate, &error);
     if (drum)
-        layer = himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, &error);
-    if (!layer) {
+        layer.l_membrane =
+            himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, &error);
+    if (!layer.l_membrane) {
         himc_drum_release(drum);
         pd_error(NULL, "membrane~: %s", error.text);
         return NULL;
@@ -298,7 +277,7 @@ static void membrane_free(t_membrane *x)
         pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
-    himc_membrane_free(x->x_layer);
+    himc_membrane_free(x->x_layer.l_membrane);
     clock_free(x->x_clock);
 }
 
@@ -307,8 +286,9 @@ __attribute__((visibility("default"))) void membrane_tilde_setup(void);
 
 void membrane_tilde_setup(void)
 {
-    membrane_class = class_new(gensym(DRUM_LINK_CLASS), (t_newmethod)membrane_new, (t_method)membrane_free,
-                               sizeof(t_membrane), CLASS_DEFAULT, A_GIMME, A_NULL);
+    membrane_class =
+        class_new(gensym(DRUM_LINK_CLASS), (t_newmethod)membrane_new, (t_method)membrane_free,
+                  sizeof(t_membrane), CLASS_DEFAULT, A_GIMME, A_NULL);
     if (!membrane_class)
         return; /* a Pd of another float size has refused it and said so */
     CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);

@@ -1,4 +1,5 @@
-/// test_invdyn.c: inverse and forward dynamics are mirrors; both against statics by hand and differences of motion.
+/// test_invdyn.c: inverse and forward dynamics are mirrors; both against statics by hand and
+/// differences of motion.
 #include "himc/invdyn.h"
 #include "himc/posture.h"
 
@@ -166,8 +167,8 @@ static double energy(const himc_body_state *s, const himc_vec3 *earlier, const h
         const himc_segment *segment = &skeleton.segment[i];
         himc_vec3 v = himc_vec3_scale(himc_vec3_sub(later[i], earlier[i]), 0.5 / h);
         himc_vec3 w = himc_mat3_apply_transposed(&s->rotation[i], s->spin[i]);
-        himc_vec3 c = himc_vec3_add(s->origin[i],
-                                    himc_mat3_apply(&s->rotation[i], segment->center));
+        himc_vec3 c =
+            himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], segment->center));
         sum += 0.5 * segment->mass * himc_vec3_dot(v, v) + segment->mass * 9.80665 * c.z;
         sum += 0.5 * (segment->inertia.x * w.x * w.x + segment->inertia.y * w.y * w.y +
                       segment->inertia.z * w.z * w.z);
@@ -176,7 +177,8 @@ static double energy(const himc_body_state *s, const himc_vec3 *earlier, const h
 }
 
 // a time t further on: each segment's spin and angular acceleration kept constant in the world
-static void carried(const himc_body_state *s, const himc_vec3 *alpha, double t, himc_body_state *out)
+static void carried(const himc_body_state *s, const himc_vec3 *alpha, double t,
+                    himc_body_state *out)
 {
     *out = *s;
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
@@ -214,7 +216,8 @@ static double energy_after(const himc_body_state *s, const himc_vec3 *alpha, dou
     return energy(&at, c0, c1, h);
 }
 
-// power of the torques = change of kinetic and potential energy, differentiated numerically: independent of both modules
+// power of the torques = change of kinetic and potential energy, differentiated numerically:
+// independent of both modules
 static void test_power_of_the_torques_is_the_change_of_energy(void)
 {
     for (int n = 0; n < 50; n++) {

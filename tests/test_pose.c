@@ -59,7 +59,8 @@ static void test_zero_pose_stands_with_arms_and_sticks_hanging(void)
         TEST_ASSERT_EQUAL_DOUBLE(1, s.orientation[i].w);
 }
 
-// shoulder turned to hold the arm forward, elbow bent so that the forearm points up, the rest straight on
+// shoulder turned to hold the arm forward, elbow bent so that the forearm points up, the rest
+// straight on
 static void test_bent_arm_is_where_hand_computation_puts_it(void)
 {
     himc_pose pose = himc_pose_zero();
@@ -135,8 +136,8 @@ static void test_tip_velocity_is_the_difference_of_the_tip(void)
             TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0, distance(v, s.tip_velocity[hand]));
         }
         for (int i = 1; i < HIMC_SEGMENTS; i++) {
-            himc_quat moved = himc_quat_mul(after.orientation[i],
-                                            himc_quat_conj(before.orientation[i]));
+            himc_quat moved =
+                himc_quat_mul(after.orientation[i], himc_quat_conj(before.orientation[i]));
             himc_vec3 spin = himc_vec3_scale(himc_quat_log(moved), 0.5 / h);
             TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0, distance(spin, s.spin[i]));
         }

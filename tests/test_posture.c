@@ -1,4 +1,5 @@
-/// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and right.
+/// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and
+/// right.
 #include "himc/posture.h"
 
 #include "unity.h"
@@ -41,10 +42,12 @@ static double place_tips(const himc_vec3 tip[HIMC_HANDS], himc_body_state *s)
     return missing;
 }
 
-// where a timpanist's tips are: over heads in front, up to 0.6 m above them, a little across the middle
+// where a timpanist's tips are: over heads in front, up to 0.6 m above them, a little across the
+// middle
 static himc_vec3 playing_place(himc_hand hand)
 {
-    double x = uniform(0.35, 0.75), y = uniform(-0.15, 0.35), z = uniform(LEVEL - 0.03, LEVEL + 0.6);
+    double x = uniform(0.35, 0.75), y = uniform(-0.15, 0.35),
+           z = uniform(LEVEL - 0.03, LEVEL + 0.6);
     return himc_vec3_make(x, hand == HIMC_LEFT ? y : -y, z);
 }
 
@@ -85,9 +88,10 @@ static void test_arms_have_their_lengths_and_elbows_hang_below_and_outside(void)
     himc_body_state s;
     for (int n = 0; n < 1000; n++) {
         himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
-        for (int hand = 0; hand < HIMC_HANDS; hand++) { // a wrist below its shoulder leaves no outside
+        for (int hand = 0; hand < HIMC_HANDS;
+             hand++) { // a wrist below its shoulder leaves no outside
             tip[hand].x = fmax(tip[hand].x, 0.45);
-            tip[hand].y = fmin(fmax(tip[hand].y, -0.2), 0.2);
+            tip[hand].y = fmin(fmax(tip[hand].y, -0.15), 0.15);
         }
         place_tips(tip, &s);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -237,6 +241,22 @@ static void test_reachable_place_is_reached_and_a_place_in_reach_is_kept(void)
     }
 }
 
+static void test_reachable_place_is_reached_by_people_of_every_height(void)
+{
+    for (double height = 1.2; height <= 2.2; height += 0.1)
+        for (double level = 0.45; level <= 0.55; level += 0.05) {
+            himc_skeleton_config config = himc_skeleton_default();
+            himc_body_state s;
+            config.height = height;
+            himc_skeleton_init(&skeleton, &config, NULL);
+            himc_posture_init(&posture, &skeleton, level * height);
+            himc_vec3 far[HIMC_HANDS] = {{2, 1, 0.5}, {2, -1, 2}}, near[HIMC_HANDS];
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                near[hand] = himc_posture_reachable(&posture, (himc_hand)hand, far[hand]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0, place_tips(near, &s));
+        }
+}
+
 static void test_no_place_makes_a_posture_that_is_no_number(void)
 {
     himc_body_state s;
@@ -294,6 +314,7 @@ int main(void)
     RUN_TEST(test_acceleration_is_the_difference_of_the_rate);
     RUN_TEST(test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that);
     RUN_TEST(test_reachable_place_is_reached_and_a_place_in_reach_is_kept);
+    RUN_TEST(test_reachable_place_is_reached_by_people_of_every_height);
     RUN_TEST(test_no_place_makes_a_posture_that_is_no_number);
     RUN_TEST(test_left_and_right_mirror_each_other);
     RUN_TEST(test_feet_of_the_seated_stand_on_the_floor);

@@ -99,7 +99,8 @@ static void test_table_1_keeps_the_proportions_of_the_paper(void)
                               s[HIMC_LEFT_FOOT].mass + s[HIMC_LEFT_TOES].mass);
 }
 
-// mass (kg), centre (of the length), inertias (kg m^2): de Leva 1996 at 75 kg and 1.75 m, to the digit
+// mass (kg), centre (of the length), inertias (kg m^2): de Leva 1996 at 75 kg and 1.75 m, to the
+// digit
 static void test_arm_has_the_masses_and_inertias_of_de_leva(void)
 {
     static const struct {

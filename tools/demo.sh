@@ -48,7 +48,7 @@ seconds_since() {
 
 play_in_pd() {
     start=$(date +%s.%N)
-    pd -nogui -noprefs -noaudio -nomidi -stderr -r 48000 -batch -path "$externals" -open "$patch" \
+    pd -nogui -nrt -noprefs -noaudio -nomidi -stderr -r 48000 -batch -path "$externals" -open "$patch" \
         -send "himc-record $(cd "$work" && pwd)/pd.wav" >"$work/pd.log" 2>&1 ||
         fail "Pd ended with status $?: $(tail -n 1 "$work/pd.log")"
     pd_time=$(seconds_since "$start")

@@ -11,6 +11,7 @@
 #include "himc/performance.h"
 #include "render_tables.h"
 
+#include <errno.h>
 #include <math.h>
 #include <sndfile.h>
 #include <string.h>
@@ -52,7 +53,7 @@ typedef struct rendering {
     cli_file wav, strokes, motion;
     SNDFILE *sound;
     bool done;     ///< the performer has come to rest
-    bool failed;   ///< a write did not arrive
+    int failed;    ///< errno of the first write that did not arrive
     bool too_long; ///< for a WAV file
     uint64_t samples, done_at;
     double peak, cell_peak; ///< of the sound so far, of the cell under way
@@ -138,6 +139,25 @@ static bool open_sound(rendering *r, const char *path, int rate, himc_error *err
     return true;
 }
 
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void show_progress(double seconds, double elapsed)
+{
+    if (isatty(STDERR_FILENO))
+        fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
+}
+
+static void clear_progress(void)
+{
+    if (isatty(STDERR_FILENO))
+        fputs("\r\033[K", stderr);
+}
+
 /// Asks the performer for what happened; strikes go to their table, notes to the user.
 static void take_events(rendering *r)
 {
@@ -145,18 +165,20 @@ static void take_events(rendering *r)
     while (himc_performance_event(r->performance, &event)) {
         if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
             render_stroke_row(r->strokes.stream, &event.strike);
-        else if (event.kind == HIMC_EVENT_NOTE)
+        else if (event.kind == HIMC_EVENT_NOTE) {
+            clear_progress();
             printf("note: %s\n", event.text);
-        else if (event.kind == HIMC_EVENT_DONE)
+        } else if (event.kind == HIMC_EVENT_DONE)
             r->done = true;
     }
 }
 
 static void play_block(rendering *r, int n)
 {
-    double heard[BLOCK_MAX], sum[BLOCK_MAX] = {0};
+    double heard[BLOCK_MAX], sum[BLOCK_MAX];
     float out[BLOCK_MAX];
     himc_drum *drum;
+    memset(sum, 0, (size_t)n * sizeof *sum);
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
     for (int d = 0; (drum = himc_performance_drum(r->performance, d)); d++) {
         himc_drum_read(drum, r->samples, n, heard, NULL);
@@ -167,7 +189,9 @@ static void play_block(rendering *r, int n)
         out[i] = (float)sum[i];
         r->cell_peak = fmax(r->cell_peak, fabs(sum[i]));
     }
-    r->failed |= sf_writef_float(r->sound, out, n) != n;
+    errno = 0;
+    if (sf_writef_float(r->sound, out, n) != n)
+        r->failed = errno ? errno : EIO;
     r->samples += (uint64_t)n;
     take_events(r);
 }
@@ -186,23 +210,6 @@ static bool is_over(rendering *r, int rate)
            (double)(r->samples - r->done_at) >= TAIL_SECONDS * rate;
 }
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static void show_progress(double seconds, double elapsed, bool last)
-{
-    if (!isatty(STDERR_FILENO))
-        return;
-    if (last)
-        fprintf(stderr, "\r\033[K");
-    else
-        fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
-}
-
 /// Plays to the end; returns how long it took (s).
 static double play(rendering *r, const job *wanted)
 {
@@ -215,10 +222,10 @@ static double play(rendering *r, const job *wanted)
             left -= n;
         }
         r->too_long = (double)(r->samples + (uint64_t)cell) > WAV_SAMPLES;
-        show_progress((double)r->samples / wanted->rate, now() - start, false);
+        show_progress((double)r->samples / wanted->rate, now() - start);
     } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
     double elapsed = now() - start;
-    show_progress(0, 0, true);
+    clear_progress();
     return elapsed;
 }
 
@@ -227,7 +234,7 @@ static bool keep_files(rendering *r, himc_error *error)
 {
     const char *path = r->wav.path;
     if (r->failed)
-        return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(r->sound));
+        return himc_error_set(error, "%s: cannot be written: %s", path, strerror(r->failed));
     if (r->too_long)
         return himc_error_set(error, "%s: not over when the file is full, allowed %.0f samples",
                               path, WAV_SAMPLES);

@@ -94,7 +94,7 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     double rms_mm = stats->tip_rms * 1e3;
     if (stats->strokes)
         printf("strokes   %d of %d landed within 5 ms and 2 cm\n", stats->played, stats->strokes);
-    if (isfinite(stats->tip_rms_percent))
+    if (stats->strokes && isfinite(stats->tip_rms_percent))
         printf("accuracy  sticks %.3g mm RMS off their targets, %.2g %% of the strokes' height\n",
                rms_mm, stats->tip_rms_percent);
     printf("force     up to %.1f N\n", stats->peak_force);

@@ -32,10 +32,11 @@ void himc_performance_remove_drum(himc_performance *performance, const char *nam
 /// Drum `index`, or NULL past the last. Borrowed.
 HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int index);
 
-/// Carries out a performer's command `delay` samples from now (0 .. 8192; commands that read
-/// files act at once). Files are opened by the name given: relative names and search paths are
-/// the caller's business. A score's lines for drums go to the drums of those names; with
-/// `make_drums` its `drum` lines make them.
+/// Carries out a performer's command `delay` samples from now (0 .. 8192), on the physics step at
+/// that sample; one that may allocate or read a file (`score`, `take`, `stroke`, `player` ...) acts
+/// at once. Files are opened by the name given: relative names and search paths are the caller's
+/// business. A score's lines for drums go to the drums of those names; with `make_drums` its `drum`
+/// lines make them.
 bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
                               himc_error *error);
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);

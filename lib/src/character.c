@@ -13,6 +13,9 @@
 
 #define JOINT_ERP 0.8 // share of a joint's drift corrected per step: measured drift 3e-8 m
 
+#define FASTEST 1e5 // (rad/s)
+#define MOST 1e30   // of all torques, forces, places and speeds squared
+
 struct himc_character {
     himc_skeleton skeleton;
     dWorldID world;
@@ -50,6 +53,7 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     c->world = dWorldCreate();
     dWorldSetGravity(c->world, 0, 0, -9.80665);
     dWorldSetERP(c->world, JOINT_ERP);
+    dWorldSetCFM(c->world, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         make_body(c, i);
     himc_body_state state;
@@ -155,9 +159,31 @@ static void apply_torques(himc_character *c, const himc_vec3 torque[HIMC_JOINTS]
         dBodyAddTorque(c->body[i], sum[i].x, sum[i].y, sum[i].z);
 }
 
-void himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
+// the engine's own checks abort the process, so what they would find is looked for first
+static bool can_step(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
+                     const himc_vec3 tip_force[HIMC_HANDS])
+{
+    double sum = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        sum += himc_vec3_dot(torque[j], torque[j]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        sum += himc_vec3_dot(tip_force[hand], tip_force[hand]);
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 w = from_ode(dBodyGetAngularVel(c->body[i]));
+        himc_vec3 x = from_ode(dBodyGetPosition(c->body[i]));
+        himc_vec3 v = from_ode(dBodyGetLinearVel(c->body[i]));
+        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v);
+        if (!(himc_vec3_dot(w, w) < FASTEST * FASTEST))
+            return false;
+    }
+    return sum < MOST;
+}
+
+bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
                          const himc_vec3 tip_force[HIMC_HANDS], double h)
 {
+    if (!can_step(c, torque, tip_force))
+        return false;
     apply_torques(c, torque);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int i = himc_stick_segment((himc_hand)hand);
@@ -167,4 +193,5 @@ void himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
             dBodyAddForceAtRelPos(c->body[i], f.x, f.y, f.z, at.x, at.y, at.z);
     }
     dWorldStep(c->world, h);
+    return true;
 }

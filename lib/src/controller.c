@@ -70,14 +70,14 @@ static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jaco
     scatter_arm(solution, hand, all);
 }
 
-// tip acceleration that the arm's joints must make: the target's, less what the state's spins and
-// the trunk make already
+// tip acceleration that the arm's joints must make: what is wanted less what the state's spins and
+// the trunk, accelerating as in `relative`, make already
 static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
-                                   himc_hand hand, const errors *e, himc_vec3 wanted)
+                                   himc_hand hand, const himc_vec3 *relative, himc_vec3 wanted)
 {
     himc_vec3 others[HIMC_JOINTS];
     for (int j = 0; j < HIMC_JOINTS; j++)
-        others[j] = e->acceleration[j];
+        others[j] = relative[j];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         others[himc_arm_joint(hand, k)] = himc_vec3_make(0, 0, 0);
     return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
@@ -90,27 +90,32 @@ static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
 {
     himc_vec3 missing = clamp_length(himc_vec3_sub(target->x, s->tip[hand]), LARGEST_STEP);
     himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
-    himc_vec3 a = acceleration_left(skeleton, s, hand, e, target->a);
+    himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target->a);
     solve_demand(c, jacobian, hand, missing, e->angle);
     solve_demand(c, jacobian, hand, slower, e->rate);
     solve_demand(c, jacobian, hand, a, e->acceleration);
 }
 
-// in contact nothing is asked for along the normal: no error, no rate, no acceleration of the tip
-static void release_normal(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
-                           const himc_arm_jacobian *jacobian, himc_vec3 normal, errors *e)
+static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
+                    himc_vec3 normal, double remain)
 {
-    himc_vec3 arm[HIMC_ARM_JOINTS], *parts[2] = {e->angle, e->rate};
-    for (int i = 0; i < 2; i++) {
-        gather_arm(parts[i], hand, arm);
-        himc_ik_release(jacobian, normal, 0, arm);
-        scatter_arm(arm, hand, parts[i]);
-    }
-    double free =
-        himc_vec3_dot(normal, acceleration_left(skeleton, s, hand, e, himc_vec3_make(0, 0, 0)));
-    gather_arm(e->acceleration, hand, arm);
-    himc_ik_release(jacobian, normal, free, arm);
-    scatter_arm(arm, hand, e->acceleration);
+    himc_vec3 arm[HIMC_ARM_JOINTS];
+    gather_arm(all, hand, arm);
+    himc_ik_release(jacobian, normal, remain, arm);
+    scatter_arm(arm, hand, all);
+}
+
+// in contact the tip is not accelerated along the normal, whatever the gains of the joints are
+static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                 const himc_reference *reference, const himc_arm_jacobian *jacobian,
+                                 himc_vec3 wanted[HIMC_JOINTS])
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (reference->released[hand]) {
+            himc_vec3 n = reference->normal[hand], zero = {0, 0, 0};
+            himc_vec3 left = acceleration_left(skeleton, s, (himc_hand)hand, wanted, zero);
+            release(wanted, (himc_hand)hand, &jacobian[hand], n, himc_vec3_dot(n, left));
+        }
 }
 
 static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3 v)
@@ -152,14 +157,34 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
         a, scale_axes(r, himc_vec3_make(kd.x / i.x, kd.y / i.y, kd.z / i.z), e->rate[j]));
 }
 
-static void computed_torques(const himc_controller *c, const himc_skeleton *skeleton,
-                             const himc_body_state *s, const errors *e,
-                             himc_vec3 torque[HIMC_JOINTS])
+// what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
+static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
+                                 const errors *e, himc_vec3 wanted[HIMC_JOINTS])
 {
-    himc_vec3 wanted[HIMC_JOINTS];
     for (int j = 0; j < HIMC_JOINTS; j++)
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
-    himc_inverse_dynamics(skeleton, s, wanted, false, torque);
+}
+
+// the same for torques already made: the force at the tip that would stop its acceleration along
+// the normal, m_eff a, passed down the arm and the trunk
+static void release_torques(const himc_skeleton *skeleton, const himc_body_state *s,
+                            const himc_reference *reference, himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_articulation art;
+    himc_vec3 relative[HIMC_JOINTS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        if (!reference->released[hand])
+            continue;
+        himc_vec3 n = reference->normal[hand];
+        himc_articulate(skeleton, s, &art);
+        himc_forward_dynamics(skeleton, s, &art, torque, NULL, relative);
+        double a = himc_vec3_dot(n, himc_tip_acceleration(skeleton, s, (himc_hand)hand, relative));
+        double mass = himc_effective_mass(skeleton, s, &art, (himc_hand)hand, n);
+        himc_vec3 force = himc_vec3_scale(n, -mass * a);
+        for (int i = himc_stick_segment((himc_hand)hand); i > 0; i = skeleton->segment[i].parent)
+            torque[i - 1] = himc_vec3_add(
+                torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
+    }
 }
 
 // the printed law damps the rate itself, not its error
@@ -183,14 +208,15 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     }
     if (c->law == HIMC_LAW_PRINTED)
         forget_target_rates(skeleton, s, &e);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (reference->released[hand])
-            release_normal(skeleton, s, (himc_hand)hand, &jacobian[hand], reference->normal[hand],
-                           &e);
-    if (c->law == HIMC_LAW_COMPUTED_TORQUE)
-        computed_torques(c, skeleton, s, &e, torque);
-    else
+    if (c->law == HIMC_LAW_COMPUTED_TORQUE) {
+        himc_vec3 wanted[HIMC_JOINTS];
+        wanted_accelerations(c, s, &e, wanted);
+        release_acceleration(skeleton, s, reference, jacobian, wanted);
+        himc_inverse_dynamics(skeleton, s, wanted, false, torque);
+    } else {
         servo_torques(c, skeleton, s, &e, torque);
+        release_torques(skeleton, s, reference, torque);
+    }
 }
 
 // inertia about a joint of everything that hangs on it, about the child's axes

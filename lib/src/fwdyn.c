@@ -120,19 +120,15 @@ static void gather(const himc_skeleton *skeleton, const himc_body_state *s,
 {
     for (int i = UPPER_END - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
-        if (torque)
-            b[i].moment = himc_vec3_sub(b[i].moment, torque[i - 1]);
+        b[i].moment = himc_vec3_sub(b[i].moment, torque[i - 1]);
         alpha_free[i] = himc_vec3_scale(himc_mat3_apply(&art->inverse[i], b[i].moment), -1);
         if (p == HIMC_PELVIS)
             continue;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
         himc_vec3 force =
             himc_vec3_add(b[i].force, himc_mat3_apply_transposed(&art->couple[i], alpha_free[i]));
-        if (torque) {
-            b[p].moment = himc_vec3_add(b[p].moment, torque[i - 1]);
-            force =
-                himc_vec3_add(force, himc_mat3_apply(&art->mass[i], centripetal(s->spin[p], r)));
-        }
+        b[p].moment = himc_vec3_add(b[p].moment, torque[i - 1]);
+        force = himc_vec3_add(force, himc_mat3_apply(&art->mass[i], centripetal(s->spin[p], r)));
         b[p].force = himc_vec3_add(b[p].force, force);
         b[p].moment = himc_vec3_add(b[p].moment, himc_vec3_cross(r, force));
     }

@@ -7,7 +7,7 @@
 #include "himc/ik.h"
 
 #define PINV_TOLERANCE 0.02 // singular values below this share of the largest are left out
-#define NULL_FLOOR 1e-9     // keeps the null space projector finite when the arm is straight (m^2)
+#define NULL_FLOOR 1e-12    // keeps the null space projector finite when the arm is straight (m^2)
 
 void himc_arm_jacobian_at(const himc_body_state *s, himc_hand hand, himc_arm_jacobian *jacobian)
 {
@@ -129,11 +129,13 @@ void himc_ik_add_null(const himc_arm_jacobian *jacobian, const himc_vec3 wish[HI
 void himc_ik_release(const himc_arm_jacobian *jacobian, himc_vec3 direction, double remain,
                      himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
+    // f = (J J')^-1 n takes away along n and nothing across it
     double along = himc_vec3_dot(direction, himc_ik_forward(jacobian, rotation)) - remain;
-    double length = himc_vec3_dot(direction, himc_mat3_apply(&jacobian->gram, direction));
-    if (length <= NULL_FLOOR)
+    himc_vec3 f = himc_mat3_apply(&jacobian->inverse, direction);
+    if (himc_vec3_dot(direction, f) > 1e4) // a straight arm along n: nothing moves the tip that way
         return;
-    himc_vec3 f = himc_vec3_scale(direction, along / length);
+    double effect = himc_vec3_dot(direction, himc_mat3_apply(&jacobian->gram, f));
+    f = himc_vec3_scale(f, along / effect);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         rotation[k] = himc_vec3_sub(rotation[k], himc_vec3_cross(jacobian->lever[k], f));
 }

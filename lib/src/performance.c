@@ -72,7 +72,6 @@ static void place_body(himc_performance *p)
     memcpy(pose.joint, p->from.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&p->skeleton, &pose, p->from.posture.rate, &p->state);
     himc_character_place(p->character, &p->state);
-    p->good = p->state;
 }
 
 bool performance_build_body(himc_performance *p, himc_error *error)
@@ -114,16 +113,9 @@ void performance_notice_drums(himc_performance *p)
     }
 }
 
-// a state that is not finite is not passed on: the last good one is put back, and counted
-static void guard(himc_performance *p)
+// a state that the physics cannot go on from is replaced by the one the targets have, and counted
+static void recover(himc_performance *p)
 {
-    double fastest = 0;
-    for (int i = 0; i < HIMC_SEGMENTS; i++)
-        fastest = fmax(fastest, himc_vec3_dot(p->state.spin[i], p->state.spin[i]));
-    if (himc_body_state_finite(&p->state) && fastest < 1e7) {
-        p->good = p->state;
-        return;
-    }
     p->recoveries++;
     place_body(p);
     performance_forget_touch(p);
@@ -135,12 +127,12 @@ static void step_dynamics(himc_performance *p, int n, double h)
 {
     himc_vec3 tip_force[HIMC_HANDS];
     himc_character_observe(p->character, &p->state);
-    guard(p);
     performance_after_contact(p, step_time(p));
     himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
     performance_contact(p, n, tip_force);
     performance_measure_step(p);
-    himc_character_step(p->character, p->torque, tip_force, h);
+    if (!himc_character_step(p->character, p->torque, tip_force, h))
+        recover(p);
 }
 
 // the body shown as the joint targets have it; only the sticks' ends meet the head

@@ -225,6 +225,27 @@ static bool do_score(himc_performance *p, const himc_command *c, himc_error *err
     return ok;
 }
 
+// says how much of a take the player cannot follow; the arm then stretches towards it
+static void note_reach(himc_performance *p, const himc_track *track, const char *path)
+{
+    double length = himc_track_length(track), farthest = 0;
+    int far = 0, count = 0;
+    for (double t = 0; t < length; t += 0.01)
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            if (!himc_track_present(track, (himc_hand)hand))
+                continue;
+            himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
+            himc_vec3 near = himc_posture_reachable(&p->posture, (himc_hand)hand, x);
+            double missing = himc_vec3_length(himc_vec3_sub(x, near));
+            count++;
+            far += missing > 1e-3;
+            farthest = fmax(farthest, missing);
+        }
+    if (far > 0)
+        performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", path,
+                         100.0 * far / count, farthest);
+}
+
 static bool do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
     int drum;
@@ -236,7 +257,7 @@ static bool do_take(himc_performance *p, const himc_command *c, himc_error *erro
     if (performance_ensure_drum(p, "", &drum, error)) {
         const himc_place *place = himc_drum_place(p->drum[drum].drum);
         track = himc_track_new(take, &p->take_options, place, p->skeleton.mallet_radius, error);
-        if (!track)
+        if (!track && error && strncmp(error->text, path, strlen(path)) != 0)
             himc_error_prefix(error, "%s", path);
     }
     himc_skeleton_config old = p->body;
@@ -251,6 +272,7 @@ static bool do_take(himc_performance *p, const himc_command *c, himc_error *erro
     }
     if (measured > 0)
         performance_note(p, "%s: the player's body has %d lengths from it", path, measured);
+    note_reach(p, track, path);
     drop_track(p);
     p->track = track;
     p->replan = true;
@@ -437,20 +459,39 @@ static const action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_MAKE_DRUM] = do_drum,
 };
 
+// commands that act at their sample; the others, which may allocate or read files, act at once
+static bool waits(himc_command_id id)
+{
+    return id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_TARGET || id == HIMC_COMMAND_TEMPO ||
+           id == HIMC_COMMAND_PLAY || id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK ||
+           id == HIMC_COMMAND_MODE || id == HIMC_COMMAND_LAW || id == HIMC_COMMAND_SOLVER ||
+           id == HIMC_COMMAND_DAMPING || id == HIMC_COMMAND_COUPLING;
+}
+
+// drums that a waiting command will want are made now, not in the audio callback
+static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
+{
+    int index;
+    if (command->id == HIMC_COMMAND_HIT)
+        return performance_ensure_drum(p, command->stroke.drum, &index, error);
+    return command->id != HIMC_COMMAND_PLAY || performance_ensure_drum(p, "", &index, error);
+}
+
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)
 {
     action act = actions[command->id];
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    bool reads_file = command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
-    if (delay <= 0 || reads_file)
+    if (delay <= 0 || !waits(command->id))
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
     if (p->waiting_count == WAITING_COMMANDS)
         return himc_error_set(error, "more than %d commands at once: this one is dropped",
                               WAITING_COMMANDS);
+    if (!prepare(p, command, error))
+        return false;
     waiting_command *w = &p->waiting[p->waiting_count++];
     w->due = p->sample + (uint64_t)delay;
     himc_command_copy(&w->command, command);

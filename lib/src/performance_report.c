@@ -139,8 +139,7 @@ static void describe_drums(const himc_performance *p, void (*line)(void *, const
     char text[512], about[400];
     for (int i = 0; i < p->drums; i++) {
         himc_drum_describe(p->drum[i].drum, about, sizeof about);
-        snprintf(text, sizeof text, "drum %s%s: %s", himc_drum_name(p->drum[i].drum),
-                 p->drum[i].silent ? " (silent)" : "", about);
+        snprintf(text, sizeof text, "drum %s%s", about, p->drum[i].silent ? " (silent)" : "");
         line(user, text);
     }
 }

@@ -62,7 +62,7 @@ struct himc_performance {
     himc_posture posture;
     himc_controller controller;
     himc_character *character;
-    himc_body_state state, good; // now; when last known to be sound
+    himc_body_state state;
     himc_vec3 torque[HIMC_JOINTS];
     himc_reference reference;
     bool one_way;

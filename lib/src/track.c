@@ -105,13 +105,6 @@ static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, int f
     }
 }
 
-static himc_target carried_on(himc_target s, double dt)
-{
-    s.x = himc_vec3_madd(himc_vec3_madd(s.x, dt, s.v), 0.5 * dt * dt, s.a);
-    s.v = himc_vec3_madd(s.v, dt, s.a);
-    return s;
-}
-
 // when the approach from frame state `s` reaches the head, its acceleration fading to nothing on
 // the way: the first root of height + v t + a t^2 / 3
 static double fall_time(const himc_place *place, const himc_target *s, double mallet_radius)
@@ -125,10 +118,25 @@ static double fall_time(const himc_place *place, const himc_target *s, double ma
     return fmin(2 * height / (-v + sqrt(under)), LONGEST_FALL);
 }
 
+static himc_target captured_at(const himc_track *track, const hand_track *h, double t)
+{
+    double u = t * track->rate;
+    int k = (int)floor(u);
+    if (k < 0)
+        return (himc_target){.x = h->frame[0].x};
+    if (k >= track->frames - 1) {
+        k = track->frames - 2;
+        u = k + 1;
+    }
+    const himc_target *a = &h->frame[k], *b = &h->frame[k + 1];
+    himc_quintic q = himc_quintic_make(a, b, 1 / track->rate);
+    return himc_quintic_at(&q, (u - k) / track->rate);
+}
+
 static void make_bridge(himc_track *track, hand_track *h, bridge *b, int last, int next,
                         double mallet_radius)
 {
-    himc_target before = h->frame[last], after = h->frame[next];
+    himc_target before = h->frame[last];
     double start = last / track->rate,
            fall = fmax(fall_time(&track->place, &before, mallet_radius), 0);
     b->approach = (himc_quintic){{before.x, before.v, himc_vec3_scale(before.a, 0.5)}};
@@ -138,8 +146,8 @@ static void make_bridge(himc_track *track, hand_track *h, bridge *b, int last, i
     b->from = b->restart = start;
     b->contact = start + fall;
     b->to = fmax(next / track->rate, b->contact + 0.02);
-    if (b->to > next / track->rate && next + 1 < track->frames)
-        after = carried_on(after, b->to - next / track->rate);
+    b->to = fmin(b->to, (track->frames - 1) / track->rate);
+    himc_target after = captured_at(track, h, b->to);
     b->place = himc_place_from_world(&track->place, touch.x);
     touch.a = himc_vec3_make(0, 0, 0);
     b->path = himc_quintic_make(&touch, &after, b->to - b->contact);
@@ -200,8 +208,7 @@ static himc_vec3 find_offset(const himc_take_strike *strikes, int count,
     himc_stroke_spot(&usual, place->radius, &sx, &sy);
     himc_vec3 spot = himc_place_to_world(place, sx, 0), mean = {0, 0, 0};
     spot = himc_vec3_madd(spot, mallet_radius, himc_place_normal(place));
-    for (int i = 0; i < count; i++)
-        mean = himc_vec3_madd(mean, 1.0 / count, strikes[i].x);
+    himc_take_strike_place(strikes, count, &mean);
     bool one_handed = !tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present;
     if (count == 0) { // nothing struck: the lowest point above the spot
         const himc_vec3 *x = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
@@ -222,14 +229,8 @@ himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))
         return NULL;
-    if (!tips[HIMC_LEFT].present && !tips[HIMC_RIGHT].present) {
-        himc_error_set(
-            error,
-            "take: no drumstick tip among its points: name them with --left-tip, --right-tip");
-        return NULL;
-    }
     if (himc_take_frames(take) < LEAST_FRAMES) {
-        himc_error_set(error, "take: %d frames, allowed %d or more", himc_take_frames(take),
+        himc_error_set(error, "%d frames, allowed %d or more", himc_take_frames(take),
                        LEAST_FRAMES);
         return NULL;
     }
@@ -252,7 +253,7 @@ himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
     free(strikes);
     if (!ok) {
         himc_track_free(track);
-        himc_error_set(error, "take: out of memory");
+        himc_error_set(error, "out of memory");
         return NULL;
     }
     return track;
@@ -332,21 +333,6 @@ static int bridge_at(const hand_track *h, double t)
     return lo;
 }
 
-static himc_target captured_at(const himc_track *track, const hand_track *h, double t)
-{
-    double u = t * track->rate;
-    int k = (int)floor(u);
-    if (k < 0)
-        return (himc_target){.x = h->frame[0].x};
-    if (k >= track->frames - 1) {
-        k = track->frames - 2;
-        u = k + 1;
-    }
-    const himc_target *a = &h->frame[k], *b = &h->frame[k + 1];
-    himc_quintic q = himc_quintic_make(a, b, 1 / track->rate);
-    return himc_quintic_at(&q, (u - k) / track->rate);
-}
-
 // the take as it is played, strikes bridged
 static himc_target played_at(const himc_track *track, const hand_track *h, double t)
 {
@@ -389,6 +375,8 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
 {
     const hand_track *h = &track->hand[hand];
     double at[3];
+    if (!h->present)
+        return (himc_target){.x = track->place.center}; // nobody asks
     if (t < -0.5 * EASE && h->approach_time > 0)
         return himc_quintic_at(&h->approach, fmax(t + 0.5 * EASE + h->approach_time, 0));
     if (t >= track->stop)

@@ -1,4 +1,4 @@
-/// table.c: makes lib/src/air_table.c. Two minutes; not a part of himc.
+/// table.c: makes lib/src/air_table.c. Half a minute; not a part of himc.
 ///
 ///     make air-table
 #include "../../lib/src/air_galerkin.h"
@@ -45,7 +45,8 @@ static bool node(const himc_air_order *order, int drum, int k, himc_error *error
         double bare = order->alpha[n] * sqrt(problem.tension);
         int i = HIMC_AIR_ROW(drum, order->m, n) + k;
         ratio[i] = (short)lround(log(root[n].x / bare) / HIMC_AIR_RATIO_UNIT);
-        decay[i] = (short)lround(log(fmax(root[n].decay, 0) + HIMC_AIR_FLOOR) / HIMC_AIR_DECAY_UNIT);
+        decay[i] =
+            (short)lround(log(fmax(root[n].decay, 0) + HIMC_AIR_FLOOR) / HIMC_AIR_DECAY_UNIT);
     }
     return true;
 }
@@ -62,19 +63,20 @@ static void put_rest(const char *name, double table[][HIMC_AIR_RANKS])
 {
     printf("\nconst double %s[HIMC_AIR_ORDERS][HIMC_AIR_RANKS] = {\n", name);
     for (int m = 0; m < HIMC_AIR_ORDERS; m++)
-        printf("    {%.6f, %.6f, %.6f, %.6f},\n", table[m][0], table[m][1], table[m][2], table[m][3]);
+        printf("    {%.6f, %.6f, %.6f, %.6f},\n", table[m][0], table[m][1], table[m][2],
+               table[m][3]);
     puts("};");
 }
 
 static void put_all(void)
 {
-    puts("/// air_table.c: the modes of four timpani in air. Made by `make air-table` (tools/air/table.c).\n"
+    puts("/// air_table.c: the modes of four timpani in air (make air-table).\n"
          "///\n"
          "/// A row is a mode over the tensions; rows go by n, then m, then drum.\n"
          "#include \"air_table.h\"\n\n"
          "// clang-format off");
-    printf("const double himc_air_radius[HIMC_AIR_DRUMS] = {%g, %g, %g, %g};\n", RADIUS[0], RADIUS[1], RADIUS[2],
-           RADIUS[3]);
+    printf("const double himc_air_radius[HIMC_AIR_DRUMS] = {%g, %g, %g, %g};\n", RADIUS[0],
+           RADIUS[1], RADIUS[2], RADIUS[3]);
     put_rest("himc_air_outer", outer);
     put_rest("himc_air_inner", inner);
     puts("\nconst double himc_air_slosh[HIMC_AIR_ORDERS] = {");

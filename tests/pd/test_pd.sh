@@ -1,0 +1,199 @@
+#!/usr/bin/env bash
+# Headless tests of [himc~] and [membrane~] in Pure Data, as fast as it can compute: `pd -batch`, no
+# sound card, no window. Each patch beside this script says what it does. Sounds are recorded as
+# 32-bit floats and compared bit by bit. Prints Unity's lines and summary, for tests/run.sh.
+# HIMC_BUILD is where the build is (default build), HIMC_LONG adds the whole improvisation.
+cd "$(dirname "$0")" || exit 1
+root=$(cd ../.. && pwd)
+build=$(cd "$root" && cd "${HIMC_BUILD:-build}" && pwd) || exit 1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+tests=0 failures=0 ignored=0
+
+# --- the machinery
+
+play_pd() { # play_pd PATCH [OPTION...]: what Pd says goes to $work/log
+    local patch=$1
+    shift
+    timeout 100 pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$build/externals/himc" \
+        -path "$root/patches/lib" "$@" -open "$patch" >"$work/log" 2>&1 </dev/null
+}
+
+report() { # report NAME WHY: passed if WHY is empty
+    tests=$((tests + 1))
+    [ -z "$2" ] || failures=$((failures + 1))
+    echo "tests/pd/test_pd.sh:${BASH_LINENO[0]}:$1:${2:+FAIL: }${2:-PASS}"
+}
+
+samples() { # the samples of a WAV file, without its head
+    local at
+    at=$(LC_ALL=C grep -abo -m1 data "$1" | head -n 1 | cut -d: -f1)
+    tail -c +$((at + 9)) "$1"
+}
+
+different() { # different A B FROM TO: says where the sounds differ between these samples, or nothing
+    [ -s "$work/$1.wav" ] && [ -s "$work/$2.wav" ] || { echo "$2: no sound: $(tail -n 1 "$work/log")"; return; }
+    cmp <(samples "$work/$1.wav" | head -c $((4 * $4)) | tail -c +$((4 * $3 + 1))) \
+        <(samples "$work/$2.wav" | head -c $((4 * $4)) | tail -c +$((4 * $3 + 1))) 2>&1 |
+        awk -v a="$1" -v b="$2" -v from="$3" '/EOF/ { print b ": too short"; next }
+            { gsub(",", ""); print b " differs from " a " at sample " from + int(($5 - 1) / 4) }'
+}
+
+lines() { # lines TEXT: says which of these lines Pd has not written exactly once
+    while read -r line; do
+        local n
+        n=$(grep -cF -- "$line" "$work/log")
+        [ -z "$line" ] || [ "$n" = 1 ] || echo -n "$n times: $line. "
+    done <<<"$1"
+}
+
+# --- the sound
+
+"$build/bin/himc" render short.txt -o "$work/render.wav" --strokes "$work/strokes.csv" >"$work/log" 2>&1
+for run in "64 64" "64 64" "1 1" "1024 1024" "64 1024" "1024 64"; do
+    set -- $run
+    name=pd-$1-$2
+    [ -e "$work/$name.wav" ] && name=again
+    play_pd play.pd -send "himc-test $1 $2 $work/$name.wav"
+    cp "$work/log" "$work/$name.log"
+done
+play_pd play-drum-first.pd -send "himc-test 64 1 $work/drum-first.wav"
+end=190000 # all strokes and their ringing
+
+report sound_in_pd_equals_himc_render_bit_by_bit "$(different render pd-64-64 0 $end)"
+report sound_is_the_same_in_blocks_of_1_sample "$(different render pd-1-1 0 $end)"
+report sound_is_the_same_in_blocks_of_1024_samples "$(different render pd-1024-1024 0 $end)"
+report sound_is_the_same_when_the_drum_has_longer_blocks "$(different render pd-64-1024 0 $end)"
+report sound_is_the_same_when_the_performer_has_longer_blocks \
+    "$(different render pd-1024-64 0 $end)"
+report sound_is_the_same_when_the_drum_comes_first "$(different render drum-first 0 $end)"
+report two_runs_in_pd_are_equal_bit_by_bit "$(different pd-64-64 again 0 $end)"
+report sound_is_not_silence \
+    "$(head -c 760000 /dev/zero | cmp -s - <(samples "$work/render.wav" | head -c 760000) && echo silent)"
+
+# every strike that himc render writes is a message, in its order, with the same drum, hand and time
+in_pd=$(awk '/^himc: strike/ { printf "%.3f %s %s\n", $3, $4, $5 }' "$work/pd-64-64.log")
+in_csv=$(awk -F, 'NR > 1 { printf "%.3f %s %s\n", $1, $2, $3 }' "$work/strokes.csv")
+report strike_messages_are_those_of_himc_render \
+    "$([ -n "$in_csv" ] && [ "$in_pd" = "$in_csv" ] || echo "$in_pd instead of $in_csv")"
+beats=$(awk '/^himc: beat/ { printf "%s ", $3 }' "$work/pd-64-64.log")
+report beats_are_told_in_order "$(case $beats in "0 1 2 3 4 "*) ;; *) echo "$beats" ;; esac)"
+
+for patch in rebuild switch-himc switch-drum; do
+    play_pd $patch.pd -send "himc-test $work/$patch.wav"
+done
+report sound_goes_on_when_the_graph_is_built_anew "$(different render rebuild 0 140000)"
+report drum_asks_for_its_sound_when_the_performer_is_switched_off \
+    "$(different render switch-himc 0 140000)"
+report drum_switched_off_and_on_rejoins_on_the_same_sample \
+    "$(different render switch-drum 30000 140000)"
+
+# a message has a time of its own inside the block: 10.3 ms are sample 46 of block 7, 10.7 ms
+# sample 2 of block 8, 12 ms sample 0 of block 9
+while read -r ms block sample; do
+    play_pd strike.pd -send "himc-test $ms $block $work/strike.wav"
+    first=$(cmp <(samples "$work/strike.wav") /dev/zero | awk '{ gsub(",", ""); print int(($5 - 1) / 4) }')
+    report "strike_at_${ms/./_}_ms_in_blocks_of_${block}_sounds_on_its_sample" \
+        "$([ "$first" = "$sample" ] || echo "sample $first, not $sample")"
+done <<<"10.3 64 494
+10.7 64 514
+12 64 576
+10.3 1 494"
+
+play_pd signals.pd
+level() { awk -v name="$1:" '$1 == name { print $2 }' "$work/log"; }
+report force_signal_sounds \
+    "$(awk -v l="$(level alone)" 'BEGIN { if (!(l > 60 && l < 120)) print l " dB" }')"
+report force_signal_sounds_alike_beside_a_performer \
+    "$([ "$(level difference) $(level displacement)" = "0 0" ] || echo "$(level difference) dB")"
+report samples_that_are_not_numbers_are_silence_and_said_once \
+    "$([ "$(level spoilt)" = 0 ] || echo "$(level spoilt) dB")$(lines "membrane~: spoilt: inlet: a sample that is not a finite number is taken as 0")"
+
+play_pd one-way.pd
+loudest=$(awk '$1 == "one-way:" && $2 > max { max = $2 } END { print max + 0 }' "$work/log")
+report force_by_cord_plays_another_drum \
+    "$(awk -v l="$loudest" 'BEGIN { if (!(l > 60 && l < 110)) print l " dB" }')"
+report missing_drum_is_said_once_and_played_silently \
+    "$(lines "himc~: no [membrane~ nobody]: playing on a silent one
+himc: strike")"
+
+# --- bad input
+
+play_pd objects.pd
+report objects_with_nonsense_arguments_are_refused_with_a_line \
+    "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
+membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 23]
+membrane~: argument 2: large, allowed: a diameter in inches
+membrane~: 3 arguments, allowed: NAME [INCHES]
+membrane~: drum: name a-name-that-is-much-longer-than-any-drum-has, allowed up to 31 characters
+himc~: argument 1: 3, allowed: a drum's name of up to 31 characters
+himc~: argument 2: one is named twice
+himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum's name of up to 31 characters")"
+report second_drum_of_a_name_stays_nameless \
+    "$(lines "membrane~: twice: there is one of this name already: no [himc~] will find this one")"
+report second_performer_on_a_drum_plays_a_silent_one \
+    "$(lines "himc~: [membrane~ twice] is played by another [himc~]: playing on a silent one")"
+report nothing_else_was_said_at_load \
+    "$(grep -v -e '^error: ' -e '^verbose([01]): ' "$work/log" | grep -v '^himc~ [0-9.]*$')"
+
+play_pd messages.pd
+said=$(grep -c '^error: ' "$work/log")
+report messages_that_mean_nothing_answer_with_one_line_each \
+    "$([ "$said" = 30 ] || echo "$said lines for 30 messages: ")$(lines "himc~: nonsense: unknown command
+himc~: stroke: HAND: middle, allowed left right
+himc~: stroke: NUANCE missing
+himc~: tempo: BPM: 0, allowed
+himc~: score: missing.txt: no such file
+bad.txt:3: stroke: NUANCE: acent, allowed
+himc~: gain: JOINT: nose, allowed
+membrane~: nonsense: unknown command
+membrane~: radius: RADIUS: 0, allowed
+membrane~: mallet: silk, allowed")"
+not_numbers=$(grep -c 'nan is not a finite number, allowed' "$work/log")
+report numbers_that_are_none_are_refused \
+    "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"
+report refused_messages_change_nothing "$(lines "principal mode 150 Hz")"
+
+for patch in "$root"/pd-externals/*-help.pd "$root"/patches/[0-9]*.pd; do
+    play_pd "$patch" -send "pd dsp 1" -send "pd quit"
+    report "$(basename "$patch" .pd | tr -c 'a-z0-9\n' _)_opens_without_an_error" \
+        "$(grep -m1 -e '^error' -e create -e 'no such' "$work/log")"
+done
+
+# --- opened and closed again and again, sound on, in real time: names are given back and memory
+# does not grow
+
+pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$build/externals/himc" \
+    -send "himc-test $PWD" -open reopen.pd >"$work/log" 2>&1 </dev/null &
+pd=$!
+memory() { # memory COUNT: of Pd once so many patches have been opened (kB)
+    for ((wait = 0; wait < 400; wait++)); do
+        if grep -q "^opened: $1\$" "$work/log"; then
+            awk '/VmRSS/ { print $2 }' /proc/$pd/status
+            return
+        fi
+        sleep 0.05
+    done
+}
+early=$(memory 30) late=$(memory 130)
+kill $pd
+wait $pd 2>"$work/killed"
+report reopening_a_hundred_times_takes_no_memory \
+    "$([ -n "$early" ] && [ -n "$late" ] && [ $((late - early)) -lt 2500 ] || echo "from ${early:-nothing} to ${late:-nothing} kB: $(tail -n 1 "$work/log")")"
+report reopening_finds_its_names_free "$(grep -m1 '^error' "$work/log")"
+
+# --- the whole piece
+
+if [ -n "$HIMC_LONG" ]; then
+    "$build/bin/himc" render "$root/patches/improvisation.txt" -o "$work/improvisation.wav" >"$work/log" 2>&1
+    play_pd "$root/patches/01-improvisation.pd" -send "himc-record $work/recorded.wav"
+    report improvisation_in_pd_equals_himc_render_bit_by_bit \
+        "$(different improvisation recorded 0 1900000)"
+else
+    tests=$((tests + 1)) ignored=$((ignored + 1))
+    echo "tests/pd/test_pd.sh:$LINENO:improvisation_in_pd_equals_himc_render_bit_by_bit:IGNORE: make test-long plays all of it"
+fi
+
+echo "-----------------------"
+echo "$tests Tests $failures Failures $ignored Ignored"
+[ $failures = 0 ]

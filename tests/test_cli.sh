@@ -1,0 +1,253 @@
+#!/bin/sh
+# The program from outside: what it prints, what it writes, how it refuses; real takes if present.
+: "${HIMC_BUILD:=build}" "${HIMC_SHARED:=../shared}"
+root=$PWD
+himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc
+stroke=$(cd "$HIMC_SHARED" 2>/dev/null && pwd)/mocap/drumstroke_pearl_240hz/stroke.trc
+work=$(mktemp -d "$(cd "$HIMC_BUILD" && pwd)/cli.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+tests=0
+failures=0
+ignored=0
+
+# line NAME RESULT; prints what Unity would
+line() {
+    echo "tests/test_cli.sh:0:$1:$2"
+}
+
+# check NAME CONDITION...
+check() {
+    name=$1
+    shift
+    tests=$((tests + 1))
+    if "$@"; then
+        line "$name" PASS
+    else
+        failures=$((failures + 1))
+        line "$name" "FAIL: not so: $*"
+    fi
+}
+
+# refuses NAME TEXT ARGUMENT...: status 1, nothing on stdout, one line on stderr with TEXT in it
+refuses() {
+    name=$1
+    text=$2
+    shift 2
+    tests=$((tests + 1))
+    "$himc" "$@" >stdout 2>stderr
+    code=$?
+    lines="$(wc -l <stdout) $(wc -l <stderr)"
+    if [ $code = 1 ] && [ "$lines" = "0 1" ] && grep -qF -- "$text" stderr; then
+        line "$name" PASS
+    else
+        failures=$((failures + 1))
+        line "$name" "FAIL: status $code, wanted \"$text\", got: $(cat stdout stderr)"
+    fi
+}
+
+# number KEY: from the JSON line in `out`
+number() {
+    tail -n 1 out | sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p"
+}
+
+# true NUMBER-EXPRESSION
+true_that() {
+    [ "$(awk "BEGIN {print ($1) ? 1 : 0}")" = 1 ]
+}
+
+# bytes OFFSET COUNT FORMAT FILE: of a WAV file
+bytes() {
+    od -An -j "$1" -N "$2" -t "$3" "$4" | tr -d ' '
+}
+
+cat >piece.txt <<'END'
+comment both hands and a change of tempo;
+tempo 120;
+tempo 90 3;
+kettle tune 110;
+stroke 1.5 right legato mf;
+stroke 2 left staccato p rim;
+stroke 3 right accent f normal;
+stroke 3.5 left legato mp center;
+END
+printf 'tempo 120;\nstroke 1 right legatto mf;\n' >typo.txt
+printf 'stroke nan right legato mf;\n' >nan.txt
+printf 'stroke 1 right legato mf;\nstroke 90000 left legato mf;\n' >endless.txt
+: >empty.txt
+printf 'PathFileType\t4\t(X/Y/Z)\tcut.trc\nDataRate\tCameraRate\n' >cut.trc
+
+# what it says of itself
+version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/himc.h")
+check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
+calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
+check test_help_lists_render_info_modes_only [ "$calls" = "render info modes " ]
+for call in render info modes; do
+    "$himc" $call --help >out 2>err
+    check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
+done
+
+# how it refuses what it is given
+refuses test_no_call_is_refused "allowed: render, info, modes"
+refuses test_unknown_call_is_refused '"play"' play
+refuses test_call_of_a_later_day_is_refused '"serve"' serve
+refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
+    render piece.txt -o x.wav --speed 2
+refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q
+refuses test_option_without_value_is_refused "--rate needs a value" render piece.txt -o x.wav --rate
+refuses test_no_source_is_refused "no SOURCE given" render -o x.wav
+refuses test_two_sources_are_refused '"b.txt" is one too many' render a.txt b.txt -o x.wav
+refuses test_no_output_is_refused "no -o OUT.wav given" render piece.txt
+refuses test_rate_zero_is_refused "--rate: 0 Hz, allowed 8000 .. 192000 Hz" \
+    render piece.txt -o x.wav --rate 0
+refuses test_rate_nan_is_refused "--rate: nan Hz, allowed 8000 .. 192000 Hz" \
+    render piece.txt -o x.wav --rate nan
+refuses test_rate_that_is_no_number_is_refused '"fast" is not a whole number' \
+    render piece.txt -o x.wav --rate fast
+refuses test_block_zero_is_refused "--block: 0 samples, allowed 1 .. 8192 samples" \
+    render piece.txt -o x.wav --block 0
+refuses test_broken_block_is_refused '"1.5" is not a whole number' \
+    render piece.txt -o x.wav --block 1.5
+refuses test_unknown_mode_is_refused "allowed himc id ik" render piece.txt -o x.wav --mode magic
+refuses test_unknown_axis_is_refused '"x", allowed y or z' render cut.trc -o x.wav --up x
+refuses test_missing_score_is_refused "none.txt: No such file" render none.txt -o x.wav
+refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
+refuses test_folder_is_refused "directory" render . -o x.wav
+refuses test_truncated_take_is_refused "cut.trc" render cut.trc -o x.wav
+refuses test_typo_is_refused_with_its_line "typo.txt:2: " render typo.txt -o x.wav
+refuses test_nan_in_a_score_is_refused "nan.txt:1: " render nan.txt -o x.wav
+refuses test_typo_is_refused_by_info "typo.txt:2: " info typo.txt
+refuses test_typo_is_refused_by_modes "typo.txt:2: " modes typo.txt
+refuses test_score_too_long_for_a_wav_file_is_refused "endless.txt: lasts" \
+    render endless.txt -o x.wav
+refuses test_missing_folder_is_refused "none/x.wav: cannot be written" \
+    render piece.txt -o none/x.wav
+refuses test_full_disk_is_refused "No space left" render piece.txt -o /dev/full
+refuses test_full_disk_under_a_table_is_refused "No space left" \
+    render piece.txt -o x.wav --motion /dev/full
+refuses test_one_file_for_two_tables_is_refused "x.csv: named twice" \
+    render piece.txt -o x.wav --strokes x.csv --motion x.csv
+refuses test_score_is_not_overwritten "piece.txt: named twice" render piece.txt -o ./piece.txt
+check test_nothing_is_left_of_what_was_refused [ -z "$(ls | grep '^x')" ]
+echo old >kept.wav
+refuses test_table_that_cannot_be_written_is_refused "none/x.csv: cannot be written" \
+    render piece.txt -o kept.wav --strokes none/x.csv
+check test_old_file_survives_a_refused_render [ "$(cat kept.wav)" = old ]
+
+# what render makes
+"$himc" render piece.txt -o one.wav --strokes strokes.csv --motion motion.csv >out 2>err
+check test_render_succeeds_and_says_nothing_on_stderr [ "$?$(cat err)" = 0 ]
+keys=$(tail -n 1 out | grep -o '"[a-z_]*":' | tr -d '":' | tr '\n' ' ')
+check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
+    "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor " ]
+check test_last_line_is_one_object [ "$(tail -n 1 out | grep -cx '{[^{}]*}')" = 1 ]
+check test_all_strokes_are_played [ "$(number strokes) $(number played) $(number missed)" = \
+    "4 4 0" ]
+check test_sticks_keep_to_their_targets \
+    true_that "$(number tip_rms_percent) > 0 && $(number tip_rms_percent) < 0.3"
+check test_strokes_header_is_that_of_the_contract [ "$(head -n 1 strokes.csv)" = \
+    time_s,hand,drum,nuance,x_m,y_m,velocity_m_s,peak_force_n,impulse_ns,duration_s ]
+played=$(cut -d, -f 2-4 strokes.csv | sed 1d | tr '\n' ' ')
+check test_strokes_are_those_of_the_score [ "$played" = \
+    \
+    "right,kettle,legato left,kettle,staccato right,kettle,accent left,kettle,legato " ]
+check test_strokes_touch_when_the_score_says [ "$(awk -F, '
+    BEGIN { split("0.75 1 1.5 1.8333333", want, " ") }
+    NR > 1 { d = $1 - want[NR - 1]; if (d < 0) d = -d; if (d > worst) worst = d }
+    END { print worst < 0.005 }' strokes.csv)" = 1 ]
+peak=$(awk -F, 'NR > 1 && $8 > m {m = $8} END {print m}' strokes.csv)
+check test_peak_force_is_that_of_the_strokes true_that "($peak - $(number peak_force_n)) ^ 2 < 1e-4"
+header=$(head -n 1 motion.csv | cut -d, -f 1-14)
+check test_motion_header_starts_with_targets_and_tips [ "$header" = \
+    \
+    "time_s,$(for what in left_target right_target left_tip right_tip; do
+        printf '%s_x_m,%s_y_m,%s_z_m,' $what $what $what
+    done)waist_x_rad" ]
+check test_motion_has_57_angles [ "$(head -n 1 motion.csv | tr ',' '\n' | grep -c '_rad$')" = 57 ]
+check test_motion_has_no_hole [ "$(awk -F, '
+    NR == 1 { n = NF }
+    NF != n || /nan|inf/ { bad++ }
+    END { print bad + 0 }' motion.csv)" = 0 ]
+check test_motion_has_250_rows_a_second \
+    true_that "($(wc -l <motion.csv) - 1 - 250 * $(number seconds)) ^ 2 <= 4"
+format="$(bytes 20 2 u2 one.wav) $(bytes 22 2 u2 one.wav)"
+format="$(head -c 4 one.wav) $format $(bytes 24 4 u4 one.wav) $(bytes 34 2 u2 one.wav)"
+check test_wav_is_mono_32_bit_float_at_48000 [ "$format" = "RIFF 3 1 48000 32" ]
+check test_wav_is_as_long_as_said \
+    true_that "($(wc -c <one.wav) / 192000 - $(number seconds)) ^ 2 < 1e-5"
+tail -c "$(($(wc -c <one.wav) / 48 * 48 - 48))" one.wav | od -An -v -t f4 -w4 | awk '
+    { v = $1 < 0 ? -$1 : $1; if (v > peak) peak = v; late[NR] = v }
+    END {
+        for (i = NR - 9599; i <= NR; i++)
+            if (late[i] > last)
+                last = late[i]
+        print peak, last
+    }' >levels
+check test_sound_is_heard_and_not_clipped \
+    true_that "$(cut -d' ' -f 1 levels) > 0.05 && $(cut -d' ' -f 1 levels) < 1"
+check test_sound_dies_away_by_80_decibels \
+    true_that "$(cut -d' ' -f 2 levels) <= 1e-4 * $(cut -d' ' -f 1 levels)"
+check test_no_temporary_file_is_left [ "$(ls | grep -c '\.[A-Za-z0-9]\{6\}$')" = 0 ]
+
+# the same again, and in other blocks
+"$himc" render piece.txt -o two.wav --strokes two.csv >/dev/null
+check test_two_renders_are_equal cmp one.wav two.wav
+check test_two_tables_are_equal cmp strokes.csv two.csv
+for block in 1 1024 8192; do
+    "$himc" render piece.txt -o two.wav --block $block --motion two.csv >/dev/null
+    check test_block_of_${block}_changes_nothing_heard cmp one.wav two.wav
+    check test_block_of_${block}_changes_nothing_moved cmp motion.csv two.csv
+done
+"$himc" render piece.txt -o two.wav --rate 44100 --mode ik >out
+check test_rate_is_in_the_header [ "$(bytes 24 4 u4 two.wav)" = 44100 ]
+check test_kinematic_body_plays_too [ "$(number played)" = 4 ]
+"$himc" render empty.txt -o two.wav >out
+check test_empty_score_is_silence [ "$(number strokes) $(number peak_force_n)" = "0 0" ]
+"$himc" render piece.txt -o /dev/null >out
+check test_device_is_written_and_stays [ "$(number played)$(test -c /dev/null && echo device)" = \
+    4device ]
+ln -s real.wav link.wav
+echo old >real.wav
+"$himc" render empty.txt -o link.wav >/dev/null
+check test_link_stays_a_link [ "$(test -L link.wav && head -c 4 real.wav)" = RIFF ]
+
+# an end before the end
+printf 'stroke 1 right legato mf;\nstroke 3000 left legato mf;\n' >long.txt
+"$himc" render long.txt -o cut.wav --motion cut.csv >/dev/null 2>&1 &
+sleep 0.5
+kill -TERM $!
+wait $! 2>/dev/null
+check test_interrupted_render_leaves_nothing [ -z "$(ls | grep '^cut\.[wc]')" ]
+"$himc" modes 2>err | head -n 1 >/dev/null
+check test_closed_pipe_is_no_error [ ! -s err ]
+"$himc" modes >/dev/full 2>err
+check test_full_disk_under_stdout_is_an_error [ "$?$(grep -c 'No space left' err)" = 11 ]
+
+# modes and info
+"$himc" modes >out
+check test_modes_header_is_that_of_the_contract [ "$(head -n 1 out)" = \
+    m,n,frequency_hz,ratio,t60_s ]
+check test_second_mode_ratio_is_1_340297 [ "$(awk -F, '$1 == 2 && $2 == 1 {print $4}' out)" = \
+    1.340297 ]
+check test_each_pair_is_one_row [ "$(sed 1d out | cut -d, -f 1-2 | sort | uniq -d)" = "" ]
+tuned=$("$himc" modes piece.txt | awk -F, '$1 == 1 && $2 == 1 {print $3}')
+check test_tuned_drum_sounds_there [ "$tuned" = 110.000000 ]
+"$himc" info piece.txt >out
+check test_info_counts_strokes [ "$(sed -n 's/^strokes *//p; s/^right *//p' out | tr '\n' ' ')" = \
+    "4 1 legato, 1 accent " ]
+check test_info_tells_tempi [ "$(sed -n 's/^tempo *//p' out)" = "120, from beat 3 90 BPM" ]
+if [ -r "$stroke" ]; then
+    strikes=$("$himc" info "$stroke" | sed -n 's/^strikes: *//p')
+    check test_info_finds_the_strike_of_a_take [ "$strikes" = 1 ]
+    "$himc" render "$stroke" -o two.wav --strokes two.csv --right-tip RTIP >out
+    check test_take_strikes_the_drum [ "$(wc -l <two.csv) $(number played)" = "2 1" ]
+    refuses test_unknown_tip_is_refused NOSE render "$stroke" -o x.wav --right-tip NOSE
+else
+    tests=$((tests + 1))
+    ignored=$((ignored + 1))
+    line test_real_take "IGNORE: $stroke is not there"
+fi
+
+echo "-----------------------"
+echo "$tests Tests $failures Failures $ignored Ignored"
+[ $failures = 0 ]

@@ -1,0 +1,147 @@
+/// ear.c: packets, bundles, messages.
+///
+/// The socket is our own, because a lo_server binds to all addresses and the viewer must not; so bundles are taken apart
+/// here (OSC 1.0: "#bundle", a time tag, then size and element in turn) and liblo decodes the messages in them. They
+/// are shown as they come, whatever their time tag. Invariant: whatever a packet holds, it costs at most its length.
+#define _POSIX_C_SOURCE 200809L
+#include "ear.h"
+#include "words.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <lo/lo.h>
+#include <netdb.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { BUFFER = 65536, DEPTH = 8, BACKLOG = 1 << 20 };
+
+double ear_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_REALTIME, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int fail(int fd, const char *address, int port, char error[256])
+{
+    if (errno == EADDRINUSE)
+        snprintf(error, 256, "port %d (UDP, for OSC) is taken: perhaps by another viewer; choose one with --osc PORT",
+                 port);
+    else
+        snprintf(error, 256, "cannot listen to OSC on %s port %d: %s", address, port, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+int ear_open(const char *address, int port, char error[256])
+{
+    char service[16];
+    struct addrinfo hints = {.ai_socktype = SOCK_DGRAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE}, *found;
+    snprintf(service, sizeof service, "%d", port);
+    if (getaddrinfo(address, service, &hints, &found) != 0) {
+        snprintf(error, 256, "--bind %s: not an address; allowed is a numeric one such as 127.0.0.1 or 0.0.0.0", address);
+        return -1;
+    }
+    int backlog = BACKLOG;
+    int fd = socket(found->ai_family, SOCK_DGRAM, 0);
+    bool bound = fd >= 0 && bind(fd, found->ai_addr, found->ai_addrlen) == 0 &&
+                 fcntl(fd, F_SETFL, O_NONBLOCK) == 0;
+    freeaddrinfo(found);
+    if (!bound)
+        return fail(fd, address, port, error);
+    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &backlog, sizeof backlog); // a larger queue is welcome, not needed
+    return fd;
+}
+
+int ear_port(int fd)
+{
+    struct sockaddr_storage name;
+    socklen_t size = sizeof name;
+    char port[16] = "0";
+    if (getsockname(fd, (struct sockaddr *)&name, &size) == 0)
+        getnameinfo((struct sockaddr *)&name, size, NULL, 0, port, sizeof port, NI_NUMERICSERV);
+    int number = 0;
+    sscanf(port, "%d", &number);
+    return number;
+}
+
+static void hear_message(scene *s, const char *key, const char *data, size_t size, double now)
+{
+    int trouble = 0;
+    lo_message message = lo_message_deserialise((void *)data, size, &trouble);
+    s->count.messages++;
+    if (!message) {
+        s->count.malformed++;
+        return;
+    }
+    // the address is the data's first string; deserialise has seen its end
+    words_hear(s, key, data, message, now);
+    lo_message_free(message);
+}
+
+static void hear_element(scene *s, const char *key, const char *data, size_t size, double now, int depth)
+{
+    if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
+        hear_message(s, key, data, size, now);
+        return;
+    }
+    for (size_t at = 16; at < size;) {
+        uint32_t length = 0;
+        if (size - at >= 4)
+            length = (uint32_t)(uint8_t)data[at] << 24 | (uint32_t)(uint8_t)data[at + 1] << 16 |
+                     (uint32_t)(uint8_t)data[at + 2] << 8 | (uint8_t)data[at + 3];
+        at += 4;
+        if (length == 0 || length % 4 || at > size || length > size - at || depth == DEPTH) {
+            s->count.malformed++;
+            return;
+        }
+        hear_element(s, key, data + at, length, now, depth + 1);
+        at += length;
+    }
+}
+
+void ear_hear(scene *s, const char *key, const void *packet, size_t size, double now)
+{
+    s->count.packets++;
+    s->count.bytes += size;
+    if (size < 8 || size % 4) {
+        s->count.malformed++;
+        return;
+    }
+    hear_element(s, key, packet, size, now, 0);
+}
+
+// "127.0.0.1:9000"
+static void name_sender(const struct sockaddr *from, socklen_t size, char key[SCENE_KEY])
+{
+    char host[SCENE_KEY - 40], port[8];
+    if (getnameinfo(from, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+        snprintf(key, SCENE_KEY, "?");
+    else
+        snprintf(key, SCENE_KEY, "%s:%s", host, port);
+}
+
+bool ear_listen(int fd, scene *s, int most)
+{
+    static char packet[BUFFER];
+    uint64_t events = s->events, messages = s->count.messages;
+    double now = ear_clock();
+    for (int i = 0; i < most; i++) {
+        struct sockaddr_storage from;
+        socklen_t from_size = sizeof from;
+        char key[SCENE_KEY];
+        ssize_t size = recvfrom(fd, packet, sizeof packet, 0, (struct sockaddr *)&from, &from_size);
+        if (size < 0)
+            break;
+        name_sender((struct sockaddr *)&from, from_size, key);
+        ear_hear(s, key, packet, (size_t)size, now);
+    }
+    bool whole = scene_settle(s, now);
+    return whole || s->events != events || s->count.messages != messages;
+}

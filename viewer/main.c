@@ -1,0 +1,181 @@
+/// himc-viewer: OSC in, a page in the browser out.
+#define _POSIX_C_SOURCE 200809L
+#include "ear.h"
+#include "web.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define OSC_PORT 9001
+#define HTTP_PORT 8080
+#define PLAY_MAX (512L << 20) // (bytes)
+
+static const char help[] =
+    "usage: himc-viewer [OPTION...]\n\n"
+    "shows the performer in the browser: hears OSC, serves one page and streams to it\n\n"
+    "  --osc PORT       hear OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
+    "  --http PORT      serve the page on this port (8080)\n"
+    "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in, see docs/viewer.md\n"
+    "  --play FILE.csv  play a motion that himc render --motion wrote, without OSC\n"
+    "  --no-browser     only print the address\n"
+    "  --help           this text\n";
+
+typedef struct options {
+    const char *address, *play;
+    int osc, http;
+    bool browser;
+} options;
+
+static volatile int stop;
+
+static void on_signal(int number)
+{
+    (void)number;
+    stop = 1;
+}
+
+static int complain(const char *text)
+{
+    fprintf(stderr, "himc-viewer: %s\n", text);
+    return 1;
+}
+
+static bool parse_port(const char *name, const char *text, int *port, char error[256])
+{
+    char *end;
+    long value = strtol(text, &end, 10);
+    if (!*text || *end || value < 0 || value > 65535) {
+        snprintf(error, 256, "%s %.40s: allowed 0 .. 65535", name, text);
+        return false;
+    }
+    *port = (int)value;
+    return true;
+}
+
+// an option that takes a value; false if it is none
+static bool parse_option(options *o, const char *name, const char *value, char error[256])
+{
+    bool known = !strcmp(name, "--osc") || !strcmp(name, "--http") || !strcmp(name, "--bind") || !strcmp(name, "--play");
+    if (!known)
+        snprintf(error, 256, "%.60s: unknown option; himc-viewer --help lists them", name);
+    else if (!value)
+        snprintf(error, 256, "%s: wants a value; himc-viewer --help explains", name);
+    if (!known || !value)
+        return false;
+    if (!strcmp(name, "--osc"))
+        return parse_port(name, value, &o->osc, error);
+    if (!strcmp(name, "--http"))
+        return parse_port(name, value, &o->http, error);
+    *(strcmp(name, "--bind") ? &o->play : &o->address) = value;
+    return true;
+}
+
+static bool parse(options *o, char **argv, char error[256])
+{
+    for (char **arg = argv + 1; *arg; arg++) {
+        if (!strcmp(*arg, "--no-browser")) {
+            o->browser = false;
+            continue;
+        }
+        if (!parse_option(o, *arg, arg[1], error))
+            return false;
+        arg++;
+    }
+    return true;
+}
+
+// the motion's text; NULL with a line in `error`
+static char *read_motion(const char *path, size_t *size, char error[256])
+{
+    static const char first[] = "time_s,";
+    struct stat about;
+    FILE *file = fopen(path, "rb");
+    char *text = NULL;
+    *size = 0;
+    if (!file || fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode))
+        snprintf(error, 256, "%.180s: cannot be read", path);
+    else if (about.st_size > PLAY_MAX)
+        snprintf(error, 256, "%.180s: %ld MB, allowed up to %ld", path, (long)(about.st_size >> 20), PLAY_MAX >> 20);
+    else if (!(text = malloc((size_t)about.st_size + 1)))
+        snprintf(error, 256, "%.180s: out of memory", path);
+    else
+        *size = fread(text, 1, (size_t)about.st_size, file);
+    if (file)
+        fclose(file);
+    if (text && (*size < sizeof first || strncmp(text, first, sizeof first - 1) != 0)) {
+        snprintf(error, 256, "%.180s:1: not a motion: its first column must be time_s (himc render --motion)", path);
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+// for the browser, which cannot go to 0.0.0.0
+static void print_url(char url[128], const char *address, int port)
+{
+    bool any = !strcmp(address, "0.0.0.0") || !strcmp(address, "::");
+    const char *host = any ? "127.0.0.1" : address;
+    snprintf(url, 128, strchr(host, ':') ? "http://[%s]:%d/" : "http://%s:%d/", host, port);
+}
+
+static void open_browser(const char *url)
+{
+    signal(SIGCHLD, SIG_IGN);
+    if (fork() == 0) {
+        if (!freopen("/dev/null", "w", stderr) || !freopen("/dev/null", "w", stdout))
+            _exit(1);
+        execlp("xdg-open", "xdg-open", url, (char *)NULL);
+        _exit(1);
+    }
+}
+
+static void handle_signals(void)
+{
+    struct sigaction act = {.sa_handler = on_signal};
+    sigaction(SIGINT, &act, NULL);
+    sigaction(SIGTERM, &act, NULL);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+static int serve(const options *o, char error[256])
+{
+    static scene s;
+    web_config config = {.address = o->address, .port = o->http};
+    char *motion = o->play ? read_motion(o->play, &config.play_size, error) : NULL, url[128];
+    if (o->play && !motion)
+        return complain(error);
+    config.play = motion;
+    config.ear = ear_open(o->address, o->osc, error);
+    web *w = config.ear < 0 ? NULL : web_new(&config, &s, error);
+    if (!w) {
+        free(motion);
+        return complain(error);
+    }
+    print_url(url, o->address, web_port(w));
+    printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address, ear_port(config.ear));
+    fflush(stdout);
+    if (o->browser)
+        open_browser(url);
+    handle_signals();
+    web_run(w, &stop);
+    web_free(w);
+    free(motion);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    options o = {.address = "127.0.0.1", .osc = OSC_PORT, .http = HTTP_PORT, .browser = true};
+    char error[256] = "";
+    if (argc == 2 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))) {
+        fputs(help, stdout);
+        return 0;
+    }
+    if (!parse(&o, argv, error))
+        return complain(error);
+    return serve(&o, error);
+}

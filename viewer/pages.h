@@ -1,0 +1,15 @@
+/// pages.h: the files the viewer serves, all of them, linked into the program: nothing else can be asked for.
+#ifndef VIEWER_PAGES_H
+#define VIEWER_PAGES_H
+
+#include <stddef.h>
+
+typedef struct page {
+    const char *path, *type; ///< "/main.js", "text/javascript"
+    const char *begin, *end;
+} page;
+
+/// The page of exactly that path, or NULL.
+const page *pages_find(const char *path);
+
+#endif

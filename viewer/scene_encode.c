@@ -1,0 +1,103 @@
+/// scene_encode.c: the news for one reader as one binary frame.
+///
+/// A frame is a row of blocks, each a multiple of 8 bytes, in the byte order of the machine (little-endian everywhere
+/// this runs; the page reads so):
+///
+///     u32 kind, u32 bytes that follow the head, f64 wall clock (ms), then
+///     1 pose   key[80], u32 segments known, u32 targets known, f32[20][7], f32[2][3]
+///     2 drum   key[80], name[32], u32 placed, f32[5] place, u32 modes, u32 0, f32[64]
+///     3 event  JSON, padded with spaces
+#include "scene.h"
+
+#include <string.h>
+
+enum { HEAD = 16, POSE = SCENE_KEY + 8 + 4 * (SCENE_SEGMENTS * 7 + SCENE_HANDS * 3),
+       DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES) };
+
+_Static_assert(POSE % 8 == 0 && DRUM % 8 == 0, "blocks keep the alignment of doubles");
+// all events may be left for the next frame, all poses and drums must fit into one
+_Static_assert(SCENE_PERFORMERS * (HEAD + POSE) + SCENE_DRUMS * (HEAD + DRUM) + HEAD + SCENE_TEXT + 8 <=
+                   SCENE_FRAME_MAX, "one frame holds the scene");
+
+typedef struct pen {
+    uint8_t *at;
+} pen;
+
+static void put(pen *p, const void *bytes, size_t size)
+{
+    memcpy(p->at, bytes, size);
+    p->at += size;
+}
+
+static void put_u32(pen *p, uint32_t value)
+{
+    put(p, &value, sizeof value);
+}
+
+static void put_head(pen *p, uint32_t kind, size_t bytes, double time)
+{
+    double milliseconds = 1e3 * time;
+    put_u32(p, kind);
+    put_u32(p, (uint32_t)bytes);
+    put(p, &milliseconds, sizeof milliseconds);
+}
+
+static void put_pose(pen *p, const scene_performer *who)
+{
+    put_head(p, 1, POSE, who->heard);
+    put(p, who->key, sizeof who->key);
+    put_u32(p, who->known);
+    put_u32(p, who->targets);
+    put(p, who->body, sizeof who->body);
+    put(p, who->target, sizeof who->target);
+}
+
+static void put_drum(pen *p, const scene_drum *drum)
+{
+    put_head(p, 2, DRUM, drum->heard);
+    put(p, drum->key, sizeof drum->key);
+    put(p, drum->name, sizeof drum->name);
+    put_u32(p, drum->placed);
+    put(p, drum->place, sizeof drum->place);
+    put_u32(p, drum->modes);
+    put_u32(p, 0);
+    put(p, drum->amplitude, sizeof drum->amplitude);
+}
+
+static void put_event(pen *p, const scene_event *e)
+{
+    static const char spaces[8] = "        ";
+    size_t length = strlen(e->text), padding = (8 - length % 8) % 8;
+    put_head(p, 3, length + padding, e->time);
+    put(p, e->text, length);
+    put(p, spaces, padding);
+}
+
+scene_reader scene_reader_new(const scene *s)
+{
+    return (scene_reader){.events = s->events};
+}
+
+size_t scene_encode(const scene *s, scene_reader *reader, double now, uint8_t *frame)
+{
+    pen p = {frame};
+    for (int i = 0; i < SCENE_PERFORMERS; i++) {
+        const scene_performer *who = &s->performer[i];
+        if (reader->performer[i] != who->version && now - who->heard < SCENE_SILENCE)
+            put_pose(&p, who);
+        reader->performer[i] = who->version;
+    }
+    for (int i = 0; i < SCENE_DRUMS; i++) {
+        const scene_drum *drum = &s->drum[i];
+        if (reader->drum[i] != drum->version && now - drum->heard < SCENE_SILENCE)
+            put_drum(&p, drum);
+        reader->drum[i] = drum->version;
+    }
+    // a reader that the ring has overtaken goes on with the oldest there is
+    if (s->events - reader->events > SCENE_EVENTS)
+        reader->events = s->events - SCENE_EVENTS;
+    while (reader->events < s->events &&
+           p.at + HEAD + SCENE_TEXT + 8 <= frame + SCENE_FRAME_MAX)
+        put_event(&p, &s->event[reader->events++ % SCENE_EVENTS]);
+    return (size_t)(p.at - frame);
+}

@@ -1,0 +1,284 @@
+/// words.c: one table of addresses.
+///
+///     /himc/body      segment x y z qw qx qy qz       the segment's joint (m) and orientation in the world
+///     /himc/targets   hand x y z                      (m)
+///     /himc/strike    time hand drum x y velocity force duration nuance
+///     /himc/beat      beat
+///     /himc/status    name value ...
+///     /himc/pose      (an empty mark before the bodies is allowed)
+///     /membrane/NAME/head    amplitude ...            (m), modes in the order of their Bessel zeros
+///     /membrane/NAME/place   x y z tilt radius        (m, rad)
+///     /viewer/camera, /viewer/show, ...               for the page: see docs/viewer.md
+///
+/// A performer may put a name into its addresses, /himc/NAME/body, to share a port with others. Numbers may be of any
+/// numeric OSC type but must be finite. Types are written n for a number, s for a word, * for anything.
+#include "words.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define FAR 1000.0 // no coordinate is larger (m)
+
+static const char *const segments[SCENE_SEGMENTS] = {
+    "pelvis",         "trunk",           "neck",           "head",            "left-upper-arm",
+    "right-upper-arm", "left-forearm",   "right-forearm",  "left-hand",       "right-hand",
+    "left-stick",     "right-stick",     "left-upper-leg", "right-upper-leg", "left-lower-leg",
+    "right-lower-leg", "left-foot",      "right-foot",     "left-toes",       "right-toes"};
+
+/// A message being heard.
+typedef struct heard {
+    scene *s;
+    char key[SCENE_KEY];
+    char name[SCENE_NAME]; // the middle of the address: a performer's or drum's name
+    lo_message message;
+    const char *types;
+    lo_arg **args;
+    int count;
+    double now;
+} heard;
+
+typedef struct word {
+    const char *room, *what, *types;
+    bool (*hear)(heard *h); // false if malformed
+} word;
+
+static double number(const heard *h, int i)
+{
+    return (double)lo_hires_val((lo_type)h->types[i], h->args[i]);
+}
+
+static bool is_number(char type)
+{
+    return type == LO_FLOAT || type == LO_DOUBLE || type == LO_INT32 || type == LO_INT64;
+}
+
+static bool is_string(char type)
+{
+    return type == LO_STRING || type == LO_SYMBOL;
+}
+
+// a word for JSON: without what would end a string, cut to `size`; names in use are plain
+static void plain(char *out, size_t size, const char *text)
+{
+    size_t i = 0;
+    for (; i + 1 < size && text[i]; i++)
+        out[i] = (unsigned char)text[i] < 0x20 || strchr("\"\\\x7f", text[i]) ? '?' : text[i];
+    out[i] = 0;
+}
+
+// types as wanted, numbers finite
+static bool fits(const heard *h, const char *wanted)
+{
+    if (strcmp(wanted, "*") == 0)
+        return true;
+    if (h->count != (int)strlen(wanted))
+        return false;
+    for (int i = 0; i < h->count; i++)
+        if (wanted[i] == 's' ? !is_string(h->types[i])
+                             : !is_number(h->types[i]) || !isfinite(number(h, i)))
+            return false;
+    return true;
+}
+
+static bool near(const heard *h, int first, int count)
+{
+    for (int i = first; i < first + count; i++)
+        if (fabs(number(h, i)) > FAR)
+            return false;
+    return true;
+}
+
+static int find_hand(const char *name)
+{
+    return strcmp(name, "left") == 0 ? 0 : strcmp(name, "right") == 0 ? 1 : -1;
+}
+
+static int find_segment(const char *name)
+{
+    for (int i = 0; i < SCENE_SEGMENTS; i++)
+        if (strcmp(name, segments[i]) == 0)
+            return i;
+    return -1;
+}
+
+static bool hear_body(heard *h)
+{
+    int segment = find_segment(&h->args[0]->s);
+    float body[7];
+    double norm = 0;
+    for (int i = 0; i < 7; i++)
+        body[i] = (float)number(h, 1 + i);
+    for (int i = 3; i < 7; i++)
+        norm += (double)body[i] * (double)body[i];
+    if (segment < 0 || !near(h, 1, 3) || norm < 0.5 || norm > 2)
+        return false;
+    for (int i = 3; i < 7; i++)
+        body[i] /= (float)sqrt(norm);
+    scene_performer *p = scene_find_performer(h->s, h->key, h->now);
+    if (p)
+        scene_set_body(p, segment, body, h->now);
+    return true;
+}
+
+static bool hear_pose(heard *h)
+{
+    (void)h;
+    return true;
+}
+
+static bool hear_targets(heard *h)
+{
+    int hand = find_hand(&h->args[0]->s);
+    if (hand < 0 || !near(h, 1, 3))
+        return false;
+    scene_performer *p = scene_find_performer(h->s, h->key, h->now);
+    for (int i = 0; p && i < 3; i++)
+        p->target[hand][i] = (float)number(h, 1 + i);
+    if (p)
+        p->targets |= UINT32_C(1) << hand;
+    return true;
+}
+
+static bool hear_strike(heard *h)
+{
+    char drum[SCENE_NAME], nuance[SCENE_NAME];
+    if (find_hand(&h->args[1]->s) < 0 || !near(h, 3, 2))
+        return false;
+    plain(drum, sizeof drum, &h->args[2]->s);
+    plain(nuance, sizeof nuance, &h->args[8]->s);
+    scene_say(h->s, h->now,
+              "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
+              "\"y\":%.5f,\"velocity\":%.4g,\"force\":%.5g,\"duration\":%.5g,\"nuance\":\"%s\"}",
+              h->key, number(h, 0), &h->args[1]->s, drum, number(h, 3), number(h, 4), number(h, 5),
+              number(h, 6), number(h, 7), nuance);
+    return true;
+}
+
+static bool hear_beat(heard *h)
+{
+    scene_say(h->s, h->now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key, number(h, 0));
+    return true;
+}
+
+// all atoms as a JSON array; false if there is one that JSON cannot say
+static bool list(const heard *h, char *out, size_t size)
+{
+    size_t used = 0;
+    for (int i = 0; i < h->count; i++) {
+        char text[64];
+        if (is_string(h->types[i])) {
+            char clean[48];
+            plain(clean, sizeof clean, &h->args[i]->s);
+            snprintf(text, sizeof text, "\"%s\"", clean);
+        } else if (is_number(h->types[i]) && isfinite(number(h, i)))
+            snprintf(text, sizeof text, "%.9g", number(h, i));
+        else
+            return false;
+        int n = snprintf(out + used, size - used, "%s%s", i ? "," : "", text);
+        if (n < 0 || (size_t)n >= size - used)
+            return false;
+        used += (size_t)n;
+    }
+    return true;
+}
+
+static bool hear_status(heard *h)
+{
+    char values[400] = "";
+    if (!list(h, values, sizeof values))
+        return false;
+    scene_say(h->s, h->now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}", h->key, values);
+    return true;
+}
+
+static bool hear_view(heard *h)
+{
+    char values[400] = "", what[SCENE_NAME];
+    if (!list(h, values, sizeof values))
+        return false;
+    plain(what, sizeof what, h->name);
+    scene_say(h->s, h->now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what, values);
+    return true;
+}
+
+static bool hear_head(heard *h)
+{
+    for (int i = 0; i < h->count; i++)
+        if (!is_number(h->types[i]) || !isfinite(number(h, i)) || fabs(number(h, i)) > 1)
+            return false;
+    scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->now);
+    if (!d)
+        return true;
+    d->modes = (uint32_t)(h->count < SCENE_MODES ? h->count : SCENE_MODES);
+    for (int i = 0; i < SCENE_MODES; i++)
+        d->amplitude[i] = i < h->count ? (float)number(h, i) : 0;
+    d->version++;
+    return true;
+}
+
+static bool hear_place(heard *h)
+{
+    double radius = number(h, 4);
+    if (!near(h, 0, 3) || fabs(number(h, 3)) > 2 || radius < 0.02 || radius > 2)
+        return false;
+    scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->now);
+    if (!d)
+        return true;
+    for (int i = 0; i < 5; i++)
+        d->place[i] = (float)number(h, i);
+    d->placed = true;
+    d->version++;
+    return true;
+}
+
+static const word words[] = {
+    {"himc", "body", "snnnnnnn", hear_body},
+    {"himc", "pose", "*", hear_pose},
+    {"himc", "targets", "snnn", hear_targets},
+    {"himc", "strike", "nssnnnnns", hear_strike},
+    {"himc", "beat", "n", hear_beat},
+    {"himc", "status", "*", hear_status},
+    {"membrane", "head", "*", hear_head},
+    {"membrane", "place", "nnnnn", hear_place},
+};
+
+// "/room/name/what" or "/room/what"; false if it is neither or too long
+static bool split(const char *address, char room[SCENE_NAME], char name[SCENE_NAME], char what[SCENE_NAME])
+{
+    char rest[2] = "";
+    name[0] = 0;
+    if (sscanf(address, "/%31[^/]/%31[^/]/%31[^/]%1s", room, name, what, rest) == 3)
+        return true;
+    name[0] = 0;
+    return sscanf(address, "/%31[^/]/%31[^/]%1s", room, what, rest) == 2 && !rest[0];
+}
+
+static const word *find_word(const char *room, const char *what, bool named)
+{
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (strcmp(room, words[i].room) == 0 && strcmp(what, words[i].what) == 0 &&
+            (named || strcmp(room, "membrane") != 0))
+            return &words[i];
+    return NULL;
+}
+
+void words_hear(scene *s, const char *key, const char *address, lo_message message, double now)
+{
+    static const word view = {"viewer", "", "*", hear_view};
+    char room[SCENE_NAME], name[SCENE_NAME], what[SCENE_NAME];
+    heard h = {.s = s, .message = message, .types = lo_message_get_types(message),
+               .args = lo_message_get_argv(message), .count = lo_message_get_argc(message), .now = now};
+    const word *w = NULL;
+    if (split(address, room, name, what))
+        w = strcmp(room, "viewer") == 0 && !name[0] ? &view : find_word(room, what, name[0] != 0);
+    if (!w) {
+        s->count.unknown++;
+        return;
+    }
+    plain(h.name, sizeof h.name, w == &view ? what : name);
+    bool named = w != &view && strcmp(room, "himc") == 0 && name[0];
+    snprintf(h.key, sizeof h.key, "%.46s%s%s", key, named ? "/" : "", named ? h.name : "");
+    if (!fits(&h, w->types) || !w->hear(&h))
+        s->count.malformed++;
+}
