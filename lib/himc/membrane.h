@@ -56,6 +56,11 @@ bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup
 /// Another sample rate; what sounds goes on sounding.
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error);
 
+/// Whether two are made, and heard, alike.
+HIMC_RT bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b);
+/// Makes `membrane` so: outline, head and pickups of `other`; what is alike goes on sounding.
+bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error);
+
 HIMC_RT const himc_head *himc_membrane_head(const himc_membrane *membrane);
 /// The first, and all `count` of them.
 HIMC_RT const himc_pickup *himc_membrane_pickup(const himc_membrane *membrane);

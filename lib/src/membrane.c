@@ -342,6 +342,44 @@ bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *er
     return true;
 }
 
+static bool same_shape(const himc_shape *a, const himc_shape *b)
+{
+    return a->kind == b->kind && a->grid == b->grid && a->length * b->width == b->length * a->width;
+}
+
+static bool same_head(const himc_head *a, const himc_head *b)
+{
+    return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
+           a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
+           a->modes == b->modes && a->air == b->air && a->kettle == b->kettle &&
+           a->glide == b->glide && a->damp == b->damp;
+}
+
+static bool same_pickup(const himc_pickup *a, const himc_pickup *b)
+{
+    return a->kind == b->kind && a->x == b->x && a->y == b->y && a->azimuth == b->azimuth &&
+           a->elevation == b->elevation && a->distance == b->distance;
+}
+
+bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b)
+{
+    bool alike = a->pickup_count == b->pickup_count && same_head(&a->head, &b->head) &&
+                 same_shape(himc_membrane_shape(a), himc_membrane_shape(b));
+    for (int i = 0; alike && i < a->pickup_count; i++)
+        alike = same_pickup(&a->pickups[i], &b->pickups[i]);
+    return alike;
+}
+
+bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error)
+{
+    const himc_shape *shape = himc_membrane_shape(other);
+    bool good = same_shape(himc_membrane_shape(membrane), shape)
+                    ? himc_membrane_set_head(membrane, &other->head, error)
+                    : himc_membrane_set_shape(membrane, shape, &other->head, error);
+    return good &&
+           himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
+}
+
 const himc_head *himc_membrane_head(const himc_membrane *membrane)
 {
     return &membrane->head;
