@@ -19,20 +19,14 @@ typedef struct t_layer {
 /* Whether it is made and heard as the drum's head is. */
 static inline bool layer_fits(const t_layer *layer, const himc_membrane *drum)
 {
-    const himc_head *a = himc_membrane_head(drum), *b = himc_membrane_head(layer->l_membrane);
-    const himc_pickup *p = himc_membrane_pickup(drum), *q = himc_membrane_pickup(layer->l_membrane);
-    return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
-           a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
-           a->modes == b->modes && p->kind == q->kind && p->x == q->x && p->y == q->y &&
-           p->azimuth == q->azimuth && p->elevation == q->elevation && p->distance == q->distance;
+    return himc_membrane_alike(drum, layer->l_membrane);
 }
 
 /* Makes it so. May allocate. */
 static inline bool layer_fit(t_layer *layer, const himc_membrane *drum, himc_error *error)
 {
     return layer_fits(layer, drum) ||
-           (himc_membrane_set_head(layer->l_membrane, himc_membrane_head(drum), error) &&
-            himc_membrane_set_pickup(layer->l_membrane, himc_membrane_pickup(drum), error));
+           himc_membrane_follow(layer->l_membrane, drum, error);
 }
 
 /* Adds to sound and displacement, out[0] and out[1], what the force in[0] at in[1], in[2] makes. */

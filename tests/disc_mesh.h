@@ -83,8 +83,8 @@ static void write_market(const char *path, const disc_mesh *d, const double *val
     for (int i = 0; i < d->inner; i++)
         for (int j = 0; j <= i; j++)
             entries += value[i * d->all + j] != 0;
-    fprintf(f, "%%%%MatrixMarket matrix coordinate real symmetric\n%% a disc\n%d %d %ld\n", d->inner,
-            d->inner, entries);
+    fprintf(f, "%%%%MatrixMarket matrix coordinate real symmetric\n%% a disc\n%d %d %ld\n",
+            d->inner, d->inner, entries);
     for (int i = 0; i < d->inner; i++)
         for (int j = 0; j <= i; j++)
             if (value[i * d->all + j] != 0)
@@ -122,7 +122,8 @@ static void disc_mesh_write(const disc_mesh *d, const char *folder, double tensi
     fclose(f);
     snprintf(path, sizeof path, "%s/head.txt", folder);
     f = fopen(path, "w");
-    fprintf(f, "# a disc\ntension %g\ndensity %g\n\nplaces places.txt\nmass m.mtx\nstiffness k.mtx\n",
+    fprintf(f,
+            "# a disc\ntension %g\ndensity %g\n\nplaces places.txt\nmass m.mtx\nstiffness k.mtx\n",
             tension, density);
     fclose(f);
 }

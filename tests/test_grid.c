@@ -121,7 +121,8 @@ static void test_grid_blow_never_makes_energy(void)
 {
     TEST_ASSERT_TRUE_MESSAGE(shape_of("head.txt"), error.text);
     himc_membrane *m = himc_drum_membrane(drum);
-    himc_stick stick = {.head = {1e10, 2.5, 0, 0.03, 0.0175}, .mass = 0.03, .x = -0.1, .velocity = -6};
+    himc_stick stick = {
+        .head = {1e10, 2.5, 0, 0.03, 0.0175}, .mass = 0.03, .x = -0.1, .velocity = -6};
     himc_stick *sticks[] = {&stick};
     double before = himc_contact_energy(m, &stick), start = before, rise = 0;
     for (int i = 0; i < 3000; i++) {

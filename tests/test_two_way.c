@@ -1,5 +1,5 @@
-/// test_two_way.c: a free arm's stick on a head: physics at 10 kHz with the contact at 48 kHz inside,
-/// against one in which engine and contact step together at 480 kHz.
+/// test_two_way.c: a free arm's stick on a head: physics at 10 kHz with the contact at 48 kHz
+/// inside, against one in which engine and contact step together at 480 kHz.
 ///
 /// The arm has no torques: what is compared is the coupling alone (effective mass, micro-steps and
 /// the impulse given back in the same step), for soft felt to a rigid mallet.
@@ -78,7 +78,8 @@ static result strike(double k, double rate, int samples, int steps)
     himc_membrane *membrane = himc_membrane_new(&head, rate, &error);
     TEST_ASSERT_TRUE_MESSAGE(body && membrane, error.text);
     himc_body_state state = start;
-    himc_stick stick = {.head = {k, 2.54, 0, 0.03, 0.0175}, .x = -0.75 * head.radius}, *one = &stick;
+    himc_stick stick = {.head = {k, 2.54, 0, 0.03, 0.0175}, .x = -0.75 * head.radius},
+               *one = &stick;
     himc_character_place(body, &start);
     double offset = 0;
     int played = 0;
@@ -107,10 +108,11 @@ static result strike(double k, double rate, int samples, int steps)
 
 static void test_two_way_contact_is_that_of_a_fine_simulation_of_arm_and_head_together(void)
 {
-    // soft, medium and hard felt, wood: the first blow of wood is a spike of a few samples
+    // soft, medium and hard felt, wood: wood first meets the head in a spike of a few samples, and
+    // parts from it grazing
     static const double k[] = {1e7, 1.6e8, 1e9, 1e10};
     static const double impulse[] = {1e-3, 1e-3, 1e-3, 2e-3}, force[] = {1e-2, 1e-2, 1e-2, 5e-2};
-    static const double contact[] = {2e-2, 2e-2, 2e-2, 3e-2};
+    static const double contact[] = {2e-2, 2e-2, 2e-2, 6e-2};
     for (int i = 0; i < 4; i++) {
         result fine = strike(k[i], FINE, 1, 1), now = strike(k[i], 48000, 24, 5);
         printf("k %.2g: impulse %.4f Ns (%+.3f %%), force %.1f N (%+.2f %%), contact %.2f ms "

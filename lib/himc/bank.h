@@ -48,7 +48,8 @@ HIMC_RT double himc_bank_peek(const himc_bank *bank, const himc_tap *tap);
 /// himc_bank_read for a tap on displacements alone.
 HIMC_RT double himc_bank_displacement(const himc_bank *bank, const himc_tap *tap);
 
-/// `n` samples without force: read[k][i] is what taps[k] (1 .. HIMC_BANK_TAPS) reads after sample i.
+/// `n` samples without force: read[k][i] is what taps[k] (1 .. HIMC_BANK_TAPS) reads after sample
+/// i.
 #define HIMC_BANK_TAPS 10
 HIMC_RT void himc_bank_run(himc_bank *bank, int n, const himc_tap *const *taps, int count,
                            double *const *read);
@@ -60,7 +61,8 @@ typedef struct himc_pull {
     double compliance; ///< what g . q moves per unit of force through g (sum g_i^2 b1_i)
 } himc_pull;
 
-/// The weights (padded) that himc_bank_run_pulled takes for these a_i; until the next himc_bank_set.
+/// The weights (padded) that himc_bank_run_pulled takes for these a_i; until the next
+/// himc_bank_set.
 HIMC_RT void himc_bank_weigh(const himc_bank *bank, const double *on_square, double *weight);
 /// One sample without force, and its `pull`.
 HIMC_RT void himc_bank_run_pulled(himc_bank *bank, const double *weight, himc_pull *pull);

@@ -2,7 +2,7 @@
 ///
 /// M z'' + K z = f (2012 paper, equations 4 and 5) at N places. A head's file is text, one item a
 /// line, `#` begins a comment; file names in it are relative to it:
-///     tension 3122        the tension (N/m) and
+///     tension 3528        the tension (N/m) and
 ///     density 0.2653      mass per area (kg/m^2) that the matrices are made for
 ///     places places.txt   rows of X Y (m), first the N of the matrices, then any that stand still
 ///     mass mass.mtx       N x N (kg), symmetric, positive

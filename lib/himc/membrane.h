@@ -1,8 +1,8 @@
 /// membrane.h: a drumhead: its modes, swinging, and ears that hear them.
 ///
-/// w(x, y, t) = sum_i phi_i(x, y) q_i(t), up positive; each q_i is an oscillator of the bank, loaded
-/// by the air if the head says so; and as it bows out, its tension rises by its glide. Needs libm
-/// alone.
+/// w(x, y, t) = sum_i phi_i(x, y) q_i(t), up positive; each q_i is an oscillator of the bank,
+/// loaded by the air if the head says so; and as it bows out, its tension rises by its glide. Needs
+/// libm alone.
 #ifndef HIMC_MEMBRANE_H
 #define HIMC_MEMBRANE_H
 
@@ -42,8 +42,8 @@ void himc_membrane_free(himc_membrane *membrane);
 /// in 5 ms, and the sound does not jump. Allocates only when the number of modes changes. False,
 /// and nothing changed, if a value is not allowed.
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
-/// A head of another outline, at rest; the old sound fades in 5 ms. Retains a grid. Air is known for
-/// round heads alone.
+/// A head of another outline, at rest; the old sound fades in 5 ms. Retains a grid. Air is known
+/// for round heads alone.
 bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
                              const himc_head *head, himc_error *error);
 HIMC_RT const himc_shape *himc_membrane_shape(const himc_membrane *membrane);
@@ -56,6 +56,11 @@ bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup
 /// Another sample rate; what sounds goes on sounding.
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error);
 
+/// Whether two are made, and heard, alike.
+HIMC_RT bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b);
+/// Makes `membrane` so: outline, head and pickups of `other`; what is alike goes on sounding.
+bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error);
+
 HIMC_RT const himc_head *himc_membrane_head(const himc_membrane *membrane);
 /// The first, and all `count` of them.
 HIMC_RT const himc_pickup *himc_membrane_pickup(const himc_membrane *membrane);
@@ -63,8 +68,8 @@ HIMC_RT const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, 
 HIMC_RT double himc_membrane_rate(const himc_membrane *membrane);
 /// Mode `index` (0 .. head.modes-1) as it sounds, with its air.
 HIMC_RT himc_mode himc_membrane_mode(const himc_membrane *membrane, int index);
-/// Where the principal mode of such a head with this outline sounds (Hz): (1,1) if round, whether or
-/// not it is in the list, else the lowest.
+/// Where the principal mode of such a head with this outline sounds (Hz): (1,1) if round, whether
+/// or not it is in the list, else the lowest.
 HIMC_RT double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head);
 /// The tension (N/m, HIMC_TENSION_MIN .. HIMC_TENSION_MAX) that brings it nearest to `frequency`.
 HIMC_RT double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,

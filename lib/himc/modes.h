@@ -44,8 +44,8 @@ typedef struct himc_mode {
 /// What a hand's whole weight adds to the decay of a bare head (1/s): T60 = 0.1 s.
 #define HIMC_DAMP 69.0
 
-/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes, without air; tension and decay as modes.c
-/// explains.
+/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes, without air; tension and decay as
+/// modes.c explains.
 himc_head himc_head_default(void);
 
 /// Every field of `head` in its range, or false with the field, the value and the range.

@@ -155,7 +155,8 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     switch (argument->kind) {
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", argument->words); break;
     case HIMC_ARGUMENT_NAME:
-        snprintf(text, size, "a drum's name: up to %d letters and digits, none of the performer's commands",
+        snprintf(text, size,
+                 "a drum's name: up to %d letters and digits, none of the performer's commands",
                  HIMC_NAME_SIZE - 1);
         break;
     case HIMC_ARGUMENT_TEXT:

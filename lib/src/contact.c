@@ -6,9 +6,9 @@
 ///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
 ///     solve r = b - G F(r) (meeting.c);  push the head by -F, the sticks by F.
 ///
-/// The film's stretching (membrane_step.c) pulls with base - half (P . F) through its own shape, which
-/// moves place i by P_i per newton: b_i loses P_i base, G_ij loses half P_i P_j (and stays positive,
-/// by Cauchy and Schwarz), and the equation is the same.
+/// The film's stretching (membrane_step.c) pulls with base - half (P . F) through its own shape,
+/// which moves place i by P_i per newton: b_i loses P_i base, G_ij loses half P_i P_j (and stays
+/// positive, by Cauchy and Schwarz), and the equation is the same.
 ///
 /// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own
 /// acceleration - losses of the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive
@@ -127,8 +127,8 @@ static void compliances(const himc_membrane *m, const near *nears, int count, do
         double p = nears[i].pull;
         g[i][i] = nears[i].spot->compliance + own - half * p * p;
         for (int j = 0; j < i; j++)
-            g[i][j] = g[j][i] = himc_spot_compliance(m, nears[i].spot, nears[j].spot) -
-                                half * p * nears[j].pull;
+            g[i][j] = g[j][i] =
+                himc_spot_compliance(m, nears[i].spot, nears[j].spot) - half * p * nears[j].pull;
     }
 }
 

@@ -250,8 +250,7 @@ static bool set_kettle(himc_drum *drum, const himc_command *c, himc_error *error
     head.kettle = 0;
     if (is_symbol(c, 0) && c->count == 1 && strcmp(c->atom[0].symbol, "usual") == 0)
         return set_head(drum, &head, error);
-    if (!numbers(c, "kettle", 1, error) ||
-        !himc_air_check(number(c, 0), head.radius, error))
+    if (!numbers(c, "kettle", 1, error) || !himc_air_check(number(c, 0), head.radius, error))
         return false;
     head.kettle = number(c, 0);
     return set_head(drum, &head, error);
@@ -293,8 +292,7 @@ static bool set_shape(himc_drum *drum, const himc_command *c, himc_error *error)
     }
     if (strcmp(word, "rectangle") != 0 && word[0])
         return load_shape(drum, word, error);
-    if (c->count != 3 || c->atom[1].kind != HIMC_ATOM_NUMBER ||
-        c->atom[2].kind != HIMC_ATOM_NUMBER)
+    if (c->count != 3 || c->atom[1].kind != HIMC_ATOM_NUMBER || c->atom[2].kind != HIMC_ATOM_NUMBER)
         return himc_error_set(error, "shape: allowed circle, rectangle LENGTH WIDTH, or a file");
     himc_shape shape = {HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
     if (!himc_check_range("shape rectangle LENGTH", shape.length, 0.05, 1.4, "m", error) ||

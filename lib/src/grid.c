@@ -59,8 +59,8 @@ static bool read_item(parts *p, const char *path, const char *key, const char *v
                                 error);
     }
     if (!table)
-        return himc_error_set(
-            error, "%.60s: unknown, allowed tension density places mass stiffness", key);
+        return himc_error_set(error,
+                              "%.60s: unknown, allowed tension density places mass stiffness", key);
     if (table->value)
         return himc_error_set(error, "%s: named twice", key);
     return beside(path, value, file, sizeof file, error) &&
@@ -184,9 +184,9 @@ static bool solve(himc_grid *g, parts *p, himc_error *error)
     if (!failed)
         return himc_error_set(error, "no memory for %d places", n);
     // symmetric, so rows may be taken for columns
-    int info = LAPACKE_dsygvx(LAPACK_COL_MAJOR, 1, 'V', 'I', 'L', n, p->stiffness.value, n,
-                              p->mass.value, n, 0, 0, 1, g->modes, 0, &found, g->zero, g->shape, n,
-                              failed);
+    int info =
+        LAPACKE_dsygvx(LAPACK_COL_MAJOR, 1, 'V', 'I', 'L', n, p->stiffness.value, n, p->mass.value,
+                       n, 0, 0, 1, g->modes, 0, &found, g->zero, g->shape, n, failed);
     free(failed);
     if (info > n)
         return himc_error_set(error, "mass: not positive: its first %d rows and columns are not",

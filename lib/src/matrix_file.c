@@ -197,7 +197,8 @@ bool himc_matrix_load(matrix *out, const char *path, int columns, himc_error *er
     else
         good = read_rows(&r, &m, columns);
     if (good && columns > 0 && m.columns != columns)
-        good = himc_error_set(error, "%s: rows of %d numbers, allowed %d", path, m.columns, columns);
+        good =
+            himc_error_set(error, "%s: rows of %d numbers, allowed %d", path, m.columns, columns);
     fclose(r.file);
     free(r.text);
     if (!good)

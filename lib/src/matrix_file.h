@@ -9,8 +9,8 @@ typedef struct matrix {
     double *value; ///< (rows, columns), owned
 } matrix;
 
-/// Reads the file. With `columns` > 0 rows must have so many numbers. At most HIMC_GRID_PLACES rows.
-/// False with "file:line: ..." if anything in it is wrong.
+/// Reads the file. With `columns` > 0 rows must have so many numbers. At most HIMC_GRID_PLACES
+/// rows. False with "file:line: ..." if anything in it is wrong.
 bool himc_matrix_load(matrix *out, const char *path, int columns, himc_error *error);
 
 #endif

@@ -1,4 +1,5 @@
-/// membrane.c: what a membrane is: modes, bank, ears and spots put together, and changed as it sounds.
+/// membrane.c: what a membrane is: modes, bank, ears and spots put together, and changed as it
+/// sounds.
 ///
 /// A force f at (x, y) drives mode i with phi_i(x, y) f; the displacement there is sum phi_i q_i.
 /// Both use the same phi, from the same table, so work done on the head is energy in its modes to
@@ -14,10 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Mylar: Young's modulus, Poisson's ratio and density of the film, whose thickness follows from its mass
-#define YOUNG 4e9        // (Pa)
-#define POISSON 0.38     //
-#define FILM 1390.0      // (kg/m^3)
+// Mylar: Young's modulus, Poisson's ratio and density of the film, whose thickness follows from its
+// mass
+#define YOUNG 4e9    // (Pa)
+#define POISSON 0.38 //
+#define FILM 1390.0  // (kg/m^3)
 
 static void core_free(core *c)
 {
@@ -44,7 +46,8 @@ static himc_tap take_tap(double **memory, int length)
 static bool core_new(core *c, spot spots[SPOTS], const himc_shape *shape, int count,
                      himc_error *error)
 {
-    *c = (core){.modes = himc_modes_new_of(shape, count, error), .bank = himc_bank_new(count, error)};
+    *c = (core){.modes = himc_modes_new_of(shape, count, error),
+                .bank = himc_bank_new(count, error)};
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     int padded = c->bank ? himc_bank_padded(c->bank) : 0;
     size_t bytes = sizeof(double) * (size_t)padded * (10 + 3 * (HIMC_PICKUPS + SPOTS));
@@ -219,7 +222,8 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
         !himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
-    if (!m || !core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
+    if (!m ||
+        !core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
         if (!m)
             himc_error_set(error, "membrane: no memory");
         free(m);
@@ -338,6 +342,44 @@ bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *er
     return true;
 }
 
+static bool same_shape(const himc_shape *a, const himc_shape *b)
+{
+    return a->kind == b->kind && a->grid == b->grid && a->length * b->width == b->length * a->width;
+}
+
+static bool same_head(const himc_head *a, const himc_head *b)
+{
+    return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
+           a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
+           a->modes == b->modes && a->air == b->air && a->kettle == b->kettle &&
+           a->glide == b->glide && a->damp == b->damp;
+}
+
+static bool same_pickup(const himc_pickup *a, const himc_pickup *b)
+{
+    return a->kind == b->kind && a->x == b->x && a->y == b->y && a->azimuth == b->azimuth &&
+           a->elevation == b->elevation && a->distance == b->distance;
+}
+
+bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b)
+{
+    bool alike = a->pickup_count == b->pickup_count && same_head(&a->head, &b->head) &&
+                 same_shape(himc_membrane_shape(a), himc_membrane_shape(b));
+    for (int i = 0; alike && i < a->pickup_count; i++)
+        alike = same_pickup(&a->pickups[i], &b->pickups[i]);
+    return alike;
+}
+
+bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error)
+{
+    const himc_shape *shape = himc_membrane_shape(other);
+    bool good = same_shape(himc_membrane_shape(membrane), shape)
+                    ? himc_membrane_set_head(membrane, &other->head, error)
+                    : himc_membrane_set_shape(membrane, shape, &other->head, error);
+    return good &&
+           himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
+}
+
 const himc_head *himc_membrane_head(const himc_membrane *membrane)
 {
     return &membrane->head;
@@ -368,8 +410,8 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
 {
     bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
-    double zero = round ? himc_bessel_zero(1, 1)
-                        : himc_modes_get(membrane->core.modes, head, 0).zero;
+    double zero =
+        round ? himc_bessel_zero(1, 1) : himc_modes_get(membrane->core.modes, head, 0).zero;
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
     if (!head->air)
         return bare;

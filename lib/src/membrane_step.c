@@ -1,15 +1,15 @@
 /// membrane_step.c: a sample of the head: free, pushed, stretched.
 ///
 /// A head that bows out is longer, so its film pulls harder. With Berger's assumption of a uniform
-/// tension (H. M. Berger 1955; Avanzini & Marogna 2010) it rises by kappa int |grad w|^2 dS, and the
-/// energy of stretching is s^2/2 with
+/// tension (H. M. Berger 1955; Avanzini & Marogna 2010) it rises by kappa int |grad w|^2 dS, and
+/// the energy of stretching is s^2/2 with
 ///     s = sqrt(kappa/2) sum_i Lam_i q_i^2,   Lam_i = int |grad phi_i|^2 dS,
 ///     kappa = E h_f/(2 (1 - nu^2) area).
 /// Over a sample the film holds the modal forces -s_mean g: g the mean of ds/dq before the sample
 /// and after its free motion, s_mean = s + u/2, and s' = s + u with u = g . (q' - q). So the film
-/// gains s'^2/2 - s^2/2 = s_mean u, just the work done on it: passive for any step, and as the modes
-/// answer a force linearly, one division solves it (energy quadratisation: Ducceschi & Bilbao 2019).
-/// With sticks of forces F at shapes phi, and P = phi . B g (B what modes yield per newton),
+/// gains s'^2/2 - s^2/2 = s_mean u, just the work done on it: passive for any step, and as the
+/// modes answer a force linearly, one division solves it (energy quadratisation: Ducceschi & Bilbao
+/// 2019). With sticks of forces F at shapes phi, and P = phi . B g (B what modes yield per newton),
 ///     u = (g . (q_free - q) - gBg s - P F)/(1 + gBg/2)
 /// is linear in F, so it only adds to the compliances of the contact (contact.c).
 ///

@@ -8,10 +8,10 @@
 /// Weyl's law counts the modes below z: z^2/4 - z/2 (pairs twice), so the table ends at 1 + sqrt(1
 /// + 4 count) and a little more (H. Weyl 1911; the second term is the rim's).
 ///
-/// The default head: 23 inches of Christian et al.'s Mylar, the ideal membrane of the 2012 paper, and
-/// 3700 N/m: a 45 g mallet then meets 65 N at 3.7 m/s and 108 N at 6 m/s, the paper's 62 .. 65 and
-/// 106.9 N. With `air 1` the same head is a timpano's, and what the air carries away comes on top of
-/// this decay.
+/// The default head: 23 inches of Christian et al.'s Mylar, the ideal membrane of the 2012 paper,
+/// and 3700 N/m: a 45 g mallet then meets 65 N at 3.7 m/s and 108 N at 6 m/s, the paper's 62 ..
+/// 65 and 106.9 N. With `air 1` the same head is a timpano's, and what the air carries away comes
+/// on top of this decay.
 #include "himc/modes.h"
 
 #include "bessel.h"
@@ -32,14 +32,14 @@ typedef struct zero {
 struct himc_modes {
     himc_shape shape;
     outline_mode *outline; // (count), unless round; then nothing below is used
-    int count;      // modes
-    int zero_count; // zeros used by them
-    int top;        // largest order used
-    int columns;    // grid points
-    zero *zeros;    // sorted
-    int *first;     // (zero_count) index of the zero's first mode
-    int *of;        // (count) zero of a mode
-    double *table;  // (top + 1, columns, 2) J and J'/STEPS
+    int count;             // modes
+    int zero_count;        // zeros used by them
+    int top;               // largest order used
+    int columns;           // grid points
+    zero *zeros;           // sorted
+    int *first;            // (zero_count) index of the zero's first mode
+    int *of;               // (count) zero of a mode
+    double *table;         // (top + 1, columns, 2) J and J'/STEPS
 };
 
 himc_head himc_head_default(void)

@@ -5,9 +5,9 @@
 ///     int_0^1 sin(m pi u) exp(i s (u - 1/2)) du = m pi/(m^2 pi^2 - s^2) {2 cos s/2 | 2 i sin s/2}
 /// for m odd | even (up to sign).
 ///
-/// Grid: between places a shape is a plane fitted to the nearest eight by least squares, with weights
-/// that are infinite at a place and 0 at the ninth, so that it passes through the places and has no
-/// steps as the neighbours change (moving least squares: Lancaster & Salkauskas 1981).
+/// Grid: between places a shape is a plane fitted to the nearest eight by least squares, with
+/// weights that are infinite at a place and 0 at the ninth, so that it passes through the places
+/// and has no steps as the neighbours change (moving least squares: Lancaster & Salkauskas 1981).
 #include "outline.h"
 
 #include <math.h>

@@ -15,8 +15,7 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
 
 /// Mode `index` of `modes`, loaded as `mode` says. `point_shape` is its shape at the pickup's point
 /// (not used by HIMC_PICKUP_AIR).
-hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head,
-                          const himc_modes *modes, int index, const himc_mode *mode,
-                          double point_shape);
+hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
+                          int index, const himc_mode *mode, double point_shape);
 
 #endif

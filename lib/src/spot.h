@@ -13,13 +13,13 @@
 /// not alter results.
 typedef struct spot {
     bool used;
-    double x, y;       ///< (m)
-    unsigned long age; ///< the larger, the more recently used
-    double *shape;     ///< phi_i there, owned by the membrane
-    himc_tap tap;      ///< reads the displacement there
-    double compliance; ///< displacement there per newton there during a sample (m/N)
+    double x, y;                ///< (m)
+    unsigned long age;          ///< the larger, the more recently used
+    double *shape;              ///< phi_i there, owned by the membrane
+    himc_tap tap;               ///< reads the displacement there
+    double compliance;          ///< displacement there per newton there during a sample (m/N)
     double heard[HIMC_PICKUPS]; ///< sound per newton there
-    double seen;       ///< displacement of the watched place per newton there (m/N)
+    double seen;                ///< displacement of the watched place per newton there (m/N)
 } spot;
 
 #define SPOTS 24 ///< all sticks and mallets of a drum, and the forces pushed from outside

@@ -1,0 +1,82 @@
+/// timbre.c: spectra of single blows, for timbre.gp: the same blow at three places, with four
+/// mallets, at three speeds.
+///
+/// Prints one block for each panel: frequency (Hz), then the spectrum of each sound (dB re 1 s of
+/// full scale) over its first second, by a Hann window's falling half, so that the attack counts.
+#include "himc/himc.h"
+
+#include <stdio.h>
+
+#define RATE 48000
+#define LENGTH RATE
+#define STEP 2.0 // (Hz)
+#define TOP 1600.0
+
+typedef struct blow {
+    const char *mallet;
+    double place, velocity; // from the centre per radius, m/s
+} blow;
+
+static const blow panels[3][4] = {
+    {{"medium", 0.0, 3}, {"medium", 0.75, 3}, {"medium", 0.92, 3}, {NULL, 0, 0}},
+    {{"soft", 0.75, 3}, {"medium", 0.75, 3}, {"hard", 0.75, 3}, {"wood", 0.75, 3}},
+    {{"medium", 0.75, 0.5}, {"medium", 0.75, 2}, {"medium", 0.75, 8}, {NULL, 0, 0}},
+};
+
+static bool say(himc_drum *drum, const char *text, himc_error *error)
+{
+    himc_command command;
+    return himc_command_parse_text(&command, HIMC_DRUM, text, error) &&
+           himc_drum_command(drum, &command, error);
+}
+
+static bool sound_of(const blow *b, double *sound, himc_error *error)
+{
+    char text[64];
+    himc_drum *drum = himc_drum_new("figure", 23, RATE, error);
+    if (!drum)
+        return false;
+    double radius = himc_membrane_head(himc_drum_membrane(drum))->radius;
+    snprintf(text, sizeof text, "mallet %s", b->mallet);
+    bool good = say(drum, text, error) &&
+                himc_drum_strike_at(drum, 0, -b->place * radius, 0, b->velocity, error);
+    for (int at = 0; good && at < LENGTH; at += 480) {
+        himc_drum_advance(drum, 480, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_read(drum, (uint64_t)at, 480, sound + at, NULL);
+    }
+    himc_drum_release(drum);
+    return good;
+}
+
+static double level(const double *sound, double frequency)
+{
+    double w = 2 * HIMC_PI * frequency / RATE, re = 0, im = 0;
+    for (int i = 0; i < LENGTH; i++) {
+        double window = 0.5 + 0.5 * cos(HIMC_PI * i / LENGTH);
+        re += window * sound[i] * cos(w * i);
+        im += window * sound[i] * sin(w * i);
+    }
+    return 20 * log10(hypot(re, im) / RATE + 1e-12);
+}
+
+int main(void)
+{
+    static double sound[4][LENGTH];
+    himc_error error;
+    for (int p = 0; p < 3; p++) {
+        int count = 0;
+        for (; count < 4 && panels[p][count].mallet; count++)
+            if (!sound_of(&panels[p][count], sound[count], &error)) {
+                fprintf(stderr, "timbre: %s\n", error.text);
+                return 1;
+            }
+        for (double f = 40; f <= TOP; f += STEP) {
+            printf("%g", f);
+            for (int i = 0; i < count; i++)
+                printf(" %.2f", level(sound[i], f));
+            puts("");
+        }
+        puts("\n");
+    }
+    return 0;
+}

@@ -1,0 +1,20 @@
+# The spectra of timbre.c, three panels: gnuplot -e "data='timbre.txt'; out='timbre.svg'" timbre.gp
+set terminal svg size 900,900 font "sans-serif,13"
+set output out
+set multiplot layout 3,1
+set grid
+set yrange [-110:-20]
+set xrange [40:1600]
+set ylabel "level (dB)"
+set key top right
+set title "the same blow, medium mallet, 3 m/s: where"
+plot data index 0 using 1:2 with lines title "center", '' index 0 using 1:3 with lines title "normal", \
+     '' index 0 using 1:4 with lines title "rim"
+set title "the same blow at the normal spot, 3 m/s: with what"
+plot data index 1 using 1:2 with lines title "soft", '' index 1 using 1:3 with lines title "medium", \
+     '' index 1 using 1:4 with lines title "hard", '' index 1 using 1:5 with lines title "wood"
+set title "medium mallet at the normal spot: how hard"
+set xlabel "frequency (Hz)"
+plot data index 2 using 1:2 with lines title "pp, 0.5 m/s", '' index 2 using 1:3 with lines title "mf, 2 m/s", \
+     '' index 2 using 1:4 with lines title "ff, 8 m/s"
+unset multiplot
