@@ -21,13 +21,13 @@ check() {
 
 "$himc" serve --port 0 >"$dir/out" 2>"$dir/err" &
 server=$!
-for i in 1 2 3 4 5 6 7 8 9 10; do
+for i in $(seq 50); do
     port=$(sed -n 's/^listening at 127.0.0.1 port //p' "$dir/out")
     [ -n "$port" ] && break
     sleep 0.2
 done
 check test_serve_says_where_it_listens [ -n "$port" ]
-"$himc" serve --port "$port" >/dev/null 2>"$dir/taken"
+timeout 20 "$himc" serve --port "$port" >/dev/null 2>"$dir/taken"
 check test_serve_fails_when_the_port_is_taken [ $? = 1 ]
 check test_a_taken_port_is_one_line [ "$(grep -c taken "$dir/taken")/$(wc -l <"$dir/taken")" = 1/1 ]
 kill -TERM $server
