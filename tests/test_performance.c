@@ -27,7 +27,8 @@ void tearDown(void)
 
 // allocations made while `watching`
 static long allocations;
-static bool watching;
+static volatile bool watching;
+#ifndef __SANITIZE_ADDRESS__
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *old, size_t size);
@@ -49,6 +50,7 @@ void *realloc(void *old, size_t size)
     allocations += watching;
     return __libc_realloc(old, size);
 }
+#endif
 
 static bool try_command(himc_performance *p, const char *text)
 {

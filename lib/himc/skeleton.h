@@ -46,7 +46,7 @@ typedef enum himc_anthropometry {
 } himc_anthropometry;
 
 typedef struct himc_skeleton_config {
-    double height; ///< 1.2 .. 2.2 (m), default 1.75
+    double height; ///< 1.19 .. 2.21 (m), default 1.75
     double mass;   ///< 30 .. 200 (kg), default 75, sticks not counted
     himc_anthropometry anthropometry;
     double stick_length;  ///< 0.2 .. 0.6 (m), default 0.36

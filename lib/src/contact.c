@@ -154,6 +154,9 @@ static void step_near(himc_membrane *membrane, near *nears, int count, double *t
     himc_meetings_solve(meetings, count, g, h);
     for (int i = 0; i < count; i++) {
         himc_stick *s = nears[i].stick;
+        // one-way, the head is driven along a path that does not yield: no harder than the motion
+        if (s->one_way)
+            meetings[i].force = fmin(meetings[i].force, s->force);
         himc_spot_apply(membrane, nears[i].spot, -meetings[i].force);
         *taken += nears[i].pull * meetings[i].force;
         if (!s->one_way)

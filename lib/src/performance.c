@@ -40,7 +40,7 @@ static uint64_t steps_per_task(const himc_performance *p)
 
 himc_target performance_target(const himc_performance *p, himc_hand hand, double t)
 {
-    if (p->track && himc_track_present(p->track, hand))
+    if (p->track && isfinite(p->track_start) && himc_track_present(p->track, hand))
         return himc_track_target(p->track, hand, t - p->track_start);
     return himc_planner_target(p->planner, hand, t);
 }
@@ -57,7 +57,8 @@ static himc_vec3 attention(const himc_performance *p, himc_hand hand, double t)
 // trunk and grip as they are at a time not before the course was set
 static himc_bearing bearing_at(const himc_performance *p, double t)
 {
-    return himc_bearing_approach(&p->course.from, &p->course.goal, fmin(fmax(t - p->course.time, 0), 0.02));
+    return himc_bearing_approach(&p->course.from, &p->course.goal,
+                                 fmin(fmax(t - p->course.time, 0), 0.02));
 }
 
 // sets the course of trunk and grip anew, from how they are at `t` to how the next strokes want them
@@ -126,6 +127,15 @@ bool performance_build_body(himc_performance *p, himc_error *error)
     c->mode = old.mode;
     c->law = old.law;
     c->solver = old.solver;
+    if (old.bandwidth > 0) {
+        c->damping = old.damping;
+        c->bandwidth = old.bandwidth;
+    }
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (old.gain_set[j]) {
+            c->gain[j] = old.gain[j];
+            c->gain_set[j] = true;
+        }
     p->replan = true;
     return true;
 }
@@ -148,9 +158,12 @@ void performance_notice_drums(himc_performance *p)
 // a state that the physics cannot go on from is replaced by the one the targets have, and counted
 static void recover(himc_performance *p)
 {
-    p->recoveries++;
+    if (p->recoveries++ == 0)
+        performance_note(p, "the body flew apart and was put back: gains too high for %g Hz",
+                         p->physics_rate);
     place_body(p);
-    performance_forget_touch(p);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        p->touch[hand] = (touch){.answered = p->touch[hand].answered};
 }
 
 // Inverse kinematics, inverse dynamics, forward dynamics; the contact is solved inside the same

@@ -247,6 +247,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     if (p->recording && !finish_recording(p, error))
         return false;
     p->body = himc_skeleton_default();
+    p->controller = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE}; // not the gains set since
     if (!performance_build_body(p, error)) {
         p->body = old;
         return false;

@@ -13,7 +13,8 @@
 #include <string.h>
 
 #define NEAR 0.02         // above the head at rest: from here on a stick is looked after (m)
-#define UNDER (-0.10)     // a stick deeper than this is not on the head but under it (m)
+#define UNDER (-0.10)     // a stick deeper than this is not on the head but under it (m) ...
+#define BELOW (-0.03)     // ... and one that did not come from above (m)
 #define GAP 0.0015        // without force that ends a contact of a rising stick (s) ...
 #define LONG_GAP 0.005    // ... and of any (s)
 #define LONGEST 0.060     // control lets go at most so long (s)
@@ -114,19 +115,29 @@ void performance_release(himc_performance *p, double t)
     }
 }
 
-// the head a tip is above, near enough to matter, or -1; `local` is its place and height over it
+// whether a tip is on that head or near enough to matter; `local` is its place and height over it
+static bool is_over(const himc_performance *p, himc_hand hand, int drum, himc_vec3 *local)
+{
+    const himc_place *place = himc_drum_place(p->drum[drum].drum);
+    himc_vec3 at = himc_place_from_world(place, p->state.tip[hand]);
+    at.z -= p->skeleton.mallet_radius;
+    double lowest = p->touch[hand].touching && p->touch[hand].drum == drum ? UNDER : BELOW;
+    *local = at;
+    return at.x * at.x + at.y * at.y < place->radius * place->radius && at.z < NEAR &&
+           at.z > lowest;
+}
+
+// the drum a tip is over, or -1; of two at one place the one it means to strike
 static int drum_below(const himc_performance *p, himc_hand hand, himc_vec3 *local)
 {
-    for (int i = 0; i < p->drums; i++) {
-        const himc_place *place = himc_drum_place(p->drum[i].drum);
-        himc_vec3 at = himc_place_from_world(place, p->state.tip[hand]);
-        at.z -= p->skeleton.mallet_radius;
-        if (at.x * at.x + at.y * at.y < place->radius * place->radius && at.z < NEAR &&
-            at.z > UNDER) {
-            *local = at;
+    stroke_plan next = performance_plan(p, hand, step_time(p));
+    const touch *c = &p->touch[hand];
+    int meant = c->touching ? c->drum : next.any ? next.drum : -1;
+    if (meant >= 0 && meant < p->drums && is_over(p, hand, meant, local))
+        return meant;
+    for (int i = 0; i < p->drums; i++)
+        if (is_over(p, hand, i, local))
             return i;
-        }
-    }
     return -1;
 }
 
@@ -245,7 +256,8 @@ static void end_strike(himc_performance *p, himc_hand hand, double t)
 {
     touch *c = &p->touch[hand];
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
-    performance_emit(p, &event);
+    if (c->strike.velocity > 0) // a head raised into a resting stick is no blow
+        performance_emit(p, &event);
     if (c->released)
         go_on_from_here(p, hand, t);
     c->touching = false;

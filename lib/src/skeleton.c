@@ -103,7 +103,7 @@ himc_skeleton_config himc_skeleton_default(void)
 
 static bool config_valid(const himc_skeleton_config *c, himc_error *error)
 {
-    bool valid = himc_check_range("height", c->height, 1.2, 2.2, "m", error) &&
+    bool valid = himc_check_range("height", c->height, 1.19, 2.21, "m", error) &&
                  himc_check_range("mass", c->mass, 30, 200, "kg", error) &&
                  himc_check_range("stick length", c->stick_length, 0.2, 0.6, "m", error) &&
                  himc_check_range("shaft mass", c->shaft_mass, 0.005, 0.2, "kg", error) &&
