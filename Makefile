@@ -25,8 +25,10 @@ LIBS     = -Wl,--as-needed -lode -llo -lsndfile -llapacke -llapack -lblas -lpthr
 # what is built from what is there
 LIBRARY   := $(BUILD)/libhimc.a
 PROGRAM   := $(BUILD)/bin/himc
+VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 LIB_O     := $(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/*.c))
+VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
@@ -69,6 +71,17 @@ clean: ## remove all that was built
 demo: deps ## install, build, play the improvisation headless; leaves its sound and picture in build/demo
 	@$(MAKE) all
 	@tools/demo.sh
+
+view: deps ## build the viewer and show the improvisation in the browser
+	@tools/deps.sh tools/deps-viewer.txt
+	@$(MAKE) $(PROGRAM) $(VIEWER)
+	@mkdir -p $(BUILD)/demo
+	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
+	$(VIEWER) --play $(BUILD)/demo/view.csv
+
+viewer: ## the viewer alone, build/bin/himc-viewer
+	@tools/deps.sh tools/deps-viewer.txt
+	@$(MAKE) $(VIEWER)
 
 ##@ Test
 test: deps ## install, build, run all tests; the last line is `N passed, N failed`
@@ -113,7 +126,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+.PHONY: view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
         manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -131,6 +144,16 @@ $(BUILD)/lib/%.o: lib/src/%.c
 $(BUILD)/tools/%.o: tools/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
+
+$(BUILD)/viewer/%.o: viewer/%.c
+	$(call say,cc  )
+	$(Q)$(COMPILE) -c $< -o $@
+
+$(BUILD)/viewer/pages.o: $(wildcard viewer/page/*)
+
+$(VIEWER): $(VIEWER_O)
+	$(call say,link)
+	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
 
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )

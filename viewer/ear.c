@@ -1,8 +1,9 @@
 /// ear.c: packets, bundles, messages.
 ///
-/// The socket is our own, because a lo_server binds to all addresses and the viewer must not; so bundles are taken apart
-/// here (OSC 1.0: "#bundle", a time tag, then size and element in turn) and liblo decodes the messages in them. They
-/// are shown as they come, whatever their time tag. Invariant: whatever a packet holds, it costs at most its length.
+/// The socket is our own, because a lo_server binds to all addresses and the viewer must not; so
+/// bundles are taken apart here (OSC 1.0: "#bundle", a time tag, then size and element in turn) and
+/// liblo decodes the messages in them. They are shown as they come, whatever their time tag.
+/// Invariant: whatever a packet holds, it costs at most its length.
 #define _POSIX_C_SOURCE 200809L
 #include "ear.h"
 #include "words.h"
@@ -30,10 +31,13 @@ double ear_clock(void)
 static int fail(int fd, const char *address, int port, char error[256])
 {
     if (errno == EADDRINUSE)
-        snprintf(error, 256, "port %d (UDP, for OSC) is taken: perhaps by another viewer; choose one with --osc PORT",
+        snprintf(error, 256,
+                 "port %d (UDP, for OSC) is taken: perhaps by another viewer; "
+                 "choose one with --osc PORT",
                  port);
     else
-        snprintf(error, 256, "cannot listen to OSC on %s port %d: %s", address, port, strerror(errno));
+        snprintf(error, 256, "cannot listen to OSC on %s port %d: %s", address, port,
+                 strerror(errno));
     if (fd >= 0)
         close(fd);
     return -1;
@@ -42,10 +46,13 @@ static int fail(int fd, const char *address, int port, char error[256])
 int ear_open(const char *address, int port, char error[256])
 {
     char service[16];
-    struct addrinfo hints = {.ai_socktype = SOCK_DGRAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE}, *found;
+    struct addrinfo hints = {.ai_socktype = SOCK_DGRAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE},
+                    *found;
     snprintf(service, sizeof service, "%d", port);
     if (getaddrinfo(address, service, &hints, &found) != 0) {
-        snprintf(error, 256, "--bind %s: not an address; allowed is a numeric one such as 127.0.0.1 or 0.0.0.0", address);
+        snprintf(error, 256,
+                 "--bind %s: not an address; allowed is a numeric one such as 127.0.0.1 or 0.0.0.0",
+                 address);
         return -1;
     }
     int backlog = BACKLOG;
@@ -55,7 +62,8 @@ int ear_open(const char *address, int port, char error[256])
     freeaddrinfo(found);
     if (!bound)
         return fail(fd, address, port, error);
-    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &backlog, sizeof backlog); // a larger queue is welcome, not needed
+    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &backlog,
+               sizeof backlog); // a larger queue is welcome, not needed
     return fd;
 }
 
@@ -85,7 +93,8 @@ static void hear_message(scene *s, const char *key, const char *data, size_t siz
     lo_message_free(message);
 }
 
-static void hear_element(scene *s, const char *key, const char *data, size_t size, double now, int depth)
+static void hear_element(scene *s, const char *key, const char *data, size_t size, double now,
+                         int depth)
 {
     if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
         hear_message(s, key, data, size, now);
@@ -121,16 +130,25 @@ void ear_hear(scene *s, const char *key, const void *packet, size_t size, double
 static void name_sender(const struct sockaddr *from, socklen_t size, char key[SCENE_KEY])
 {
     char host[SCENE_KEY - 40], port[8];
-    if (getnameinfo(from, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+    if (getnameinfo(from, size, host, sizeof host, port, sizeof port,
+                    NI_NUMERICHOST | NI_NUMERICSERV) != 0)
         snprintf(key, SCENE_KEY, "?");
     else
         snprintf(key, SCENE_KEY, "%s:%s", host, port);
 }
 
+static uint64_t drum_versions(const scene *s)
+{
+    uint64_t sum = 0;
+    for (int i = 0; i < SCENE_DRUMS; i++)
+        sum += s->drum[i].version;
+    return sum;
+}
+
 bool ear_listen(int fd, scene *s, int most)
 {
     static char packet[BUFFER];
-    uint64_t events = s->events, messages = s->count.messages;
+    uint64_t events = s->events, drums = drum_versions(s);
     double now = ear_clock();
     for (int i = 0; i < most; i++) {
         struct sockaddr_storage from;
@@ -143,5 +161,5 @@ bool ear_listen(int fd, scene *s, int most)
         ear_hear(s, key, packet, (size_t)size, now);
     }
     bool whole = scene_settle(s, now);
-    return whole || s->events != events || s->count.messages != messages;
+    return whole || s->events != events || drum_versions(s) != drums;
 }

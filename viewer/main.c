@@ -19,7 +19,7 @@ static const char help[] =
     "shows the performer in the browser: hears OSC, serves one page and streams to it\n\n"
     "  --osc PORT       hear OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
     "  --http PORT      serve the page on this port (8080)\n"
-    "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in, see docs/viewer.md\n"
+    "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in\n"
     "  --play FILE.csv  play a motion that himc render --motion wrote, without OSC\n"
     "  --no-browser     only print the address\n"
     "  --help           this text\n";
@@ -59,7 +59,8 @@ static bool parse_port(const char *name, const char *text, int *port, char error
 // an option that takes a value; false if it is none
 static bool parse_option(options *o, const char *name, const char *value, char error[256])
 {
-    bool known = !strcmp(name, "--osc") || !strcmp(name, "--http") || !strcmp(name, "--bind") || !strcmp(name, "--play");
+    bool known = !strcmp(name, "--osc") || !strcmp(name, "--http") || !strcmp(name, "--bind") ||
+                 !strcmp(name, "--play");
     if (!known)
         snprintf(error, 256, "%.60s: unknown option; himc-viewer --help lists them", name);
     else if (!value)
@@ -99,7 +100,8 @@ static char *read_motion(const char *path, size_t *size, char error[256])
     if (!file || fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode))
         snprintf(error, 256, "%.180s: cannot be read", path);
     else if (about.st_size > PLAY_MAX)
-        snprintf(error, 256, "%.180s: %ld MB, allowed up to %ld", path, (long)(about.st_size >> 20), PLAY_MAX >> 20);
+        snprintf(error, 256, "%.180s: %ld MB, allowed up to %ld", path, (long)(about.st_size >> 20),
+                 PLAY_MAX >> 20);
     else if (!(text = malloc((size_t)about.st_size + 1)))
         snprintf(error, 256, "%.180s: out of memory", path);
     else
@@ -107,7 +109,9 @@ static char *read_motion(const char *path, size_t *size, char error[256])
     if (file)
         fclose(file);
     if (text && (*size < sizeof first || strncmp(text, first, sizeof first - 1) != 0)) {
-        snprintf(error, 256, "%.180s:1: not a motion: its first column must be time_s (himc render --motion)", path);
+        snprintf(error, 256,
+                 "%.180s:1: not a motion: its first column must be time_s (himc render --motion)",
+                 path);
         free(text);
         return NULL;
     }
@@ -156,7 +160,8 @@ static int serve(const options *o, char error[256])
         return complain(error);
     }
     print_url(url, o->address, web_port(w));
-    printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address, ear_port(config.ear));
+    printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address,
+           ear_port(config.ear));
     fflush(stdout);
     if (o->browser)
         open_browser(url);

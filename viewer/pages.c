@@ -1,7 +1,8 @@
 /// pages.c: viewer/page and three.js (Debian's libjs-three) as bytes in the program.
 ///
-/// The assembler's .incbin takes the files in: paths are relative to the repository's root, where make runs; THREE_JS is
-/// the folder of three.module.js. The three.js licence (MIT) is in the file's own head.
+/// The assembler's .incbin takes the files in: paths are relative to the repository's root, where
+/// make runs; THREE_JS is the folder of three.module.js. The three.js licence (MIT) is in the
+/// file's own head.
 #include "pages.h"
 
 #include <string.h>
@@ -10,9 +11,10 @@
 #define THREE_JS "/usr/share/javascript/three"
 #endif
 
-#define FILE_IN(name, path)                                                                                            \
-    __asm__(".section .rodata\n.global page_" #name "\n.global page_" #name "_end\n.balign 8\npage_" #name             \
-            ":\n.incbin \"" path "\"\npage_" #name "_end:\n.byte 0\n.previous\n");                                     \
+#define FILE_IN(name, path)                                                       \
+    __asm__(".section .rodata\n.global page_" #name "\n.global page_" #name       \
+            "_end\n.balign 8\npage_" #name ":\n.incbin \"" path "\"\npage_" #name \
+            "_end:\n.byte 0\n.previous\n");                                       \
     extern const char page_##name[], page_##name##_end[];
 
 FILE_IN(index, "viewer/page/index.html")
@@ -35,14 +37,30 @@ FILE_IN(panel, "viewer/page/panel.js")
 FILE_IN(record, "viewer/page/record.js")
 FILE_IN(three, THREE_JS "/three.module.js")
 
-#define SCRIPT(name) {"/" #name ".js", "text/javascript", page_##name, page_##name##_end}
+#define SCRIPT(name)                                                       \
+    {                                                                      \
+        "/" #name ".js", "text/javascript", page_##name, page_##name##_end \
+    }
 
 static const page pages[] = {
     {"/", "text/html; charset=utf-8", page_index, page_index_end},
     {"/style.css", "text/css", page_style, page_style_end},
     {"/icon.svg", "image/svg+xml", page_icon, page_icon_end},
-    SCRIPT(main), SCRIPT(stream), SCRIPT(performer), SCRIPT(figure), SCRIPT(sculpt), SCRIPT(color), SCRIPT(skeleton), SCRIPT(drum),
-    SCRIPT(modes), SCRIPT(strike), SCRIPT(stage), SCRIPT(camera), SCRIPT(motion), SCRIPT(panel), SCRIPT(record),
+    SCRIPT(main),
+    SCRIPT(stream),
+    SCRIPT(performer),
+    SCRIPT(figure),
+    SCRIPT(sculpt),
+    SCRIPT(color),
+    SCRIPT(skeleton),
+    SCRIPT(drum),
+    SCRIPT(modes),
+    SCRIPT(strike),
+    SCRIPT(stage),
+    SCRIPT(camera),
+    SCRIPT(motion),
+    SCRIPT(panel),
+    SCRIPT(record),
     SCRIPT(three),
 };
 

@@ -1,4 +1,5 @@
-/// pages.h: the files the viewer serves, all of them, linked into the program: nothing else can be asked for.
+/// pages.h: the files the viewer serves, all of them, linked into the program: nothing else can be
+/// asked for.
 #ifndef VIEWER_PAGES_H
 #define VIEWER_PAGES_H
 

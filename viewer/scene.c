@@ -1,8 +1,9 @@
 /// scene.c: tables of performers and drums by sender, and the ring of events.
 ///
-/// A sender is an address and port (and a name, if its messages carry one), so that two performers never mix and one
-/// that comes back from the same port is the same. A full table gives the place of one that fell silent to a newcomer;
-/// as long as all speak, newcomers are refused and counted: a storm from random ports changes nothing.
+/// A sender is an address and port (and a name, if its messages carry one), so that two performers
+/// never mix and one that comes back from the same port is the same. A full table gives the place
+/// of one that fell silent to a newcomer; as long as all speak, newcomers are refused and counted:
+/// a storm from random ports changes nothing.
 #include "scene.h"
 
 #include <stdarg.h>
@@ -90,13 +91,22 @@ bool scene_settle(scene *s, double now)
     bool any = false;
     for (int i = 0; i < SCENE_PERFORMERS; i++) {
         scene_performer *p = &s->performer[i];
-        if (!p->pending || (p->pending != (UINT32_C(1) << SCENE_SEGMENTS) - 1 && now - p->begun < SPLIT))
+        if (!p->pending ||
+            (p->pending != (UINT32_C(1) << SCENE_SEGMENTS) - 1 && now - p->begun < SPLIT))
             continue;
         p->pending = 0;
         p->version++;
         any = true;
     }
     return any;
+}
+
+bool scene_unsettled(const scene *s)
+{
+    for (int i = 0; i < SCENE_PERFORMERS; i++)
+        if (s->performer[i].pending)
+            return true;
+    return false;
 }
 
 void scene_say(scene *s, double now, const char *format, ...)

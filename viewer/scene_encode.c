@@ -1,7 +1,7 @@
 /// scene_encode.c: the news for one reader as one binary frame.
 ///
-/// A frame is a row of blocks, each a multiple of 8 bytes, in the byte order of the machine (little-endian everywhere
-/// this runs; the page reads so):
+/// A frame is a row of blocks, each a multiple of 8 bytes, in the byte order of the machine
+/// (little-endian everywhere this runs; the page reads so):
 ///
 ///     u32 kind, u32 bytes that follow the head, f64 wall clock (ms), then
 ///     1 pose   key[80], u32 segments known, u32 targets known, f32[20][7], f32[2][3]
@@ -11,13 +11,18 @@
 
 #include <string.h>
 
-enum { HEAD = 16, POSE = SCENE_KEY + 8 + 4 * (SCENE_SEGMENTS * 7 + SCENE_HANDS * 3),
-       DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES) };
+enum {
+    HEAD = 16,
+    POSE = SCENE_KEY + 8 + 4 * (SCENE_SEGMENTS * 7 + SCENE_HANDS * 3),
+    DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES)
+};
 
 _Static_assert(POSE % 8 == 0 && DRUM % 8 == 0, "blocks keep the alignment of doubles");
 // all events may be left for the next frame, all poses and drums must fit into one
-_Static_assert(SCENE_PERFORMERS * (HEAD + POSE) + SCENE_DRUMS * (HEAD + DRUM) + HEAD + SCENE_TEXT + 8 <=
-                   SCENE_FRAME_MAX, "one frame holds the scene");
+_Static_assert(SCENE_PERFORMERS *(HEAD + POSE) + SCENE_DRUMS * (HEAD + DRUM) + HEAD + SCENE_TEXT +
+                       8 <=
+                   SCENE_FRAME_MAX,
+               "one frame holds the scene");
 
 typedef struct pen {
     uint8_t *at;
@@ -96,8 +101,7 @@ size_t scene_encode(const scene *s, scene_reader *reader, double now, uint8_t *f
     // a reader that the ring has overtaken goes on with the oldest there is
     if (s->events - reader->events > SCENE_EVENTS)
         reader->events = s->events - SCENE_EVENTS;
-    while (reader->events < s->events &&
-           p.at + HEAD + SCENE_TEXT + 8 <= frame + SCENE_FRAME_MAX)
+    while (reader->events < s->events && p.at + HEAD + SCENE_TEXT + 8 <= frame + SCENE_FRAME_MAX)
         put_event(&p, &s->event[reader->events++ % SCENE_EVENTS]);
     return (size_t)(p.at - frame);
 }

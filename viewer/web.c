@@ -1,9 +1,10 @@
 /// web.c: one thread, one loop: OSC comes in through an adopted descriptor, pages and news go out.
 ///
-/// A browser that wants the stream must come from the page itself: its Origin must be the Host it asks, and the Host an
-/// address or this machine's name, so that neither a foreign page nor a rebound DNS name reaches it. The page never
-/// speaks: whoever sends anything but control frames is shown out. A slow browser is sent the newest pose when it is
-/// ready for it, so nothing piles up here.
+/// A browser that wants the stream must come from the page itself: its Origin must be the Host it
+/// asks, and the Host an address or this machine's name, so that neither a foreign page nor a
+/// rebound DNS name reaches it. The page never speaks: whoever sends anything but control frames is
+/// shown out. A slow browser is sent the newest pose when it is ready for it, so nothing piles up
+/// here.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
 #include "ear.h"
@@ -20,7 +21,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { CLIENTS = 32, CHUNK = 32768, BATCH = 256, NAME_MAX_LENGTH = 256 };
+enum { CLIENTS = 32, CHUNK = 32768, BATCH = 512, REST = 3 /* (ms) */, NAME_MAX_LENGTH = 256 };
 
 /// A connection's own.
 typedef struct session {
@@ -34,14 +35,16 @@ struct web {
     scene *s;
     web_config config;
     int clients;
+    struct lws *ear;
     uint64_t turned_away;
-    lws_sorted_usec_list_t tick, second;
+    lws_sorted_usec_list_t rest, second;
     double cpu, clock; // at the last report (s)
     unsigned char out[LWS_PRE + SCENE_FRAME_MAX];
 };
 
 static const char headers[] =
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; media-src blob:; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; "
+    "img-src 'self' blob: data:; media-src blob:; "
     "connect-src 'self' ws:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 static web *web_of(struct lws *wsi)
@@ -49,10 +52,12 @@ static web *web_of(struct lws *wsi)
     return lws_context_user(lws_get_context(wsi));
 }
 
-static bool add_header(struct lws *wsi, const char *name, const char *value, unsigned char **p, unsigned char *end)
+static bool add_header(struct lws *wsi, const char *name, const char *value, unsigned char **p,
+                       unsigned char *end)
 {
-    return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value,
-                                       (int)strlen(value), p, end) == 0;
+    return lws_add_http_header_by_name(wsi, (const unsigned char *)name,
+                                       (const unsigned char *)value, (int)strlen(value), p,
+                                       end) == 0;
 }
 
 static int refuse(struct lws *wsi, unsigned status)
@@ -80,7 +85,8 @@ static bool host_is_ours(const char *host)
     size_t length = strlen(own);
     return inet_pton(AF_INET, name, address) == 1 || inet_pton(AF_INET6, name, address) == 1 ||
            strcmp(name, "localhost") == 0 ||
-           (length && strncmp(name, own, length) == 0 && (!name[length] || strcmp(name + length, ".local") == 0));
+           (length && strncmp(name, own, length) == 0 &&
+            (!name[length] || strcmp(name + length, ".local") == 0));
 }
 
 static bool header(struct lws *wsi, enum lws_token_indexes token, char out[NAME_MAX_LENGTH])
@@ -91,8 +97,9 @@ static bool header(struct lws *wsi, enum lws_token_indexes token, char out[NAME_
 static bool from_our_page(struct lws *wsi)
 {
     char host[NAME_MAX_LENGTH], origin[NAME_MAX_LENGTH];
-    return header(wsi, WSI_TOKEN_HOST, host) && host_is_ours(host) && header(wsi, WSI_TOKEN_ORIGIN, origin) &&
-           strncmp(origin, "http://", 7) == 0 && strcmp(origin + 7, host) == 0;
+    return header(wsi, WSI_TOKEN_HOST, host) && host_is_ours(host) &&
+           header(wsi, WSI_TOKEN_ORIGIN, origin) && strncmp(origin, "http://", 7) == 0 &&
+           strcmp(origin + 7, host) == 0;
 }
 
 // the body of that path; false if there is none
@@ -114,7 +121,8 @@ static bool look_up(const web *w, const char *path, session *own, const char **t
 
 static int begin_page(struct lws *wsi, session *own, const char *path)
 {
-    unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof buffer;
+    unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start,
+                                          *end = buffer + sizeof buffer;
     char host[NAME_MAX_LENGTH];
     const char *type;
     if (!header(wsi, WSI_TOKEN_HOST, host) || !host_is_ours(host))
@@ -123,12 +131,14 @@ static int begin_page(struct lws *wsi, session *own, const char *path)
         return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED);
     if (!look_up(web_of(wsi), path, own, &type))
         return refuse(wsi, HTTP_STATUS_NOT_FOUND);
-    if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, (lws_filepos_t)(own->end - own->at), &p, end) ||
+    if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, (lws_filepos_t)(own->end - own->at),
+                                    &p, end) ||
         !add_header(wsi, "content-security-policy:", headers, &p, end) ||
         !add_header(wsi, "x-content-type-options:", "nosniff", &p, end) ||
         !add_header(wsi, "referrer-policy:", "no-referrer", &p, end) ||
         !add_header(wsi, "cross-origin-resource-policy:", "same-origin", &p, end) ||
-        !add_header(wsi, "cache-control:", "no-cache", &p, end) || lws_finalize_write_http_header(wsi, start, &p, end))
+        !add_header(wsi, "cache-control:", "no-cache", &p, end) ||
+        lws_finalize_write_http_header(wsi, start, &p, end))
         return -1;
     lws_callback_on_writable(wsi);
     return 0;
@@ -166,28 +176,56 @@ static void wake(web *w)
     lws_callback_on_writable_all_protocol(w->context, &protocols[1]);
 }
 
-static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t length)
+// hears what waits; whoever listens is woken for whole poses and events
+static void hear(web *w)
+{
+    if (ear_listen(w->config.ear, w->s, BATCH))
+        wake(w);
+}
+
+// the rest is over: what came meanwhile is heard together, and poses in pieces are waited for no
+// longer than they may be
+static void on_rest_over(lws_sorted_usec_list_t *list)
+{
+    web *w = lws_container_of(list, web, rest);
+    hear(w);
+    if (scene_unsettled(w->s))
+        lws_sul_schedule(w->context, 0, list, on_rest_over, REST * LWS_US_PER_MS);
+    else
+        lws_rx_flow_control(w->ear, 1);
+}
+
+// a packet after silence is heard at once; then the socket rests a little, for most of the cost is
+// in waking up
+static void on_packet(web *w, struct lws *wsi)
+{
+    w->ear = wsi;
+    hear(w);
+    lws_rx_flow_control(wsi, 0);
+    lws_sul_schedule(w->context, 0, &w->rest, on_rest_over, REST * LWS_US_PER_MS);
+}
+
+static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                   size_t length)
 {
     (void)length;
     switch (reason) {
     case LWS_CALLBACK_HTTP: return begin_page(wsi, user, in);
     case LWS_CALLBACK_HTTP_WRITEABLE: return send_chunk(wsi, user);
-    case LWS_CALLBACK_RAW_RX_FILE:
-        if (ear_listen(web_of(wsi)->config.ear, web_of(wsi)->s, BATCH))
-            wake(web_of(wsi));
-        return 0;
+    case LWS_CALLBACK_RAW_RX_FILE: on_packet(web_of(wsi), wsi); return 0;
     default: return 0;
     }
 }
 
-static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t length)
+static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                     size_t length)
 {
     web *w = web_of(wsi);
     session *own = user;
     (void)in, (void)length;
     switch (reason) {
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-        return !from_our_page(wsi) ? refuse(wsi, HTTP_STATUS_FORBIDDEN)
+        return !from_our_page(wsi)     ? refuse(wsi, HTTP_STATUS_FORBIDDEN)
                : w->clients >= CLIENTS ? refuse(wsi, HTTP_STATUS_SERVICE_UNAVAILABLE)
                                        : 0;
     case LWS_CALLBACK_ESTABLISHED:
@@ -205,25 +243,23 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
 }
 
 static const struct lws_protocols protocols[3] = {
-    {.name = "http", .callback = on_http, .per_session_data_size = sizeof(session), .rx_buffer_size = 1024},
-    {.name = "scene", .callback = on_stream, .per_session_data_size = sizeof(session), .rx_buffer_size = 256},
+    {.name = "http",
+     .callback = on_http,
+     .per_session_data_size = sizeof(session),
+     .rx_buffer_size = 1024},
+    {.name = "scene",
+     .callback = on_stream,
+     .per_session_data_size = sizeof(session),
+     .rx_buffer_size = 256},
     {0},
 };
-
-// poses that a lost packet left in pieces are shown all the same
-static void on_tick(lws_sorted_usec_list_t *list)
-{
-    web *w = lws_container_of(list, web, tick);
-    if (scene_settle(w->s, ear_clock()))
-        wake(w);
-    lws_sul_schedule(w->context, 0, list, on_tick, 5 * LWS_US_PER_MS);
-}
 
 static double cpu_seconds(void)
 {
     struct rusage u;
     getrusage(RUSAGE_SELF, &u);
-    return (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
+    return (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) +
+           1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
 }
 
 static void on_second(lws_sorted_usec_list_t *list)
@@ -232,11 +268,13 @@ static void on_second(lws_sorted_usec_list_t *list)
     const scene_counts *c = &w->s->count;
     double now = ear_clock(), cpu = cpu_seconds();
     scene_say(w->s, now,
-              "{\"event\":\"bridge\",\"packets\":%llu,\"messages\":%llu,\"malformed\":%llu,\"unknown\":%llu,"
+              "{\"event\":\"bridge\",\"packets\":%llu,\"messages\":%llu,"
+              "\"malformed\":%llu,\"unknown\":%llu,"
               "\"refused\":%llu,\"turned_away\":%llu,\"clients\":%d,\"load\":%.4f}",
-              (unsigned long long)c->packets, (unsigned long long)c->messages, (unsigned long long)c->malformed,
-              (unsigned long long)c->unknown, (unsigned long long)c->refused, (unsigned long long)w->turned_away,
-              w->clients, now > w->clock ? (cpu - w->cpu) / (now - w->clock) : 0);
+              (unsigned long long)c->packets, (unsigned long long)c->messages,
+              (unsigned long long)c->malformed, (unsigned long long)c->unknown,
+              (unsigned long long)c->refused, (unsigned long long)w->turned_away, w->clients,
+              now > w->clock ? (cpu - w->cpu) / (now - w->clock) : 0);
     w->cpu = cpu;
     w->clock = now;
     wake(w);
@@ -247,7 +285,8 @@ static void on_second(lws_sorted_usec_list_t *list)
 static bool port_free(const web_config *c, char error[256])
 {
     char service[16];
-    struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE}, *found;
+    struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE},
+                    *found;
     snprintf(service, sizeof service, "%d", c->port);
     if (getaddrinfo(c->address, service, &hints, &found) != 0) {
         snprintf(error, 256, "--bind %s: not a numeric address", c->address);
@@ -257,9 +296,12 @@ static bool port_free(const web_config *c, char error[256])
     bool bound = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
                  bind(fd, found->ai_addr, found->ai_addrlen) == 0 && listen(fd, 1) == 0;
     if (!bound && errno == EADDRINUSE)
-        snprintf(error, 256, "port %d is taken: perhaps by another viewer; choose one with --http PORT", c->port);
+        snprintf(error, 256,
+                 "port %d is taken: perhaps by another viewer; choose one with --http PORT",
+                 c->port);
     else if (!bound)
-        snprintf(error, 256, "cannot serve the page on %s port %d: %s", c->address, c->port, strerror(errno));
+        snprintf(error, 256, "cannot serve the page on %s port %d: %s", c->address, c->port,
+                 strerror(errno));
     freeaddrinfo(found);
     if (fd >= 0)
         close(fd);
@@ -268,14 +310,21 @@ static bool port_free(const web_config *c, char error[256])
 
 static bool listen_to_all(web *w)
 {
-    struct lws_context_creation_info info = {
-        .port = w->config.port, .iface = w->config.address, .protocols = protocols, .user = w,
-        .gid = (gid_t)-1, .uid = (uid_t)-1, .pt_serv_buf_size = SCENE_FRAME_MAX,
-        .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_DISABLE_IPV6 * !strchr(w->config.address, ':')};
+    struct lws_context_creation_info info = {.port = w->config.port,
+                                             .iface = w->config.address,
+                                             .protocols = protocols,
+                                             .user = w,
+                                             .gid = (gid_t)-1,
+                                             .uid = (uid_t)-1,
+                                             .pt_serv_buf_size = SCENE_FRAME_MAX,
+                                             .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS |
+                                                        LWS_SERVER_OPTION_DISABLE_IPV6 *
+                                                            !strchr(w->config.address, ':')};
     lws_sock_file_fd_type ear = {.filefd = w->config.ear};
     w->context = lws_create_context(&info);
     w->vhost = w->context ? lws_create_vhost(w->context, &info) : NULL;
-    return w->vhost && lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, ear, protocols[0].name, NULL);
+    return w->vhost && lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, ear,
+                                                  protocols[0].name, NULL);
 }
 
 web *web_new(const web_config *config, scene *s, char error[256])
@@ -297,7 +346,6 @@ web *web_new(const web_config *config, scene *s, char error[256])
     }
     w->clock = ear_clock();
     w->cpu = cpu_seconds();
-    on_tick(&w->tick);
     on_second(&w->second);
     return w;
 }

@@ -1,17 +1,18 @@
 /// words.c: one table of addresses.
 ///
-///     /himc/body      segment x y z qw qx qy qz       the segment's joint (m) and orientation in the world
+///     /himc/body      segment x y z qw qx qy qz       its joint (m), orientation
 ///     /himc/targets   hand x y z                      (m)
 ///     /himc/strike    time hand drum x y velocity force duration nuance
 ///     /himc/beat      beat
 ///     /himc/status    name value ...
 ///     /himc/pose      (an empty mark before the bodies is allowed)
-///     /membrane/NAME/head    amplitude ...            (m), modes in the order of their Bessel zeros
+///     /membrane/NAME/head    amplitude ...            (m), in the order of Bessel's zeros
 ///     /membrane/NAME/place   x y z tilt radius        (m, rad)
 ///     /viewer/camera, /viewer/show, ...               for the page: see docs/viewer.md
 ///
-/// A performer may put a name into its addresses, /himc/NAME/body, to share a port with others. Numbers may be of any
-/// numeric OSC type but must be finite. Types are written n for a number, s for a word, * for anything.
+/// A performer may put a name into its addresses, /himc/NAME/body, to share a port with others.
+/// Numbers may be of any numeric OSC type but must be finite. Types are written n for a number, s
+/// for a word, * for anything.
 #include "words.h"
 
 #include <math.h>
@@ -21,10 +22,11 @@
 #define FAR 1000.0 // no coordinate is larger (m)
 
 static const char *const segments[SCENE_SEGMENTS] = {
-    "pelvis",         "trunk",           "neck",           "head",            "left-upper-arm",
-    "right-upper-arm", "left-forearm",   "right-forearm",  "left-hand",       "right-hand",
-    "left-stick",     "right-stick",     "left-upper-leg", "right-upper-leg", "left-lower-leg",
-    "right-lower-leg", "left-foot",      "right-foot",     "left-toes",       "right-toes"};
+    "pelvis",         "trunk",           "neck",           "head",
+    "left-upper-arm", "right-upper-arm", "left-forearm",   "right-forearm",
+    "left-hand",      "right-hand",      "left-stick",     "right-stick",
+    "left-upper-leg", "right-upper-leg", "left-lower-leg", "right-lower-leg",
+    "left-foot",      "right-foot",      "left-toes",      "right-toes"};
 
 /// A message being heard.
 typedef struct heard {
@@ -148,7 +150,8 @@ static bool hear_strike(heard *h)
     plain(drum, sizeof drum, &h->args[2]->s);
     plain(nuance, sizeof nuance, &h->args[8]->s);
     scene_say(h->s, h->now,
-              "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
+              "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
+              "\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
               "\"y\":%.5f,\"velocity\":%.4g,\"force\":%.5g,\"duration\":%.5g,\"nuance\":\"%s\"}",
               h->key, number(h, 0), &h->args[1]->s, drum, number(h, 3), number(h, 4), number(h, 5),
               number(h, 6), number(h, 7), nuance);
@@ -157,7 +160,8 @@ static bool hear_strike(heard *h)
 
 static bool hear_beat(heard *h)
 {
-    scene_say(h->s, h->now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key, number(h, 0));
+    scene_say(h->s, h->now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key,
+              number(h, 0));
     return true;
 }
 
@@ -172,7 +176,7 @@ static bool list(const heard *h, char *out, size_t size)
             plain(clean, sizeof clean, &h->args[i]->s);
             snprintf(text, sizeof text, "\"%s\"", clean);
         } else if (is_number(h->types[i]) && isfinite(number(h, i)))
-            snprintf(text, sizeof text, "%.9g", number(h, i));
+            snprintf(text, sizeof text, "%.7g", number(h, i));
         else
             return false;
         int n = snprintf(out + used, size - used, "%s%s", i ? "," : "", text);
@@ -185,16 +189,17 @@ static bool list(const heard *h, char *out, size_t size)
 
 static bool hear_status(heard *h)
 {
-    char values[400] = "";
+    char values[1000] = "";
     if (!list(h, values, sizeof values))
         return false;
-    scene_say(h->s, h->now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}", h->key, values);
+    scene_say(h->s, h->now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}", h->key,
+              values);
     return true;
 }
 
 static bool hear_view(heard *h)
 {
-    char values[400] = "", what[SCENE_NAME];
+    char values[1000] = "", what[SCENE_NAME];
     if (!list(h, values, sizeof values))
         return false;
     plain(what, sizeof what, h->name);
@@ -233,25 +238,35 @@ static bool hear_place(heard *h)
 }
 
 static const word words[] = {
-    {"himc", "body", "snnnnnnn", hear_body},
-    {"himc", "pose", "*", hear_pose},
-    {"himc", "targets", "snnn", hear_targets},
-    {"himc", "strike", "nssnnnnns", hear_strike},
-    {"himc", "beat", "n", hear_beat},
-    {"himc", "status", "*", hear_status},
-    {"membrane", "head", "*", hear_head},
-    {"membrane", "place", "nnnnn", hear_place},
+    {"himc", "body", "snnnnnnn", hear_body},   {"himc", "pose", "*", hear_pose},
+    {"himc", "targets", "snnn", hear_targets}, {"himc", "strike", "nssnnnnns", hear_strike},
+    {"himc", "beat", "n", hear_beat},          {"himc", "status", "*", hear_status},
+    {"membrane", "head", "*", hear_head},      {"membrane", "place", "nnnnn", hear_place},
 };
 
-// "/room/name/what" or "/room/what"; false if it is neither or too long
-static bool split(const char *address, char room[SCENE_NAME], char name[SCENE_NAME], char what[SCENE_NAME])
+// the next "/part" of an address; what follows it, or NULL if there is none or it is too long
+static const char *next_part(const char *at, char part[SCENE_NAME])
 {
-    char rest[2] = "";
+    size_t length = *at == '/' ? strcspn(at + 1, "/") : 0;
+    if (length == 0 || length >= SCENE_NAME)
+        return NULL;
+    memcpy(part, at + 1, length);
+    part[length] = 0;
+    return at + 1 + length;
+}
+
+// "/room/name/what" or "/room/what" (then the name is empty); false if it is neither
+static bool split(const char *address, char room[SCENE_NAME], char name[SCENE_NAME],
+                  char what[SCENE_NAME])
+{
+    const char *rest = next_part(address, room);
+    rest = rest ? next_part(rest, what) : NULL;
     name[0] = 0;
-    if (sscanf(address, "/%31[^/]/%31[^/]/%31[^/]%1s", room, name, what, rest) == 3)
-        return true;
-    name[0] = 0;
-    return sscanf(address, "/%31[^/]/%31[^/]%1s", room, what, rest) == 2 && !rest[0];
+    if (!rest || !*rest)
+        return rest != NULL;
+    memcpy(name, what, SCENE_NAME);
+    rest = next_part(rest, what);
+    return rest && !*rest;
 }
 
 static const word *find_word(const char *room, const char *what, bool named)
@@ -266,9 +281,13 @@ static const word *find_word(const char *room, const char *what, bool named)
 void words_hear(scene *s, const char *key, const char *address, lo_message message, double now)
 {
     static const word view = {"viewer", "", "*", hear_view};
-    char room[SCENE_NAME], name[SCENE_NAME], what[SCENE_NAME];
-    heard h = {.s = s, .message = message, .types = lo_message_get_types(message),
-               .args = lo_message_get_argv(message), .count = lo_message_get_argc(message), .now = now};
+    char room[SCENE_NAME], name[SCENE_NAME], what[SCENE_NAME] = "";
+    heard h = {.s = s,
+               .message = message,
+               .types = lo_message_get_types(message),
+               .args = lo_message_get_argv(message),
+               .count = lo_message_get_argc(message),
+               .now = now};
     const word *w = NULL;
     if (split(address, room, name, what))
         w = strcmp(room, "viewer") == 0 && !name[0] ? &view : find_word(room, what, name[0] != 0);

@@ -1,0 +1,132 @@
+// The camera: mouse (left turns, right or shift moves, wheel nears), touch (one finger turns, two
+// near and move), and presets.
+import * as THREE from "./three.js";
+
+const presets = {
+    // target, azimuth (0 faces the performer), elevation, distance
+    stage: [[0.34, 0, 0.68], -0.75, 0.2, 2.95],
+    front: [[0.3, 0, 0.68], 0, 0.16, 2.9],
+    side: [[0.32, 0, 0.68], -1.5708, 0.1, 2.75],
+    top: [[0.45, 0, 0.8], -0.001, 1.45, 2.6],
+};
+
+export class View {
+    constructor(canvas) {
+        this.camera = new THREE.PerspectiveCamera(38, 1, 0.03, 80);
+        this.camera.up.set(0, 0, 1);
+        this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
+        this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
+        this.spread = 0; // how far the ensemble reaches sideways (m)
+        this.pointers = new Map();
+        this.preset("stage");
+        this.copy();
+        const on = (name, f) => canvas.addEventListener(name, f, { passive: false });
+        on(
+            "pointerdown",
+            e => (
+                canvas.setPointerCapture(e.pointerId),
+                this.pointers.set(e.pointerId, [e.clientX, e.clientY])
+            ),
+        );
+        on("pointermove", e => this.drag(e));
+        for (const name of ["pointerup", "pointercancel"])
+            on(name, e => this.pointers.delete(e.pointerId));
+        on("wheel", e => (e.preventDefault(), this.near(Math.exp(0.0012 * e.deltaY))));
+        on("contextmenu", e => e.preventDefault());
+    }
+
+    copy() {
+        Object.assign(this.now, { ...this.goal, target: this.goal.target.clone() });
+    }
+
+    preset(name) {
+        if (name === "eye") this.name = name;
+        else if (presets[name]) {
+            const [target, azimuth, elevation, distance] = presets[name];
+            const narrow = Math.max(
+                1,
+                0.95 / Math.max(0.3, window.innerWidth / window.innerHeight),
+            );
+            this.name = name;
+            Object.assign(this.goal, {
+                azimuth,
+                elevation,
+                distance: distance * narrow + 1.25 * this.spread,
+            });
+            this.goal.target.set(...target);
+            if (this.spread) this.goal.target.x += 0.35 * this.spread;
+        }
+        return this.name === name;
+    }
+
+    near(factor) {
+        this.goal.distance = Math.min(30, Math.max(0.35, this.goal.distance * factor));
+        this.leave();
+    }
+
+    leave() {
+        if (this.name === "eye") this.preset("stage");
+        this.name = "";
+    }
+
+    drag(e) {
+        const before = this.pointers.get(e.pointerId);
+        if (!before) return;
+        const dx = e.clientX - before[0],
+            dy = e.clientY - before[1],
+            all = [...this.pointers];
+        if (all.length === 2) {
+            const other = all.find(([id]) => id !== e.pointerId)[1],
+                length = (x, y) => Math.hypot(x - other[0], y - other[1]);
+            this.near(length(...before) / Math.max(1, length(e.clientX, e.clientY)));
+            this.move(dx / 2, dy / 2);
+        } else if (e.buttons & 2 || e.shiftKey) this.move(dx, dy);
+        else {
+            this.goal.azimuth -= 0.006 * dx;
+            this.goal.elevation = Math.min(1.55, Math.max(-0.08, this.goal.elevation + 0.005 * dy));
+            this.leave();
+        }
+        this.pointers.set(e.pointerId, [e.clientX, e.clientY]);
+    }
+
+    move(dx, dy) {
+        const scale = (this.goal.distance / window.innerHeight) * 0.75,
+            m = this.camera.matrixWorld.elements;
+        this.goal.target.add(
+            new THREE.Vector3(
+                -m[0] * dx + m[4] * dy,
+                -m[1] * dx + m[5] * dy,
+                -m[2] * dx + m[6] * dy,
+            ).multiplyScalar(scale),
+        );
+        this.leave();
+    }
+
+    update(dt, performer) {
+        const eye = this.name === "eye" && performer && performer.group.visible;
+        if (performer) performer.figure.behead(eye);
+        if (eye) return this.look(performer);
+        if (this.camera.fov !== 38) ((this.camera.fov = 38), this.camera.updateProjectionMatrix());
+        const k = 1 - Math.exp(-dt / 120),
+            n = this.now,
+            g = this.goal;
+        n.target.lerp(g.target, k);
+        for (const a of ["azimuth", "elevation", "distance"]) n[a] += k * (g[a] - n[a]);
+        const c = Math.cos(n.elevation);
+        this.camera.position
+            .set(Math.cos(n.azimuth) * c, Math.sin(n.azimuth) * c, Math.sin(n.elevation))
+            .multiplyScalar(n.distance)
+            .add(n.target);
+        this.camera.position.z = Math.max(0.08, this.camera.position.z);
+        this.camera.lookAt(n.target);
+    }
+
+    look(performer) {
+        const m = performer.eye(),
+            at = new THREE.Vector3(0.09, 0, 0.1).applyMatrix4(m),
+            to = new THREE.Vector3(0.72, 0, -0.35).applyMatrix4(m);
+        this.camera.position.copy(at);
+        this.camera.lookAt(to);
+        if (this.camera.fov !== 62) ((this.camera.fov = 62), this.camera.updateProjectionMatrix());
+    }
+}

@@ -1,0 +1,302 @@
+// A kettle drum at its place, its head moved by modal amplitudes.
+import * as THREE from "./three.js";
+import { rgb, picture } from "./color.js";
+import { Net } from "./modes.js";
+import { rod } from "./performer.js";
+
+const RINGS = 22,
+    SECTORS = 72,
+    LEAVES = 4000;
+const net = new Net(RINGS, SECTORS);
+export const usualPlace = [0.7, 0, 0.85, 0, 0.2921]; // 23 inches, where the library puts a drum
+
+function dimples() {
+    const size = 256,
+        canvas = document.createElement("canvas"),
+        c = canvas.getContext("2d");
+    canvas.width = canvas.height = size;
+    c.fillStyle = "#808080";
+    c.fillRect(0, 0, size, size);
+    let seed = 7;
+    const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+    for (let i = 0; i < 420; i++) {
+        const x = random() * size,
+            y = random() * size,
+            r = 7 + 8 * random();
+        for (const [dx, dy] of [
+            [0, 0],
+            [size, 0],
+            [-size, 0],
+            [0, size],
+            [0, -size],
+        ]) {
+            const g = c.createRadialGradient(x + dx, y + dy, 0, x + dx, y + dy, r);
+            (g.addColorStop(0, "rgba(40,40,40,0.35)"), g.addColorStop(1, "rgba(160,160,160,0)"));
+            c.fillStyle = g;
+            c.fillRect(x + dx - r, y + dy - r, 2 * r, 2 * r);
+        }
+    }
+    const texture = new THREE.CanvasTexture(canvas);
+    texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+    texture.repeat.set(10, 5);
+    return texture;
+}
+
+function parchment() {
+    const size = 512,
+        canvas = document.createElement("canvas"),
+        c = canvas.getContext("2d");
+    canvas.width = canvas.height = size;
+    const g = c.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
+    (g.addColorStop(0, "#e9dcc0"), g.addColorStop(0.8, "#e4d4b4"), g.addColorStop(1, "#cdb68d"));
+    c.fillStyle = g;
+    c.fillRect(0, 0, size, size);
+    let seed = 3;
+    const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+    for (let i = 0; i < 900; i++) {
+        c.fillStyle = `rgba(${random() < 0.5 ? "255,250,235" : "120,90,50"},${0.035 * random()})`;
+        c.beginPath();
+        c.ellipse(
+            random() * size,
+            random() * size,
+            4 + 30 * random(),
+            2 + 10 * random(),
+            random() * 3,
+            0,
+            7,
+        );
+        c.fill();
+    }
+    return picture(canvas);
+}
+
+let shared;
+function materials(envMap) {
+    if (shared) return shared;
+    const metal = (color, roughness, extra) =>
+        new THREE.MeshStandardMaterial({
+            color,
+            roughness,
+            metalness: 1,
+            envMap,
+            envMapIntensity: 1.6,
+            ...extra,
+        });
+    return (shared = {
+        copper: metal(rgb("#e08a5c"), 0.2, {
+            bumpMap: dimples(),
+            bumpScale: 0.006,
+            side: THREE.DoubleSide,
+        }),
+        steel: metal(rgb("#c9ccd0"), 0.22),
+        dark: metal(rgb("#3c3f44"), 0.4),
+        head: new THREE.MeshStandardMaterial({
+            color: rgb("#d8d4cc"),
+            map: parchment(),
+            roughness: 0.5,
+            envMap,
+            envMapIntensity: 0.45,
+            side: THREE.DoubleSide,
+        }),
+    });
+}
+
+function bowl(a) {
+    const points = [];
+    for (let i = 0; i <= 30; i++) {
+        const t = ((i / 30) * Math.PI) / 2; // from the bottom up
+        points.push(
+            new THREE.Vector2(
+                1.0 * a * Math.pow(Math.sin(t), 0.82),
+                -0.02 - 0.86 * a * Math.pow(Math.cos(t), 0.9),
+            ),
+        );
+    }
+    points.push(new THREE.Vector2(a * 1.0, 0));
+    return new THREE.LatheBufferGeometry(points, 72).rotateX(Math.PI / 2);
+}
+
+function ring(radius, tube, material, z) {
+    const mesh = new THREE.Mesh(new THREE.TorusBufferGeometry(radius, tube, 14, 90), material);
+    mesh.position.z = z;
+    return mesh;
+}
+
+// in the head's frame, `z` its height over the floor
+function stand(a, z, m) {
+    const group = new THREE.Group(),
+        v = (r, t, h) => new THREE.Vector3(r * Math.cos(t), r * Math.sin(t), h);
+    for (let i = 0; i < 3; i++) {
+        const t = (2 * Math.PI * i) / 3 + Math.PI / 3;
+        group.add(
+            rod(v(a * 1.09, t, -0.05), v(a * 0.98, t, -z + 0.11), 0.011, m.dark),
+            rod(v(a * 0.98, t, -z + 0.11), v(a * 0.2, t, -z + 0.09), 0.013, m.dark),
+        );
+        const wheel = new THREE.Mesh(
+            new THREE.CylinderBufferGeometry(0.035, 0.035, 0.022, 24),
+            m.dark,
+        );
+        wheel.position.copy(v(a * 1.0, t, -z + 0.036));
+        group.add(wheel, rod(v(a * 0.99, t, -z + 0.06), v(a * 0.98, t, -z + 0.12), 0.012, m.steel));
+    }
+    group.add(ring(a * 0.98, 0.013, m.dark, -z + 0.11), ring(a * 1.09, 0.009, m.dark, -0.16));
+    const pedal = new THREE.Mesh(new THREE.BoxBufferGeometry(0.2, 0.09, 0.014), m.steel);
+    pedal.position.set(-a * 1.02, 0, -z + 0.07);
+    pedal.rotation.y = 0.22;
+    group.add(
+        pedal,
+        rod(v(a * 0.9, Math.PI, -z + 0.08), v(0.02, 0, -z + 0.1), 0.012, m.steel),
+        rod(v(0, 0, -z + 0.09), v(0, 0, -0.8 * a), 0.02, m.steel),
+    );
+    return group;
+}
+
+function fittings(a, m) {
+    const group = new THREE.Group();
+    group.add(
+        ring(a * 1.035, 0.0095, m.steel, -0.006),
+        ring(a * 1.0, 0.006, m.steel, -0.002),
+        ring(a * 1.035, 0.008, m.steel, -0.026),
+    );
+    for (let i = 0; i < 8; i++) {
+        const t = (2 * Math.PI * (i + 0.5)) / 8,
+            p = h => new THREE.Vector3(a * 1.06 * Math.cos(t), a * 1.06 * Math.sin(t), h);
+        group.add(
+            rod(p(0.004), p(-0.19), 0.0055, m.steel),
+            rod(p(0.005), p(-0.022), 0.011, m.steel),
+            rod(p(-0.11), p(-0.17), 0.009, m.dark),
+        );
+    }
+    return group;
+}
+
+function headGeometry(a) {
+    const g = new THREE.BufferGeometry(),
+        position = new Float32Array(3 * (RINGS + 1) * SECTORS),
+        uv = [],
+        index = [];
+    for (let r = 0; r <= RINGS; r++)
+        for (let s = 0; s < SECTORS; s++) {
+            const t = (2 * Math.PI * s) / SECTORS,
+                x = (Math.cos(t) * r) / RINGS,
+                y = (Math.sin(t) * r) / RINGS,
+                b = SECTORS;
+            position.set([a * x, a * y, 0], 3 * (r * SECTORS + s));
+            uv.push(0.5 + x / 2, 0.5 + y / 2);
+            const i = r * b + s,
+                j = r * b + ((s + 1) % b);
+            if (r < RINGS) index.push(i, i + b, j, j, i + b, j + b);
+        }
+    g.setIndex(index);
+    g.setAttribute("position", new THREE.BufferAttribute(position, 3));
+    g.setAttribute("normal", new THREE.BufferAttribute(new Float32Array(position.length), 3));
+    g.setAttribute("uv", new THREE.Float32BufferAttribute(uv, 2));
+    return g;
+}
+
+export class Drum {
+    constructor(key, name, stage) {
+        ((this.key = key), (this.name = name), (this.stage = stage));
+        this.group = new THREE.Group();
+        this.tilted = new THREE.Group();
+        this.group.add(this.tilted);
+        this.height = new Float32Array((RINGS + 1) * SECTORS);
+        ((this.from = new Float32Array(64)),
+            (this.to = new Float32Array(64)),
+            (this.now = new Float32Array(64)));
+        this.fromTime = this.toTime = 0;
+        this.excursion = 0; // the largest, where the head is (m)
+        this.setPlace(usualPlace);
+        stage.scene.add(this.group);
+    }
+
+    setPlace(place) {
+        if (this.place && this.place.every((v, i) => v === place[i])) return;
+        const build = !this.place || this.place[4] !== place[4] || this.place[2] !== place[2];
+        this.place = Array.from(place);
+        const [x, y, z, tilt, a] = place;
+        if (build) this.build(a, z);
+        this.tilted.position.set(x, y, z);
+        this.tilted.rotation.y = -tilt;
+        this.legs.position.set(x, y, z);
+    }
+
+    build(a, z) {
+        const m = materials(this.stage.environment);
+        for (const old of [...this.tilted.children, this.legs]) if (old) old.parent.remove(old);
+        this.head = new THREE.Mesh(headGeometry(a), m.head);
+        this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, fittings(a, m));
+        this.legs = stand(a, z, m);
+        this.group.add(this.legs);
+        this.group.traverse(o => (o.castShadow = o.receiveShadow = true));
+        this.head.castShadow = false;
+        this.draw(1);
+    }
+
+    receive(now, place, amplitude) {
+        if (place) this.setPlace(place);
+        this.from.set(this.now);
+        this.fromTime = now;
+        this.toTime = now + Math.min(60, Math.max(10, now - (this.heard || now - 30)));
+        this.to.fill(0);
+        this.to.set(amplitude);
+        this.heard = now;
+    }
+
+    present(now) {
+        return this.heard !== undefined && now - this.heard < LEAVES;
+    }
+
+    update(now, exaggeration) {
+        const t =
+            this.toTime > this.fromTime
+                ? Math.min(1, (now - this.fromTime) / (this.toTime - this.fromTime))
+                : 1;
+        let energy = 0;
+        for (let i = 0; i < 64; i++) {
+            this.now[i] = this.from[i] + t * (this.to[i] - this.from[i]);
+            energy += this.now[i] * this.now[i];
+        }
+        const still = energy < 1e-16;
+        if (!(still && this.wasStill)) this.draw(exaggeration);
+        this.wasStill = still;
+    }
+
+    // heights, exaggerated but never past the rim's reach, and normals from their differences along
+    // and across the rings
+    draw(exaggeration) {
+        const { position, normal } = this.head.geometry.attributes,
+            p = position.array,
+            n = normal.array,
+            h = this.height;
+        const a = this.place[4],
+            dr = a / RINGS,
+            b = SECTORS,
+            limit = 0.22 * a;
+        net.fill(this.now, h);
+        this.excursion = 0;
+        for (let i = 0; i < h.length; i++) {
+            if (Math.abs(h[i]) > this.excursion) this.excursion = Math.abs(h[i]);
+            const z = exaggeration * h[i];
+            h[i] = p[3 * i + 2] = Math.abs(z) < 0.05 * limit ? z : limit * Math.tanh(z / limit);
+        }
+        for (let r = 0; r <= RINGS; r++)
+            for (let s = 0; s < b; s++) {
+                const i = r * b + s,
+                    outer = h[Math.min(r + 1, RINGS) * b + s],
+                    inner = h[Math.max(r - 1, 0) * b + s];
+                const radial = (outer - inner) / (dr * (r === 0 || r === RINGS ? 1 : 2));
+                const round = r
+                    ? (h[r * b + ((s + 1) % b)] - h[r * b + ((s + b - 1) % b)]) /
+                      ((4 * Math.PI * r * dr) / b)
+                    : 0;
+                const c = net.cos[b + s],
+                    d = net.sin[b + s];
+                const x = -(radial * c - round * d),
+                    y = -(radial * d + round * c),
+                    l = 1 / Math.sqrt(x * x + y * y + 1);
+                ((n[3 * i] = x * l), (n[3 * i + 1] = y * l), (n[3 * i + 2] = l));
+            }
+        position.needsUpdate = normal.needsUpdate = true;
+    }
+}

@@ -1,0 +1,263 @@
+// The viewer's page: hears the bridge, keeps performers and drums, draws a frame whenever the
+// screen wants one.
+import * as THREE from "./three.js";
+import { Stage } from "./stage.js";
+import { View } from "./camera.js";
+import { Stream } from "./stream.js";
+import { Performer } from "./performer.js";
+import { Drum } from "./drum.js";
+import { Marks } from "./strike.js";
+import { Motion } from "./motion.js";
+import { Panel } from "./panel.js";
+import { Recorder } from "./record.js";
+
+const canvas = document.getElementById("stage"),
+    stage = new Stage(canvas),
+    view = new View(canvas);
+const performers = new Map(),
+    drums = new Map(),
+    marks = new Marks(),
+    recorder = new Recorder(canvas);
+const shown = { targets: true, trails: true, forces: true, marks: true, drums: true };
+const numbers = { fps: 60, script: 0, latency: null, render: 0 };
+const clock = () => performance.timeOrigin + performance.now(); // the bridge's too (ms)
+const latencies = [];
+let exaggeration = 25,
+    motion = null,
+    live = false,
+    waiting = [];
+
+const actions = {
+    camera: name => view.preset(name) && panel.camera(name),
+    show: (what, yes) => (what in shown && (shown[what] = yes), panel.shown(shown)),
+    exaggerate: times => (
+        (exaggeration = Math.min(1000, Math.max(1, times || 1))),
+        panel.exaggeration(exaggeration)
+    ),
+    picture: () => recorder.picture(),
+    film: () => attempt(() => recorder.toggleFilm()),
+    pause: () => motion && (motion.playing = !motion.playing),
+    seek: ms => motion && motion.seek(ms),
+};
+const panel = new Panel(actions);
+
+function attempt(f) {
+    try {
+        return f();
+    } catch (error) {
+        panel.note(error.message);
+    }
+}
+
+function performer(key) {
+    if (!performers.has(key)) {
+        const used = [...performers.values()].map(p => p.index);
+        let index = 0;
+        while (used.includes(index)) index++;
+        performers.set(key, new Performer(key, index, stage));
+    }
+    return performers.get(key);
+}
+
+// a drum is its sender's; a strike may name it before the drum itself is heard
+function drum(key, name) {
+    const id = `${key} ${name}`;
+    if (!drums.has(id)) {
+        const same = [...drums.values()].find(
+            d => d.name === name && (!performers.has(d.key) || !performers.has(key)),
+        );
+        if (same) return same;
+        drums.set(id, new Drum(key, name, stage));
+    }
+    return drums.get(id);
+}
+
+function strike(event, now) {
+    const d = drum(event.from, event.drum);
+    d.struck = now;
+    if (d.striker !== event.from) d.striker = event.from;
+    marks.add(d.tilted, event, now);
+    event.now = now;
+    panel.strike(event);
+    waiting.push(event);
+}
+
+const on = {
+    pose(key, time, known, targets, body, target) {
+        live = live || !motion;
+        performer(key).receive(time, virtual || clock(), known, targets, body, target);
+    },
+    drum(key, name, time, place, amplitude) {
+        drum(key, name).receive(virtual || clock(), place, amplitude);
+    },
+    event(event, time) {
+        const now = virtual || clock();
+        if (event.event === "strike") strike({ ...event, sent: time }, now);
+        else if (event.event === "beat") panel.hearBeat(event.beat, now);
+        else if (event.event === "status") panel.hearStatus(event.from, event.values);
+        else if (event.event === "bridge") panel.hearBridge(event, now);
+        else if (event.event === "view") obey(event.what, event.values);
+    },
+    connected: yes => panel.connected(yes),
+};
+
+// /viewer/camera front, /viewer/show trails 0, /viewer/exaggeration 80
+function obey(what, [first, second]) {
+    if (what === "camera") actions.camera(String(first));
+    else if (what === "show") actions.show(String(first), !!second);
+    else if (what === "exaggeration") actions.exaggerate(Number(first));
+}
+
+// one performer sits at the origin; several in an arc, all looking to its middle
+function arrange(now) {
+    const here = [...performers.values()]
+            .filter(p => p.present(now))
+            .sort((a, b) => a.index - b.index),
+        n = here.length;
+    const radius = Math.max(2.6, n * 0.62),
+        step = n > 1 ? Math.min(0.75, 2.6 / (n - 1)) : 0;
+    here.forEach((p, i) => {
+        const angle = n > 1 ? (i - (n - 1) / 2) * step : 0;
+        p.group.rotation.z = -angle;
+        p.group.position.set(radius - radius * Math.cos(angle), radius * Math.sin(angle), 0);
+    });
+    const spread = n > 1 ? radius * Math.sin(Math.min(Math.PI / 2, ((n - 1) / 2) * step)) : 0;
+    stage.cover(0.35 * spread, spread + 1);
+    if (spread !== view.spread) {
+        view.spread = spread;
+        if (view.name) view.preset(view.name);
+    }
+    return here[0];
+}
+
+function updateDrums(now) {
+    let excursion = 0;
+    for (const d of drums.values()) {
+        const owner =
+            performers.get(d.key) || performers.get(d.striker) || performers.values().next().value;
+        d.group.visible =
+            shown.drums &&
+            (d.present(now) || now - d.struck < 4000 || !!(owner && owner.present(now)));
+        if (!d.group.visible) continue;
+        if (owner)
+            (d.group.position.copy(owner.group.position),
+                (d.group.rotation.z = owner.group.rotation.z));
+        d.update(now, exaggeration);
+        excursion = Math.max(excursion, d.excursion);
+    }
+    return excursion;
+}
+
+let before = clock(),
+    written = 0,
+    virtual = 0;
+function frame(_, now = clock(), draw = true) {
+    const dt = Math.min(200, now - before),
+        begin = performance.now();
+    before = now;
+    if (motion && !live) motion.update(now, dt, on);
+    const first = arrange(now);
+    for (const p of performers.values()) p.update(now, view.camera, shown);
+    const excursion = updateDrums(now);
+    marks.update(
+        now,
+        shown,
+        view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
+    );
+    view.update(dt, first);
+    const drawn = performance.now();
+    if (draw) stage.renderer.render(stage.scene, view.camera);
+    recorder.drawn();
+    const end = performance.now();
+    for (const strike of waiting.splice(0)) {
+        strike.drawn = clock();
+        latencies.push(strike.drawn - strike.sent);
+    }
+    if (latencies.length > 200) latencies.splice(0, 100);
+    numbers.fps += 0.05 * (1000 / Math.max(1, dt) - numbers.fps);
+    numbers.script += 0.05 * (drawn - begin - numbers.script);
+    numbers.render += 0.05 * (end - drawn - numbers.render);
+    numbers.latency =
+        latencies.length && !motion
+            ? [...latencies].sort((a, b) => a - b)[latencies.length >> 1]
+            : null;
+    panel.draw(excursion, now);
+    if (now - written > 250) {
+        written = now;
+        panel.write([...performers.values()], numbers, now);
+        panel.filming(recorder.filming);
+        panel.playing(live ? null : motion);
+    }
+    stage.adapt(dt, view.camera);
+    next();
+}
+
+function next() {
+    requestAnimationFrame(t => window.viewer.held || frame(t));
+}
+
+// while held: `ms` of playback later, drawn or not; time is then the playback's, not the clock's
+function step(ms, draw = true) {
+    virtual = (virtual || before) + ms;
+    frame(0, virtual, draw);
+}
+
+function play(text, name) {
+    attempt(() => {
+        motion = new Motion(text, name);
+        live = false;
+        drum(name, "kettle");
+    });
+}
+
+addEventListener("resize", () => (stage.resize(view.camera), view.name && view.preset(view.name)));
+addEventListener("dragover", e => e.preventDefault());
+addEventListener("drop", e => {
+    e.preventDefault();
+    const file = e.dataTransfer.files[0];
+    if (file) file.text().then(text => play(text, file.name));
+});
+
+stage.resize(view.camera);
+panel.shown(shown);
+actions.camera("stage");
+actions.exaggerate(exaggeration);
+const stream = new Stream(on);
+fetch("/play.csv")
+    .then(answer => (answer.ok ? answer.text().then(text => play(text, "playback")) : null))
+    .catch(() => null);
+next();
+
+// for tests and stills: what is in the scene, read back from it; `held` stops the frames, since a
+// software renderer has no time for pictures between them
+function joints(key) {
+    const p = key ? performers.get(key) : [...performers.values()].find(q => q.group.visible),
+        at = {};
+    if (!p || !p.group.visible) return null;
+    p.figure.bones.forEach(
+        (b, i) => (at[i] = new THREE.Vector3().setFromMatrixPosition(b.matrixWorld).toArray()),
+    );
+    p.figure.sticks.forEach(
+        (s, i) => (at[20 + i] = s.tip.getWorldPosition(new THREE.Vector3()).toArray()),
+    );
+    return Object.values(at);
+}
+window.viewer = {
+    held: false,
+    step,
+    resume: () => ((window.viewer.held = false), (virtual = 0), next()),
+    joints,
+    numbers,
+    latencies,
+    marks,
+    performers,
+    drums,
+    stream,
+    panel,
+    actions,
+    view,
+    stage,
+    get motion() {
+        return motion;
+    },
+};

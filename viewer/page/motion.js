@@ -1,0 +1,129 @@
+// Playback: a motion.csv that `himc render --motion` wrote, as poses, targets and strikes. Joint
+// angles are rotation vectors from the zero pose, of the default performer; a strike is a stretch
+// of force on a stick. The head is the default one: how it rings is reckoned from the strikes,
+// which hit the head where it would be at rest.
+import { kinematics } from "./figure.js";
+import { usualPlace } from "./drum.js";
+import { Ringing } from "./modes.js";
+
+const STEP = 1000 / 60;
+
+export class Motion {
+    constructor(text, name) {
+        const lines = text.split("\n"),
+            names = lines[0].trim().split(",");
+        this.name = name;
+        this.column = Object.fromEntries(names.map((n, i) => [n, i]));
+        for (const want of ["time_s", "left_tip_x_m", "waist_x_rad", "left_force_n"])
+            if (!(want in this.column))
+                throw new Error(`${name}:1: not a motion: no column ${want}`);
+        this.rows = [];
+        for (let i = 1; i < lines.length; i++) {
+            const row = Float64Array.from(lines[i].split(","), Number);
+            if (row.length !== names.length || row.some(Number.isNaN)) {
+                if (lines[i].trim())
+                    throw new Error(
+                        `${name}:${i + 1}: ${row.length} numbers, wanted ${names.length}`,
+                    );
+                continue;
+            }
+            this.rows.push(row);
+        }
+        if (this.rows.length < 2) throw new Error(`${name}: no rows`);
+        this.period = this.rows[1][0] - this.rows[0][0];
+        this.length = 1000 * this.rows[this.rows.length - 1][0];
+        this.strikes = ["left", "right"]
+            .flatMap(hand => this.findStrikes(hand))
+            .sort((a, b) => a.time - b.time);
+        this.ringing = new Ringing();
+        this.at = 0; // (ms)
+        this.playing = true;
+        this.next = 0;
+        this.sent = -Infinity;
+    }
+
+    get(row, name) {
+        return this.rows[row][this.column[name]];
+    }
+
+    findStrikes(hand) {
+        const found = [],
+            force = i => this.get(i, hand + "_force_n");
+        for (let i = 1; i < this.rows.length; i++) {
+            if (!(force(i) > 0 && force(i - 1) === 0)) continue;
+            let most = 0,
+                end = i;
+            for (; end < this.rows.length && force(end) > 0; end++)
+                most = Math.max(most, force(end));
+            const tip = a => this.get(i, `${hand}_tip_${a}_m`),
+                before = this.get(i - 1, hand + "_tip_z_m");
+            found.push({
+                event: "strike",
+                from: this.name,
+                time: this.get(i, "time_s"),
+                hand,
+                drum: "kettle",
+                x: tip("x") - usualPlace[0],
+                y: tip("y") - usualPlace[1],
+                velocity: (before - tip("z")) / this.period,
+                force: most,
+                duration: (end - i) * this.period,
+                nuance: "",
+            });
+            i = end;
+        }
+        return found;
+    }
+
+    body(i) {
+        const angle = j => ["x", "y", "z"].map(a => this.get(i, `${j}_${a}_rad`) || 0);
+        return Float32Array.from(kinematics(angle));
+    }
+
+    seek(ms) {
+        this.at = Math.min(this.length, Math.max(0, ms));
+        this.next = this.strikes.findIndex(s => 1000 * s.time >= this.at);
+        if (this.next < 0) this.next = this.strikes.length;
+        this.ringing.blows.length = 0;
+        this.sent = -Infinity;
+    }
+
+    // what a performer would have sent meanwhile
+    update(now, dt, on) {
+        if (this.playing) this.at += dt;
+        if (this.at > this.length) this.seek(0);
+        if (now - this.sent >= STEP - 1) {
+            const i = Math.max(
+                0,
+                Math.min(
+                    this.rows.length - 1,
+                    Math.round((this.at / 1000 - this.rows[0][0]) / this.period),
+                ),
+            );
+            const target = Float32Array.from(
+                ["left", "right"].flatMap(h =>
+                    ["x", "y", "z"].map(a => this.get(i, `${h}_target_${a}_m`)),
+                ),
+            );
+            on.drum(this.name, "kettle", now, null, this.ringing.at(this.at / 1000));
+            on.pose(this.name, now, 0xfffff, 3, this.body(i), target);
+            this.sent = now;
+        }
+        while (
+            this.playing &&
+            this.next < this.strikes.length &&
+            1000 * this.strikes[this.next].time <= this.at
+        )
+            this.hit(this.strikes[this.next++], now, on);
+    }
+
+    hit(strike, now, on) {
+        this.ringing.strike(
+            strike.time,
+            strike.x,
+            strike.y,
+            (2 / Math.PI) * strike.force * strike.duration,
+        );
+        on.event({ ...strike }, now);
+    }
+}

@@ -1,0 +1,180 @@
+// A performer: poses come at 33 Hz and late by more or less; shown is the pose of a moment ago,
+// between the two that enclose it, so that motion is even at any frame rate. The moment ago is as
+// short as the intervals allow.
+import * as THREE from "./three.js";
+import { rgb } from "./color.js";
+import { Figure, bone } from "./figure.js";
+import { Trail } from "./strike.js";
+
+const KEPT = 24,
+    LEAVES = 2000; // poses; silence after which a performer has left (ms)
+const qa = new THREE.Quaternion(),
+    qb = new THREE.Quaternion();
+
+function between(a, b, t, out) {
+    for (let o = 0; o < a.length; o += 7) {
+        for (let i = 0; i < 3; i++) out[o + i] = a[o + i] + t * (b[o + i] - a[o + i]);
+        qa.set(a[o + 4], a[o + 5], a[o + 6], a[o + 3]);
+        qb.set(b[o + 4], b[o + 5], b[o + 6], b[o + 3]);
+        qa.slerp(qb, t);
+        ((out[o + 3] = qa.w), (out[o + 4] = qa.x), (out[o + 5] = qa.y), (out[o + 6] = qa.z));
+    }
+}
+
+export class Performer {
+    constructor(key, index, stage) {
+        this.key = key;
+        this.index = index;
+        this.figure = new Figure(index, stage.environment);
+        this.group = this.figure.group;
+        this.group.visible = false;
+        this.poses = [];
+        this.pose = new Float32Array(140);
+        this.target = new Float32Array(6);
+        this.interval = 30;
+        this.lag = Infinity; // between the sender's clock and ours (ms), the least seen
+        this.rate = 0;
+        this.trails = [new Trail("#6fd0ff"), new Trail("#ffb36f")];
+        const ball = new THREE.SphereBufferGeometry(0.022, 24, 16);
+        this.targets = this.trails.map(
+            () =>
+                new THREE.Mesh(
+                    ball,
+                    new THREE.MeshStandardMaterial({
+                        color: rgb("#ffd21f"),
+                        emissive: rgb("#ffc400"),
+                        emissiveIntensity: 0.55,
+                        transparent: true,
+                        opacity: 0.55,
+                        depthWrite: false,
+                    }),
+                ),
+        );
+        this.group.add(stool(stage.environment), ...this.targets, ...this.trails.map(t => t.mesh));
+        stage.scene.add(this.group);
+    }
+
+    receive(time, now, known, targets, body, target) {
+        const last = this.poses[this.poses.length - 1];
+        if (last && time - last.time > 0 && time - last.time < 500) {
+            this.interval += 0.1 * (time - last.time - this.interval);
+            this.rate = 1000 / this.interval;
+        } else if (last && (time <= last.time - 1000 || time - last.time >= 500))
+            this.poses.length = 0;
+        this.lag = Math.min(this.lag + 0.01, now - time);
+        this.poses.push({ time, known, targets, body, target });
+        if (this.poses.length > KEPT) this.poses.shift();
+        this.heard = now;
+    }
+
+    present(now) {
+        return this.heard !== undefined && now - this.heard < LEAVES;
+    }
+
+    // the pose to be seen at `now`
+    interpolate(now) {
+        const moment = now - this.lag - Math.min(120, 1.35 * this.interval + 3),
+            list = this.poses;
+        let i = list.length - 1;
+        while (i > 0 && list[i].time > moment) i--;
+        const a = list[i],
+            b = list[Math.min(i + 1, list.length - 1)];
+        const t =
+            b.time > a.time ? Math.min(1, Math.max(0, (moment - a.time) / (b.time - a.time))) : 0;
+        between(a.body, b.body, t, this.pose);
+        for (let k = 0; k < 6; k++) this.target[k] = a.target[k] + t * (b.target[k] - a.target[k]);
+        this.haveTargets = a.targets;
+    }
+
+    update(now, camera, shown) {
+        this.group.visible = this.present(now) && this.poses.length > 0;
+        if (!this.group.visible) return;
+        this.interpolate(now);
+        this.figure.set(this.pose);
+        this.targets.forEach((ball, hand) => {
+            ball.visible = shown.targets && !!((this.haveTargets >> hand) & 1);
+            ball.position.set(
+                this.target[3 * hand],
+                this.target[3 * hand + 1],
+                this.target[3 * hand + 2],
+            );
+        });
+        const seat = this.group.children.find(c => c.name === "stool");
+        seat.position.set(this.pose[0], this.pose[1], 0);
+        seat.children[0].position.z = this.pose[2] - 0.115 * this.figure.scale.x;
+        this.group.updateMatrixWorld();
+        this.trails.forEach((trail, hand) => {
+            trail.mesh.visible = shown.trails;
+            const p = new THREE.Vector3().setFromMatrixPosition(
+                this.figure.sticks[hand].tip.matrixWorld,
+            );
+            if (shown.trails) trail.add(p, now, camera, this.group);
+        });
+    }
+
+    eye() {
+        return new THREE.Matrix4().multiplyMatrices(
+            this.group.matrixWorld,
+            this.figure.bones[bone.head].matrixWorld,
+        );
+    }
+}
+
+function stool(envMap) {
+    const group = new THREE.Group(),
+        top = new THREE.Group();
+    const leather = new THREE.MeshStandardMaterial({
+        color: rgb("#3a1f1a"),
+        roughness: 0.5,
+        envMap,
+        envMapIntensity: 0.5,
+    });
+    const steel = new THREE.MeshStandardMaterial({
+        color: rgb("#9aa0a6"),
+        roughness: 0.3,
+        metalness: 1,
+        envMap,
+    });
+    const profile = [
+        [0, 0.005],
+        [0.12, 0.004],
+        [0.155, -0.006],
+        [0.17, -0.03],
+        [0.165, -0.06],
+        [0.14, -0.068],
+        [0, -0.068],
+    ];
+    const cushion = new THREE.Mesh(
+        new THREE.LatheBufferGeometry(
+            profile.map(p => new THREE.Vector2(...p)).reverse(),
+            40,
+        ).rotateX(Math.PI / 2),
+        leather,
+    );
+    const post = new THREE.Mesh(
+        new THREE.CylinderBufferGeometry(0.02, 0.02, 0.5, 16).rotateX(Math.PI / 2),
+        steel,
+    );
+    post.position.z = -0.31;
+    top.add(cushion, post);
+    group.add(top);
+    for (let i = 0; i < 3; i++) {
+        const a = (2 * Math.PI * i) / 3 + Math.PI,
+            from = new THREE.Vector3(0, 0, 0.3),
+            to = new THREE.Vector3(0.24 * Math.cos(a), 0.24 * Math.sin(a), 0.012);
+        group.add(rod(from, to, 0.012, steel));
+    }
+    group.traverse(o => (o.castShadow = o.receiveShadow = true));
+    group.name = "stool";
+    return group;
+}
+
+export function rod(a, b, radius, material) {
+    const mesh = new THREE.Mesh(
+        new THREE.CylinderBufferGeometry(radius, radius, a.distanceTo(b), 14),
+        material,
+    );
+    mesh.position.copy(a).add(b).multiplyScalar(0.5);
+    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), b.clone().sub(a).normalize());
+    return mesh;
+}

@@ -1,0 +1,239 @@
+// What a strike leaves for a moment: light on the head, an arrow as long as its force, the newtons;
+// and the tips' trails.
+import * as THREE from "./three.js";
+import { rgb, picture } from "./color.js";
+
+const LASTS = 1100,
+    PER_NEWTON = 0.0035; // (ms), (m)
+
+function glow() {
+    const canvas = document.createElement("canvas"),
+        c = canvas.getContext("2d");
+    canvas.width = canvas.height = 128;
+    const g = c.createRadialGradient(64, 64, 0, 64, 64, 64);
+    (g.addColorStop(0, "rgba(255,214,120,1)"),
+        g.addColorStop(0.22, "rgba(255,140,40,0.85)"),
+        g.addColorStop(0.6, "rgba(255,90,20,0.3)"),
+        g.addColorStop(1, "rgba(255,70,10,0)"));
+    c.fillStyle = g;
+    c.fillRect(0, 0, 128, 128);
+    return picture(canvas);
+}
+const glowTexture = glow();
+
+class Label {
+    constructor() {
+        this.canvas = document.createElement("canvas");
+        ((this.canvas.width = 256), (this.canvas.height = 128));
+        this.texture = picture(this.canvas);
+        this.sprite = new THREE.Sprite(
+            new THREE.SpriteMaterial({
+                map: this.texture,
+                transparent: true,
+                depthTest: false,
+                depthWrite: false,
+            }),
+        );
+        this.sprite.renderOrder = 10;
+        this.sprite.scale.set(0.2, 0.1, 1);
+    }
+
+    write(text, color) {
+        const c = this.canvas.getContext("2d");
+        c.clearRect(0, 0, 256, 128);
+        c.font = "600 64px system-ui, sans-serif";
+        ((c.textAlign = "center"), (c.textBaseline = "middle"));
+        ((c.lineWidth = 10), (c.lineJoin = "round"));
+        c.strokeStyle = "rgba(8,8,12,0.75)";
+        c.strokeText(text, 128, 66);
+        c.fillStyle = color;
+        c.fillText(text, 128, 66);
+        this.texture.needsUpdate = true;
+    }
+}
+
+// One mark; a pool of them is used again and again.
+class Mark {
+    constructor() {
+        this.group = new THREE.Group();
+        this.disc = new THREE.Mesh(
+            new THREE.PlaneBufferGeometry(1, 1),
+            new THREE.MeshBasicMaterial({
+                map: glowTexture,
+                transparent: true,
+                depthWrite: false,
+                polygonOffset: true,
+                polygonOffsetFactor: -4,
+            }),
+        );
+        this.material = new THREE.MeshBasicMaterial({
+            color: rgb("#ff6a3d"),
+            transparent: true,
+            depthWrite: false,
+        });
+        this.shaft = new THREE.Mesh(
+            new THREE.CylinderBufferGeometry(0.006, 0.006, 1, 16).rotateX(Math.PI / 2),
+            this.material,
+        );
+        this.point = new THREE.Mesh(
+            new THREE.ConeBufferGeometry(0.017, 0.045, 20).rotateX(-Math.PI / 2),
+            this.material,
+        );
+        this.label = new Label();
+        this.group.add(this.disc, this.shaft, this.point, this.label.sprite);
+        this.group.visible = false;
+        this.born = -Infinity;
+    }
+
+    show(parent, strike, now) {
+        parent.add(this.group);
+        this.born = now;
+        this.hand = strike.hand;
+        this.latest = true;
+        this.length = 0.06 + PER_NEWTON * Math.min(strike.force, 300);
+        this.group.position.set(strike.x, strike.y, 0);
+        this.size = 0.1 + 0.0011 * Math.min(strike.force, 200);
+        const color = strike.hand === "left" ? "#7fd6ff" : "#ffb066";
+        this.material.color.copy(rgb(color));
+        this.label.write(`${Math.round(strike.force)} N`, color);
+        this.group.visible = true;
+    }
+
+    // `near` is 1 where the writing has its usual size
+    update(now, shown, near) {
+        const age = (now - this.born) / LASTS,
+            fade = 1 - age;
+        if (!this.group.visible) return;
+        if (age > 1) {
+            this.group.visible = false;
+            return;
+        }
+        const grow = Math.min(1, 0.35 + (now - this.born) / 70),
+            l = this.length * grow;
+        this.disc.scale.setScalar(this.size * (1 + 0.9 * age));
+        this.disc.position.z = 0.004;
+        this.disc.material.opacity = fade * fade;
+        this.point.position.z = 0.026;
+        ((this.shaft.scale.z = l), (this.shaft.position.z = 0.045 + l / 2));
+        this.material.opacity = 0.9 * Math.min(1, 2 * fade);
+        this.label.sprite.scale.set(0.2 * near, 0.1 * near, 1);
+        this.label.sprite.position.z = 0.045 + l + 0.05 * near;
+        this.label.sprite.material.opacity = Math.min(1, 2 * fade);
+        this.shaft.visible =
+            this.point.visible =
+            this.label.sprite.visible =
+                shown.forces && this.latest;
+        this.disc.visible = shown.marks;
+    }
+}
+
+export class Marks {
+    constructor(count = 24) {
+        this.pool = Array.from({ length: count }, () => new Mark());
+        this.next = 0;
+        this.shown = 0; // ever
+    }
+
+    add(parent, strike, now) {
+        // a hand's last force alone is written, or rolls could not be read
+        for (const m of this.pool)
+            if (m.hand === strike.hand && m.group.parent === parent) m.latest = false;
+        this.pool[this.next++ % this.pool.length].show(parent, strike, now);
+        this.shown++;
+    }
+
+    update(now, shown, near) {
+        for (const mark of this.pool) mark.update(now, shown, near);
+    }
+
+    visible() {
+        return this.pool.filter(m => m.group.visible).length;
+    }
+}
+
+const POINTS = 60,
+    TRAIL = 900; // (ms)
+
+// A ribbon that faces the camera and thins with age.
+export class Trail {
+    constructor(color) {
+        this.points = [];
+        this.geometry = new THREE.BufferGeometry();
+        const index = [];
+        for (let i = 0; i < POINTS - 1; i++)
+            index.push(2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2);
+        this.geometry.setIndex(index);
+        this.geometry.setAttribute(
+            "position",
+            new THREE.BufferAttribute(new Float32Array(6 * POINTS), 3),
+        );
+        this.geometry.setAttribute(
+            "color",
+            new THREE.BufferAttribute(new Float32Array(6 * POINTS), 3),
+        );
+        this.mesh = new THREE.Mesh(
+            this.geometry,
+            new THREE.MeshBasicMaterial({
+                vertexColors: THREE.VertexColors,
+                transparent: true,
+                blending: THREE.AdditiveBlending,
+                depthWrite: false,
+                side: THREE.DoubleSide,
+            }),
+        );
+        this.mesh.frustumCulled = false;
+        this.color = rgb(color);
+        ((this.away = new THREE.Vector3()),
+            (this.along = new THREE.Vector3()),
+            (this.side = new THREE.Vector3()),
+            (this.inverse = new THREE.Matrix4()));
+        this.eye = new THREE.Vector3();
+    }
+
+    add(p, now, camera, group) {
+        this.inverse.getInverse(group.matrixWorld);
+        p.applyMatrix4(this.inverse);
+        this.eye.copy(camera.position).applyMatrix4(this.inverse);
+        this.points.push({ p, now });
+        while (
+            this.points.length > POINTS ||
+            (this.points.length && now - this.points[0].now > TRAIL)
+        )
+            this.points.shift();
+        const position = this.geometry.attributes.position,
+            color = this.geometry.attributes.color,
+            n = this.points.length;
+        for (let i = 0; i < n; i++) {
+            const at = this.points[i],
+                before = this.points[Math.max(0, i - 1)].p,
+                after = this.points[Math.min(n - 1, i + 1)].p;
+            const life = 1 - (now - at.now) / TRAIL,
+                width = 0.0075 * life;
+            (this.away.copy(this.eye).sub(at.p), this.along.copy(after).sub(before));
+            this.side.crossVectors(this.away, this.along);
+            if (this.side.lengthSq() > 1e-12) this.side.normalize().multiplyScalar(width);
+            position.setXYZ(
+                2 * i,
+                at.p.x + this.side.x,
+                at.p.y + this.side.y,
+                at.p.z + this.side.z,
+            );
+            position.setXYZ(
+                2 * i + 1,
+                at.p.x - this.side.x,
+                at.p.y - this.side.y,
+                at.p.z - this.side.z,
+            );
+            const light = 0.4 * life * life;
+            color.setXYZ(2 * i, light * this.color.r, light * this.color.g, light * this.color.b);
+            color.setXYZ(
+                2 * i + 1,
+                light * this.color.r,
+                light * this.color.g,
+                light * this.color.b,
+            );
+        }
+        this.geometry.setDrawRange(0, Math.max(0, 6 * (n - 1)));
+        position.needsUpdate = color.needsUpdate = true;
+    }
+}
