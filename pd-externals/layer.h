@@ -25,8 +25,7 @@ static inline bool layer_fits(const t_layer *layer, const himc_membrane *drum)
 /* Makes it so. May allocate. */
 static inline bool layer_fit(t_layer *layer, const himc_membrane *drum, himc_error *error)
 {
-    return layer_fits(layer, drum) ||
-           himc_membrane_follow(layer->l_membrane, drum, error);
+    return layer_fits(layer, drum) || himc_membrane_follow(layer->l_membrane, drum, error);
 }
 
 /* Adds to sound and displacement, out[0] and out[1], what the force in[0] at in[1], in[2] makes. */

@@ -206,7 +206,7 @@ static void released_lets_go(const char *what)
         himc_hand hand = (himc_hand)(n % 2), other = (himc_hand)(1 - n % 2);
         double normal = himc_vec3_dot(reference.normal[hand], commanded(hand));
         TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-4, 0, normal, what);
-            reference.released[hand] = false;
+        reference.released[hand] = false;
         TEST_ASSERT_TRUE(himc_vec3_length(commanded(other)) > 1);
         TEST_ASSERT_TRUE(fabs(himc_vec3_dot(reference.normal[hand], commanded(hand))) > 1);
     }

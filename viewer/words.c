@@ -45,6 +45,12 @@ typedef struct word {
     bool (*hear)(heard *h); // false if malformed
 } word;
 
+// liblo keeps atoms at multiples of 4 bytes, so its union must not be looked into
+static const char *text(const heard *h, int i)
+{
+    return (const char *)h->args[i];
+}
+
 static double number(const heard *h, int i)
 {
     return (double)lo_hires_val((lo_type)h->types[i], h->args[i]);
@@ -61,11 +67,11 @@ static bool is_string(char type)
 }
 
 // a word for JSON: without what would end a string, cut to `size`; names in use are plain
-static void plain(char *out, size_t size, const char *text)
+static void plain(char *out, size_t size, const char *from)
 {
     size_t i = 0;
-    for (; i + 1 < size && text[i]; i++)
-        out[i] = (unsigned char)text[i] < 0x20 || strchr("\"\\\x7f", text[i]) ? '?' : text[i];
+    for (; i + 1 < size && from[i]; i++)
+        out[i] = (unsigned char)from[i] < 0x20 || strchr("\"\\\x7f", from[i]) ? '?' : from[i];
     out[i] = 0;
 }
 
@@ -106,7 +112,7 @@ static int find_segment(const char *name)
 
 static bool hear_body(heard *h)
 {
-    int segment = find_segment(&h->args[0]->s);
+    int segment = find_segment(text(h, 0));
     float body[7];
     double norm = 0;
     for (int i = 0; i < 7; i++)
@@ -131,7 +137,7 @@ static bool hear_pose(heard *h)
 
 static bool hear_targets(heard *h)
 {
-    int hand = find_hand(&h->args[0]->s);
+    int hand = find_hand(text(h, 0));
     if (hand < 0 || !near(h, 1, 3))
         return false;
     scene_performer *p = scene_find_performer(h->s, h->key, h->now);
@@ -145,15 +151,15 @@ static bool hear_targets(heard *h)
 static bool hear_strike(heard *h)
 {
     char drum[SCENE_NAME], nuance[SCENE_NAME];
-    if (find_hand(&h->args[1]->s) < 0 || !near(h, 3, 2))
+    if (find_hand(text(h, 1)) < 0 || !near(h, 3, 2))
         return false;
-    plain(drum, sizeof drum, &h->args[2]->s);
-    plain(nuance, sizeof nuance, &h->args[8]->s);
+    plain(drum, sizeof drum, text(h, 2));
+    plain(nuance, sizeof nuance, text(h, 8));
     scene_say(h->s, h->now,
               "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
               "\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
               "\"y\":%.5f,\"velocity\":%.4g,\"force\":%.5g,\"duration\":%.5g,\"nuance\":\"%s\"}",
-              h->key, number(h, 0), &h->args[1]->s, drum, number(h, 3), number(h, 4), number(h, 5),
+              h->key, number(h, 0), text(h, 1), drum, number(h, 3), number(h, 4), number(h, 5),
               number(h, 6), number(h, 7), nuance);
     return true;
 }
@@ -170,16 +176,16 @@ static bool list(const heard *h, char *out, size_t size)
 {
     size_t used = 0;
     for (int i = 0; i < h->count; i++) {
-        char text[64];
+        char atom[64];
         if (is_string(h->types[i])) {
             char clean[48];
-            plain(clean, sizeof clean, &h->args[i]->s);
-            snprintf(text, sizeof text, "\"%s\"", clean);
+            plain(clean, sizeof clean, text(h, i));
+            snprintf(atom, sizeof atom, "\"%s\"", clean);
         } else if (is_number(h->types[i]) && isfinite(number(h, i)))
-            snprintf(text, sizeof text, "%.7g", number(h, i));
+            snprintf(atom, sizeof atom, "%.7g", number(h, i));
         else
             return false;
-        int n = snprintf(out + used, size - used, "%s%s", i ? "," : "", text);
+        int n = snprintf(out + used, size - used, "%s%s", i ? "," : "", atom);
         if (n < 0 || (size_t)n >= size - used)
             return false;
         used += (size_t)n;

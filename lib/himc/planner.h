@@ -56,8 +56,8 @@ HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_
 
 #define HIMC_UNITS 256
 
-/// Motion units to be played in place of the built-in strokes of their nuance and hand (copied, added
-/// to those there are). False, and nothing added, if there are more than HIMC_UNITS.
+/// Motion units to be played in place of the built-in strokes of their nuance and hand (copied,
+/// added to those there are). False, and nothing added, if there are more than HIMC_UNITS.
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
                             himc_error *error);
 /// Back to the built-in strokes.
@@ -85,8 +85,8 @@ HIMC_RT void himc_planner_play(himc_planner *planner, double t);
 HIMC_RT void himc_planner_stop(himc_planner *planner, double t);
 /// Goes to a beat, playing or not.
 HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
-/// Whether the score begins again at the whole beat after its last stroke, until told otherwise. The
-/// tempo map begins again too; a score that is switched off plays to its end.
+/// Whether the score begins again at the whole beat after its last stroke, until told otherwise.
+/// The tempo map begins again too; a score that is switched off plays to its end.
 HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
 /// The whole beat after the last stroke: where a loop turns round; 0 without strokes.
 HIMC_RT double himc_planner_length(const himc_planner *planner);
@@ -107,8 +107,8 @@ HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke,
                                 int drum);
 /// A live target: the tip goes there, smoothly, and stays until the next one or the next stroke.
-/// Targets that come within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows it one
-/// period late and comes to rest when it ends. A stroke less than 0.6 s away is played first.
+/// Targets that come within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows it
+/// one period late and comes to rest when it ends. A stroke less than 0.6 s away is played first.
 HIMC_RT void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x);
 
 /// Brings plans up to time `t` (s, never backwards): drops what is past, plans at least 30 ms (in

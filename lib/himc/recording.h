@@ -1,7 +1,7 @@
 /// recording.h: what the simulated body does, kept and written as a take.
 ///
-/// A recording has the body's joints and both sticks' tips ("LeftStick_end", "RightStick_end") under
-/// the names that motion capture software uses, so that it plays here and reads elsewhere.
+/// A recording has the body's joints and both sticks' tips ("LeftStick_end", "RightStick_end")
+/// under the names that motion capture software uses, so that it plays here and reads elsewhere.
 #ifndef HIMC_RECORDING_H
 #define HIMC_RECORDING_H
 

@@ -54,7 +54,8 @@ static void put_group(bytes *b, int group, const char *name)
     put_byte(b, 0);
 }
 
-// what comes before a parameter's data: `size` elements of |type| bytes, `other` of them; 0 for none
+// what comes before a parameter's data: `size` elements of |type| bytes, `other` of them; 0 for
+// none
 static void put_head(bytes *b, int group, const char *name, int type, int size, int other)
 {
     int dimensions = (size > 0) + (other > 0);

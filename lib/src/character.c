@@ -14,7 +14,7 @@
 #define JOINT_ERP 0.8 // share of a joint's drift corrected per step: measured drift 3e-8 m
 
 #define FASTEST 3000 // (rad/s)
-#define MOST 1e30   // of all torques, forces, places and speeds squared
+#define MOST 1e30    // of all torques, forces, places and speeds squared
 
 struct himc_character {
     himc_skeleton skeleton;

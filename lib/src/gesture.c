@@ -2,13 +2,14 @@
 ///
 /// Speeds of the mallet head at f come from optical captures of timpani exercises (425 strokes;
 /// legato 4.3, tenuto 4.2, accent 4.5, vertical accent 7.5, staccato 2.8 m/s, and 1.39 times that
-/// in the louder takes); heights and depths keep what Bouënard, Gibet & Wanderley 2012 (section 3)
-/// tell nuances apart by: the accent highest and shallow, vertical accent and staccato deep, tenuto
-/// rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 10 from ppp to
-/// fff gives 22 dB. A quintic from rest at the height H to the speed v in the time T falls without
-/// turning as long as s = v T/H <= 2.5; s here is 1.9 to 2.1. A stroke given the share r < 1 of its
-/// time keeps its speed and s and so is r as high, as long as nobody must be stronger for it than
-/// STRONGEST: v/T grows with 1/r, and is bent towards that limit smoothly, so that louder stays louder.
+/// in the louder takes); heights and depths keep what Bouënard, Gibet & Wanderley 2012 (section
+/// 3) tell nuances apart by: the accent highest and shallow, vertical accent and staccato deep,
+/// tenuto rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a ratio of 10
+/// from ppp to fff gives 22 dB. A quintic from rest at the height H to the speed v in the time T
+/// falls without turning as long as s = v T/H <= 2.5; s here is 1.9 to 2.1. A stroke given the
+/// share r < 1 of its time keeps its speed and s and so is r as high, as long as nobody must be
+/// stronger for it than STRONGEST: v/T grows with 1/r, and is bent towards that limit smoothly,
+/// so that louder stays louder.
 #include "gesture.h"
 
 #include <math.h>

@@ -1,9 +1,10 @@
 /// lift.c: the height of a tip: rebound, waiting, rise to the apex, and when it may just fall.
 ///
-/// With little time the rise is one quintic; with more, the rebound goes as high as its nuance makes
-/// it and floats up; with much, the tip sinks, waits low and is raised again. A trial quintic is
-/// sampled: if it would dip or overshoot, the motion is braked first. A quintic from speed v at 0 to
-/// rest at the height h in the time T rises without turning as long as v T/h <= 2.5.
+/// With little time the rise is one quintic; with more, the rebound goes as high as its nuance
+/// makes it and floats up; with much, the tip sinks, waits low and is raised again. A trial
+/// quintic is sampled: if it would dip or overshoot, the motion is braked first. A quintic from
+/// speed v at 0 to rest at the height h in the time T rises without turning as long as v T/h <=
+/// 2.5.
 #include "chunk.h"
 
 #define LEAST_DOWN 0.012  // no lift is planned in less (s)

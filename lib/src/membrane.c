@@ -376,8 +376,7 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     bool good = same_shape(himc_membrane_shape(membrane), shape)
                     ? himc_membrane_set_head(membrane, &other->head, error)
                     : himc_membrane_set_shape(membrane, shape, &other->head, error);
-    return good &&
-           himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
+    return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
 const himc_head *himc_membrane_head(const himc_membrane *membrane)

@@ -61,7 +61,8 @@ static himc_bearing bearing_at(const himc_performance *p, double t)
                                  fmin(fmax(t - p->course.time, 0), 0.02));
 }
 
-// sets the course of trunk and grip anew, from how they are at `t` to how the next strokes want them
+// sets the course of trunk and grip anew, from how they are at `t` to how the next strokes want
+// them
 static void set_course(himc_performance *p, double t)
 {
     himc_vec3 place[HIMC_HANDS];

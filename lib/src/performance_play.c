@@ -1,8 +1,9 @@
-/// performance_play.c: the commands that say what to play: strokes and hits, transport, scores, takes, units of motion, live
-/// targets.
+/// performance_play.c: the commands that say what to play: strokes and hits, transport, scores,
+/// takes, units of motion, live targets.
 ///
-/// Files are read here and now; what comes of them is given to the planner or the track. A score is checked as a whole
-/// before any of it is played, and while one plays the next one's beats are put behind its own.
+/// Files are read here and now; what comes of them is given to the planner or the track. A score
+/// is checked as a whole before any of it is played, and while one plays the next one's beats are
+/// put behind its own.
 #include "performance_state.h"
 
 #include <string.h>

@@ -1,10 +1,11 @@
 /// place.c: where drumheads stand and where on them strokes fall.
 ///
-/// A head's frame has x along its plane away from the performer, y to the left, and the normal up:
-/// with e the horizontal unit vector from the world's origin, where the performer sits, to the head's
-/// centre, the tilt t makes x = cos t e + sin t z, normal = cos t z - sin t e. The spots are fractions of the radius towards the performer; measured strike places
-/// lay 0.53, 0.40 and 0.30 m from the player's edge for centre, normal and rim, where players and
-/// textbooks put them at 0, about 3/4 and about 9/10 of the radius.
+/// A head's frame has x along its plane away from the performer, y to the left, and the normal
+/// up: with e the horizontal unit vector from the world's origin, where the performer sits, to
+/// the head's centre, the tilt t makes x = cos t e + sin t z, normal = cos t z - sin t e. The
+/// spots are fractions of the radius towards the performer; measured strike places lay 0.53, 0.40
+/// and 0.30 m from the player's edge for centre, normal and rim, where players and textbooks put
+/// them at 0, about 3/4 and about 9/10 of the radius.
 #include "himc/planner.h"
 
 #define NORMAL_SPOT 0.75

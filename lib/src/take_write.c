@@ -1,8 +1,9 @@
-/// take_write.c: a take into a file: text formats by printf in the C locale's way, C3D byte by byte.
+/// take_write.c: a take into a file: text formats by printf in the C locale's way, C3D byte by
+/// byte.
 ///
-/// BVH and TRC are written y up, as their habit is: (x, y, z) of the library becomes (x, z, -y), a
-/// rotation q becomes c q c* with c that quarter turn about x. BVH is in centimetres with the angles
-/// of R = Rz Rx Ry, which makes sin x = R21, tan z = -R01/R11, tan y = -R20/R22; TRC is in
+/// BVH and TRC are written y up, as their habit is: (x, y, z) of the library becomes (x, z, -y),
+/// a rotation q becomes c q c* with c that quarter turn about x. BVH is in centimetres with the
+/// angles of R = Rz Rx Ry, which makes sin x = R21, tan z = -R01/R11, tan y = -R20/R22; TRC is in
 /// millimetres. What is written reads back to the last digit that is printed. Invariant: a file
 /// that could not be written completely is removed.
 #define _POSIX_C_SOURCE 200809L

@@ -4,9 +4,10 @@
 ///     h(u) = A(u) + a B(u) + s C(u) + u^3 (1 - u)^3 (b0 + b1 u + b2 u^2)
 /// where A falls from 1 to 0 at rest at both ends, B has the second derivative 1 at u = 0, C the
 /// slope -1 at u = 1 (quintics, else zero at both ends up to second derivatives). So a tip begins
-/// still, with the acceleration a, and lands with the speed s and without acceleration, whatever a, s
-/// and b are; they are found by least squares from the frames of the fall, without those that the
-/// impact has blunted. Another landing speed is another s. A fall that is not monotone is no unit.
+/// still, with the acceleration a, and lands with the speed s and without acceleration, whatever
+/// a, s and b are; they are found by least squares from the frames of the fall, without those
+/// that the impact has blunted. Another landing speed is another s. A fall that is not monotone
+/// is no unit.
 #include "himc/units.h"
 
 #include <stdlib.h>
