@@ -35,7 +35,8 @@ LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.
 BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 UNITY_O   := $(BUILD)/tests/unity.o
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] pd-externals/*.[ch] tests/*.[ch] tests/*/*.[ch])
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] pd-externals/*.[ch] viewer/*.[ch] \
+             tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 ifeq ($(MAKELEVEL),0)

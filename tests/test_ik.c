@@ -2,6 +2,7 @@
 /// release.
 #include "himc/ik.h"
 
+#include "bodies.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -10,25 +11,13 @@
 #define COLUMNS (3 * HIMC_ARM_JOINTS)
 #define POSES 1000
 
-static himc_skeleton skeleton;
-
 void setUp(void)
 {
-    himc_skeleton_config config = himc_skeleton_default();
-    himc_skeleton_init(&skeleton, &config, NULL);
-    srand(4);
+    default_skeleton(4);
 }
 
 void tearDown(void)
 {
-}
-
-static himc_vec3 random_vector(double scale)
-{
-    double v[3];
-    for (int i = 0; i < 3; i++)
-        v[i] = scale * (2.0 * rand() / RAND_MAX - 1);
-    return himc_vec3_make(v[0], v[1], v[2]);
 }
 
 static void random_state(himc_body_state *s)

@@ -3,6 +3,7 @@
 #include "himc/invdyn.h"
 #include "himc/posture.h"
 
+#include "bodies.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -10,25 +11,13 @@
 
 #define UPPER_JOINTS (HIMC_LEFT_UPPER_LEG - 1) // joints of trunk, neck, head and arms
 
-static himc_skeleton skeleton;
-
 void setUp(void)
 {
-    himc_skeleton_config config = himc_skeleton_default();
-    himc_skeleton_init(&skeleton, &config, NULL);
-    srand(6);
+    default_skeleton(6);
 }
 
 void tearDown(void)
 {
-}
-
-static himc_vec3 random_vector(double scale)
-{
-    double v[3];
-    for (int i = 0; i < 3; i++)
-        v[i] = scale * (2.0 * rand() / RAND_MAX - 1);
-    return himc_vec3_make(v[0], v[1], v[2]);
 }
 
 static void random_state(himc_body_state *s, double spin)

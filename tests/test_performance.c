@@ -1,6 +1,7 @@
 /// test_performance.c: the whole path from commands to forces and sound.
 #define _GNU_SOURCE
 #include "himc/himc.h"
+#include "performance_state.h"
 
 #include "unity.h"
 
@@ -13,6 +14,8 @@
     "tempo 120; drum kettle; "                                                    \
     "stroke 2 right legato mf; stroke 3 left tenuto f; stroke 4 right accent f; " \
     "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; stroke 7 left legato pp;"
+
+#define PARTED 1e-3 // of the stick in micro-contact from the body (m)
 
 static himc_error error;
 
@@ -375,6 +378,50 @@ static void test_real_stroke_strikes_the_drum_from_its_bead_alone(void)
     himc_performance_free(p);
 }
 
+// the stick in micro-contact and the body's own tip feel one impulse: only what the inertia changes
+// in a step parts them; and once they leave the head the plan goes on from where the tip really is
+static void test_stick_and_body_stay_together_and_the_plan_joins_the_tip(void)
+{
+    himc_performance *p = with_score(PIECE);
+    double parted = 0, away = 0, slip = 0;
+    command(p, "play");
+    for (int i = 0; i < 4 * 48000; i += 4) {
+        himc_performance_process(p, 4, NULL);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            const touch *c = &p->touch[hand];
+            himc_vec3 d = himc_vec3_sub(p->state.tip[hand], p->reference.tip[hand].x);
+            himc_vec3 v = himc_vec3_sub(p->state.tip_velocity[hand], p->reference.tip[hand].v);
+            if (c->touching)
+                parted = fmax(parted, fabs(c->offset));
+            if (c->touching || c->released)
+                continue;
+            away = fmax(away, himc_vec3_length(d));
+            slip = fmax(slip, himc_vec3_length(v));
+        }
+    }
+    himc_performance_free(p);
+    TEST_ASSERT_TRUE(parted > 0 && parted < PARTED);
+    TEST_ASSERT_TRUE(away < 1e-3);
+    TEST_ASSERT_TRUE(slip < 0.2);
+}
+
+// the printed law lags by more than the 5 ms within which a stroke counts as played
+static void test_a_late_stroke_is_not_counted_as_played(void)
+{
+    himc_performance *p =
+        with_score("tempo 60; drum kettle; law printed; stroke 1 right legato f;");
+    himc_event event = {.kind = HIMC_EVENT_NOTE};
+    command(p, "play");
+    himc_performance_stats s = play(p, 3);
+    while (event.kind != HIMC_EVENT_STRIKE)
+        TEST_ASSERT_TRUE(himc_performance_event(p, &event));
+    TEST_ASSERT_TRUE(event.strike.time > 1.005 && event.strike.time < 1.05);
+    TEST_ASSERT_EQUAL_INT(1, s.strokes);
+    TEST_ASSERT_EQUAL_INT(0, s.played);
+    TEST_ASSERT_EQUAL_INT(1, s.missed);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -392,6 +439,8 @@ int main(void)
     RUN_TEST(test_any_gain_stays_finite_and_recovers);
     RUN_TEST(test_sample_rate_changes_while_playing);
     RUN_TEST(test_realign_does_not_disturb_the_sound);
+    RUN_TEST(test_stick_and_body_stay_together_and_the_plan_joins_the_tip);
+    RUN_TEST(test_a_late_stroke_is_not_counted_as_played);
     RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
     return UNITY_END();
 }

@@ -1,30 +1,19 @@
 /// test_pose.c: forward kinematics against hand-made places and against its own differences.
 #include "himc/pose.h"
 
+#include "bodies.h"
 #include "unity.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static himc_skeleton skeleton;
-
 void setUp(void)
 {
-    himc_skeleton_config config = himc_skeleton_default();
-    himc_skeleton_init(&skeleton, &config, NULL);
-    srand(3);
+    default_skeleton(3);
 }
 
 void tearDown(void)
 {
-}
-
-static himc_vec3 random_vector(double scale)
-{
-    double v[3];
-    for (int i = 0; i < 3; i++)
-        v[i] = scale * (2.0 * rand() / RAND_MAX - 1);
-    return himc_vec3_make(v[0], v[1], v[2]);
 }
 
 static himc_pose random_pose(void)

@@ -37,7 +37,7 @@ function walk(file, room,    n, i, parts, name, stem)
 BEGIN {
     # who may know which outside library
     home["<ode/"] = "^lib/src/character"
-    home["<lo/"] = "^lib/src/osc"
+    home["<lo/"] = "^(lib/src/osc|viewer/|tests/)"
     home["<sndfile"] = "^tools/"
     home["m_pd.h"] = "^pd-externals/"
     # rooms that can be embedded anywhere
@@ -55,7 +55,7 @@ FNR == 1 {
     includes[FILENAME] = includes[FILENAME] name "\n"
     for (library in home)
         if (index(name, library) && FILENAME !~ home[library])
-            fault(FILENAME ":" FNR ": only " substr(home[library], 2) "* may include " name)
+            fault(FILENAME ":" FNR ": only files like " home[library] " may include " name)
     if (FILENAME == "lib/himc/himc.h")
         rank[substr(name, 7, length(name) - 9)] = ++rooms
 }

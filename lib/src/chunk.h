@@ -46,21 +46,21 @@ static inline double move_time(double distance, double acceleration)
 }
 
 /// On to a height at t.
-HIMC_RT void chunk_lift_to(chunk *c, double t, chunk_height to);
+HIMC_RT void himc_chunk_lift_to(chunk *c, double t, chunk_height to);
 
 /// Whether the way to a height stays within bounds.
-HIMC_RT bool chunk_stays(const chunk *c, double t, chunk_height to, double low, double high);
+HIMC_RT bool himc_chunk_stays(const chunk *c, double t, chunk_height to, double low, double high);
 
 /// Comes to a halt from whatever the height is doing, before `limit` (s).
-HIMC_RT void chunk_brake(chunk *c, double limit);
+HIMC_RT void himc_chunk_brake(chunk *c, double limit);
 
 /// The rebound as its nuance makes it, with an apex `next` (m) to be reached at `top` (s).
-HIMC_RT void chunk_rebound(chunk *c, double top, double next);
+HIMC_RT void himc_chunk_rebound(chunk *c, double top, double next);
 
 /// To the apex of the stroke at time `top` (s); returns when the preparation began.
-HIMC_RT double chunk_rise(chunk *c, double top, const himc_gesture *g);
+HIMC_RT double himc_chunk_rise(chunk *c, double top, const himc_gesture *g);
 
 /// Whether the tip may simply fall from where it is to touch at t, and how it then does.
-HIMC_RT bool chunk_falls(const chunk *c, double t, himc_gesture *g);
+HIMC_RT bool himc_chunk_falls(const chunk *c, double t, himc_gesture *g);
 
 #endif

@@ -50,7 +50,7 @@ static bool stroke_near(const himc_planner *planner, const planner_hand *h, doub
             return true;
     if (h->hits > 0 && h->hit[0].goal.time < t + STROKE_AHEAD)
         return true;
-    return planner_next(planner, h, 0, &index, &round, &next) && next < t + STROKE_AHEAD;
+    return himc_planner_next(planner, h, 0, &index, &round, &next) && next < t + STROKE_AHEAD;
 }
 
 // what the stream does with one more target; true if it is a stream already
@@ -80,7 +80,7 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
     bool stream = listen(&h->stream, t, x);
     if (stroke_near(planner, h, t))
         return;
-    planner_cut(planner, hand, t);
+    himc_planner_cut(planner, hand, t);
     if (stream && himc_hand_room(&h->plan)) {
         const planner_stream *s = &h->stream;
         double blend = fmax(s->period, SHORTEST);
@@ -89,5 +89,5 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
     } else {
         himc_hand_reach(&h->plan, x);
     }
-    planner_extend(planner, hand, t + PLANNER_HORIZON);
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }

@@ -200,9 +200,9 @@ static void fall(chunk *c, double t, const himc_gesture *g, bool from_top)
         himc_unit_at(g->unit, u, landing, f);
         chunk_height knot = {g->height * f[0], g->height * f[1] / g->down,
                              g->height * f[2] / (g->down * g->down)};
-        chunk_lift_to(c, t - g->down * (1 - u), knot);
+        himc_chunk_lift_to(c, t - g->down * (1 - u), knot);
     }
-    chunk_lift_to(c, t, (chunk_height){0, -g->speed, 0});
+    himc_chunk_lift_to(c, t, (chunk_height){0, -g->speed, 0});
 }
 
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
@@ -213,17 +213,18 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     himc_gesture g = goal->gesture;
     double begin = c.lift_end;
     c.approach = fmax(0.5, move_time(distance_to(&c, goal), GENTLE_MOVE));
-    bool from_top = !chunk_falls(&c, goal->time, &g);
+    bool from_top = !himc_chunk_falls(&c, goal->time, &g);
     if (from_top) {
         g = himc_gesture_squeeze(goal->gesture, goal->time - plan->end, c.at.h);
         go_with(&c, goal->time, &g);
         double top = goal->time - g.down - g.dwell;
-        begin = chunk_rise(&c, top, &g);
+        begin = himc_chunk_rise(&c, top, &g);
         if (c.at.a == 0)
-            chunk_lift_to(&c, top + g.dwell, c.at);
+            himc_chunk_lift_to(&c, top + g.dwell, c.at);
     }
     fall(&c, goal->time, &g, from_top);
-    chunk_lift_to(&c, goal->time + HIMC_CONTACT_TIME, (chunk_height){0, RESTITUTION * g.speed, 0});
+    himc_chunk_lift_to(&c, goal->time + HIMC_CONTACT_TIME,
+                       (chunk_height){0, RESTITUTION * g.speed, 0});
     swing(&c, goal, &g, begin);
     chunk_finish(&c);
     plan->last = *goal;
@@ -241,9 +242,10 @@ static void go(chunk *c, himc_vec3 x, double gentle)
     chunk_height to = {himc_vec3_dot(n, himc_vec3_sub(x, c->plan->last.spot)), 0, 0};
     double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(c->plan, c->plan->end).x));
     double T = fmax(move_time(distance, gentle), 0.06);
-    if (c->at.v < -0.3 && !chunk_stays(c, c->lift_end + T, to, fmin(to.h, 0.5 * c->at.h), HUGE_VAL))
-        chunk_brake(c, c->lift_end + 1);
-    chunk_lift_to(c, c->lift_end + T, to);
+    if (c->at.v < -0.3 &&
+        !himc_chunk_stays(c, c->lift_end + T, to, fmin(to.h, 0.5 * c->at.h), HUGE_VAL))
+        himc_chunk_brake(c, c->lift_end + 1);
+    himc_chunk_lift_to(c, c->lift_end + T, to);
     ground_to(c, c->lift_end, himc_vec3_madd(x, -to.h, n));
 }
 
@@ -265,8 +267,8 @@ static void hover(chunk *c)
     himc_vec3 x =
         himc_vec3_madd(c->on.x, low ? side * SWAY : 0.1, low ? c->plan->last.back : c->on.v);
     c->plan->swayed = !c->plan->swayed;
-    chunk_lift_to(c, c->lift_end + (low ? 1 : 0.6),
-                  (chunk_height){LOW + (low ? side * SWAY / 2 : 0), 0, 0});
+    himc_chunk_lift_to(c, c->lift_end + (low ? 1 : 0.6),
+                       (chunk_height){LOW + (low ? side * SWAY / 2 : 0), 0, 0});
     ground_to(c, c->lift_end, x);
 }
 
@@ -274,12 +276,12 @@ void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
 {
     chunk c = chunk_begin(plan, plan->last.spot, plan->last.normal);
     if (c.at.v > 0.3)
-        chunk_rebound(&c, c.lift_end + 2, 0.9);
+        himc_chunk_rebound(&c, c.lift_end + 2, 0.9);
     else if (c.at.v < -0.3)
-        chunk_brake(&c, c.lift_end + 1);
+        himc_chunk_brake(&c, c.lift_end + 1);
     plan->struck = false;
     if (plan->away) {
-        chunk_lift_to(&c, fmax(until, c.lift_end + 0.5), (chunk_height){c.at.h, 0, 0});
+        himc_chunk_lift_to(&c, fmax(until, c.lift_end + 0.5), (chunk_height){c.at.h, 0, 0});
         ground_to(&c, c.lift_end, c.on.x);
     } else if (ready) {
         hover(&c);

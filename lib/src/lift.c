@@ -18,7 +18,7 @@ static himc_piece trial(const chunk *c, double t, chunk_height to)
     return himc_piece_make(c->lift_end, &a, t, &b);
 }
 
-void chunk_lift_to(chunk *c, double t, chunk_height to)
+void himc_chunk_lift_to(chunk *c, double t, chunk_height to)
 {
     if (t <= c->lift_end)
         return;
@@ -29,7 +29,7 @@ void chunk_lift_to(chunk *c, double t, chunk_height to)
 }
 
 /// Whether the way to a height stays within bounds.
-bool chunk_stays(const chunk *c, double t, chunk_height to, double low, double high)
+bool himc_chunk_stays(const chunk *c, double t, chunk_height to, double low, double high)
 {
     himc_piece piece = trial(c, t, to);
     for (int i = 1; i < 16; i++) {
@@ -42,18 +42,18 @@ bool chunk_stays(const chunk *c, double t, chunk_height to, double low, double h
 }
 
 /// Comes to a halt from whatever the height is doing, before `limit`.
-void chunk_brake(chunk *c, double limit)
+void himc_chunk_brake(chunk *c, double limit)
 {
     double h = c->at.h, v = c->at.v;
     double T = v < 0 ? fmin(0.12, 1.2 * fmax(h, 0.02) / -v) : 0.12;
     T = fmin(fmax(T, 0.02), 0.5 * (limit - c->lift_end));
     double stop = fmax(h + 0.5 * v * T, 0.2 * h);
-    chunk_lift_to(c, c->lift_end + T, (chunk_height){stop, 0, 0});
+    himc_chunk_lift_to(c, c->lift_end + T, (chunk_height){stop, 0, 0});
 }
 
 /// The rebound as its nuance makes it: how high, how fast, and with what speed it floats on to
 /// `next`.
-void chunk_rebound(chunk *c, double top, double next)
+void himc_chunk_rebound(chunk *c, double top, double next)
 {
     const himc_gesture *g = &c->plan->last.gesture;
     double h = c->at.h, v = c->at.v;
@@ -71,7 +71,7 @@ void chunk_rebound(chunk *c, double top, double next)
     double on = 0;
     if (next > high && rest < SINK_TIME)
         on = fmin(1.5 * (next - high) / rest, 0.5 * v);
-    chunk_lift_to(c, c->lift_end + T, (chunk_height){high, on, 0});
+    himc_chunk_lift_to(c, c->lift_end + T, (chunk_height){high, on, 0});
 }
 
 /// Sinks, waits low and is raised again, if there is time for that; returns when the last rise
@@ -81,7 +81,7 @@ static double sink(chunk *c, double top, double next)
     double spare = top - c->lift_end;
     double raise = fmin(0.45, 0.5 * spare);
     if (c->plan->away) {
-        chunk_lift_to(c, top - fmin(c->approach, spare), (chunk_height){c->at.h, 0, 0});
+        himc_chunk_lift_to(c, top - fmin(c->approach, spare), (chunk_height){c->at.h, 0, 0});
         return c->lift_end;
     }
     if (spare <= SINK_TIME)
@@ -89,9 +89,9 @@ static double sink(chunk *c, double top, double next)
     double low = fmax(fmin(LOW, 0.9 * next), 0.05);
     low += (c->at.h - low) * (1 - fmin((spare - SINK_TIME) / 0.5, 1));
     double settle = fmin(0.6, 0.5 * spare);
-    chunk_lift_to(c, c->lift_end + settle, (chunk_height){low, 0, 0});
+    himc_chunk_lift_to(c, c->lift_end + settle, (chunk_height){low, 0, 0});
     if (top - raise - c->lift_end > 0.05)
-        chunk_lift_to(c, top - raise, (chunk_height){low + SWAY, 0, 0});
+        himc_chunk_lift_to(c, top - raise, (chunk_height){low + SWAY, 0, 0});
     return top - raise;
 }
 
@@ -111,41 +111,41 @@ static double single_rise(const chunk *c, double next)
 
 /// From the chunk's start to the apex of the stroke at time `top`; returns when the preparation
 /// began.
-double chunk_rise(chunk *c, double top, const himc_gesture *g)
+double himc_chunk_rise(chunk *c, double top, const himc_gesture *g)
 {
     chunk_height apex = {g->height, 0, -g->arc * g->height / (g->down * g->down)};
     if (g->dwell > 0.01)
         apex.a = 0;
     double begin = c->lift_end, high = fmax(g->height, c->at.h);
     if (c->at.v < -0.3)
-        chunk_brake(c, top);
+        himc_chunk_brake(c, top);
     bool moving = c->at.v > 0.3;
     bool single =
         top - begin < HURRIED_RISE ||
         (top - begin <= single_rise(c, g->height) &&
-         chunk_stays(c, top, apex, fmin(c->at.h, g->height) - 0.004, 1.04 * high + 0.004));
+         himc_chunk_stays(c, top, apex, fmin(c->at.h, g->height) - 0.004, 1.04 * high + 0.004));
     if (!single) {
         if (moving)
-            chunk_rebound(c, top, g->height);
+            himc_chunk_rebound(c, top, g->height);
         begin = sink(c, top, g->height);
         if (c->at.v == 0 && top - c->lift_end > 1.5 * g->down)
             apex.a = 0;
     }
-    if (!chunk_stays(c, top, apex, fmin(c->at.h, g->height) - 0.004, 1.04 * high + 0.004))
+    if (!himc_chunk_stays(c, top, apex, fmin(c->at.h, g->height) - 0.004, 1.04 * high + 0.004))
         apex.a = 0;
-    chunk_lift_to(c, top, apex);
+    himc_chunk_lift_to(c, top, apex);
     return begin;
 }
 
 /// Whether the tip may simply fall from where it is, and how fast it then lands.
-bool chunk_falls(const chunk *c, double t, himc_gesture *g)
+bool himc_chunk_falls(const chunk *c, double t, himc_gesture *g)
 {
     double T = t - c->lift_end, h = c->at.h;
     double longest = (c->at.v < -0.2 ? 3.5 : 2.5) * h / g->speed;
     if (h <= 0.01 || T > fmax(longest, LEAST_DOWN))
         return false;
     double speed = fmin(fmax(g->speed, SLOWEST_FALL * h / T), 2.4 * h / T);
-    if (!chunk_stays(c, t, (chunk_height){0, -speed, 0}, -1e-6, 1.1 * h + 0.02))
+    if (!himc_chunk_stays(c, t, (chunk_height){0, -speed, 0}, -1e-6, 1.1 * h + 0.02))
         return false;
     g->speed = speed;
     g->height = h;

@@ -92,7 +92,9 @@ static bool allot(reader *r, matrix *m, int rows, int columns)
         return fault(r, "no memory for so large a matrix");
     memset(value + (size_t)m->rows * (size_t)columns, 0,
            sizeof *value * (size_t)(rows - m->rows) * (size_t)columns);
-    *m = (matrix){rows, columns, value};
+    m->rows = rows;
+    m->columns = columns;
+    m->value = value;
     return true;
 }
 

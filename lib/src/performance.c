@@ -18,7 +18,7 @@ himc_performance_config himc_performance_default(void)
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
 }
 
-void performance_reset_clock(himc_performance *p)
+void himc_performance_reset_clock(himc_performance *p)
 {
     p->physics_rate = fmin(p->config.physics_rate, p->config.sample_rate);
     p->step_origin = p->made;
@@ -38,7 +38,7 @@ static uint64_t steps_per_task(const himc_performance *p)
     return ratio < 1 ? 1 : (uint64_t)ratio;
 }
 
-himc_target performance_target(const himc_performance *p, himc_hand hand, double t)
+himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t)
 {
     if (p->track && isfinite(p->track_start) && himc_track_present(p->track, hand))
         return himc_track_target(p->track, hand, t - p->track_start);
@@ -48,9 +48,9 @@ himc_target performance_target(const himc_performance *p, himc_hand hand, double
 // where a hand strikes next, or where it is
 static himc_vec3 attention(const himc_performance *p, himc_hand hand, double t)
 {
-    stroke_plan next = performance_plan(p, hand, t);
+    stroke_plan next = himc_performance_plan(p, hand, t);
     if (!next.any || next.time > t + FORESIGHT)
-        return performance_target(p, hand, t).x;
+        return himc_performance_planned(p, hand, t).x;
     return himc_place_to_world(himc_drum_place(p->drum[next.drum].drum), next.x, next.y);
 }
 
@@ -78,7 +78,7 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     p->posture.bearing = bearing_at(p, t);
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        tick->tip[hand] = performance_target(p, (himc_hand)hand, t);
+        tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
     himc_task_tick_complete(tick, &p->posture);
 }
 
@@ -106,7 +106,7 @@ static void place_body(himc_performance *p)
     himc_character_place(p->character, &p->state);
 }
 
-bool performance_build_body(himc_performance *p, himc_error *error)
+bool himc_performance_build_body(himc_performance *p, himc_error *error)
 {
     himc_skeleton skeleton;
     if (!himc_skeleton_init(&skeleton, &p->body, error))
@@ -141,7 +141,7 @@ bool performance_build_body(himc_performance *p, himc_error *error)
     return true;
 }
 
-void performance_notice_drums(himc_performance *p)
+void himc_performance_notice_drums(himc_performance *p)
 {
     for (int i = 0; i < p->drums; i++) {
         unsigned revision = himc_drum_revision(p->drum[i].drum);
@@ -160,8 +160,8 @@ void performance_notice_drums(himc_performance *p)
 static void recover(himc_performance *p)
 {
     if (p->recoveries++ == 0)
-        performance_note(p, "the body flew apart and was put back: gains too high for %g Hz",
-                         p->physics_rate);
+        himc_performance_note(p, "the body flew apart and was put back: gains too high for %g Hz",
+                              p->physics_rate);
     place_body(p);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         p->touch[hand] = (touch){.answered = p->touch[hand].answered};
@@ -173,10 +173,10 @@ static void step_dynamics(himc_performance *p, int n, double h)
 {
     himc_vec3 tip_force[HIMC_HANDS];
     himc_character_observe(p->character, &p->state);
-    performance_after_contact(p, step_time(p));
+    himc_performance_after_contact(p, step_time(p));
     himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
-    performance_contact(p, n, tip_force);
-    performance_measure_step(p);
+    himc_performance_contact(p, n, tip_force);
+    himc_performance_measure_step(p);
     if (!himc_character_step(p->character, p->torque, tip_force, h))
         recover(p);
 }
@@ -188,29 +188,29 @@ static void step_kinematics(himc_performance *p, int n)
     himc_vec3 unused[HIMC_HANDS];
     memcpy(pose.joint, p->reference.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&p->skeleton, &pose, p->reference.posture.rate, &p->state);
-    performance_after_contact(p, step_time(p));
-    performance_contact(p, n, unused);
-    performance_measure_step(p);
+    himc_performance_after_contact(p, step_time(p));
+    himc_performance_contact(p, n, unused);
+    himc_performance_measure_step(p);
 }
 
 static void performance_step(himc_performance *p)
 {
-    performance_run_due_commands(p);
-    performance_notice_drums(p);
+    himc_performance_run_due_commands(p);
+    himc_performance_notice_drums(p);
     int n = (int)(step_begin(p, p->step + 1) - p->made);
     double t = step_time(p);
     bool tick = p->step % steps_per_task(p) == 0;
     if (tick || p->replan)
         read_task(p, t);
     himc_task_between(&p->from, &p->to, t, &p->reference);
-    performance_release(p, t);
+    himc_performance_release(p, t);
     if (p->controller.mode == HIMC_PIPELINE_IK)
         step_kinematics(p, n);
     else
         step_dynamics(p, n, n / p->config.sample_rate);
     if (tick)
-        performance_motion_row(p, t);
-    performance_watch(p, t);
+        himc_performance_motion_row(p, t);
+    himc_performance_watch(p, t);
     p->force_count = n;
     p->made += (uint64_t)n;
     p->step++;
@@ -259,7 +259,7 @@ bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_err
     p->made = (uint64_t)ceil(t * sample_rate);
     p->sample = p->made > ahead ? p->made - ahead : 0;
     p->aligned = p->sample > behind ? p->sample - behind : 0;
-    performance_reset_clock(p);
+    himc_performance_reset_clock(p);
     return true;
 }
 
@@ -289,9 +289,9 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
     planning.mallet_radius = p->body.mallet_radius;
     p->planner = himc_planner_new(&planning, error);
     p->posture.level = planning.rest[HIMC_RIGHT].z - 0.12;
-    performance_forget_touch(p);
-    performance_reset_clock(p);
-    if (!p->planner || !performance_build_body(p, error)) {
+    himc_performance_forget_touch(p);
+    himc_performance_reset_clock(p);
+    if (!p->planner || !himc_performance_build_body(p, error)) {
         himc_performance_free(p);
         return NULL;
     }

@@ -31,7 +31,7 @@ static bool put_drum(himc_performance *p, himc_drum *drum, bool silent, int *ind
     else
         himc_drum_release(p->drum[i].drum);
     p->drum[i] = (slot){.drum = drum, .silent = silent, .revision = himc_drum_revision(drum) - 1};
-    performance_notice_drums(p);
+    himc_performance_notice_drums(p);
     *index = i;
     return true;
 }
@@ -48,15 +48,16 @@ static bool make_drum(himc_performance *p, const char *name, double inches, bool
     return false;
 }
 
-bool performance_ensure_drum(himc_performance *p, const char *name, int *index, himc_error *error)
+bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
+                                  himc_error *error)
 {
     *index = name[0] ? find_drum(p, name) : 0;
     if (*index >= 0 && *index < p->drums)
         return true;
     if (!make_drum(p, name[0] ? name : "drum", 23, true, index, error))
         return false;
-    performance_note(p, "no drum %s: playing on a silent one",
-                     himc_drum_name(p->drum[*index].drum));
+    himc_performance_note(p, "no drum %s: playing on a silent one",
+                          himc_drum_name(p->drum[*index].drum));
     return true;
 }
 
@@ -79,7 +80,7 @@ void himc_performance_remove_drum(himc_performance *p, const char *name)
         return;
     snprintf(kept, sizeof kept, "%s", name);
     if (!make_drum(p, kept, 23, true, &index, NULL))
-        performance_note(p, "drum %s: out of memory for a silent one", kept);
+        himc_performance_note(p, "drum %s: out of memory for a silent one", kept);
 }
 
 himc_drum *himc_performance_drum(himc_performance *p, int index)
@@ -88,7 +89,7 @@ himc_drum *himc_performance_drum(himc_performance *p, int index)
 }
 
 // which of the words, which the parser has checked
-int performance_word(const char *word, const char *const *words, int count)
+int himc_performance_word(const char *word, const char *const *words, int count)
 {
     for (int i = 0; i < count; i++)
         if (strcmp(word, words[i]) == 0)
@@ -99,7 +100,7 @@ int performance_word(const char *word, const char *const *words, int count)
 static bool do_mode(himc_performance *p, const himc_command *c, himc_error *error)
 {
     static const char *const words[] = {"himc", "id", "ik"};
-    himc_pipeline mode = (himc_pipeline)performance_word(c->atom[0].symbol, words, 3);
+    himc_pipeline mode = (himc_pipeline)himc_performance_word(c->atom[0].symbol, words, 3);
     (void)error;
     // leaving `ik` the body takes up where the picture was
     if (p->controller.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
@@ -112,7 +113,7 @@ static bool do_solver(himc_performance *p, const himc_command *c, himc_error *er
 {
     static const char *const words[] = {"dls", "pinv", "transpose"};
     (void)error;
-    p->controller.solver = (himc_solver)performance_word(c->atom[0].symbol, words, 3);
+    p->controller.solver = (himc_solver)himc_performance_word(c->atom[0].symbol, words, 3);
     return true;
 }
 
@@ -127,7 +128,7 @@ static bool do_law(himc_performance *p, const himc_command *c, himc_error *error
 {
     static const char *const words[] = {"printed", "feedforward", "computed-torque"};
     (void)error;
-    p->controller.law = (himc_law)performance_word(c->atom[0].symbol, words, 3);
+    p->controller.law = (himc_law)himc_performance_word(c->atom[0].symbol, words, 3);
     return true;
 }
 
@@ -180,7 +181,7 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
                                   himc_recording_path(p->recording));
         p->config.task_rate = hz;
     }
-    performance_reset_clock(p);
+    himc_performance_reset_clock(p);
     return true;
 }
 
@@ -204,7 +205,7 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
     himc_skeleton_config old = p->body;
     p->body.height = c->atom[0].number;
     p->body.mass = c->atom[1].number;
-    if (performance_build_body(p, error))
+    if (himc_performance_build_body(p, error))
         return true;
     p->body = old;
     return false;
@@ -215,9 +216,9 @@ static bool finish_recording(himc_performance *p, himc_error *error)
 {
     bool written = himc_recording_write(p->recording, error);
     if (written)
-        performance_note(p, "recorded %.2f s in %s",
-                         himc_recording_frames(p->recording) / p->config.task_rate,
-                         himc_recording_path(p->recording));
+        himc_performance_note(p, "recorded %.2f s in %s",
+                              himc_recording_frames(p->recording) / p->config.task_rate,
+                              himc_recording_path(p->recording));
     himc_recording_free(p->recording);
     p->recording = NULL;
     return written || himc_error_prefix(error, "record");
@@ -248,11 +249,11 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
         return false;
     p->body = himc_skeleton_default();
     p->controller = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE}; // not the gains set since
-    if (!performance_build_body(p, error)) {
+    if (!himc_performance_build_body(p, error)) {
         p->body = old;
         return false;
     }
-    performance_drop_track(p);
+    himc_performance_drop_track(p);
     himc_planner_stop(p->planner, step_time(p));
     himc_planner_clear(p->planner);
     himc_planner_loop(p->planner, step_time(p), false);
@@ -269,7 +270,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     p->square_count = p->height_count = p->recoveries = 0;
     p->strokes = p->played = p->hits = 0;
     p->hit_latency = p->longest_latency = 0;
-    performance_reset_clock(p);
+    himc_performance_reset_clock(p);
     return true;
 }
 
@@ -298,20 +299,20 @@ static bool do_network(himc_performance *p, const himc_command *c, himc_error *e
 }
 
 static performance_action *const actions[HIMC_COMMANDS] = {
-    [HIMC_COMMAND_STROKE] = performance_do_stroke,
-    [HIMC_COMMAND_HIT] = performance_do_hit,
-    [HIMC_COMMAND_TEMPO] = performance_do_tempo,
-    [HIMC_COMMAND_CLEAR] = performance_do_clear,
+    [HIMC_COMMAND_STROKE] = himc_performance_do_stroke,
+    [HIMC_COMMAND_HIT] = himc_performance_do_hit,
+    [HIMC_COMMAND_TEMPO] = himc_performance_do_tempo,
+    [HIMC_COMMAND_CLEAR] = himc_performance_do_clear,
     [HIMC_COMMAND_GRIP] = do_grip,
-    [HIMC_COMMAND_LOOP] = performance_do_loop,
+    [HIMC_COMMAND_LOOP] = himc_performance_do_loop,
     [HIMC_COMMAND_RECORD] = do_record,
-    [HIMC_COMMAND_UNITS] = performance_do_units,
-    [HIMC_COMMAND_PLAY] = performance_do_play,
-    [HIMC_COMMAND_STOP] = performance_do_stop,
-    [HIMC_COMMAND_SEEK] = performance_do_seek,
-    [HIMC_COMMAND_SCORE] = performance_do_score,
-    [HIMC_COMMAND_TAKE] = performance_do_take,
-    [HIMC_COMMAND_TARGET] = performance_do_target,
+    [HIMC_COMMAND_UNITS] = himc_performance_do_units,
+    [HIMC_COMMAND_PLAY] = himc_performance_do_play,
+    [HIMC_COMMAND_STOP] = himc_performance_do_stop,
+    [HIMC_COMMAND_SEEK] = himc_performance_do_seek,
+    [HIMC_COMMAND_SCORE] = himc_performance_do_score,
+    [HIMC_COMMAND_TAKE] = himc_performance_do_take,
+    [HIMC_COMMAND_TARGET] = himc_performance_do_target,
     [HIMC_COMMAND_MODE] = do_mode,
     [HIMC_COMMAND_SOLVER] = do_solver,
     [HIMC_COMMAND_DAMPING] = do_damping,
@@ -342,8 +343,8 @@ static bool prepare(himc_performance *p, const himc_command *command, himc_error
 {
     int index;
     if (command->id == HIMC_COMMAND_HIT)
-        return performance_ensure_drum(p, command->stroke.drum, &index, error);
-    return command->id != HIMC_COMMAND_PLAY || performance_ensure_drum(p, "", &index, error);
+        return himc_performance_ensure_drum(p, command->stroke.drum, &index, error);
+    return command->id != HIMC_COMMAND_PLAY || himc_performance_ensure_drum(p, "", &index, error);
 }
 
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
@@ -368,7 +369,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     return true;
 }
 
-void performance_run_due_commands(himc_performance *p)
+void himc_performance_run_due_commands(himc_performance *p)
 {
     int kept = 0;
     for (int i = 0; i < p->waiting_count; i++) {
@@ -380,13 +381,13 @@ void performance_run_due_commands(himc_performance *p)
             }
             kept++;
         } else if (!actions[p->waiting[i].command.id](p, &p->waiting[i].command, &error)) {
-            performance_note(p, "%s", error.text);
+            himc_performance_note(p, "%s", error.text);
         }
     }
     p->waiting_count = kept;
     if (p->commands_dropped > 0 && kept < WAITING_COMMANDS / 2) {
-        performance_note(p, "%ld commands dropped: more than %d waited", p->commands_dropped,
-                         WAITING_COMMANDS);
+        himc_performance_note(p, "%ld commands dropped: more than %d waited", p->commands_dropped,
+                              WAITING_COMMANDS);
         p->commands_dropped = 0;
     }
 }

@@ -11,7 +11,7 @@
 #define APPROACH 1.0        // from wherever the sticks are to the beginning of a take (s)
 #define DEEPEST_TARGET 0.01 // of a live target under the head (m)
 
-bool performance_do_loop(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_loop(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     himc_planner_loop(p->planner, step_time(p), c->atom[0].number != 0);
@@ -22,20 +22,20 @@ bool performance_do_loop(himc_performance *p, const himc_command *c, himc_error 
 static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
-    return performance_ensure_drum(p, stroke->drum, &drum, error) &&
+    return himc_performance_ensure_drum(p, stroke->drum, &drum, error) &&
            himc_planner_add(p->planner, stroke, drum, error);
 }
 
-bool performance_do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
 {
     p->replan = true;
     return add_stroke(p, &c->stroke, error);
 }
 
-bool performance_do_hit(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     int drum;
-    if (!performance_ensure_drum(p, c->stroke.drum, &drum, error))
+    if (!himc_performance_ensure_drum(p, c->stroke.drum, &drum, error))
         return false;
     double now = step_time(p), at = himc_planner_hit(p->planner, now, &c->stroke, drum);
     if (isfinite(at)) {
@@ -47,7 +47,7 @@ bool performance_do_hit(himc_performance *p, const himc_command *c, himc_error *
     return true;
 }
 
-bool performance_do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     if (c->count > 1)
@@ -58,14 +58,14 @@ bool performance_do_tempo(himc_performance *p, const himc_command *c, himc_error
     return true;
 }
 
-void performance_drop_track(himc_performance *p)
+void himc_performance_drop_track(himc_performance *p)
 {
     himc_track_free(p->track);
     p->track = NULL;
     p->track_start = INFINITY;
 }
 
-bool performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)c, (void)error;
     himc_planner_clear(p->planner);
@@ -85,11 +85,11 @@ static void start_track(himc_performance *p, double t)
     p->track_start = start;
 }
 
-bool performance_do_play(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_play(himc_performance *p, const himc_command *c, himc_error *error)
 {
     int index;
     (void)c;
-    if (!performance_ensure_drum(p, "", &index, error))
+    if (!himc_performance_ensure_drum(p, "", &index, error))
         return false;
     p->piece_start = step_time(p);
     if (p->track)
@@ -101,7 +101,7 @@ bool performance_do_play(himc_performance *p, const himc_command *c, himc_error 
     return true;
 }
 
-bool performance_do_stop(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_stop(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)c, (void)error;
     if (p->track)
@@ -112,7 +112,7 @@ bool performance_do_stop(himc_performance *p, const himc_command *c, himc_error 
     return true;
 }
 
-bool performance_do_seek(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_seek(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     himc_planner_seek(p->planner, step_time(p), c->atom[0].number);
@@ -126,7 +126,7 @@ static bool run_line(himc_performance *p, const himc_score_line *line, himc_erro
     int index;
     if (!line->drum[0])
         return himc_performance_command(p, &line->command, 0, error);
-    return performance_ensure_drum(p, line->drum, &index, error) &&
+    return himc_performance_ensure_drum(p, line->drum, &index, error) &&
            himc_drum_command(p->drum[index].drum, &line->command, error);
 }
 
@@ -136,7 +136,7 @@ static bool fill_from_score(himc_performance *p, const himc_score *score, const 
     for (int i = 0; i < score->line_count; i++)
         if (!run_line(p, &score->lines[i], error))
             return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
-    performance_notice_drums(p);
+    himc_performance_notice_drums(p);
     // while one is played the next one waits for its end
     bool queued = p->playing && !p->track;
     if (!queued)
@@ -153,7 +153,7 @@ static bool fill_from_score(himc_performance *p, const himc_score *score, const 
     return true;
 }
 
-bool performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
     const char *path = c->atom[0].symbol;
     himc_score *score = himc_score_load(path, error);
@@ -162,7 +162,7 @@ bool performance_do_score(himc_performance *p, const himc_command *c, himc_error
     bool ok = fill_from_score(p, score, path, error);
     himc_score_free(score);
     if (ok)
-        performance_drop_track(p);
+        himc_performance_drop_track(p);
     p->replan = true;
     return ok;
 }
@@ -184,11 +184,11 @@ static void note_reach(himc_performance *p, const himc_track *track, const char 
             farthest = fmax(farthest, missing);
         }
     if (far > 0)
-        performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", path,
-                         100.0 * far / count, farthest);
+        himc_performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m",
+                              path, 100.0 * far / count, farthest);
 }
 
-bool performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
     int drum;
     const char *path = c->atom[0].symbol;
@@ -196,7 +196,7 @@ bool performance_do_take(himc_performance *p, const himc_command *c, himc_error 
     if (!take)
         return false;
     himc_track *track = NULL;
-    if (performance_ensure_drum(p, "", &drum, error)) {
+    if (himc_performance_ensure_drum(p, "", &drum, error)) {
         const himc_place *place = himc_drum_place(p->drum[drum].drum);
         track = himc_track_new(take, &p->take_options, place, p->skeleton.mallet_radius, error);
         if (!track && error && strncmp(error->text, path, strlen(path)) != 0)
@@ -207,15 +207,15 @@ bool performance_do_take(himc_performance *p, const himc_command *c, himc_error 
     himc_take_free(take);
     if (!track)
         return false;
-    if (measured > 0 && !performance_build_body(p, error)) {
+    if (measured > 0 && !himc_performance_build_body(p, error)) {
         p->body = old;
         himc_track_free(track);
         return himc_error_prefix(error, "%s", path);
     }
     if (measured > 0)
-        performance_note(p, "%s: the player's body has %d lengths from it", path, measured);
+        himc_performance_note(p, "%s: the player's body has %d lengths from it", path, measured);
     note_reach(p, track, path);
-    performance_drop_track(p);
+    himc_performance_drop_track(p);
     p->track = track;
     p->replan = true;
     return true;
@@ -241,14 +241,14 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     himc_vec3 x = himc_posture_reachable(&p->posture, hand, asked);
     bool beyond = himc_vec3_length(himc_vec3_sub(x, asked)) > 1e-3;
     if (beyond && !p->beyond[hand]) // one line each time a stream leaves what can be reached
-        performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
-                         himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
+        himc_performance_note(p, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
+                              himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
     p->beyond[hand] = beyond;
     himc_planner_reach(p->planner, step_time(p), hand, above_heads(p, x));
     p->replan = true;
 }
 
-bool performance_do_target(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_target(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_hand hand = strcmp(c->atom[0].symbol, "left") == 0 ? HIMC_LEFT : HIMC_RIGHT;
     (void)error;
@@ -266,18 +266,20 @@ static bool add_units(himc_performance *p, himc_take *take, const himc_command *
     himc_unit units[HIMC_UNITS];
     int count = himc_units_cut(take, &p->take_options, units, HIMC_UNITS, error);
     for (int i = 0; i < count; i++) {
-        units[i].nuance = (himc_nuance)performance_word(c->atom[1].symbol, nuances, HIMC_NUANCES);
+        units[i].nuance =
+            (himc_nuance)himc_performance_word(c->atom[1].symbol, nuances, HIMC_NUANCES);
         units[i].grip = p->grip;
         if (c->count > 2 && c->atom[2].kind == HIMC_ATOM_SYMBOL)
-            units[i].spot = (himc_spot)performance_word(c->atom[2].symbol, spots, 3);
+            units[i].spot = (himc_spot)himc_performance_word(c->atom[2].symbol, spots, 3);
     }
     if (count < 0 || !himc_planner_add_units(p->planner, units, count, error))
         return false;
-    performance_note(p, "%s: %d motion units of %s", c->atom[0].symbol, count, c->atom[1].symbol);
+    himc_performance_note(p, "%s: %d motion units of %s", c->atom[0].symbol, count,
+                          c->atom[1].symbol);
     return true;
 }
 
-bool performance_do_units(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_units(himc_performance *p, const himc_command *c, himc_error *error)
 {
     p->replan = true;
     if (c->count == 1) {

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-void performance_emit(himc_performance *p, const himc_event *event)
+void himc_performance_emit(himc_performance *p, const himc_event *event)
 {
     if (p->event_count == WAITING_EVENTS) { // nobody listens: the oldest goes
         p->event_first = (p->event_first + 1) % WAITING_EVENTS;
@@ -15,14 +15,14 @@ void performance_emit(himc_performance *p, const himc_event *event)
     p->event[(p->event_first + p->event_count++) % WAITING_EVENTS] = *event;
 }
 
-void performance_note(himc_performance *p, const char *format, ...)
+void himc_performance_note(himc_performance *p, const char *format, ...)
 {
     himc_event event = {.kind = HIMC_EVENT_NOTE};
     va_list args;
     va_start(args, format);
     vsnprintf(event.text, sizeof event.text, format, args);
     va_end(args);
-    performance_emit(p, &event);
+    himc_performance_emit(p, &event);
 }
 
 bool himc_performance_event(himc_performance *p, himc_event *event)
@@ -54,7 +54,7 @@ static void measure_height(himc_performance *p, himc_hand hand)
     }
 }
 
-void performance_measure_step(himc_performance *p)
+void himc_performance_measure_step(himc_performance *p)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         if (p->track && !himc_track_present(p->track, (himc_hand)hand))
@@ -95,16 +95,16 @@ static void watch_beats(himc_performance *p, double t)
     long whole = p->track || !(beat >= 0) ? -1 : (long)floor(beat + 1e-9);
     if (whole >= 0 && whole != p->last_beat) {
         himc_event event = {.kind = HIMC_EVENT_BEAT, .beat = (double)whole};
-        performance_emit(p, &event);
+        himc_performance_emit(p, &event);
     }
     p->last_beat = whole;
 }
 
-void performance_watch(himc_performance *p, double t)
+void himc_performance_watch(himc_performance *p, double t)
 {
     himc_planner_note note;
     while (himc_planner_note_next(p->planner, &note))
-        performance_note(p, "%s", note.text);
+        himc_performance_note(p, "%s", note.text);
     watch_beats(p, t);
     double end =
         p->track ? p->track_start + himc_track_length(p->track) : himc_planner_end(p->planner);
@@ -112,7 +112,7 @@ void performance_watch(himc_performance *p, double t)
     if (p->playing && t >= end && !touching) {
         himc_event event = {.kind = HIMC_EVENT_DONE};
         p->playing = false;
-        performance_emit(p, &event);
+        himc_performance_emit(p, &event);
     }
 }
 
@@ -139,7 +139,7 @@ static void tell_tick(himc_performance *p, double t)
         p->on_tick(p->tick_user, &tick);
 }
 
-void performance_motion_row(himc_performance *p, double t)
+void himc_performance_motion_row(himc_performance *p, double t)
 {
     tell_tick(p, t);
     himc_motion_row row = {.time = t};
@@ -157,8 +157,8 @@ void performance_motion_row(himc_performance *p, double t)
         p->on_motion(p->motion_user, &row);
     if (p->recording && !himc_recording_add(p->recording, &p->state) && !p->recording_full) {
         p->recording_full = true;
-        performance_note(p, "%s: no more room, recorded up to %.3f s",
-                         himc_recording_path(p->recording), t);
+        himc_performance_note(p, "%s: no more room, recorded up to %.3f s",
+                              himc_recording_path(p->recording), t);
     }
 }
 

@@ -132,40 +132,41 @@ static inline double step_time(const himc_performance *p)
 }
 
 // performance.c
-bool performance_build_body(himc_performance *p, himc_error *error);
-void performance_reset_clock(himc_performance *p);
-void performance_notice_drums(himc_performance *p);
-himc_target performance_target(const himc_performance *p, himc_hand hand, double t);
+bool himc_performance_build_body(himc_performance *p, himc_error *error);
+void himc_performance_reset_clock(himc_performance *p);
+void himc_performance_notice_drums(himc_performance *p);
+himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
 
 // performance_touch.c
-stroke_plan performance_plan(const himc_performance *p, himc_hand hand, double t);
-void performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS]);
-void performance_after_contact(himc_performance *p, double t);
-void performance_release(himc_performance *p, double t);
-void performance_forget_touch(himc_performance *p);
+stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, double t);
+void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS]);
+void himc_performance_after_contact(himc_performance *p, double t);
+void himc_performance_release(himc_performance *p, double t);
+void himc_performance_forget_touch(himc_performance *p);
 
 // performance_command.c
 /// Carries out a command now; false, and nothing changed, with the reason.
 typedef bool performance_action(himc_performance *p, const himc_command *command,
                                 himc_error *error);
 /// Which of the words it is; the parser has checked that it is one.
-int performance_word(const char *word, const char *const *words, int count);
-void performance_run_due_commands(himc_performance *p);
-bool performance_ensure_drum(himc_performance *p, const char *name, int *index, himc_error *error);
+int himc_performance_word(const char *word, const char *const *words, int count);
+void himc_performance_run_due_commands(himc_performance *p);
+bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
+                                  himc_error *error);
 
 // performance_play.c
-performance_action performance_do_loop, performance_do_stroke, performance_do_hit,
-    performance_do_tempo, performance_do_clear, performance_do_play, performance_do_stop,
-    performance_do_seek, performance_do_score, performance_do_take, performance_do_target,
-    performance_do_units;
-void performance_drop_track(himc_performance *p);
+performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_performance_do_hit,
+    himc_performance_do_tempo, himc_performance_do_clear, himc_performance_do_play,
+    himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_score,
+    himc_performance_do_take, himc_performance_do_target, himc_performance_do_units;
+void himc_performance_drop_track(himc_performance *p);
 
 // performance_report.c
-void performance_emit(himc_performance *p, const himc_event *event);
-void performance_note(himc_performance *p, const char *format, ...)
+void himc_performance_emit(himc_performance *p, const himc_event *event);
+void himc_performance_note(himc_performance *p, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-void performance_measure_step(himc_performance *p);
-void performance_watch(himc_performance *p, double t);
-void performance_motion_row(himc_performance *p, double t);
+void himc_performance_measure_step(himc_performance *p);
+void himc_performance_watch(himc_performance *p, double t);
+void himc_performance_motion_row(himc_performance *p, double t);
 
 #endif

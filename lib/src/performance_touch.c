@@ -21,13 +21,13 @@
 #define WINDOW 0.015      // after the planned time, for a contact still to come (s)
 #define SAME_STROKE 0.100 // between planned and real contact of one stroke (s)
 
-void performance_forget_touch(himc_performance *p)
+void himc_performance_forget_touch(himc_performance *p)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         p->touch[hand] = (touch){.answered = -INFINITY};
 }
 
-stroke_plan performance_plan(const himc_performance *p, himc_hand hand, double t)
+stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, double t)
 {
     stroke_plan next = {.any = false, .drum = 0};
     himc_stroke stroke;
@@ -75,9 +75,9 @@ static void give_up(himc_performance *p, himc_hand hand, double t, const stroke_
 {
     p->touch[hand].answered = next->time;
     p->strokes++;
-    performance_note(p, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
-                     next->drum < p->drums ? himc_drum_name(p->drum[next->drum].drum) : "drum",
-                     next->time);
+    himc_performance_note(p, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
+                          next->drum < p->drums ? himc_drum_name(p->drum[next->drum].drum) : "drum",
+                          next->time);
     go_on_from_here(p, hand, t);
 }
 
@@ -95,11 +95,11 @@ static void follow_stick(himc_performance *p, himc_hand hand)
     himc_posture_moving(&p->posture, p->reference.tip, &p->reference.posture);
 }
 
-void performance_release(himc_performance *p, double t)
+void himc_performance_release(himc_performance *p, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         touch *c = &p->touch[hand];
-        stroke_plan next = performance_plan(p, (himc_hand)hand, t);
+        stroke_plan next = himc_performance_plan(p, (himc_hand)hand, t);
         bool due = next.any && t >= next.time && !c->touching;
         if (due && t >= next.time + WINDOW) {
             give_up(p, (himc_hand)hand, t, &next);
@@ -130,7 +130,7 @@ static bool is_over(const himc_performance *p, himc_hand hand, int drum, himc_ve
 // the drum a tip is over, or -1; of two at one place the one it means to strike
 static int drum_below(const himc_performance *p, himc_hand hand, himc_vec3 *local)
 {
-    stroke_plan next = performance_plan(p, hand, step_time(p));
+    stroke_plan next = himc_performance_plan(p, hand, step_time(p));
     const touch *c = &p->touch[hand];
     int meant = c->touching ? c->drum : next.any ? next.drum : -1;
     if (meant >= 0 && meant < p->drums && is_over(p, hand, meant, local))
@@ -167,7 +167,7 @@ static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local,
 static void begin_strike(himc_performance *p, himc_hand hand, double time, double velocity)
 {
     touch *c = &p->touch[hand];
-    stroke_plan next = performance_plan(p, hand, time);
+    stroke_plan next = himc_performance_plan(p, hand, time);
     bool planned = next.any && fabs(next.time - time) < SAME_STROKE;
     c->touching = true;
     c->strike = (himc_strike){.time = time,
@@ -212,7 +212,7 @@ static double note_forces(himc_performance *p, himc_hand hand, int n, double vel
     return impulse;
 }
 
-void performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS])
+void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS])
 {
     himc_articulation art;
     himc_vec3 relative[HIMC_JOINTS], local[HIMC_HANDS];
@@ -257,13 +257,13 @@ static void end_strike(himc_performance *p, himc_hand hand, double t)
     touch *c = &p->touch[hand];
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
     if (c->strike.velocity > 0) // a head raised into a resting stick is no blow
-        performance_emit(p, &event);
+        himc_performance_emit(p, &event);
     if (c->released)
         go_on_from_here(p, hand, t);
     c->touching = false;
 }
 
-void performance_after_contact(himc_performance *p, double t)
+void himc_performance_after_contact(himc_performance *p, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         touch *c = &p->touch[hand];

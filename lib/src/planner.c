@@ -75,7 +75,7 @@ bool himc_planner_set_drum(himc_planner *planner, int index, const himc_place *p
     if (same_place(&planner->place[index], place))
         return true;
     planner->place[index] = *place;
-    planner_replan(planner, planner->now + PLANNER_AHEAD);
+    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
     return true;
 }
 
@@ -145,14 +145,15 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
         h->next++;
     if (!planner->playing)
         return;
-    planner_cut(planner, hand, t);
-    double turn = h->round * planner_turn(planner);
-    if (at < h->next && planner_time_of(planner, h->list[at].stroke.beat) + turn > h->plan.end)
+    himc_planner_cut(planner, hand, t);
+    double turn = h->round * himc_planner_turn(planner);
+    if (at < h->next && himc_planner_time_of(planner, h->list[at].stroke.beat) + turn > h->plan.end)
         h->next = at;
     else if (at < h->next && !planner->loop)
-        planner_say(planner, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, that beat is past",
-                    h->list[at].stroke.beat, himc_hand_name(hand));
-    planner_extend(planner, hand, t + PLANNER_HORIZON);
+        himc_planner_say(planner, PLANNER_GIVEN_UP,
+                         "stroke at beat %g %s: given up, that beat is past",
+                         h->list[at].stroke.beat, himc_hand_name(hand));
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum, himc_error *error)
@@ -162,7 +163,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     if (!check_stroke(planner, stroke, drum, at, error) || !grow(h, error))
         return false;
     if (planner->playing)
-        planner_rebase(planner, planner->now);
+        himc_planner_rebase(planner, planner->now);
     memmove(h->list + at + 1, h->list + at, (size_t)(h->count - at) * sizeof *h->list);
     h->list[at] = (planner_stroke){*stroke, drum};
     h->count++;
@@ -184,14 +185,14 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     if (!copy)
         return himc_error_set(error, "tempo: %d changes, allowed 1 or more", count);
     memcpy(copy, tempi, (size_t)count * sizeof *copy);
-    double t = planner->now + PLANNER_AHEAD, beat = planner_beat_at(planner, t);
-    planner_rebase(planner, t);
+    double t = planner->now + PLANNER_AHEAD, beat = himc_planner_beat_at(planner, t);
+    himc_planner_rebase(planner, t);
     free(planner->tempi);
     planner->tempi = copy;
     planner->tempo_count = count;
     if (planner->playing) {
         planner->origin = t - himc_score_seconds(copy, count, beat);
-        planner_replan(planner, t);
+        himc_planner_replan(planner, t);
     }
     return true;
 }
@@ -210,7 +211,7 @@ void himc_planner_clear_units(himc_planner *planner)
 {
     // what is planned may still look at the array, which stays where it is
     planner->unit_count = 0;
-    planner_replan(planner, planner->now + PLANNER_AHEAD);
+    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
 void himc_planner_set_grip(himc_planner *planner, int grip)
@@ -244,17 +245,17 @@ void himc_planner_clear(himc_planner *planner)
     himc_planner_stop(planner, t);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_hand *h = &planner->hand[hand];
-        planner_cut(planner, (himc_hand)hand, t);
+        himc_planner_cut(planner, (himc_hand)hand, t);
         h->count = h->next = h->round = h->hits = 0;
         for (int i = 0; i < h->touches; i++)
             h->touch[i].index = -1;
-        planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
+        himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     planner->beat = 0;
     planner->said = 0;
 }
 
-void planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
+void himc_planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
 {
     if (planner->said & (1u << kind))
         return;

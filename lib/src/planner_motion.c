@@ -48,16 +48,16 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
                 : himc_gesture_of(stroke->nuance, stroke->dynamic);
 }
 
-himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
+himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
     const himc_place *place = &planner->place[drum];
     double x, y, limit = 0.97 * place->radius;
     himc_stroke_spot(stroke, place->radius, &x, &y);
     double r = hypot(x, y);
     if (r > limit) {
-        planner_say(planner, PLANNER_OUTSIDE,
-                    "%s hand: %.3g %.3g is beyond the rim, struck inside it",
-                    himc_hand_name(stroke->hand), x, y);
+        himc_planner_say(planner, PLANNER_OUTSIDE,
+                         "%s hand: %.3g %.3g is beyond the rim, struck inside it",
+                         himc_hand_name(stroke->hand), x, y);
         x *= limit / r;
         y *= limit / r;
     }
@@ -75,16 +75,16 @@ static bool next_touch(himc_planner *planner, himc_hand hand, planner_touch *tou
     planner_hand *h = &planner->hand[hand];
     int index = 0, round = 0;
     double t = HUGE_VAL;
-    const planner_stroke *s = planner_next(planner, h, 0, &index, &round, &t);
+    const planner_stroke *s = himc_planner_next(planner, h, 0, &index, &round, &t);
     if (h->hits > 0 && h->hit[0].goal.time < t) {
         *touch = h->hit[0];
-        touch->goal = planner_goal(planner, &touch->stroke, touch->drum, touch->goal.time);
+        touch->goal = himc_planner_goal(planner, &touch->stroke, touch->drum, touch->goal.time);
         return true;
     }
     if (!s)
         return false;
     *touch = (planner_touch){.stroke = s->stroke, .drum = s->drum, .index = index, .round = round};
-    touch->goal = planner_goal(planner, &s->stroke, s->drum, t);
+    touch->goal = himc_planner_goal(planner, &s->stroke, s->drum, t);
     return true;
 }
 
@@ -109,20 +109,21 @@ static void say_given_up(himc_planner *planner, const planner_touch *touch)
 {
     const char *hand = himc_hand_name(touch->stroke.hand);
     if (touch->index < 0)
-        planner_say(planner, PLANNER_GIVEN_UP, "hit %s: given up, no time to prepare it", hand);
+        himc_planner_say(planner, PLANNER_GIVEN_UP, "hit %s: given up, no time to prepare it",
+                         hand);
     else
-        planner_say(planner, PLANNER_GIVEN_UP,
-                    "stroke at beat %g %s: given up, no time to prepare it", touch->stroke.beat,
-                    hand);
+        himc_planner_say(planner, PLANNER_GIVEN_UP,
+                         "stroke at beat %g %s: given up, no time to prepare it",
+                         touch->stroke.beat, hand);
 }
 
 static void say_smaller(himc_planner *planner, const planner_touch *touch, double since)
 {
     double high = planner->hand[touch->stroke.hand].plan.last.gesture.height;
     if (touch->index >= 0 && since < 1 && high < SMALL * touch->goal.gesture.height)
-        planner_say(planner, PLANNER_SMALLER,
-                    "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
-                    touch->stroke.beat, himc_hand_name(touch->stroke.hand), since, high);
+        himc_planner_say(planner, PLANNER_SMALLER,
+                         "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
+                         touch->stroke.beat, himc_hand_name(touch->stroke.hand), since, high);
 }
 
 static void plan_touch(himc_planner *planner, planner_hand *h, planner_touch *touch)
@@ -138,7 +139,7 @@ static void plan_touch(himc_planner *planner, planner_hand *h, planner_touch *to
     h->touch[h->touches++].goal = h->plan.last;
 }
 
-void planner_extend(himc_planner *planner, himc_hand hand, double until)
+void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)
 {
     planner_hand *h = &planner->hand[hand];
     for (int i = 0; i < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan); i++) {
@@ -173,11 +174,11 @@ static void unplan_after(planner_hand *h, double t, double margin)
         unplan(h, &h->touch[--h->touches]);
 }
 
-void planner_cut(himc_planner *planner, himc_hand hand, double t)
+void himc_planner_cut(himc_planner *planner, himc_hand hand, double t)
 {
     planner_hand *h = &planner->hand[hand];
     if (h->plan.end < t)
-        planner_extend(planner, hand, t);
+        himc_planner_extend(planner, hand, t);
     unplan_after(h, t, PLANNER_COMMIT);
     const planner_touch *last = h->touches > 0 ? &h->touch[h->touches - 1] : NULL;
     if (last && !last->parted)
@@ -189,11 +190,11 @@ void planner_cut(himc_planner *planner, himc_hand hand, double t)
     h->plan.struck = h->plan.end - last->goal.time < REBOUND;
 }
 
-void planner_replan(himc_planner *planner, double t)
+void himc_planner_replan(himc_planner *planner, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planner_cut(planner, (himc_hand)hand, t);
-        planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
+        himc_planner_cut(planner, (himc_hand)hand, t);
+        himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
 }
 
@@ -210,7 +211,7 @@ void himc_planner_advance(himc_planner *planner, double t)
         h->touches -= past;
         himc_chain_drop(&h->plan.ground, planner->now);
         himc_chain_drop(&h->plan.lift, planner->now);
-        planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
+        himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
 }
 
@@ -236,7 +237,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
         h->plan.last = last->goal;
         h->plan.struck = t - last->goal.time < REBOUND;
     }
-    planner_extend(planner, hand, t + PLANNER_HORIZON);
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
 /// Moves a hit's time behind any stroke that is too near; false if there is no gap.
@@ -250,7 +251,7 @@ static bool find_gap(const himc_planner *planner, const planner_hand *h, double 
         for (int i = 0; i < MOST_TRIES; i++) {
             int index, round;
             double scored;
-            if (!planner_next(planner, h, i, &index, &round, &scored) || scored > *t + HIT_GAP)
+            if (!himc_planner_next(planner, h, i, &index, &round, &scored) || scored > *t + HIT_GAP)
                 break;
             if (scored > *t - HIT_GAP)
                 clash = fmax(clash, scored);
@@ -267,13 +268,13 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     planner_hand *h = &planner->hand[stroke->hand];
     if (drum < 0 || drum >= HIMC_DRUMS || !isfinite(t))
         return HUGE_VAL;
-    planner_cut(planner, stroke->hand, t);
+    himc_planner_cut(planner, stroke->hand, t);
     planner_touch hit = {.stroke = *stroke, .drum = drum, .index = -1};
-    hit.goal = planner_goal(planner, stroke, drum, t);
+    hit.goal = himc_planner_goal(planner, stroke, drum, t);
     double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal);
     if (h->hits == PLANNER_HITS || !find_gap(planner, h, &touch)) {
-        planner_say(planner, PLANNER_CROWDED, "hit %s: given up, others are waiting",
-                    himc_hand_name(stroke->hand));
+        himc_planner_say(planner, PLANNER_CROWDED, "hit %s: given up, others are waiting",
+                         himc_hand_name(stroke->hand));
         touch = HUGE_VAL;
     } else {
         hit.goal.time = touch;
@@ -282,7 +283,7 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
             h->hit[i] = h->hit[i - 1];
         h->hit[i] = hit;
     }
-    planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
+    himc_planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
     return touch;
 }
 
@@ -306,7 +307,7 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
         return true;
     }
     int index, round;
-    const planner_stroke *s = planner_next(planner, h, 0, &index, &round, contact_time);
+    const planner_stroke *s = himc_planner_next(planner, h, 0, &index, &round, contact_time);
     if (!s)
         return false;
     *stroke = s->stroke;

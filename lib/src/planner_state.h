@@ -81,25 +81,25 @@ struct himc_planner {
 };
 
 /// A note for the user, unless one of its kind has been given.
-HIMC_RT void planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
+HIMC_RT void himc_planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /// The stroke a hand comes to next, in which round, and when; NULL if there is none.
-HIMC_RT const planner_stroke *planner_next(const himc_planner *planner, const planner_hand *h,
-                                           int ahead, int *index, int *round, double *t);
-HIMC_RT double planner_time_of(const himc_planner *planner, double beat);
+HIMC_RT const planner_stroke *himc_planner_next(const himc_planner *planner, const planner_hand *h,
+                                                int ahead, int *index, int *round, double *t);
+HIMC_RT double himc_planner_time_of(const himc_planner *planner, double beat);
 /// How long a round of the loop takes (s).
-HIMC_RT double planner_turn(const himc_planner *planner);
+HIMC_RT double himc_planner_turn(const himc_planner *planner);
 /// Makes the round of the loop at `t` the first, before its length changes.
-HIMC_RT void planner_rebase(himc_planner *planner, double t);
-HIMC_RT double planner_beat_at(const himc_planner *planner, double t);
-HIMC_RT himc_goal planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
-                               double t);
+HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
+HIMC_RT double himc_planner_beat_at(const himc_planner *planner, double t);
+HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
+                                    double t);
 /// Plans both hands anew from t on; what is committed stays.
-HIMC_RT void planner_replan(himc_planner *planner, double t);
+HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 /// Takes back what is planned after t, unless committed; the plan then ends at t or soon after.
-HIMC_RT void planner_cut(himc_planner *planner, himc_hand hand, double t);
+HIMC_RT void himc_planner_cut(himc_planner *planner, himc_hand hand, double t);
 /// Plans a hand to `until` (s) at least.
-HIMC_RT void planner_extend(himc_planner *planner, himc_hand hand, double until);
+HIMC_RT void himc_planner_extend(himc_planner *planner, himc_hand hand, double until);
 
 #endif

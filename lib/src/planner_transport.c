@@ -12,7 +12,7 @@
 #define RETURN_TIME 2.5 // from the last touch to rest (s)
 #define PREPARATION 1.0 // in which a score that follows late can be begun (s)
 
-double planner_time_of(const himc_planner *planner, double beat)
+double himc_planner_time_of(const himc_planner *planner, double beat)
 {
     return planner->origin + himc_score_seconds(planner->tempi, planner->tempo_count, beat);
 }
@@ -33,7 +33,7 @@ double himc_planner_length(const himc_planner *planner)
     return floor(last_beat(planner)) + 1;
 }
 
-double planner_turn(const himc_planner *planner)
+double himc_planner_turn(const himc_planner *planner)
 {
     return himc_score_seconds(planner->tempi, planner->tempo_count, himc_planner_length(planner));
 }
@@ -41,20 +41,20 @@ double planner_turn(const himc_planner *planner)
 double himc_planner_next_start(const himc_planner *planner, double t)
 {
     double length = himc_planner_length(planner);
-    return planner->playing ? fmax(length, ceil(planner_beat_at(planner, t + PREPARATION)))
+    return planner->playing ? fmax(length, ceil(himc_planner_beat_at(planner, t + PREPARATION)))
                             : length;
 }
 
 static void cut_both(himc_planner *planner, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        planner_cut(planner, (himc_hand)hand, t);
+        himc_planner_cut(planner, (himc_hand)hand, t);
 }
 
 /// The round of the loop at a time, 0 before it begins.
 static int round_at(const himc_planner *planner, double t)
 {
-    double turn = planner_turn(planner);
+    double turn = himc_planner_turn(planner);
     bool turns = planner->loop || planner->rounds > 0;
     if (!turns || !(turn > 0) || t < planner->origin)
         return 0;
@@ -62,17 +62,17 @@ static int round_at(const himc_planner *planner, double t)
     return planner->loop ? (int)round : (int)fmin(round, planner->rounds);
 }
 
-double planner_beat_at(const himc_planner *planner, double t)
+double himc_planner_beat_at(const himc_planner *planner, double t)
 {
-    double begun = planner->origin + round_at(planner, t) * planner_turn(planner);
+    double begun = planner->origin + round_at(planner, t) * himc_planner_turn(planner);
     return himc_score_beat(planner->tempi, planner->tempo_count, t - begun);
 }
 
 /// Makes the round at `t` the first.
-void planner_rebase(himc_planner *planner, double t)
+void himc_planner_rebase(himc_planner *planner, double t)
 {
     int round = round_at(planner, t);
-    planner->origin += round * planner_turn(planner);
+    planner->origin += round * himc_planner_turn(planner);
     planner->rounds -= round;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_hand *h = &planner->hand[hand];
@@ -82,8 +82,8 @@ void planner_rebase(himc_planner *planner, double t)
     }
 }
 
-const planner_stroke *planner_next(const himc_planner *planner, const planner_hand *h, int ahead,
-                                   int *index, int *round, double *t)
+const planner_stroke *himc_planner_next(const himc_planner *planner, const planner_hand *h,
+                                        int ahead, int *index, int *round, double *t)
 {
     if (!planner->playing || h->count == 0)
         return NULL;
@@ -92,8 +92,8 @@ const planner_stroke *planner_next(const himc_planner *planner, const planner_ha
     *index = (int)(at % h->count);
     if (!planner->loop && *round > planner->rounds)
         return NULL;
-    double begun = *round == 0 ? 0 : *round * planner_turn(planner);
-    *t = begun + planner_time_of(planner, h->list[*index].stroke.beat);
+    double begun = *round == 0 ? 0 : *round * himc_planner_turn(planner);
+    *t = begun + himc_planner_time_of(planner, h->list[*index].stroke.beat);
     return &h->list[*index];
 }
 
@@ -109,7 +109,7 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
             if (planner->hand[hand].touch[i].round > planner->rounds)
                 planner->rounds = planner->hand[hand].touch[i].round;
     planner->loop = on;
-    planner_replan(planner, t);
+    himc_planner_replan(planner, t);
 }
 
 static void seek_hand(planner_hand *h, double beat)
@@ -134,10 +134,10 @@ static double lateness(himc_planner *planner)
         planner_hand *h = &planner->hand[hand];
         int index, round;
         double at;
-        const planner_stroke *s = planner_next(planner, h, 0, &index, &round, &at);
+        const planner_stroke *s = himc_planner_next(planner, h, 0, &index, &round, &at);
         if (!s)
             continue;
-        himc_goal goal = planner_goal(planner, &s->stroke, s->drum, at);
+        himc_goal goal = himc_planner_goal(planner, &s->stroke, s->drum, at);
         late = fmax(late, h->plan.end + himc_hand_time(&h->plan, &goal) - at);
     }
     return late;
@@ -154,10 +154,10 @@ static void start(himc_planner *planner, double t)
     double late = lateness(planner);
     planner->origin += late;
     if (late > 0.001)
-        planner_say(planner, PLANNER_LATE,
-                    "beat %g is %.2g s late: the first stroke must be prepared", planner->beat,
-                    late);
-    planner_replan(planner, t);
+        himc_planner_say(planner, PLANNER_LATE,
+                         "beat %g is %.2g s late: the first stroke must be prepared", planner->beat,
+                         late);
+    himc_planner_replan(planner, t);
 }
 
 void himc_planner_play(himc_planner *planner, double t)
@@ -182,7 +182,7 @@ void himc_planner_stop(himc_planner *planner, double t)
     cut_both(planner, t);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         planner->hand[hand].hits = 0;
-    planner_replan(planner, t);
+    himc_planner_replan(planner, t);
 }
 
 void himc_planner_seek(himc_planner *planner, double t, double beat)
@@ -200,8 +200,8 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
 {
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
-    double beat = planner->playing ? planner_beat_at(planner, t) : planner->beat;
-    planner_rebase(planner, t);
+    double beat = planner->playing ? himc_planner_beat_at(planner, t) : planner->beat;
+    himc_planner_rebase(planner, t);
     int past = 1;
     while (past < planner->tempo_count && planner->tempi[past].beat <= beat)
         past++;
@@ -212,15 +212,15 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!planner->playing)
         return;
     planner->origin = t - himc_score_seconds(planner->tempi, planner->tempo_count, beat);
-    planner_replan(planner, t);
+    himc_planner_replan(planner, t);
 }
 
 double himc_planner_beat(const himc_planner *planner, double t)
 {
     if (!planner->playing)
         return -1;
-    double beat = planner_beat_at(planner, t);
-    return t < planner->origin + planner_turn(planner) ? fmax(beat, planner->beat) : beat;
+    double beat = himc_planner_beat_at(planner, t);
+    return t < planner->origin + himc_planner_turn(planner) ? fmax(beat, planner->beat) : beat;
 }
 
 double himc_planner_end(const himc_planner *planner)
@@ -228,12 +228,13 @@ double himc_planner_end(const himc_planner *planner)
     if (!planner->playing || (planner->loop && last_beat(planner) >= 0))
         return HUGE_VAL;
     double end = planner->origin,
-           begun = planner->rounds ? planner->rounds * planner_turn(planner) : 0;
+           begun = planner->rounds ? planner->rounds * himc_planner_turn(planner) : 0;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_hand *h = &planner->hand[hand];
         if (h->count > 0)
-            end = fmax(end, begun + planner_time_of(planner, h->list[h->count - 1].stroke.beat) +
-                                RETURN_TIME);
+            end =
+                fmax(end, begun + himc_planner_time_of(planner, h->list[h->count - 1].stroke.beat) +
+                              RETURN_TIME);
         for (int i = 0; i < h->hits; i++)
             end = fmax(end, h->hit[i].goal.time + RETURN_TIME);
         if (h->touches > 0)

@@ -1,0 +1,27 @@
+/// bodies.h: what tests of the body share: the default skeleton and vectors at random.
+#ifndef HIMC_TESTS_BODIES_H
+#define HIMC_TESTS_BODIES_H
+
+#include "himc/skeleton.h"
+
+#include <stdlib.h>
+
+static himc_skeleton skeleton;
+
+static inline void default_skeleton(unsigned seed)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_skeleton_init(&skeleton, &config, NULL);
+    srand(seed);
+}
+
+/// Each component uniform in [-scale, scale].
+static inline himc_vec3 random_vector(double scale)
+{
+    double v[3];
+    for (int i = 0; i < 3; i++)
+        v[i] = scale * (2.0 * rand() / RAND_MAX - 1);
+    return himc_vec3_make(v[0], v[1], v[2]);
+}
+
+#endif
