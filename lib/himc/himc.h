@@ -24,6 +24,7 @@
 // the body
 #include "himc/skeleton.h"
 #include "himc/pose.h"
+#include "himc/limits.h"
 
 // what to play: written or captured
 #include "himc/command.h"
@@ -37,6 +38,7 @@
 
 // how the body is made to do it: algorithm 2
 #include "himc/posture.h"
+#include "himc/habit.h"
 #include "himc/ik.h"
 #include "himc/invdyn.h"
 #include "himc/controller.h"

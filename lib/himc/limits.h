@@ -1,0 +1,43 @@
+/// limits.h: how far a percussionist's joints turn: bounds learned from captured motion, and the
+/// nearest rotation within them (2012 paper, section 3.1, algorithm 1 and table 1).
+#ifndef HIMC_LIMITS_H
+#define HIMC_LIMITS_H
+
+#include "himc/pose.h"
+
+typedef enum himc_limits_kind {
+    HIMC_LIMITS_OFF,
+    HIMC_LIMITS_ELLIPSOID, ///< around the mean, in its tangent space (algorithm 1)
+    HIMC_LIMITS_EULER      ///< lower and upper angles about x, y, z
+} himc_limits_kind;
+
+/// Bounds of one joint, child in the parent's frame.
+typedef struct himc_limit {
+    bool bound;       ///< false: turns freely
+    himc_quat mean;   ///< of the captured rotations (Markley et al. 2007)
+    himc_mat3 axes;   ///< columns: the ellipsoid's axes in the tangent space of the mean
+    himc_vec3 radius; ///< its semi-axes, as rotation vectors (rad), descending, at least 1e-3
+    himc_vec3 lower;  ///< Euler angles, child = mean Rz Ry Rx (rad)
+    himc_vec3 upper;  ///< (rad)
+} himc_limit;
+
+typedef struct himc_limits {
+    himc_limits_kind kind;
+    himc_limit joint[HIMC_JOINTS];
+} himc_limits;
+
+/// Table 1 of the 2012 paper (neck, shoulders, elbows, wrists) around a mean posture; the joints
+/// the table does not name turn freely.
+HIMC_RT himc_limits himc_limits_table_1(const himc_pose *mean);
+
+/// Algorithm 1 and the Euler statistics of each joint's rotations in `pose` (frames). Ellipsoid and
+/// box contain all of them, widened by `margin` (0 .. 1, of their size). False with the reason.
+bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, double margin,
+                       himc_error *error);
+
+/// How far a joint is within its bounds: at most 1 inside, 1 on them, 0 at the centre.
+HIMC_RT double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotation);
+/// The nearest rotation within the bounds; the rotation itself when it is within.
+HIMC_RT himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_quat rotation);
+
+#endif
