@@ -57,6 +57,13 @@ static float number(const lo_arg *arg)
     return value;
 }
 
+static int whole(const lo_arg *arg)
+{
+    int value;
+    memcpy(&value, arg, sizeof value);
+    return value;
+}
+
 static himc_osc *osc;
 static himc_performance *performance;
 static int ear, ear_port;
@@ -251,15 +258,18 @@ static void test_a_strike_asked_for_over_osc_comes_back_as_strike(void)
     say("/himc/stroke", "2 right accent f rim");
     say("/himc/tempo", "240");
     say("/himc/play", "");
-    play(1.5);
+    play(2.2);
     TEST_ASSERT_EQUAL_INT(1, count("/himc/strike"));
     const seen *s = last("/himc/strike");
     lo_arg **a = lo_message_get_argv(s->message);
-    TEST_ASSERT_EQUAL_STRING("fssfffffs", lo_message_get_types(s->message));
+    TEST_ASSERT_EQUAL_STRING("fssfffffsiif", lo_message_get_types(s->message));
     TEST_ASSERT_EQUAL_STRING("right", word(a[1]));
     TEST_ASSERT_EQUAL_STRING("kettle", word(a[2]));
     TEST_ASSERT_TRUE(number(a[6]) > 5);
     TEST_ASSERT_EQUAL_STRING("accent", word(a[8]));
+    TEST_ASSERT_EQUAL_INT(1, whole(a[9]));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, number(a[0]), (float)whole(a[10]) + number(a[11]));
+    TEST_ASSERT_EQUAL_FLOAT(1, status("strikes"));
     TEST_ASSERT_TRUE(count("/himc/beat") >= 2);
     TEST_ASSERT_TRUE(count("/himc/status") >= 1);
 }

@@ -72,12 +72,13 @@ void himc_osc_event(himc_osc *osc, const himc_event *event)
     bool strike = event->kind == HIMC_EVENT_STRIKE;
     if (!strike && event->kind != HIMC_EVENT_BEAT)
         return;
+    osc->strikes += strike; // also one that finds the ring full
     double time = strike ? event->strike.time : osc->last_publish - osc->offset;
     osc_record *r = begin(osc, strike ? RECORD_STRIKE : RECORD_BEAT, time);
     if (!r)
         return;
     if (strike)
-        r->strike = event->strike;
+        r->strike = (osc_strike){event->strike, osc->strikes};
     else
         r->beat = event->beat;
     end(osc);
@@ -123,6 +124,7 @@ static void put_state(himc_osc *osc, const himc_performance_stats *stats, double
     if (!r)
         return;
     r->state.stats = *stats;
+    r->state.strikes = osc->strikes;
     r->state.load = elapsed > 0 ? osc->busy / elapsed : 0;
     end(osc);
 }

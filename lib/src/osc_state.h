@@ -76,9 +76,16 @@ typedef struct osc_drum {
     double hz;      // principal mode
 } osc_drum;
 
+// strikes are numbered, so that who receives them knows how many were lost on the way
+typedef struct osc_strike {
+    himc_strike strike;
+    long number; // from 1
+} osc_strike;
+
 typedef struct osc_state {
     himc_performance_stats stats;
     double load; // share of real time
+    long strikes;
 } osc_state;
 
 typedef struct osc_answer {
@@ -102,7 +109,7 @@ typedef struct osc_record {
     double wall; // the same on the wall clock (s since 1970)
     union {
         osc_pose pose;
-        himc_strike strike;
+        osc_strike strike;
         double beat;
         osc_head head;
         osc_drum drum;
@@ -171,6 +178,7 @@ struct himc_osc {
     // the host's side
     double offset, next_pose, next_head, next_state, last_publish, busy;
     bool aligned;
+    long strikes; // so far
     unsigned revision[HIMC_DRUMS];
 
     // the thread's side
