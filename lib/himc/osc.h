@@ -36,6 +36,9 @@ typedef struct himc_osc himc_osc;
 /// Opens the socket and starts the thread; NULL with one line if the port is taken, the address
 /// not one of this machine, a host of `allow` unknown, `files` no folder.
 himc_osc *himc_osc_new(const himc_osc_config *config, himc_error *error);
+/// The same instead of `old`, which may be NULL: its subscriptions go on and it is freed. On error
+/// NULL, and `old` is as it was.
+himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error);
 void himc_osc_free(himc_osc *osc);
 /// The port it listens at, or 0.
 int himc_osc_port(const himc_osc *osc);

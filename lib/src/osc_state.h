@@ -54,6 +54,7 @@ typedef struct osc_wish {
     double hz;
     bool remove;
     bool local;       // by the user of this machine
+    bool granted;     // and by the osc before this one, to `from`
     osc_address from; // else by this one
 } osc_wish;
 
