@@ -171,6 +171,23 @@ static void test_the_audio_side_never_allocates(void)
     printf("audio side: longest call %.1f us\n", 1e6 * longest);
 }
 
+static void test_commands_take_a_tenth_of_the_time_at_most(void)
+{
+    double begin = himc_osc_clock(CLOCK_MONOTONIC), spent = 0, longest = 0, now = begin;
+    say("/membrane/kettle/modes", "2000");
+    for (int i = 0; now - begin < 1.5; i++) {
+        say("/membrane/kettle/tune", i % 2 ? "110" : "120");
+        rest(0.002);
+        double before = himc_osc_clock(CLOCK_MONOTONIC);
+        himc_osc_receive(osc, performance, 8);
+        now = himc_osc_clock(CLOCK_MONOTONIC);
+        spent += now - before;
+        longest = fmax(longest, now - before);
+    }
+    TEST_ASSERT_TRUE(longest > 0.001);
+    TEST_ASSERT_TRUE(spent < 0.05 + 0.1 * (now - begin) + longest);
+}
+
 // the network thread stands still: the rings fill, are counted, and the host goes on
 static void test_a_full_ring_is_counted_and_stops_nobody(void)
 {
@@ -241,6 +258,7 @@ int main(void)
     RUN_TEST(test_our_own_addresses_are_never_answered);
     RUN_TEST(test_malformed_packets_are_counted);
     RUN_TEST(test_the_audio_side_never_allocates);
+    RUN_TEST(test_commands_take_a_tenth_of_the_time_at_most);
     RUN_TEST(test_a_full_ring_is_counted_and_stops_nobody);
     RUN_TEST(test_a_storm_is_counted_and_the_pose_goes_on);
     return UNITY_END();

@@ -117,6 +117,7 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
     osc->packets = (osc_bucket){8000, 8000, 8000, now};
     osc->commands = (osc_bucket){4000, 1000, 4000, now};
     osc->answers = (osc_bucket){50, 50, 50, now};
+    osc->work = (osc_bucket){0.05, 0.1, 0.05, now};
     if (!himc_osc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
         !himc_osc_ring_init(&osc->orders, sizeof(osc_order), ORDERS) ||
         !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))

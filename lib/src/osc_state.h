@@ -179,7 +179,8 @@ struct himc_osc {
     // the host's side
     double offset, next_pose, next_head, next_state, last_publish, busy;
     bool aligned;
-    long strikes; // so far
+    long strikes;    // so far
+    osc_bucket work; // seconds
     unsigned revision[HIMC_DRUMS];
 
     // the thread's side

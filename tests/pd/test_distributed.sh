@@ -6,6 +6,7 @@
 cd "$(dirname "$0")/../.." || exit 1
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 dir=$HIMC_BUILD/tests/distributed
+port=$((20000 + $$ % 20000)) # and the two after it; ours, should two of these run at once
 seconds=12
 [ -n "$HIMC_LONG" ] && seconds=60
 mkdir -p "$dir"
@@ -31,17 +32,18 @@ awk -v seconds=$seconds 'BEGIN {
         printf "stroke %.6f %s legato %s normal;\n", 2 + i / 3, i % 2 ? "left" : "right", i % 3 ? "mp" : "f"
 }' >"$dir/score.txt"
 
-"$HIMC_BUILD/bin/himc" serve "$dir/score.txt" --bind 127.0.0.2 --port 39881 >"$dir/serve" 2>&1 &
+"$HIMC_BUILD/bin/himc" serve "$dir/score.txt" --bind 127.0.0.2 --port $port >"$dir/serve" 2>&1 &
 server=$!
-pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$HIMC_BUILD/externals/himc" \
-    -open patches/07-distributed.pd -send "himc-distributed 39883" >"$dir/pd" 2>&1 </dev/null &
+sed "s/listen 9001/listen $((port + 2))/" patches/07-distributed.pd >"$dir/07-distributed.pd"
+pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$HIMC_BUILD/externals/himc" -path patches \
+    -open "$dir/07-distributed.pd" -send "himc-distributed $((port + 2))" >"$dir/pd" 2>&1 </dev/null &
 pd=$!
 for _ in $(seq 100); do
     grep -q listening "$dir/serve" && break
     sleep 0.1
 done
 sleep 1 # Pd's patch loads
-sleep $((seconds + 2)) | "$dir/relay" 127.0.0.3 39882 39881 39883 20 0.05 >"$dir/relay.log"
+sleep $((seconds + 2)) | "$dir/relay" 127.0.0.3 $((port + 1)) $port $((port + 2)) 20 0.05 >"$dir/relay.log"
 report relay_ran_to_its_end "$([ "${PIPESTATUS[1]}" = 0 ] || echo "exit status ${PIPESTATUS[1]}")"
 finish
 

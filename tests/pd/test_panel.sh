@@ -6,6 +6,7 @@ cd "$(dirname "$0")/../.." || exit 1
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 dir=$HIMC_BUILD/tests/panel
 patch=patches/performance.pd
+port=$((20000 + $$ % 20000)) # and those after it; ours, should two of these run at once
 mkdir -p "$dir"
 tests=0 failures=0
 
@@ -27,14 +28,14 @@ report the_panel_says_all_that_figure_6_shows "$(
     done)"
 
 # the panel with names that can be sent to, and a driver that moves each control from end to end
-sed 's/\\\$0-/panel-/g; s|techniques/technique~|technique~|' "$patch" >"$dir/panel.pd"
-awk '
+sed 's/\\\$0-/panel-/g; s|techniques/technique~|technique~|; s/9011/'$port'/' "$patch" >"$dir/panel.pd"
+awk -v port=$port '
     function move(name, value) { if (name ~ /^panel-/) print "15 " name " " value ";" }
     BEGIN {
         print "200 pd dsp 1;"
         split("viewer avatar sound other", row, " ")
         for (i = 1; i <= 4; i++)
-            print "10 panel-" row[i] "-port " 39890 + i ";"
+            print "10 panel-" row[i] "-port " port + i ";"
     }
     { sub(/;$/, "") }
     $5 == "hsl" && $12 !~ /level/ { name = $12; sub(/-slide$/, "", name); move(name, $8); move(name, $9); move("panel-as-made", "bang") }
@@ -72,8 +73,8 @@ awk '
     echo '#X connect 1 0 2 0;'
     at=3
     for name in viewer avatar sound other; do
-        port=$((39890 + at / 5 + 1))
-        echo "#X obj 10 100 netreceive -u -b $port;"
+        at_port=$((port + at / 5 + 1))
+        echo "#X obj 10 100 netreceive -u -b $at_port;"
         echo '#X obj 10 130 oscparse;'
         echo '#X obj 10 160 list trim;'
         echo "#X obj 10 190 list split 2;"
