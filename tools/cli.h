@@ -36,7 +36,7 @@ typedef struct cli_call {
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
-extern const cli_call cli_render, cli_info, cli_modes, cli_serve;
+extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_serve;
 
 /// Reads the arguments after the call's name; false with one line that says what is wrong and what
 /// is allowed.
