@@ -82,11 +82,14 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
                                   allowed);
         out->value[index] = optarg;
     }
+    if (argc > optind && !call->operand[0])
+        return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
+                              call->name);
     if (argc - optind > 1)
         return himc_error_set(error, "one %s at a time: \"%s\" is one too many", call->operand,
                               argv[optind + 1]);
     out->operand = argv[optind];
-    if (!out->operand && call->operand[0] != '[')
+    if (!out->operand && call->operand[0] && call->operand[0] != '[')
         return himc_error_set(error, "no %s given (himc %s --help)", call->operand, call->name);
     return true;
 }
@@ -94,8 +97,8 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
 void cli_help(const cli_call *call)
 {
     bool any = call->options[0].name;
-    printf("usage: himc %s %s%s%s\n\n%s\n", call->name, call->operand, call->needs,
-           any ? " [OPTION...]" : "", call->does);
+    printf("usage: himc %s%s%s%s%s\n\n%s\n", call->name, call->operand[0] ? " " : "", call->operand,
+           call->needs, any ? " [OPTION...]" : "", call->does);
     if (call->more[0])
         printf("\n%s\n", call->more);
     if (any)

@@ -28,7 +28,7 @@ typedef struct cli_arguments {
 /// One call of the program: `himc NAME ...`.
 typedef struct cli_call {
     const char *name;
-    const char *operand;       ///< "SOURCE", or "[SCORE]" when it may be left out
+    const char *operand;       ///< "SOURCE", "[SCORE]" when it may be left out, "" for none
     const char *needs;         ///< options that must be given, for the usage line: " -o OUT.wav"
     const char *does;          ///< one line
     const char *more;          ///< what else --help says; "" for nothing
