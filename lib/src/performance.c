@@ -106,17 +106,30 @@ static void place_body(himc_performance *p)
     himc_character_place(p->character, &p->state);
 }
 
+// the body as it weighs, not as it is believed to
+static himc_skeleton weigh(const himc_performance *p, const himc_skeleton *skeleton)
+{
+    himc_skeleton plant = *skeleton;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        plant.segment[i].mass *= p->weight[i];
+        plant.segment[i].inertia = himc_vec3_scale(plant.segment[i].inertia, p->weight[i]);
+    }
+    return plant;
+}
+
 bool himc_performance_build_body(himc_performance *p, himc_error *error)
 {
     himc_skeleton skeleton;
     if (!himc_skeleton_init(&skeleton, &p->body, error))
         return false;
-    himc_character *character = himc_character_new(&skeleton, error);
+    himc_skeleton plant = weigh(p, &skeleton);
+    himc_character *character = himc_character_new(&plant, error);
     if (!character)
         return false;
     himc_character_free(p->character);
     p->character = character;
     p->skeleton = skeleton;
+    p->plant = plant;
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
     if (p->course.time == 0)
         p->course.from = p->course.goal = p->posture.bearing;
@@ -139,6 +152,16 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
         }
     p->replan = true;
     return true;
+}
+
+bool himc_performance_set_weights(himc_performance *p, const double *factor, himc_error *error)
+{
+    for (int i = 0; factor && i < HIMC_SEGMENTS; i++)
+        if (!himc_check_range("weight", factor[i], 0.2, 5, "", error))
+            return himc_error_prefix(error, "%s", himc_segment_name(i));
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        p->weight[i] = factor ? factor[i] : 1;
+    return himc_performance_build_body(p, error);
 }
 
 void himc_performance_notice_drums(himc_performance *p)
@@ -281,6 +304,8 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
     }
     p->config = *config;
     p->body = himc_skeleton_default();
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        p->weight[i] = 1;
     p->controller.law = HIMC_LAW_COMPUTED_TORQUE;
     p->take_options = himc_take_default();
     p->track_start = p->end = INFINITY;

@@ -59,7 +59,9 @@ struct himc_performance {
 
     // the body
     himc_skeleton_config body;
-    himc_skeleton skeleton;
+    himc_skeleton skeleton;       // as control believes it to be
+    himc_skeleton plant;          // as it is simulated: masses may differ
+    double weight[HIMC_SEGMENTS]; // of each segment, plant over belief
     himc_posture posture;
     himc_grip grip;
     struct {
