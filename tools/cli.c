@@ -2,7 +2,7 @@
 /// cannot disagree.
 ///
 /// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that
-/// names the call, what was wrong and what is allowed. All options take a value; given twice, the
+/// names the call, what was wrong and what is allowed. Options take a value, switches none; given twice, the
 /// last counts, as POSIX tools do.
 #include "cli.h"
 
@@ -23,8 +23,9 @@ static void fill_getopt(const cli_option *options, struct option *wide, char *le
     *letters++ = ':';
     int count = 0;
     for (; options[count].name; count++) {
-        wide[count] =
-            (struct option){options[count].name, required_argument, NULL, OPTION_BASE + count};
+        wide[count] = (struct option){options[count].name,
+                                      options[count].value ? required_argument : no_argument, NULL,
+                                      OPTION_BASE + count};
         if (options[count].letter) {
             *letters++ = options[count].letter;
             *letters++ = ':';
@@ -80,7 +81,7 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
         if (found == '?' || index < 0)
             return himc_error_set(error, "unknown option %s, allowed: %s", argv[optind - 1],
                                   allowed);
-        out->value[index] = optarg;
+        out->value[index] = optarg ? optarg : "";
     }
     if (argc > optind && !call->operand[0])
         return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
@@ -107,7 +108,8 @@ void cli_help(const cli_call *call)
         char left[64], letter[8] = "    ";
         if (option->letter)
             snprintf(letter, sizeof letter, "-%c, ", option->letter);
-        snprintf(left, sizeof left, "%s--%s %s", letter, option->name, option->value);
+        snprintf(left, sizeof left, "%s--%s %s", letter, option->name,
+                 option->value ? option->value : "");
         printf("  %-24s %s\n", left, option->does);
     }
 }
