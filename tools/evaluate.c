@@ -16,11 +16,12 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { TRIALS, RANGE, CSV, LOG, JOBS };
+enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS };
 
 static const cli_option options[] = {
     {"trials", 0, "N", "trials for each nuance and controller, 1 .. 10000 (100)"},
     {"range", 0, "A-B", "only these of them, to spread over machines"},
+    {"only", 0, "WORD,...", "only rows of this nuance, this controller, this law"},
     {"csv", 0, "F.csv", "where the table goes (standard output)"},
     {"log", 0, "F.csv", "keeps each trial as it ends; those already there are not done again"},
     {"jobs", 0, "N", "trials at a time, 1 .. 256 (as many as there are cores)"},
@@ -30,6 +31,7 @@ static const cli_option options[] = {
 /// What is asked for and what is done of it.
 typedef struct evaluation {
     int first, last, jobs;
+    bool wanted[TRIAL_KINDS];
     trial_table table;
     evaluate_log log;
     int *todo; ///< indices into the table
@@ -55,6 +57,36 @@ static bool read_range(const char *text, evaluation *e, himc_error *error)
     return himc_error_set(error, "--range: %s, allowed A-B within 1-%d", text, e->table.trials);
 }
 
+/// Keeps the rows that have this word; false if none ever has it.
+static bool keep_rows(evaluation *e, const char *word)
+{
+    bool known = false;
+    for (int kind = 0; kind < TRIAL_KINDS; kind++) {
+        trial_kind k = trial_kind_of(&e->table, trial_index(&e->table, kind, 1));
+        bool has = !strcmp(word, himc_nuance_name(k.nuance)) ||
+                   !strcmp(word, trial_controller_name(k.controller)) ||
+                   !strcmp(word, trial_law_name(&k));
+        known = known || has;
+        e->wanted[kind] = e->wanted[kind] && has;
+    }
+    return known;
+}
+
+static bool read_only(const char *text, evaluation *e, himc_error *error)
+{
+    char words[256], *rest = NULL;
+    for (int kind = 0; kind < TRIAL_KINDS; kind++)
+        e->wanted[kind] = true;
+    snprintf(words, sizeof words, "%s", text ? text : "");
+    for (char *word = strtok_r(words, ",", &rest); word; word = strtok_r(NULL, ",", &rest))
+        if (!keep_rows(e, word))
+            return himc_error_set(error,
+                                  "--only: %s, allowed: a nuance (legato ...), a controller (ik id "
+                                  "himc), a law (none printed feedforward computed-torque)",
+                                  word);
+    return true;
+}
+
 static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_error *error)
 {
     const char *const *value = arguments->value;
@@ -67,7 +99,8 @@ static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_e
         return himc_error_set(error, "%s: named twice, allowed are different files", value[LOG]);
     e->first = 1;
     e->last = trials;
-    return trial_table_make(&e->table, trials, error) && read_range(value[RANGE], e, error);
+    return trial_table_make(&e->table, trials, error) && read_range(value[RANGE], e, error) &&
+           read_only(value[ONLY], e, error);
 }
 
 /// Which of the trials asked for the log has not got. In order of trials, so that whoever stops it
@@ -81,7 +114,7 @@ static bool list_todo(evaluation *e, himc_error *error)
     for (int number = e->first; number <= e->last; number++)
         for (int kind = 0; kind < TRIAL_KINDS; kind++) {
             int index = trial_index(&e->table, kind, number);
-            if (!e->table.known[index])
+            if (e->wanted[kind] && !e->table.known[index])
                 e->todo[e->todo_count++] = index;
         }
     return true;
