@@ -70,6 +70,10 @@ static void set_course(himc_performance *p, double t)
         place[hand] = attention(p, (himc_hand)hand, t);
     p->course.from = bearing_at(p, t);
     p->course.goal = himc_posture_bearing(place, p->grip);
+    if (p->track && p->habit_known[HIMC_TRUNK - 1]) {
+        p->course.goal.value[HIMC_BEARING_TURN] = p->bearing.value[HIMC_BEARING_TURN];
+        p->course.goal.value[HIMC_BEARING_LEAN] = p->bearing.value[HIMC_BEARING_LEAN];
+    }
     p->course.time = t;
 }
 
@@ -79,7 +83,7 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
-    himc_task_tick_complete(tick, &p->posture);
+    himc_performance_posture(p, t, tick->tip, &tick->posture);
 }
 
 // Read task: the targets at the next tick, and at this one if the plan has changed since it was
@@ -131,10 +135,14 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     p->skeleton = skeleton;
     p->plant = plant;
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
+    for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
+        if (p->habit_known[j])
+            p->posture.rest.joint[j] = p->habit.joint[j];
     if (p->course.time == 0)
         p->course.from = p->course.goal = p->posture.bearing;
     fill_tick(p, &p->from, step_time(p));
     memcpy(p->reference.tip, p->from.tip, sizeof p->from.tip);
+    p->reference.posture = p->from.posture;
     place_body(p);
     himc_controller *c = &p->controller, old = *c;
     himc_controller_init(c, &skeleton, &p->state);

@@ -82,7 +82,7 @@ static void give_up(himc_performance *p, himc_hand hand, double t, const stroke_
 }
 
 // in `ik` the stick's end in contact is the micro-contact's, and the arm follows it
-static void follow_stick(himc_performance *p, himc_hand hand)
+static void follow_stick(himc_performance *p, himc_hand hand, double t)
 {
     touch *c = &p->touch[hand];
     himc_target *tip = &p->reference.tip[hand];
@@ -92,7 +92,7 @@ static void follow_stick(himc_performance *p, himc_hand hand)
     tip->x = himc_vec3_madd(tip->x, c->stick.height - height, n);
     tip->v = himc_vec3_madd(tip->v, c->stick.velocity - himc_vec3_dot(n, tip->v), n);
     tip->a = himc_vec3_madd(tip->a, -himc_vec3_dot(n, tip->a), n);
-    himc_posture_moving(&p->posture, p->reference.tip, &p->reference.posture);
+    himc_performance_posture(p, t, p->reference.tip, &p->reference.posture);
 }
 
 void himc_performance_release(himc_performance *p, double t)
@@ -111,7 +111,7 @@ void himc_performance_release(himc_performance *p, double t)
         if (drum < p->drums)
             p->reference.normal[hand] = himc_place_normal(himc_drum_place(p->drum[drum].drum));
         if (c->touching && p->controller.mode == HIMC_PIPELINE_IK)
-            follow_stick(p, (himc_hand)hand);
+            follow_stick(p, (himc_hand)hand, t);
     }
 }
 
