@@ -80,6 +80,16 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
     himc_task_tick_complete(tick, &p->posture);
+    if (p->has_habit && p->controller.mode == HIMC_PIPELINE_HIMC)
+        himc_habit_moving(&p->habit, tick->tip, &tick->posture);
+}
+
+void himc_performance_set_habit(himc_performance *p, const himc_habit *habit)
+{
+    p->has_habit = habit != NULL;
+    if (habit)
+        p->habit = *habit;
+    p->replan = true;
 }
 
 // Read task: the targets at the next tick, and at this one if the plan has changed since it was

@@ -106,6 +106,7 @@ static bool do_mode(himc_performance *p, const himc_command *c, himc_error *erro
     if (p->controller.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
         himc_character_place(p->character, &p->state);
     p->controller.mode = mode;
+    p->replan = p->replan || p->has_habit;
     return true;
 }
 
@@ -258,6 +259,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     himc_planner_clear(p->planner);
     himc_planner_loop(p->planner, step_time(p), false);
     p->grip = HIMC_GRIP_GERMAN;
+    p->has_habit = false;
     himc_planner_set_grip(p->planner, p->grip);
     himc_planner_clear_units(p->planner);
     p->controller.mode = HIMC_PIPELINE_HIMC;

@@ -61,6 +61,8 @@ struct himc_performance {
     himc_skeleton_config body;
     himc_skeleton skeleton;
     himc_posture posture;
+    himc_habit habit; // what the null space is for instead of the posture, in `himc`
+    bool has_habit;
     himc_grip grip;
     struct {
         himc_bearing from, goal;
