@@ -22,12 +22,6 @@ typedef struct player {
     double period;                    // of a hand's strokes (s)
 } player;
 
-typedef struct player_motion {
-    himc_pose *pose;
-    himc_target (*tip)[HIMC_HANDS];
-    int frames;
-} player_motion;
-
 static inline player make_player(int who)
 {
     static const double height[PLAYERS] = {1.62, 1.74, 1.88};
@@ -83,35 +77,14 @@ static inline himc_pose player_at(const player *p, double t)
     return pose;
 }
 
-static inline himc_vec3 player_tip(const player *p, double t, himc_hand hand)
-{
-    himc_body_state s;
-    himc_pose pose = player_at(p, t);
-    himc_pose_to_state(&p->skeleton, &pose, NULL, &s);
-    return s.tip[hand];
-}
-
-/// `seconds` of playing; free pose and tip.
-static inline player_motion play_motion(const player *p, double seconds)
+/// A take of `seconds`; free its pose.
+static inline himc_habit_take player_take(const player *p, double seconds)
 {
     int frames = (int)(seconds * PLAYER_RATE);
-    player_motion m = {malloc((size_t)frames * sizeof *m.pose),
-                       malloc((size_t)frames * sizeof *m.tip), frames};
-    double h = 1e-4;
-    for (int i = 0; i < frames; i++) {
-        double t = 1 + i / PLAYER_RATE;
-        m.pose[i] = player_at(p, t);
-        for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            himc_vec3 x = player_tip(p, t, (himc_hand)hand),
-                      before = player_tip(p, t - h, (himc_hand)hand),
-                      after = player_tip(p, t + h, (himc_hand)hand);
-            m.tip[i][hand].x = x;
-            m.tip[i][hand].v = himc_vec3_scale(himc_vec3_sub(after, before), 0.5 / h);
-            m.tip[i][hand].a = himc_vec3_scale(
-                himc_vec3_sub(himc_vec3_add(before, after), himc_vec3_scale(x, 2)), 1 / (h * h));
-        }
-    }
-    return m;
+    himc_pose *pose = malloc((size_t)frames * sizeof *pose);
+    for (int i = 0; i < frames; i++)
+        pose[i] = player_at(p, 1 + i / PLAYER_RATE);
+    return (himc_habit_take){&p->skeleton, pose, frames, PLAYER_RATE};
 }
 
 #endif

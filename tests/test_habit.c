@@ -11,7 +11,7 @@
 #define DEGREE (HIMC_PI / 180)
 
 static player who[PLAYERS];
-static player_motion seen[PLAYERS];
+static himc_habit_take seen[PLAYERS];
 
 void setUp(void)
 {
@@ -21,30 +21,33 @@ void tearDown(void)
 {
 }
 
-static himc_habit_motion motion_of(int i)
-{
-    return (himc_habit_motion){&who[i].skeleton, seen[i].pose,
-                               (const himc_target(*)[HIMC_HANDS])seen[i].tip, seen[i].frames};
-}
-
 static double angle_between(himc_quat a, himc_quat b)
 {
     return himc_vec3_length(himc_quat_log(himc_quat_mul(himc_quat_conj(a), b)));
 }
 
+static void tips_ahead(const player *p, double t, himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS])
+{
+    for (int tap = 0; tap < HIMC_HABIT_TAPS; tap++) {
+        himc_body_state s;
+        himc_pose pose = player_at(p, t + tap * HIMC_HABIT_STEP);
+        himc_pose_to_state(&p->skeleton, &pose, NULL, &s);
+        memcpy(tip[tap], s.tip, sizeof s.tip);
+    }
+}
+
 // learned from all but one player, whose means it adopts
 static himc_habit without(int unseen)
 {
-    himc_habit_motion others[PLAYERS];
+    himc_habit_take others[PLAYERS];
     himc_habit habit;
     himc_error error = {""};
     int count = 0;
     for (int i = 0; i < PLAYERS; i++)
         if (i != unseen)
-            others[count++] = motion_of(i);
-    himc_habit_motion own = motion_of(unseen);
+            others[count++] = seen[i];
     TEST_ASSERT_TRUE_MESSAGE(himc_habit_learn(&habit, others, count, &error), error.text);
-    TEST_ASSERT_TRUE_MESSAGE(himc_habit_meet(&habit.player, &own, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_habit_meet(&habit.player, &seen[unseen], 1, &error), error.text);
     return habit;
 }
 
@@ -55,7 +58,9 @@ static void test_a_player_never_seen_is_met_within_a_degree(void)
         double square[HIMC_ARM_JOINTS] = {0};
         for (int i = 0; i < seen[unseen].frames; i++) {
             himc_pose pose = seen[unseen].pose[i];
-            himc_habit_at(&habit, seen[unseen].tip[i], &pose);
+            himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
+            tips_ahead(&who[unseen], 1 + i / PLAYER_RATE, tip);
+            himc_habit_at(&habit, (const himc_vec3(*)[HIMC_HANDS])tip, &pose);
             for (int hand = 0; hand < HIMC_HANDS; hand++)
                 for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
                     int j = himc_arm_joint((himc_hand)hand, k);
@@ -72,7 +77,7 @@ int main(void)
 {
     for (int i = 0; i < PLAYERS; i++) {
         who[i] = make_player(i);
-        seen[i] = play_motion(&who[i], 12);
+        seen[i] = player_take(&who[i], 12);
     }
     UNITY_BEGIN();
     RUN_TEST(test_a_player_never_seen_is_met_within_a_degree);

@@ -80,16 +80,7 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
     himc_task_tick_complete(tick, &p->posture);
-    if (p->has_habit && p->controller.mode == HIMC_PIPELINE_HIMC)
-        himc_habit_moving(&p->habit, tick->tip, &tick->posture);
-}
-
-void himc_performance_set_habit(himc_performance *p, const himc_habit *habit)
-{
-    p->has_habit = habit != NULL;
-    if (habit)
-        p->habit = *habit;
-    p->replan = true;
+    himc_performance_follow_habit(p, tick);
 }
 
 // Read task: the targets at the next tick, and at this one if the plan has changed since it was
@@ -127,6 +118,7 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     himc_character_free(p->character);
     p->character = character;
     p->skeleton = skeleton;
+    p->habit_since = p->has_habit ? step_time(p) : -INFINITY; // the body begins in the posture
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
     if (p->course.time == 0)
         p->course.from = p->course.goal = p->posture.bearing;
