@@ -6,8 +6,11 @@
 /// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q',
 /// `feedforward` tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t
 /// - q') + w^2 dq through inverse dynamics. While a stick touches the head all three let go of
-/// the normal: the rebound is the physics'.
+/// the normal: the rebound is the physics'. Joint limits win over all of it (limit_torque.c).
 #include "himc/controller.h"
+
+#include "limit_torque.h"
+#include "strength.h"
 
 #define PD_STIFFER 3.0    // the default gains' frequencies above the table's
 #define LARGEST_STEP 0.05 // of the tip, one step of inverse kinematics (m)
@@ -37,6 +40,18 @@ static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s
         e->acceleration[j] =
             himc_vec3_add(himc_mat3_apply(&s->rotation[p], target->acceleration[j]),
                           himc_vec3_cross(s->spin[p], wanted));
+    }
+}
+
+// what lies beyond a joint's bounds is not wished for: the null space has better to do
+static void forget_beyond(const himc_limit_hits *hits, errors *e)
+{
+    for (int h = 0; h < hits->count; h++) {
+        int j = hits->joint[h];
+        himc_vec3 n = hits->inward[h], *part[3] = {&e->angle[j], &e->rate[j], &e->acceleration[j]};
+        bool beyond = himc_vec3_dot(n, e->angle[j]) < 0;
+        for (int i = 0; beyond && i < 3; i++)
+            *part[i] = himc_vec3_madd(*part[i], -himc_vec3_dot(n, *part[i]), n);
     }
 }
 
@@ -200,7 +215,10 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
 {
     errors e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
+    himc_limit_hits hits;
+    himc_limits_meet(c, skeleton, s, &hits);
     joint_errors(skeleton, s, &reference->posture, &e);
+    forget_beyond(&hits, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_at(s, (himc_hand)hand, &jacobian[hand]);
         if (c->mode == HIMC_PIPELINE_HIMC)
@@ -212,11 +230,14 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
+        himc_limits_yield(&hits, skeleton, s, jacobian, wanted);
         himc_inverse_dynamics(skeleton, s, wanted, false, torque);
     } else {
         servo_torques(c, skeleton, s, &e, torque);
         release_torques(skeleton, s, reference, torque);
+        himc_limits_resist(&hits, skeleton, s, torque);
     }
+    himc_strength_apply(c, torque);
 }
 
 // inertia about a joint of everything that hangs on it, about the child's axes
