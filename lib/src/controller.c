@@ -73,16 +73,40 @@ static void scatter_arm(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand, hi
         all[himc_arm_joint(hand, k)] = arm[k];
 }
 
-// the tip's demand through the Jacobian, the posture's in the null space; `demand` is linear in
-// all of it
-static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jacobian,
-                         himc_hand hand, himc_vec3 demand, himc_vec3 *all)
+typedef struct arm_tasks {
+    const himc_controller *controller;
+    const himc_arm_jacobian *jacobian;
+    himc_mat3 inverse; // of J W J', as the solver has it
+    himc_elbow_task elbow;
+    himc_hand hand;
+} arm_tasks;
+
+static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
 {
+    const himc_controller *c = tasks->controller;
+    int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
+    himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
+    tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
+    if (c->elbow)
+        himc_elbow_task_at(tasks->jacobian, upper_arm, c->damping, &tasks->elbow);
+}
+
+// the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
+// for the elbow's place comes first; `demand` is linear in all of it
+static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
+{
+    const himc_controller *c = tasks->controller;
+    himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
-    gather_arm(all, hand, posture);
-    himc_ik_solve(jacobian, c->solver, c->damping, demand, solution);
-    himc_ik_add_null(jacobian, posture, solution);
-    scatter_arm(solution, hand, all);
+    gather_arm(all, tasks->hand, posture);
+    if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
+        inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
+    himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
+    himc_ik_add_null(tasks->jacobian, posture, solution);
+    if (c->elbow)
+        himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,
+                          himc_vec3_cross(posture[0], tasks->elbow.lever), solution);
+    scatter_arm(solution, tasks->hand, all);
 }
 
 // tip acceleration that the arm's joints must make: what is wanted less what the state's spins and
@@ -106,9 +130,11 @@ static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
     himc_vec3 missing = clamp_length(himc_vec3_sub(target->x, s->tip[hand]), LARGEST_STEP);
     himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
     himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target->a);
-    solve_demand(c, jacobian, hand, missing, e->angle);
-    solve_demand(c, jacobian, hand, slower, e->rate);
-    solve_demand(c, jacobian, hand, a, e->acceleration);
+    arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
+    begin_tasks(&tasks, s, missing);
+    solve_demand(&tasks, missing, e->angle);
+    solve_demand(&tasks, slower, e->rate);
+    solve_demand(&tasks, a, e->acceleration);
 }
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
@@ -220,7 +246,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     joint_errors(skeleton, s, &reference->posture, &e);
     forget_beyond(&hits, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_arm_jacobian_at(s, (himc_hand)hand, &jacobian[hand]);
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
         if (c->mode == HIMC_PIPELINE_HIMC)
             tip_errors(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian[hand], &e);
     }
@@ -277,7 +303,8 @@ static double servo_frequency(int joint)
 void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *posture)
 {
-    *c = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .bandwidth = 20};
+    *c = (himc_controller){
+        .law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .weight = {1, 1, 1, 1}, .bandwidth = 20};
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const himc_segment *segment = &skeleton->segment[j + 1];
         himc_vec3 i = hanging_inertia(skeleton, posture, j);

@@ -133,6 +133,8 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     if (old.bandwidth > 0) {
         c->damping = old.damping;
         c->bandwidth = old.bandwidth;
+        c->elbow = old.elbow;
+        memcpy(c->weight, old.weight, sizeof c->weight);
     }
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (old.gain_set[j]) {
