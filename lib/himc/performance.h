@@ -9,6 +9,7 @@
 
 #include "himc/controller.h"
 #include "himc/drum.h"
+#include "himc/habit.h"
 #include "himc/take.h"
 
 typedef struct himc_performance_config {
@@ -49,6 +50,11 @@ void himc_performance_take_options(himc_performance *performance, const himc_tak
 /// put anew where the targets have it.
 bool himc_performance_set_weights(himc_performance *performance, const double *factor,
                                   himc_error *error);
+
+/// From now on, in mode `himc`, the null space of the tips is for a player's habit (copied) rather
+/// than for the natural posture; NULL for the latter again. The habit's player should be the
+/// performer's body.
+HIMC_RT void himc_performance_set_habit(himc_performance *performance, const himc_habit *habit);
 
 /// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a
 /// block, with the block's last sample of each coordinate: a stream of blocks of 64 samples comes

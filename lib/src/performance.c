@@ -70,7 +70,7 @@ static void set_course(himc_performance *p, double t)
         place[hand] = attention(p, (himc_hand)hand, t);
     p->course.from = bearing_at(p, t);
     p->course.goal = himc_posture_bearing(place, p->grip);
-    if (p->track && p->habit_known[HIMC_TRUNK - 1]) {
+    if (p->track && p->manner_known[HIMC_TRUNK - 1]) {
         p->course.goal.value[HIMC_BEARING_TURN] = p->bearing.value[HIMC_BEARING_TURN];
         p->course.goal.value[HIMC_BEARING_LEAN] = p->bearing.value[HIMC_BEARING_LEAN];
     }
@@ -84,6 +84,7 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
     himc_performance_posture(p, t, tick->tip, &tick->posture);
+    himc_performance_follow_habit(p, tick);
 }
 
 // Read task: the targets at the next tick, and at this one if the plan has changed since it was
@@ -134,10 +135,11 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     p->character = character;
     p->skeleton = skeleton;
     p->plant = plant;
+    p->habit_since = p->has_habit ? step_time(p) : -INFINITY; // the body begins in the posture
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
     for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
-        if (p->habit_known[j])
-            p->posture.rest.joint[j] = p->habit.joint[j];
+        if (p->manner_known[j])
+            p->posture.rest.joint[j] = p->manner.joint[j];
     if (p->course.time == 0)
         p->course.from = p->course.goal = p->posture.bearing;
     fill_tick(p, &p->from, step_time(p));
@@ -152,6 +154,8 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     if (old.bandwidth > 0) {
         c->damping = old.damping;
         c->bandwidth = old.bandwidth;
+        c->elbow = old.elbow;
+        memcpy(c->weight, old.weight, sizeof c->weight);
     }
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (old.gain_set[j]) {
