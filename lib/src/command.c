@@ -47,6 +47,8 @@ static const himc_command_row table[] = {
      "chooses the inverse kinematics"},
     {HIMC_COMMAND_DAMPING, HIMC_PERFORMER, "damping", "LAMBDA",
      "sets the damping of the least squares"},
+    {HIMC_COMMAND_POSTURE, HIMC_PERFORMER, "posture", "SWITCH",
+     "whether the tips' null space is for a natural posture (1), or for nothing, as published"},
     {HIMC_COMMAND_ELBOW, HIMC_PERFORMER, "elbow", "SWITCH",
      "whether the elbow's place comes before the rest of the posture"},
     {HIMC_COMMAND_WEIGHTS, HIMC_PERFORMER, "weights", "SHOULDER ELBOW WRIST GRIP",

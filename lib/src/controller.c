@@ -99,6 +99,8 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
     himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     gather_arm(all, tasks->hand, posture);
+    for (int k = 0; c->aimless && k < HIMC_ARM_JOINTS; k++)
+        posture[k] = himc_vec3_make(0, 0, 0);
     if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
         inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
     himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);

@@ -126,6 +126,13 @@ static bool do_damping(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
+static bool do_posture(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    p->controller.aimless = c->atom[0].number == 0;
+    return true;
+}
+
 static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
@@ -334,6 +341,7 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_MODE] = do_mode,
     [HIMC_COMMAND_SOLVER] = do_solver,
     [HIMC_COMMAND_DAMPING] = do_damping,
+    [HIMC_COMMAND_POSTURE] = do_posture,
     [HIMC_COMMAND_ELBOW] = do_elbow,
     [HIMC_COMMAND_WEIGHTS] = do_weights,
     [HIMC_COMMAND_LAW] = do_law,
