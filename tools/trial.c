@@ -2,7 +2,7 @@
 /// markers with a tracker's noise), played by a body whose segments do not weigh quite what control
 /// believes. The body's measures, its mean posture and its joint limits come from that noisy
 /// take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the habit
-/// of the other two players. What was simulated is compared with the motion itself, noiseless.
+/// of the other two players in that nuance. What was simulated is compared with the motion itself, noiseless.
 ///
 /// Under the `printed` law `himc` is as published: nothing in the null space but the limits.
 #define _DEFAULT_SOURCE // mkstemps
@@ -64,47 +64,52 @@ static uint64_t seed_of(const trial_kind *kind, int number)
     return (uint64_t)kind->nuance << 32 | (uint64_t)number;
 }
 
-static bool habit_takes(int player, himc_habit_take *take, himc_mocap **mocap, himc_error *error)
+/// A clean sequence: postures of all frames, `take` to be freed by drop_sequence.
+static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take,
+                          himc_mocap **mocap, himc_error *error)
 {
-    himc_mocap_config config = himc_mocap_default();
-    config.player = player;
-    for (int i = 0; i < HIMC_NUANCES * SPOTS; i++) {
-        config.nuance = (himc_nuance)(i / SPOTS);
-        config.spot = (himc_spot)(i % SPOTS);
-        mocap[i] = himc_mocap_new(&config, error);
-        int frames = mocap[i] ? himc_mocap_frames(mocap[i]) : 0;
-        himc_pose *pose = malloc((size_t)frames * sizeof *pose);
-        take[i] = (himc_habit_take){mocap[i] ? himc_mocap_skeleton(mocap[i]) : NULL, pose, frames,
-                                    HIMC_MOCAP_RATE};
-        if (!mocap[i] || !pose)
-            return mocap[i] ? himc_error_set(error, "out of memory") : false;
-        for (int frame = 0; frame < frames; frame++)
-            pose[frame] = himc_mocap_pose(mocap[i], frame / HIMC_MOCAP_RATE);
-    }
-    return true;
+    *mocap = himc_mocap_new(config, error);
+    if (!*mocap)
+        return false;
+    int frames = himc_mocap_frames(*mocap);
+    himc_pose *pose = malloc((size_t)frames * sizeof *pose);
+    *take = (himc_habit_take){himc_mocap_skeleton(*mocap), pose, frames, HIMC_MOCAP_RATE};
+    for (int frame = 0; pose && frame < frames; frame++)
+        pose[frame] = himc_mocap_pose(*mocap, frame / HIMC_MOCAP_RATE);
+    return pose || himc_error_set(error, "out of memory");
 }
 
-/// How the other players' arms go with their sticks; learned once for each player left out.
-static const himc_habit *habit_without(int player, himc_error *error)
+/// How the other players' arms go with their sticks in this nuance, all spots.
+static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_error *error)
 {
-    static himc_habit habit[HIMC_MOCAP_PLAYERS];
-    static bool known[HIMC_MOCAP_PLAYERS];
-    enum { TAKES = (HIMC_MOCAP_PLAYERS - 1) * HIMC_NUANCES * SPOTS };
+    enum { TAKES = (HIMC_MOCAP_PLAYERS - 1) * SPOTS };
     himc_habit_take take[TAKES] = {{0}};
     himc_mocap *mocap[TAKES] = {NULL};
+    int unseen = config.player, count = 0;
     bool good = true;
-    for (int i = 0, at = 0; !known[player] && good && i < HIMC_MOCAP_PLAYERS; i++)
-        if (i != player) {
-            good = habit_takes(i, take + at, mocap + at, error);
-            at += HIMC_NUANCES * SPOTS;
+    for (config.player = 0; config.player < HIMC_MOCAP_PLAYERS; config.player++)
+        for (int spot = 0; good && config.player != unseen && spot < SPOTS; spot++, count++) {
+            config.spot = (himc_spot)spot;
+            good = make_sequence(&config, &take[count], &mocap[count], error);
         }
-    if (!known[player])
-        known[player] = good && himc_habit_learn(&habit[player], take, TAKES, error);
+    good = good && himc_habit_learn(habit, take, TAKES, error);
     for (int i = 0; i < TAKES; i++) {
         free((void *)(uintptr_t)take[i].pose);
         himc_mocap_free(mocap[i]);
     }
-    return known[player] ? &habit[player] : NULL;
+    return good;
+}
+
+/// Learned once for each player left out and each nuance, in each process.
+static const himc_habit *habit_without(const himc_mocap_config *config, himc_error *error)
+{
+    static himc_habit habit[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
+    static bool known[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
+    himc_habit *h = &habit[config->player][config->nuance];
+    bool *k = &known[config->player][config->nuance];
+    if (!*k)
+        *k = learn_from_others(*config, h, error);
+    return *k ? h : NULL;
 }
 
 /// The sequence as captured: through a file, as a laboratory's would come.
@@ -132,9 +137,10 @@ static bool tell(himc_performance *p, himc_error *error, const char *text)
            himc_performance_command(p, &c, 0, error);
 }
 
-static bool adopt_habit(himc_performance *p, himc_take *take, int player, himc_error *error)
+static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_config *config,
+                        himc_error *error)
 {
-    const himc_habit *learned = habit_without(player, error);
+    const himc_habit *learned = habit_without(config, error);
     himc_skeleton_config given = himc_skeleton_default();
     himc_player *seen = learned ? himc_player_new(take, NULL, &given, error) : NULL;
     himc_skeleton skeleton;
@@ -164,7 +170,7 @@ static bool set_control(himc_performance *p, const trial_kind *kind, himc_error 
     char text[64];
     bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
     snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
-    if (!tell(p, error, text) || !tell(p, error, "limits ellipsoid"))
+    if (!tell(p, error, text))
         return false;
     if (published && !tell(p, error, "posture 0"))
         return false;
@@ -180,12 +186,13 @@ static himc_performance *prepare(const trial_kind *kind, int number, himc_take *
     himc_performance *p = himc_performance_new(&config, error);
     himc_drum *drum = p ? himc_drum_new("kettle", 23, RATE, error) : NULL;
     uint64_t seed = seed_of(kind, number);
-    bool good = drum && himc_performance_add_drum(p, drum, error) &&
-                himc_performance_play_take(p, take, "take", error) && weigh(p, seed, error) &&
-                set_control(p, kind, error) &&
-                (kind->controller != HIMC_PIPELINE_HIMC ||
-                 adopt_habit(p, take, sequence_of(kind, number).player, error)) &&
-                tell(p, error, "play");
+    himc_mocap_config sequence = sequence_of(kind, number);
+    bool good =
+        drum && himc_performance_add_drum(p, drum, error) &&
+        himc_performance_play_take(p, take, "take", error) && weigh(p, seed, error) &&
+        set_control(p, kind, error) &&
+        (kind->controller != HIMC_PIPELINE_HIMC || adopt_habit(p, take, &sequence, error)) &&
+        tell(p, error, "play");
     himc_drum_release(drum);
     if (good)
         return p;
