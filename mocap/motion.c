@@ -18,17 +18,17 @@
 #define MEMORY 0.4           // of the variation, from stroke to stroke
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.007     // deviations: of the aim (m)
-#define OUT_SPREAD 0.008     // of the elbow (rad)
-#define HAND_SPREAD 0.008    // of the hand's elevation (rad)
+#define AIM_SPREAD 0.003     // deviations: of the aim (m)
+#define OUT_SPREAD 0.006     // of the elbow (rad)
+#define HAND_SPREAD 0.005    // of the hand's elevation (rad)
 #define SHOULDER_SPREAD 0.04 // of its share of the flexion
 #define MOST_FLEXION 2.0     // of the elbow (rad)
-#define RISE_SPREAD 0.04     // of the wrist's share of its flexion and the fingers'
-#define LEVEL_SPREAD 0.02    // of the stick's elevation at impact (rad)
+#define RISE_SPREAD 0.03     // of the wrist's share of its flexion and the fingers'
+#define LEVEL_SPREAD 0.008    // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
 #define WANDER 0.004         // of a joint between impacts (rad)
-#define TRUNK_WANDER 0.01    // (rad)
+#define TRUNK_WANDER 0.004    // (rad)
 
 himc_mocap_config himc_mocap_default(void)
 {
