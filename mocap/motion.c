@@ -18,18 +18,18 @@
 #define MEMORY 0.4           // of the variation, from stroke to stroke
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.0025     // deviations: of the aim (m)
+#define AIM_SPREAD 0.002    // deviations: of the aim (m)
 #define OUT_SPREAD 0.006     // of the elbow (rad)
 #define HAND_SPREAD 0.005    // of the hand's elevation (rad)
 #define SHOULDER_SPREAD 0.04 // of its share of the flexion
 #define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
 #define FLEXION_STEP 0.02    // (rad)
 #define RISE_SPREAD 0.03     // of the wrist's share of its flexion and the fingers'
-#define LEVEL_SPREAD 0.008    // of the stick's elevation at impact (rad)
+#define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
 #define WANDER 0.004         // of a joint between impacts (rad)
-#define TRUNK_WANDER 0.004    // (rad)
+#define TRUNK_WANDER 0.003   // (rad)
 
 himc_mocap_config himc_mocap_default(void)
 {
@@ -171,9 +171,22 @@ static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, cons
     }
 }
 
+// the trunk carries the arm along: the place struck moves with it, except up and down
+static void carry_aim(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
+{
+    const himc_quat *mean = m->arm[hand].mean;
+    himc_vec3 there =
+        himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, mean, 0);
+    himc_vec3 usual = himc_mocap_stick_point(&m->skeleton, bearing(0, mean_lean(m)), hand, mean, 0);
+    s->aim.x += there.x - usual.x;
+    s->aim.y += there.y - usual.y;
+    s->low.tip = s->aim;
+}
+
 static bool find_postures(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
 {
     himc_quat low[HIMC_ARM_JOINTS];
+    carry_aim(m, hand, s);
     if (!himc_mocap_arm(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, &s->low, low))
         return false;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
