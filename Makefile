@@ -114,6 +114,7 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
 check-bench: all $(BENCH)
+	@$(PROGRAM) bench
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
 ##@ Style
