@@ -8,6 +8,8 @@
 /// at separation by one from the measured state.
 #include "track_state.h"
 
+#include "player_sit.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,31 +127,6 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     return h->present;
 }
 
-// moves the mean of the strikes' places onto the head's usual spot
-static himc_vec3 find_offset(const himc_take_strike *strikes, int count,
-                             const himc_take_tip tips[HIMC_HANDS], int frames,
-                             const himc_place *place, double mallet_radius)
-{
-    himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
-    double sx, sy;
-    himc_stroke_spot(&usual, place->radius, &sx, &sy);
-    himc_vec3 spot = himc_place_to_world(place, sx, 0), mean = {0, 0, 0};
-    spot = himc_vec3_madd(spot, mallet_radius, himc_place_normal(place));
-    himc_take_strike_place(strikes, count, &mean);
-    bool one_handed = !tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present;
-    if (count == 0) { // nothing struck: the lowest point above the spot
-        const himc_vec3 *x = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
-        mean = x[0];
-        for (int i = 1; i < frames; i++)
-            if (x[i].z < mean.z)
-                mean = x[i];
-        spot.z += 0.05;
-    }
-    if (one_handed)
-        spot.y += tips[HIMC_LEFT].present ? fabs(sy) : -fabs(sy);
-    return himc_vec3_sub(spot, mean);
-}
-
 // what is there of the take's strikes, to be freed; NULL without memory
 static himc_take_strike *find_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                                       int *count)
@@ -172,9 +149,9 @@ static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
         track->frames = himc_take_frames(take);
         track->place = *place;
         track->stop = INFINITY;
-        track->offset = player && player->seated ? player->offset
-                                                 : find_offset(strikes, count, tips, track->frames,
-                                                               place, mallet_radius);
+        track->offset = player && player->seated
+                            ? player->offset
+                            : himc_strike_offset(take, tips, place, mallet_radius);
     }
     for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
         if (tips[hand].present)
