@@ -1,6 +1,7 @@
-/// performance_state.h: what a performance holds, shared by the six files that are its rooms:
+/// performance_state.h: what a performance holds, shared by the seven files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c,
-/// performance_play.c and performance_take.c (what is asked), performance_report.c (what is told).
+/// performance_play.c and performance_take.c (what is asked), performance_habit.c (how the arms go
+/// with it), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -58,11 +59,16 @@ struct himc_performance {
 
     // the body
     himc_skeleton_config body;
-    himc_skeleton skeleton;
+    himc_skeleton skeleton;       // as control believes it to be
+    himc_skeleton plant;          // as it is simulated: masses may differ
+    double weight[HIMC_SEGMENTS]; // of each segment, plant over belief
     himc_posture posture;
-    himc_pose habit;               // how the player of a take holds neck, head and legs ...
-    bool habit_known[HIMC_JOINTS]; // ... and which of them the take shows
-    himc_bearing bearing;          // the mean of the trunk in the take
+    himc_pose manner;               // how the player of a take holds neck, head and legs ...
+    bool manner_known[HIMC_JOINTS]; // ... and which of them the take shows
+    himc_bearing bearing;           // the mean of the trunk in the take
+    himc_habit habit;               // what the null space is for instead of the posture, in `himc`
+    bool has_habit;
+    double habit_since; // when it was set or dropped (s)
     himc_grip grip;
     struct {
         himc_bearing from, goal;
@@ -138,6 +144,9 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error);
 void himc_performance_reset_clock(himc_performance *p);
 void himc_performance_notice_drums(himc_performance *p);
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
+
+// performance_habit.c
+void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *tick);
 
 // performance_touch.c
 stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, double t);

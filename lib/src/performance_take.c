@@ -59,10 +59,10 @@ static bool move_drum(himc_performance *p, int index, const himc_place *place, c
 }
 
 // trunk, neck, head and legs as this player holds them
-static void adopt_habit(himc_performance *p, const himc_player *player)
+static void adopt_manner(himc_performance *p, const himc_player *player)
 {
-    memcpy(p->habit_known, player->known, sizeof p->habit_known);
-    p->habit = player->mean;
+    memcpy(p->manner_known, player->known, sizeof p->manner_known);
+    p->manner = player->mean;
     himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
     himc_vec3 up = himc_quat_rotate(q, himc_vec3_make(0, 0, 1)),
               left = himc_quat_rotate(q, himc_vec3_make(0, 1, 0));
@@ -80,10 +80,10 @@ static bool adopt_player(himc_performance *p, const himc_player *player, const c
         return true;
     himc_skeleton_config old = p->body;
     p->body = player->config;
-    adopt_habit(p, player);
+    adopt_manner(p, player);
     if (!himc_performance_build_body(p, error)) {
         p->body = old;
-        memset(p->habit_known, 0, sizeof p->habit_known);
+        memset(p->manner_known, 0, sizeof p->manner_known);
         return false;
     }
     himc_performance_note(p, "%s: the player's body has %d lengths from it, %.2f m, %.0f kg", path,

@@ -150,14 +150,14 @@ static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local,
     himc_vec3 n = himc_place_normal(himc_drum_place(drum));
     bool kinematic = p->controller.mode == HIMC_PIPELINE_IK;
     c->stick.head = *himc_drum_mallet(drum);
-    c->stick.mass = himc_effective_mass(&p->skeleton, &p->state, art, hand, n);
+    c->stick.mass = himc_effective_mass(&p->plant, &p->state, art, hand, n);
     c->stick.one_way = p->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
     c->stick.acceleration = 0;
     if (!kinematic)
         c->stick.acceleration =
-            himc_vec3_dot(n, himc_tip_acceleration(&p->skeleton, &p->state, hand, relative));
+            himc_vec3_dot(n, himc_tip_acceleration(&p->plant, &p->state, hand, relative));
     if (kinematic && c->touching)
         return;
     c->stick.height = local.z + c->offset;
@@ -226,9 +226,9 @@ void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HI
         memset(p->force[hand], 0, (size_t)n * sizeof(double));
     }
     if (any) {
-        himc_articulate(&p->skeleton, &p->state, &art);
+        himc_articulate(&p->plant, &p->state, &art);
         if (p->controller.mode != HIMC_PIPELINE_IK)
-            himc_forward_dynamics(&p->skeleton, &p->state, &art, p->torque, NULL, relative);
+            himc_forward_dynamics(&p->plant, &p->state, &art, p->torque, NULL, relative);
     }
     for (int i = 0; i < p->drums; i++) {
         himc_stick *sticks[HIMC_HANDS];
