@@ -17,6 +17,7 @@
 #define REJOIN 0.040      // from separation back to the capture (s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
 #define HOVER 0.08        // of a tip at rest above the head (m)
+#define IN_THE_AIR 0.05   // a strike's tip is not so high above the head (m)
 #define LEAST_FRAMES 8
 #define MAX_STRIKES 4096
 
@@ -87,6 +88,13 @@ static himc_quintic come_to_rest(const himc_place *place, const himc_target *s)
     return himc_quintic_make(s, &rest, SETTLE);
 }
 
+// a stick pulled up sharply may look as if it had struck
+static bool is_in_the_air(const himc_track *track, const himc_take_strike *strike)
+{
+    himc_vec3 x = himc_vec3_add(strike->x, track->offset);
+    return himc_place_from_world(&track->place, x).z > IN_THE_AIR;
+}
+
 // cuts the strikes of one hand out of its capture and fits what is between
 static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
                         const himc_take_strike *strikes, int count)
@@ -95,7 +103,8 @@ static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
     int start = 0, cut = (int)ceil(CUT * track->rate);
     for (int i = 0; i < count; i++) {
         int frame = strikes[i].frame;
-        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3)
+        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
+            is_in_the_air(track, &strikes[i]))
             continue;
         bridge *b = &h->planned[h->bridge_count++];
         b->last = frame - cut;
