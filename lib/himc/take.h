@@ -4,7 +4,7 @@
 /// where the file has it.
 /// Up: HIMC_UP_* if given, else what the file says (C3D X_SCREEN, Y_SCREEN), else heads above hips
 /// in the data, else the format's habit (BVH and TRC y up, C3D z up). Up y becomes (x, -z, y).
-/// Heading: the body's left side to +y where shoulders or hips are named in pairs; else, by quarter
+/// Heading: the body's left side to +y where hips, else shoulders, are named in pairs; else, by quarter
 /// turns, the left tip left of the right one, or the tip in front of the shoulder; else as it is.
 /// himc_take_describe says which.
 /// A BVH's joints and end sites ("NAME_end") are points too, by forward kinematics; its skeleton

@@ -76,8 +76,10 @@ static void adopt_manner(himc_performance *p, const himc_player *player)
 static bool adopt_player(himc_performance *p, const himc_player *player, const char *path,
                          himc_error *error)
 {
-    if (player->lengths == 0)
+    if (player->lengths == 0) {
+        memset(p->manner_known, 0, sizeof p->manner_known);
         return true;
+    }
     himc_skeleton_config old = p->body;
     p->body = player->config;
     adopt_manner(p, player);
