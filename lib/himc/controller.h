@@ -31,8 +31,9 @@ typedef struct himc_controller {
     himc_pipeline mode;
     himc_law law;
     himc_solver solver;
-    double damping;              ///< lambda of the inverse kinematics (m), default 0.01
-    double bandwidth;            ///< of computed torque, critically damped (Hz), default 20
+    double damping;   ///< lambda of the inverse kinematics (m), default 0.01
+    double bandwidth; ///< of computed torque, critically damped (Hz), default 20
+    double step;      ///< of the physics (s), over which servos are implicit; 0: explicit
     himc_gain gain[HIMC_JOINTS]; ///< of the PD laws
     bool gain_set
         [HIMC_JOINTS]; ///< by the user: computed torque uses it too, over the joint's inertia
