@@ -50,8 +50,8 @@ typedef struct himc_reference {
 } himc_reference;
 
 /// Default gains: stiffness I w^2 and damping 2 I w, critically damped, I the inertia of all that
-/// hangs on the joint in the given posture about each axis (about a segment's own length its
-/// own), w three times 2 pi 8 Hz at the shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
+/// hangs on the joint in the given posture about each axis, w three times 2 pi 8 Hz at the
+/// shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
 HIMC_RT void himc_controller_init(himc_controller *controller, const himc_skeleton *skeleton,
                                   const himc_body_state *posture);
 

@@ -302,12 +302,7 @@ void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
     *c = (himc_controller){
         .law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .bandwidth = 20, .step = 1e-4};
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        const himc_segment *segment = &skeleton->segment[j + 1];
         himc_vec3 i = hanging_inertia(skeleton, posture, j);
-        // about its own length a segment meets its own small inertia first: explicit servos must
-        // respect it
-        if (fabs(segment->axis.z) > 0.5)
-            i.z = fmin(i.z, segment->inertia.z);
         double w = 2 * HIMC_PI * servo_frequency(j);
         c->inertia[j] = i;
         c->gain[j].stiffness = himc_vec3_scale(i, w * w);
