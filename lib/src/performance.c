@@ -210,6 +210,7 @@ static void step_dynamics(himc_performance *p, int n, double h)
     himc_vec3 tip_force[HIMC_HANDS];
     himc_character_observe(p->character, &p->state);
     himc_performance_after_contact(p, step_time(p));
+    p->controller.step = h;
     himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
     himc_performance_contact(p, n, tip_force);
     himc_performance_measure_step(p);
