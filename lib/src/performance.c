@@ -178,6 +178,7 @@ static void step_dynamics(himc_performance *p, int n, double h)
     himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
     himc_performance_contact(p, n, tip_force);
     himc_performance_measure_step(p);
+    himc_performance_push_body(p, step_time(p));
     if (!himc_character_step(p->character, p->torque, tip_force, h))
         recover(p);
 }

@@ -1,6 +1,7 @@
-/// performance_state.h: what a performance holds, shared by the five files that are its rooms:
+/// performance_state.h: what a performance holds, shared by the six files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c and
-/// performance_play.c (what is asked), performance_report.c (what is told).
+/// performance_play.c (what is asked), performance_push.c (who pushes), performance_report.c (what
+/// is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -72,6 +73,11 @@ struct himc_performance {
     himc_vec3 torque[HIMC_JOINTS];
     himc_reference reference;
     bool one_way;
+    struct {
+        himc_vec3 force; // (N)
+        double until;    // (s)
+    } push[HIMC_SEGMENTS];
+    double push_end; // of all pushes (s)
 
     // what to play
     himc_planner *planner;
@@ -160,6 +166,10 @@ performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_pe
     himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_score,
     himc_performance_do_take, himc_performance_do_target, himc_performance_do_units;
 void himc_performance_drop_track(himc_performance *p);
+
+// performance_push.c
+performance_action himc_performance_do_push;
+void himc_performance_push_body(himc_performance *p, double t);
 
 // performance_report.c
 void himc_performance_emit(himc_performance *p, const himc_event *event);
