@@ -62,6 +62,8 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_COUPLING, HIMC_PERFORMER, "coupling", "two-way|one-way",
      "whether the head's vibration pushes back on the stick"},
     {HIMC_COMMAND_PLAYER, HIMC_PERFORMER, "player", "HEIGHT MASS", "changes the performer's body"},
+    {HIMC_COMMAND_PUSH, HIMC_PERFORMER, "push", "SEGMENT FX FY FZ SECONDS",
+     "pushes a part of the body with a force for so long"},
     {HIMC_COMMAND_RECORD, HIMC_PERFORMER, "record", "stop | FILE",
      "writes what is played as a take, .bvh .c3d or .trc, when stopped"},
     {HIMC_COMMAND_INFO, HIMC_PERFORMER, "info", "", "tells the state in a few lines"},
