@@ -187,6 +187,9 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     if (!tell(p, error, text) || (published && !tell(p, error, "posture 0")) ||
         (config->limits && !tell(p, error, "limits ellipsoid")))
         return false;
+    snprintf(text, sizeof text, "gain frequency %.6f", config->gain);
+    if (config->gain != 1 && !tell(p, error, text))
+        return false;
     snprintf(text, sizeof text, "law %s", trial_law_name(kind));
     return kind->controller == HIMC_PIPELINE_IK || tell(p, error, text);
 }
