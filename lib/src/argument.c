@@ -156,7 +156,9 @@ bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
     double value = atom->number;
     if (argument->kind == HIMC_ARGUMENT_COUNT && value != floor(value))
         return false;
-    return isfinite(value) && value >= argument->low && value <= argument->high;
+    // as single precision knows the ends: Pd's 2.2 is a little more than 2.2
+    return isfinite(value) && (float)value >= (float)argument->low &&
+           (float)value <= (float)argument->high;
 }
 
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)
