@@ -146,11 +146,11 @@ static void prepare_limb(reader *r, int i, int hand)
 static himc_vec3 across_stroke(const reader *r, int hand, int frame)
 {
     himc_vec3 *const *x = r->points->x;
-    int from = (x[POINT_ELBOW + hand] ? POINT_ELBOW : POINT_WRIST) + hand;
-    int to = (x[POINT_TIP + hand]    ? POINT_TIP
-              : x[POINT_GRIP + hand] ? POINT_GRIP
-                                     : POINT_WRIST) +
-             hand;
+    int from = POINT_ELBOW + hand, to = POINT_TIP + hand;
+    while (from < POINT_GRIP + hand && !x[from])
+        from += 2;
+    while (to > POINT_WRIST + hand && !x[to])
+        to -= 2;
     himc_vec3 d = between_points(r, from, to, frame);
     return himc_vec3_make(-d.y, d.x, 0);
 }
