@@ -72,6 +72,10 @@ himc_vec3 himc_take_offset(const himc_take *take,
 /// the offset (unless the file moves the joint itself).
 himc_quat himc_take_rotation(const himc_take *take, int frame, int point);
 
+/// Adds white noise of this standard deviation (m) to every coordinate of the points, as a tracker
+/// has; the same for the same seed. A skeleton's rotations stay as they are.
+void himc_take_add_noise(himc_take *take, double deviation, uint64_t seed);
+
 /// A hand's stick tip, gaps filled. `present` false if the take has none for that hand.
 typedef struct himc_take_tip {
     bool present;

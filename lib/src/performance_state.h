@@ -1,7 +1,7 @@
-/// performance_state.h: what a performance holds, shared by the seven files that are its rooms:
+/// performance_state.h: what a performance holds, shared by the eight files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c,
 /// performance_play.c and performance_take.c (what is asked), performance_habit.c (how the arms go
-/// with it), performance_report.c (what is told).
+/// with it), performance_push.c (who pushes), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -80,6 +80,11 @@ struct himc_performance {
     himc_vec3 torque[HIMC_JOINTS];
     himc_reference reference;
     bool one_way;
+    struct {
+        himc_vec3 force; // (N)
+        double until;    // (s)
+    } push[HIMC_SEGMENTS];
+    double push_end; // of all pushes (s)
 
     // what to play
     himc_planner *planner;
@@ -177,6 +182,10 @@ performance_action himc_performance_do_take;
 /// What the joints are to do as the tips do `tip` at `t`: the take's postures, else natural ones.
 void himc_performance_posture(const himc_performance *p, double t,
                               const himc_target tip[HIMC_HANDS], himc_posture_motion *motion);
+
+// performance_push.c
+performance_action himc_performance_do_push;
+void himc_performance_push_body(himc_performance *p, double t);
 
 // performance_report.c
 void himc_performance_emit(himc_performance *p, const himc_event *event);

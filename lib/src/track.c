@@ -14,8 +14,10 @@
 #include <string.h>
 
 #define CUT 0.0125        // of the capture around a strike's lowest point (s)
+#define TOO_LATE 0.015    // with less of the take left, its bridge is left as it is (s)
 #define REJOIN 0.040      // from separation back to the capture (s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
+#define SLOWEST 0.2       // pace of a take's time from which on nothing is replanned
 #define HOVER 0.08        // of a tip at rest above the head (m)
 #define IN_THE_AIR 0.05   // a strike's tip is not so high above the head (m)
 #define LEAST_FRAMES 8
@@ -332,24 +334,50 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     return s;
 }
 
+// when a time of the take is played: by bisection where time itself starts or stops
+static double unwarp(const himc_track *track, double taken)
+{
+    double lo = taken - EASE, hi = taken + EASE, at[3];
+    himc_track_warp(track, taken, at);
+    if (at[0] == taken && at[1] == 1)
+        return taken;
+    for (int i = 0; i < 50; i++) {
+        double middle = 0.5 * (lo + hi);
+        himc_track_warp(track, middle, at);
+        if (at[0] < taken)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return hi;
+}
+
 bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
                         double *x, double *y)
 {
     const hand_track *h = &track->hand[hand];
-    int i = h->present ? himc_track_bridge_at(h->bridges, h->bridge_count, t) : 0;
+    double at[3];
+    himc_track_warp(track, t, at);
+    int i = h->present ? himc_track_bridge_at(h->bridges, h->bridge_count, at[0]) : 0;
     if (i < h->bridge_count && h->bridges[i].restart > h->bridges[i].from)
         i++; // already struck
     if (!h->present || i >= h->bridge_count)
         return false;
-    *contact_time = h->bridges[i].contact;
+    *contact_time = unwarp(track, h->bridges[i].contact);
     *x = h->bridges[i].place.x;
     *y = h->bridges[i].place.y;
     return true;
 }
 
-void himc_track_separated(himc_track *track, himc_hand hand, double t, const himc_target *measured)
+void himc_track_separated(himc_track *track, himc_hand hand, double now,
+                          const himc_target *measured)
 {
     hand_track *h = &track->hand[hand];
+    double at[3];
+    himc_track_warp(track, now, at);
+    if (at[1] < SLOWEST)
+        return;
+    double t = at[0];
     int i = himc_track_bridge_at(h->bridges, h->bridge_count, t);
     if (i == h->bridge_count || t < h->bridges[i].from) {
         if (i == 0 || h->bridges[i - 1].to < t - REJOIN)
@@ -360,9 +388,12 @@ void himc_track_separated(himc_track *track, himc_hand hand, double t, const him
     b->to = t + REJOIN;
     if (i + 1 < h->bridge_count)
         b->to = fmin(b->to, h->bridges[i + 1].from - 1e-3);
-    if (b->to < t + 1e-3)
+    b->to = fmin(b->to, (track->frames - 1) / track->rate);
+    if (b->to < t + TOO_LATE)
         return;
-    himc_target back = captured_at(track, h, b->to);
+    himc_target back = captured_at(track, h, b->to), from = *measured;
+    from.v = himc_vec3_scale(from.v, 1 / at[1]);
+    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
     b->restart = t;
-    b->path = himc_quintic_make(measured, &back, b->to - t);
+    b->path = himc_quintic_make(&from, &back, b->to - t);
 }
