@@ -55,6 +55,7 @@ typedef struct himc_skeleton_config {
     double mallet_radius; ///< 0.005 .. 0.05 (m), default 0.0175
     double grip;          ///< from the butt to where it is held (m), default 0.10
     double seat;          ///< height of the hip joints, on a stool (m); 0 takes 0.42 of the height
+    double shoulders; ///< between the shoulder joints, 0.2 .. 0.6 (m); 0 takes it from the height
     double length[HIMC_SEGMENTS]; ///< measured lengths (m); 0 takes them from the height
 } himc_skeleton_config;
 

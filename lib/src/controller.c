@@ -6,7 +6,7 @@
 /// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q',
 /// `feedforward` tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t
 /// - q') + w^2 dq through inverse dynamics. While a stick touches the head all three let go of
-/// the normal: the rebound is the physics'.
+/// the normal: the rebound is the physics'. Joint limits win over all of it (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
 /// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
@@ -14,6 +14,9 @@
 ///     (M + D) q'' = tau_known - C,   tau = tau_known - D q'',
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "himc/controller.h"
+
+#include "limit_torque.h"
+#include "strength.h"
 
 #define PD_STIFFER 3.0    // the default gains' frequencies above the table's
 #define LARGEST_STEP 0.05 // of the tip, one step of inverse kinematics (m)
@@ -53,6 +56,18 @@ static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s
     }
 }
 
+// what lies beyond a joint's bounds is not wished for: the null space has better to do
+static void forget_beyond(const himc_limit_hits *hits, errors *e)
+{
+    for (int h = 0; h < hits->count; h++) {
+        int j = hits->joint[h];
+        himc_vec3 n = hits->inward[h], *part[3] = {&e->angle[j], &e->rate[j], &e->acceleration[j]};
+        bool beyond = himc_vec3_dot(n, e->angle[j]) < 0;
+        for (int i = 0; beyond && i < 3; i++)
+            *part[i] = himc_vec3_madd(*part[i], -himc_vec3_dot(n, *part[i]), n);
+    }
+}
+
 static himc_vec3 clamp_length(himc_vec3 v, double most)
 {
     double length = himc_vec3_length(v);
@@ -71,16 +86,40 @@ static void scatter_arm(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand, hi
         all[himc_arm_joint(hand, k)] = arm[k];
 }
 
-// the tip's demand through the Jacobian, the posture's in the null space; `demand` is linear in
-// all of it
-static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jacobian,
-                         himc_hand hand, himc_vec3 demand, himc_vec3 *all)
+typedef struct arm_tasks {
+    const himc_controller *controller;
+    const himc_arm_jacobian *jacobian;
+    himc_mat3 inverse; // of J W J', as the solver has it
+    himc_elbow_task elbow;
+    himc_hand hand;
+} arm_tasks;
+
+static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
 {
+    const himc_controller *c = tasks->controller;
+    int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
+    himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
+    tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
+    if (c->elbow)
+        himc_elbow_task_at(tasks->jacobian, upper_arm, c->damping, &tasks->elbow);
+}
+
+// the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
+// for the elbow's place comes first; `demand` is linear in all of it
+static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
+{
+    const himc_controller *c = tasks->controller;
+    himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
-    gather_arm(all, hand, posture);
-    himc_ik_solve(jacobian, c->solver, c->damping, demand, solution);
-    himc_ik_add_null(jacobian, posture, solution);
-    scatter_arm(solution, hand, all);
+    gather_arm(all, tasks->hand, posture);
+    if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
+        inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
+    himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
+    himc_ik_add_null(tasks->jacobian, posture, solution);
+    if (c->elbow)
+        himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,
+                          himc_vec3_cross(posture[0], tasks->elbow.lever), solution);
+    scatter_arm(solution, tasks->hand, all);
 }
 
 // tip acceleration that the arm's joints must make: what is wanted less what the state's spins and
@@ -119,9 +158,11 @@ static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
     himc_vec3 missing = clamp_length(way, LARGEST_STEP);
     himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
     himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target->a);
-    solve_demand(c, jacobian, hand, missing, e->angle);
-    solve_demand(c, jacobian, hand, slower, e->rate);
-    solve_demand(c, jacobian, hand, a, e->acceleration);
+    arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
+    begin_tasks(&tasks, s, missing);
+    solve_demand(&tasks, missing, e->angle);
+    solve_demand(&tasks, slower, e->rate);
+    solve_demand(&tasks, a, e->acceleration);
     double away = himc_vec3_length(way);
     if (away > LEAVES)
         go_home(&joints, away, hand, e);
@@ -271,9 +312,12 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
 {
     errors e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
+    himc_limit_hits hits;
+    himc_limits_meet(c, skeleton, s, &hits);
     joint_errors(skeleton, s, &reference->posture, &e);
+    forget_beyond(&hits, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_arm_jacobian_at(s, (himc_hand)hand, &jacobian[hand]);
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
         if (c->mode == HIMC_PIPELINE_HIMC)
             tip_errors(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian[hand], &e);
     }
@@ -281,10 +325,13 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
+        himc_limits_yield(&hits, skeleton, s, jacobian, wanted);
         himc_inverse_dynamics(skeleton, s, wanted, false, torque);
     } else {
         servo_torques(c, skeleton, s, reference, &e, torque);
+        himc_limits_resist(&hits, skeleton, s, torque);
     }
+    himc_strength_apply(c, torque);
 }
 
 // inertia about a joint of everything that hangs on it, about the child's axes
@@ -324,8 +371,11 @@ static double servo_frequency(int joint)
 void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *posture)
 {
-    *c = (himc_controller){
-        .law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .bandwidth = 20, .step = 1e-4};
+    *c = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE,
+                           .damping = 0.01,
+                           .weight = {1, 1, 1, 1},
+                           .bandwidth = 20,
+                           .step = 1e-4};
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 i = hanging_inertia(skeleton, posture, j);
         double w = 2 * HIMC_PI * servo_frequency(j);
