@@ -18,6 +18,9 @@ int himc_fit_edge(double noise, double rate)
 fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series)
 {
     int reach = (int)fmax(3, WINDOW * series->rate), edge = series->edge - 1;
+    // beside a strike a noisy cubic is given more frames on its far side
+    if (edge >= EDGE && fmin(k - lo, hi - k) < reach)
+        reach = (int)fmax(reach, 1.5 * edge - fmin(k - lo, hi - k));
     fit_window w = {k - reach < lo ? lo : k - reach, k, k + reach > hi ? hi : k + reach, 4, reach};
     if (k == lo || k == hi) { // a parabola is not thrown as far as a cubic
         w.order = 3;
