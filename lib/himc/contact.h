@@ -34,6 +34,9 @@ typedef struct himc_stick {
     bool touching; ///< c > 0 after the last sample; contact.c's own, false to begin with
     double touch_x, touch_y; ///< where, while it touches (m); contact.c's own
     double peak;             ///< largest force of this touch (N); contact.c's own
+    unsigned touches;        ///< begun so far, chatter counted once; contact.c's own
+    double chatter;          ///< a force within this time (s) is still the same touch; its own
+    double impact;           ///< downward velocity as the touch began (m/s); contact.c's own
 } himc_stick;
 
 #define HIMC_STICKS 8

@@ -32,8 +32,21 @@ typedef struct near {
     double pull;   // P, what the film's pull moves there (m/N)
 } near;
 
+#define CHATTER 0.0015 // forces less than this apart are one touch (s)
+
+// a touch begins with the first force after some time without
+static void count_touch(himc_stick *stick, double force, double h)
+{
+    if (force > 0 && stick->chatter <= 0) {
+        stick->touches++;
+        stick->impact = -stick->velocity;
+    }
+    stick->chatter = force > 0 ? CHATTER : stick->chatter - h;
+}
+
 void himc_stick_fly(himc_stick *stick, double h)
 {
+    count_touch(stick, 0, h);
     stick->height += h * (stick->velocity + 0.5 * h * stick->acceleration);
     stick->velocity += h * stick->acceleration;
     stick->force = 0;
@@ -67,6 +80,7 @@ int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks,
 static void move(himc_stick *stick, double force, double h)
 {
     double acceleration = stick->acceleration + force / stick->mass;
+    count_touch(stick, force, h);
     stick->height += h * (stick->velocity + 0.5 * h * acceleration);
     stick->velocity += h * acceleration;
     stick->force = force;
