@@ -34,8 +34,9 @@ UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
 BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
+CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] pd-externals/*.[ch] viewer/*.[ch] \
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
@@ -47,20 +48,22 @@ ifneq ($(word 2,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 .SUFFIXES:
+.SECONDARY:
 .DELETE_ON_ERROR:
 
 ##@ Build
-all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) ## the library, the program and the externals (default)
+all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
 
 install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib
 	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
-	install -m 644 $(BUILD)/externals/himc/* $(DESTDIR)$(PDEXTRA)/himc
+	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
+	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
 
 uninstall: ## remove what `make install` put there
 	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
@@ -145,6 +148,16 @@ $(BUILD)/lib/%.o: lib/src/%.c
 $(BUILD)/tools/%.o: tools/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
+
+# small programs that make tables, figures and clips
+$(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+# the timpano's own blows, which the clip technique replays
+$(CLIPS): $(BUILD)/tools/clips/clips
+	$(call say,play)
+	$(Q)$< $(@D)
 
 $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
