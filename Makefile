@@ -114,6 +114,16 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all $(BENCH)
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
+##@ Documentation
+figures: deps ## the pictures and sounds in docs, as far as they are out of date
+	@tools/deps.sh tools/deps-figures.txt
+	@$(MAKE) check-figures
+
+air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
+	@$(MAKE) $(BUILD)/tools/air/table
+	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
+	mv $(BUILD)/air_table.c lib/src/air_table.c
+
 ##@ Style
 manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
 	@HIMC_WRITE_MANUAL=1 $< >/dev/null && echo "wrote docs/manual.md"
@@ -131,7 +141,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
 .PHONY: view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
-        manual lint format help
+        figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -204,4 +214,7 @@ $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	$(Q)rm -r $(BUILD)/externals/work
 	@! nm -D --undefined-only $(EXTERNALS) | grep ' himc_' || { echo "$(@D): lacks the above; Pd would not load it" >&2; false; }
 
--include $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
+include tools/figures/figures.mk
+check-figures: $(FIGURES)
+
+-include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
