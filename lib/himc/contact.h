@@ -29,7 +29,7 @@ typedef struct himc_stick {
     double acceleration;     ///< without contact (m/s^2, up positive)
     double x, y;             ///< place on the head (m)
     double height, velocity; ///< up positive (m, m/s)
-    double force;            ///< of the last sample (N, >= 0, on the stick upwards)
+    double force;            ///< of the last sample, its mean (N, >= 0, on the stick upwards)
     bool one_way;  ///< the stick meets a head at rest; the head's vibration does not push back
     bool touching; ///< c > 0 after the last sample; contact.c's own, false to begin with
     double touch_x, touch_y; ///< where, while it touches (m); contact.c's own

@@ -67,6 +67,7 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
     m->head = *head;
     m->pickups[0] = himc_pickup_default();
     m->pickup_count = 1;
+    m->part_last = true;
     m->rate = rate;
     himc_membrane_retune(m);
     return m;

@@ -46,7 +46,7 @@ bool himc_core_new(core *c, spot spots[SPOTS], const himc_shape *shape, int coun
                 .bank = himc_bank_new(count, error)};
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     int padded = c->bank ? himc_bank_padded(c->bank) : 0;
-    size_t bytes = sizeof(double) * (size_t)padded * (10 + 3 * (HIMC_PICKUPS + SPOTS));
+    size_t bytes = sizeof(double) * (size_t)padded * (11 + 4 * HIMC_PICKUPS + 3 * SPOTS);
     double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!c->modes || !c->bank || !c->oscillators || !memory) {
         if (c->modes)
@@ -59,13 +59,17 @@ bool himc_core_new(core *c, spot spots[SPOTS], const himc_shape *shape, int coun
     c->on_v = take(&memory, padded);
     c->on_force = take(&memory, padded);
     c->scratch = take(&memory, padded);
-    c->watch_answer = take(&memory, padded);
+    for (int g = 0; g < HIMC_BANK_GEARS; g++)
+        c->watch_answer[g] = take(&memory, padded);
     c->stretch = take(&memory, padded);
     c->weight = take(&memory, padded);
     c->pull.shape = take(&memory, padded);
     c->watch = take_tap(&memory, padded);
-    for (int i = 0; i < HIMC_PICKUPS; i++)
-        c->ears[i] = (ear){take_tap(&memory, padded), take(&memory, padded)};
+    for (int i = 0; i < HIMC_PICKUPS; i++) {
+        c->ears[i].tap = take_tap(&memory, padded);
+        for (int g = 0; g < HIMC_BANK_GEARS; g++)
+            c->ears[i].answer[g] = take(&memory, padded);
+    }
     for (int i = 0; i < SPOTS; i++)
         spots[i] = (spot){.shape = take(&memory, padded), .tap = take_tap(&memory, padded)};
     return true;
@@ -112,10 +116,15 @@ void himc_membrane_aim_watch(himc_membrane *m)
     core *c = &m->core;
     himc_modes_shapes(c->modes, m->head.radius, m->watch_x, m->watch_y, c->scratch);
     himc_bank_tap(c->bank, c->scratch, NULL, &c->watch);
-    himc_bank_answer(c->bank, &c->watch, c->watch_answer);
-    for (int i = 0; i < SPOTS; i++)
-        if (m->spots[i].used)
-            m->spots[i].seen = himc_bank_sum(c->bank, m->spots[i].shape, c->watch_answer);
+    for (int g = 0; g < HIMC_BANK_GEARS; g++) {
+        himc_bank_shift(c->bank, g);
+        himc_bank_answer(c->bank, &c->watch, c->watch_answer[g]);
+        for (int i = 0; i < SPOTS; i++)
+            if (m->spots[i].used)
+                m->spots[i].effect[g].seen =
+                    himc_bank_sum(c->bank, m->spots[i].shape, c->watch_answer[g]);
+    }
+    himc_bank_shift(c->bank, m->gear);
 }
 
 void himc_membrane_aim_ear(himc_membrane *m, int index)
@@ -137,12 +146,17 @@ void himc_membrane_aim_ear(himc_membrane *m, int index)
     }
     himc_bank_tap(c->bank, c->on_q, c->on_v, &e->tap);
     // through the state and, for accelerations, directly
-    himc_bank_answer(c->bank, &e->tap, e->answer);
-    for (int i = 0; i < himc_bank_count(c->bank); i++)
-        e->answer[i] += c->on_force[i];
-    for (int i = 0; i < SPOTS; i++)
-        if (m->spots[i].used)
-            m->spots[i].heard[index] = himc_bank_sum(c->bank, m->spots[i].shape, e->answer);
+    for (int g = 0; g < HIMC_BANK_GEARS; g++) {
+        himc_bank_shift(c->bank, g);
+        himc_bank_answer(c->bank, &e->tap, e->answer[g]);
+        for (int i = 0; i < himc_bank_count(c->bank); i++)
+            e->answer[g][i] += c->on_force[i];
+        for (int i = 0; i < SPOTS; i++)
+            if (m->spots[i].used)
+                m->spots[i].effect[g].heard[index] =
+                    himc_bank_sum(c->bank, m->spots[i].shape, e->answer[g]);
+    }
+    himc_bank_shift(c->bank, m->gear);
 }
 
 void himc_membrane_find_tension(himc_membrane *m)
@@ -162,6 +176,7 @@ void himc_membrane_retune(himc_membrane *m)
     core *c = &m->core;
     m->air = himc_air_around(&m->head, himc_head_kettle(&m->head));
     find_oscillators(m);
+    himc_bank_divide(c->bank, himc_membrane_parts(m));
     himc_bank_set(c->bank, c->oscillators, m->head.modes, m->rate);
     himc_bank_weigh(c->bank, c->stretch, c->weight);
     for (int i = 0; i < SPOTS; i++)

@@ -14,7 +14,7 @@
 /// What a pickup reads: of the state, and of forces directly.
 typedef struct ear {
     himc_tap tap;
-    double *answer; ///< sound per newton of modal force in the sample (padded)
+    double *answer[HIMC_BANK_GEARS]; ///< sound per newton of modal force in a step (padded)
 } ear;
 
 /// What depends on the number of modes and is allocated with it.
@@ -28,7 +28,7 @@ typedef struct core {
     himc_pull pull;
     ear ears[HIMC_PICKUPS];
     himc_tap watch;
-    double *watch_answer; ///< displacement there per newton of modal force
+    double *watch_answer[HIMC_BANK_GEARS]; ///< displacement there per newton of modal force
 } core;
 
 /// The film's stretching (membrane_step.c).
@@ -50,6 +50,8 @@ struct himc_membrane {
     himc_pickup pickups[HIMC_PICKUPS];
     int pickup_count;
     double rate;
+    int gear;       ///< of the step that comes: a sample or a part of it
+    bool part_last; ///< it ends a sample
     core core;
     double watch_x, watch_y;
     spot spots[SPOTS];

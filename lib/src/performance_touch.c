@@ -206,6 +206,9 @@ static double note_forces(himc_performance *p, himc_hand hand, int n, double vel
         c->peak_row = fmax(c->peak_row, force);
         impulse += force * dt;
     }
+    // within a sample a stiff contact's force is higher than its mean
+    if (c->touching)
+        c->strike.force = fmax(c->strike.force, c->stick.peak);
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     p->peak_force = fmax(p->peak_force, c->strike.force);
