@@ -108,7 +108,7 @@ static void test_contact_keeps_energy_when_nothing_is_lossy_for_any_stiffness(vo
         }
     }
     printf("largest drift %.2g of the blow\n", worst);
-    TEST_ASSERT_TRUE(worst < 1e-9);
+    TEST_ASSERT_TRUE(worst < 1e-12);
 }
 
 static void test_contact_energy_never_grows_in_any_step_with_losses(void)
