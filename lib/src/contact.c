@@ -197,16 +197,22 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
         }
         double x = s->touching ? s->touch_x : s->x, y = s->touching ? s->touch_y : s->y;
         spot *place = himc_membrane_spot(membrane, x, y);
-        nears[near_count++] = (near){s, place, himc_spot_displacement(membrane, place), 0};
+        double before = himc_spot_displacement(membrane, place);
+        // a head changed since the last sample takes the sticks on it along
+        if (s->touching && !s->one_way)
+            s->height += before - s->dent;
+        nears[near_count++] = (near){s, place, before, 0};
     }
     double taken = himc_membrane_free_step(membrane);
     if (near_count > 0)
         step_near(membrane, nears, near_count, &taken, h);
     himc_membrane_settle(membrane, taken);
-    for (int i = 0; i < near_count; i++)
-        if (!nears[i].stick->one_way)
-            hold(nears[i].stick,
-                 himc_spot_displacement(membrane, nears[i].spot) > nears[i].stick->height);
+    for (int i = 0; i < near_count; i++) {
+        himc_stick *s = nears[i].stick;
+        s->dent = himc_spot_displacement(membrane, nears[i].spot);
+        if (!s->one_way)
+            hold(s, s->dent > s->height);
+    }
 }
 
 static bool any_stiff(himc_stick *const *sticks, int count, double h)

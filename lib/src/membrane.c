@@ -20,7 +20,39 @@ typedef struct hearings {
     sound of[HIMC_PICKUPS];
 } hearings;
 
-static hearings listen(const himc_membrane *m)
+// what the film's pull drives each mode by, as `direct` hears it
+static double film_drive(const himc_membrane *m, const double *direct)
+{
+    double sum = 0;
+    for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
+        double q, v;
+        himc_bank_state(m->core.bank, i, &q, &v);
+        sum -= m->tension.s * m->core.stretch[i] * q * direct[i];
+    }
+    return sum;
+}
+
+// An acceleration is heard of a force directly, and much of that cancels what the bent head's modes
+// say; so the forces of the last sample count as if they went on.
+static void listen_to_forces(himc_membrane *m, int index, sound *heard)
+{
+    core *c = &m->core;
+    const ear *e = &c->ears[index];
+    himc_bank_answer(c->bank, &e->tap, c->scratch);
+    for (int i = 0; i < himc_bank_padded(c->bank); i++)
+        c->scratch[i] = e->answer[0][i] - c->scratch[i];
+    double film = m->tension.on ? film_drive(m, c->scratch) : 0;
+    heard->now += film;
+    heard->next += film;
+    for (int i = 0; i < m->pressed_count; i++) {
+        const push *p = &m->pressed[i];
+        const spot *s = himc_membrane_spot(m, p->x, p->y);
+        heard->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
+        heard->next += p->force * s->effect[0].heard[index];
+    }
+}
+
+static hearings listen(himc_membrane *m)
 {
     hearings h = {0};
     for (int i = 0; i < m->pickup_count; i++) {
@@ -28,6 +60,7 @@ static hearings listen(const himc_membrane *m)
         const fade *f = &m->fades[i];
         h.of[i] = (sound){himc_bank_read(m->core.bank, tap) + fade_at(f, f->at - 1),
                           himc_bank_peek(m->core.bank, tap) + fade_at(f, f->at)};
+        listen_to_forces(m, i, &h.of[i]);
     }
     return h;
 }
@@ -99,15 +132,36 @@ static bool resize(himc_membrane *m, int count, himc_error *error)
     return true;
 }
 
+// modes from `first` on are new: where something presses they begin bent as they would be by now
+static void bend_new(himc_membrane *m, int first)
+{
+    for (int i = first; i < himc_bank_count(m->core.bank); i++) {
+        const himc_oscillator *o = &m->core.oscillators[i];
+        double q = 0;
+        for (int k = 0; k < m->pressed_count; k++) {
+            const push *p = &m->pressed[k];
+            q += himc_membrane_spot(m, p->x, p->y)->shape[i] * p->force;
+        }
+        if (q != 0)
+            himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
+    }
+    if (m->tension.on)
+        himc_membrane_find_tension(m);
+}
+
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
 {
     if (!check_head(head, himc_membrane_shape(membrane)->kind, error))
         return false;
     hearings before = listen(membrane);
-    if (head->modes != membrane->head.modes && !resize(membrane, head->modes, error))
+    double energy = himc_membrane_energy(membrane);
+    int known = membrane->head.modes;
+    if (head->modes != known && !resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
     himc_membrane_retune(membrane);
+    bend_new(membrane, known);
+    himc_membrane_keep_energy(membrane, energy);
     splice(membrane, before);
     return true;
 }

@@ -187,3 +187,27 @@ void himc_membrane_retune(himc_membrane *m)
     if (m->tension.on || m->head.glide > 0)
         himc_membrane_find_tension(m);
 }
+
+// On a slacker head the same energy of bending is a deeper bend, and the film's stretching goes with
+// its fourth power. What would be more than `before` (J) in all is taken back: every mode is bent
+// less, by the root of x, the positive solution of bending x + stretching x^2 = what there is to spend.
+void himc_membrane_keep_energy(himc_membrane *m, double before)
+{
+    himc_bank *bank = m->core.bank;
+    double bending = 0, stretching = 0.5 * m->tension.s * m->tension.s, q, v;
+    double excess = himc_membrane_energy(m) - before;
+    if (!(excess > 1e-12 * before))
+        return;
+    for (int i = 0; i < himc_bank_count(bank); i++) {
+        const himc_oscillator *o = &m->core.oscillators[i];
+        himc_bank_state(bank, i, &q, &v);
+        bending += 0.5 * o->mass * o->omega * o->omega * q * q;
+    }
+    double spend = fmax(bending + stretching - excess, 0);
+    double x = 2 * spend / (bending + sqrt(bending * bending + 4 * stretching * spend));
+    for (int i = 0; i < himc_bank_count(bank); i++) {
+        himc_bank_state(bank, i, &q, &v);
+        himc_bank_excite(bank, i, sqrt(x) * q, v);
+    }
+    himc_membrane_find_tension(m);
+}

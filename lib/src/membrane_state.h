@@ -59,6 +59,8 @@ struct himc_membrane {
     tension tension;
     push pushes[PUSHES];
     int push_count;
+    push pressed[SPOTS]; ///< forces of the last step, up positive
+    int pressed_count;
     fade fades[HIMC_PICKUPS];
     double heard[HIMC_PICKUPS], seen; ///< of the last sample
 };
@@ -80,6 +82,8 @@ HIMC_RT void himc_membrane_aim_ear(himc_membrane *m, int index);
 HIMC_RT void himc_membrane_aim_watch(himc_membrane *m);
 /// The film's energy as the state has it.
 HIMC_RT void himc_membrane_find_tension(himc_membrane *m);
+/// After a change: no more than `energy` (J) is left, the head bent less if need be.
+HIMC_RT void himc_membrane_keep_energy(himc_membrane *m, double energy);
 /// kappa: what int |grad w|^2 dS adds to the tension, by glide (N/m^3).
 HIMC_RT double himc_membrane_film(const himc_membrane *m);
 

@@ -108,6 +108,8 @@ void himc_spot_apply(himc_membrane *membrane, const spot *s, double force)
     for (int i = 0; i < membrane->pickup_count; i++)
         membrane->heard[i] += e->heard[i] * force;
     membrane->seen += e->seen * force;
+    if (membrane->pressed_count < SPOTS)
+        membrane->pressed[membrane->pressed_count++] = (push){s->x, s->y, force};
     if (membrane->head.glide > 0 && !membrane->tension.on)
         membrane->tension = (tension){.on = true};
 }
@@ -126,6 +128,7 @@ static void advance(himc_membrane *m, int n, double *const *heard, double *seen)
     taps[count] = &c->watch;
     read[count] = seen;
     himc_bank_run(c->bank, n, taps, count + 1, read);
+    m->pressed_count = 0;
     for (int k = 0; k < count; k++) {
         fade *f = &m->fades[k];
         for (int i = 0; i < n && m->part_last && f->at < f->length; i++)
@@ -141,6 +144,7 @@ static void advance_stretched(himc_membrane *m)
     core *c = &m->core;
     tension *t = &m->tension;
     himc_bank_run_pulled(c->bank, c->weight, &c->pull);
+    m->pressed_count = 0;
     double yielding = 1 + 0.5 * c->pull.compliance;
     t->half = 0.5 / yielding;
     t->base = t->s + t->half * (c->pull.climb - c->pull.compliance * t->s);
