@@ -103,6 +103,8 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_CHANNEL, HIMC_DRUM, "channel",
      "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
      "says where the sound of one of them is taken"},
+    {HIMC_COMMAND_TECHNIQUE, HIMC_DRUM, "technique", "modal|signal|clip",
+     "how blows become sound: by the head, or in Pure Data by the patch around it"},
     {HIMC_COMMAND_STRIKE, HIMC_DRUM, "strike", "X Y VELOCITY", "strikes without a performer"},
 };
 
