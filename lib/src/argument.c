@@ -23,6 +23,7 @@ static const himc_argument arguments[] = {
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
     {"JOINT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
+    {"FACTOR", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 20, "", NULL},
     {"KS", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "N m/rad", NULL},
     {"KD", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e5, "N m s/rad", NULL},
     {"SEGMENT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
