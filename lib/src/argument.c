@@ -25,6 +25,7 @@ static const himc_argument arguments[] = {
     {"JOINT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
     {"KS", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e5, "N m/rad", NULL},
     {"KD", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e4, "N m s/rad", NULL},
+    {"TORQUE", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 10000, "N m", NULL},
     {"X", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
     {"Y", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
     {"X", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},

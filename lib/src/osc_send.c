@@ -145,6 +145,7 @@ static void send_state(himc_osc *osc, const osc_state *state, osc_packets *p)
                 {"strokes", s->strokes},
                 {"played", s->played},
                 {"recoveries", (double)s->recoveries},
+                {"limit_hits", (double)s->limit_hits},
                 {"packets", (double)c.packets},
                 {"commands", (double)c.commands},
                 {"malformed", (double)c.malformed},
