@@ -180,7 +180,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 
 $(BUILD)/tests/test_mocap: $(MOCAP_O)
 
-$(PROGRAM): $(TOOL_O) $(LIBRARY)
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 

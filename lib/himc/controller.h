@@ -45,7 +45,8 @@ typedef struct himc_controller {
     himc_solver solver;
     double damping;                 ///< lambda of the inverse kinematics (m), default 0.01
     double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in it, default 1 each
-    bool elbow; ///< the elbow's place comes second, before the rest of the posture; default false
+    bool aimless; ///< the null space of the tips is for nothing, as published; default false
+    bool elbow;   ///< the elbow's place comes second, before the rest of the posture; default false
     double bandwidth; ///< of computed torque, critically damped (Hz), default 20
     double step;      ///< of the physics (s), over which servos are implicit; 0: explicit
     himc_gain gain[HIMC_JOINTS]; ///< of the PD laws

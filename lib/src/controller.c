@@ -20,12 +20,19 @@
 
 #define PD_STIFFER 3.0    // the default gains' frequencies above the table's
 #define LARGEST_STEP 0.05 // of the tip, one step of inverse kinematics (m)
+#define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
+#define LEFT 0.40         // ... and so far does so wholly (m)
 
 typedef struct errors {
     himc_vec3 angle[HIMC_JOINTS];        // dq (rad)
     himc_vec3 rate[HIMC_JOINTS];         // q'_t - q' (rad/s)
     himc_vec3 acceleration[HIMC_JOINTS]; // q''_t (rad/s^2)
 } errors;
+
+static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
+{
+    return himc_vec3_madd(a, share, himc_vec3_sub(b, a));
+}
 
 static himc_vec3 relative_spin(const himc_skeleton *skeleton, const himc_body_state *s, int j)
 {
@@ -93,6 +100,8 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
     himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     gather_arm(all, tasks->hand, posture);
+    for (int k = 0; c->aimless && k < HIMC_ARM_JOINTS; k++)
+        posture[k] = himc_vec3_make(0, 0, 0);
     if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
         inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
     himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
@@ -116,12 +125,27 @@ static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_bod
     return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
 }
 
+// The Jacobian is the truth near the target only: pushed far away, an arm that follows it turns in
+// circles. So it goes home by its joints, to the posture whose tip is the target.
+static void go_home(const errors *joints, double away, himc_hand hand, errors *e)
+{
+    double share = fmin((away - LEAVES) / (LEFT - LEAVES), 1);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        e->angle[j] = mix(e->angle[j], joints->angle[j], share);
+        e->rate[j] = mix(e->rate[j], joints->rate[j], share);
+        e->acceleration[j] = mix(e->acceleration[j], joints->acceleration[j], share);
+    }
+}
+
 // equation 3: replaces the arm's joint errors by those that its tip asks for
 static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
                        const himc_body_state *s, const himc_target *target, himc_hand hand,
                        const himc_arm_jacobian *jacobian, errors *e)
 {
-    himc_vec3 missing = clamp_length(himc_vec3_sub(target->x, s->tip[hand]), LARGEST_STEP);
+    errors joints = *e;
+    himc_vec3 way = himc_vec3_sub(target->x, s->tip[hand]);
+    himc_vec3 missing = clamp_length(way, LARGEST_STEP);
     himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
     himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target->a);
     arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
@@ -129,6 +153,9 @@ static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
     solve_demand(&tasks, missing, e->angle);
     solve_demand(&tasks, slower, e->rate);
     solve_demand(&tasks, a, e->acceleration);
+    double away = himc_vec3_length(way);
+    if (away > LEAVES)
+        go_home(&joints, away, hand, e);
 }
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,

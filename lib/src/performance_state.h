@@ -1,8 +1,8 @@
-/// performance_state.h: what a performance holds, shared by the eight files that are its rooms:
+/// performance_state.h: what a performance holds, shared by the nine files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c,
 /// performance_play.c and performance_take.c (what is asked), performance_habit.c (how the arms go
 /// with it), performance_limits.c (how far joints turn and how strong they are),
-/// performance_report.c (what is told).
+/// performance_push.c (who pushes), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -86,6 +86,11 @@ struct himc_performance {
     himc_vec3 torque[HIMC_JOINTS];
     himc_reference reference;
     bool one_way;
+    struct {
+        himc_vec3 force; // (N)
+        double until;    // (s)
+    } push[HIMC_SEGMENTS];
+    double push_end; // of all pushes (s)
 
     // what to play
     himc_planner *planner;
@@ -199,6 +204,10 @@ void himc_performance_limit_shown(himc_performance *p, himc_pose *pose,
 long himc_performance_limit_hits(const himc_performance *p);
 void himc_performance_describe_limits(const himc_performance *p, void (*line)(void *, const char *),
                                       void *user);
+
+// performance_push.c
+performance_action himc_performance_do_push;
+void himc_performance_push_body(himc_performance *p, double t);
 
 // performance_report.c
 void himc_performance_emit(himc_performance *p, const himc_event *event);
