@@ -117,8 +117,9 @@ def test_pictures_and_films_are_saved():
     with sender("--start", "18"):
         assert browser.wait("return viewer.joints()", 20)
         browser.run("viewer.stage.quality = 0.3; dispatchEvent(new Event('resize'))")
-        browser.run("viewer.actions.picture(); viewer.actions.film()")
-        time.sleep(2)
+        browser.run("viewer.actions.picture(); viewer.actions.film(); viewer.scripts.length = 0")
+        browser.wait("return viewer.scripts.length > 25", 20)
+        time.sleep(1.5)  # what was drawn is encoded
         browser.run("viewer.actions.film()")
         end, sizes = time.time() + 20, {}
         while time.time() < end and not (sizes.get("png") and sizes.get("webm")):
