@@ -227,6 +227,11 @@ static void compare_hand(tally *t, const himc_motion_row *row, const himc_body_s
     int elbow = himc_arm_joint(hand, 1) + 1;
     t->squares += himc_vec3_dot(miss, miss);
     t->count++;
+    if (row->force[hand] == 0) {
+        himc_vec3 away = himc_vec3_sub(row->tip[hand], row->target[hand]);
+        t->outside += himc_vec3_dot(away, away);
+        t->outside_count++;
+    }
     stretch(t, 0, hand, captured->origin[elbow].z);
     stretch(t, 1, hand, row->elbow[hand].z);
 }
@@ -289,7 +294,7 @@ static trial_result result_of(const tally *t, const himc_performance_stats *stat
         simulated += t->high[1][hand] - t->low[1][hand];
     }
     return (trial_result){.rms = sqrt(t->squares / n),
-                          .outside = stats->tip_rms,
+                          .outside = sqrt(t->outside / (double)t->outside_count),
                           .amplitude = mean_height(t->mocap),
                           .elbow = simulated / captured,
                           .shoulder_error = sqrt(t->angle[0] / n),
