@@ -34,8 +34,10 @@ typedef struct tally {
     const himc_mocap *mocap;
     himc_vec3 offset; ///< from the take's coordinates to ours (m)
     double begin;     ///< time of the take's first frame (s)
-    double squares;   ///< of the tips' distances (m^2)
-    double angle[3];  ///< squares: shoulder, elbow, wrist (rad^2)
+    double squares;   ///< of the tips' distances from where they were captured (m^2)
+    double outside;   ///< of their distances from the targets, where no force was (m^2)
+    long outside_count;
+    double angle[3]; ///< squares: shoulder, elbow, wrist (rad^2)
     long count;
     double low[2][HIMC_HANDS], high[2][HIMC_HANDS]; ///< elbows: captured, simulated (m)
 } tally;
