@@ -158,7 +158,10 @@ static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_c
     const himc_habit *learned = habit_without(config, error);
     himc_skeleton_config given = himc_skeleton_default();
     himc_player *seen = learned ? himc_player_new(take, NULL, &given, error) : NULL;
+    himc_place place = *himc_drum_place(himc_performance_drum(p, 0));
     himc_skeleton skeleton;
+    if (seen)
+        himc_player_sit(seen, take, NULL, &place);
     bool good = seen && himc_skeleton_init(&skeleton, &seen->config, error);
     if (good) {
         himc_habit habit = *learned;
