@@ -1,11 +1,10 @@
-/// performance_play.c: the commands that say what to play: strokes and hits, transport, scores,
-/// takes, units of motion, live targets.
+/// performance_play.c: the commands that say what to play: strokes and hits, transport, takes, units
+/// of motion, live targets. Scores have a file of their own, performance_score.c.
 ///
-/// Files are read here and now; what comes of them is given to the planner or the track. A score
-/// is checked as a whole before any of it is played, and while one plays the next one's beats are
-/// put behind its own.
+/// Files are read here and now; what comes of them is given to the planner or the track.
 #include "performance_state.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define APPROACH 1.0        // from wherever the sticks are to the beginning of a take (s)
@@ -19,7 +18,7 @@ bool himc_performance_do_loop(himc_performance *p, const himc_command *c, himc_e
     return true;
 }
 
-static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
     return himc_performance_ensure_drum(p, stroke->drum, &drum, error) &&
@@ -29,7 +28,7 @@ static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_erro
 bool himc_performance_do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
 {
     p->replan = true;
-    return add_stroke(p, &c->stroke, error);
+    return himc_performance_add_stroke(p, &c->stroke, error);
 }
 
 bool himc_performance_do_hit(himc_performance *p, const himc_command *c, himc_error *error)
@@ -37,6 +36,7 @@ bool himc_performance_do_hit(himc_performance *p, const himc_command *c, himc_er
     int drum;
     if (!himc_performance_ensure_drum(p, c->stroke.drum, &drum, error))
         return false;
+    himc_performance_tell_places(p);
     double now = step_time(p), at = himc_planner_hit(p->planner, now, &c->stroke, drum);
     if (isfinite(at)) {
         p->hit_latency = at - now;
@@ -91,6 +91,9 @@ bool himc_performance_do_play(himc_performance *p, const himc_command *c, himc_e
     (void)c;
     if (!himc_performance_ensure_drum(p, "", &index, error))
         return false;
+    himc_performance_tell_places(p);
+    if (!p->track && himc_planner_length(p->planner) <= 0)
+        himc_performance_note(p, "play: nothing to play: no strokes, no take");
     p->piece_start = step_time(p);
     if (p->track)
         start_track(p, p->piece_start);
@@ -120,53 +123,6 @@ bool himc_performance_do_seek(himc_performance *p, const himc_command *c, himc_e
     return true;
 }
 
-// a line of a score that is not a stroke: for the performer or one of its drums
-static bool run_line(himc_performance *p, const himc_score_line *line, himc_error *error)
-{
-    int index;
-    if (!line->drum[0])
-        return himc_performance_command(p, &line->command, 0, error);
-    return himc_performance_ensure_drum(p, line->drum, &index, error) &&
-           himc_drum_command(p->drum[index].drum, &line->command, error);
-}
-
-static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
-                            himc_error *error)
-{
-    for (int i = 0; i < score->line_count; i++)
-        if (!run_line(p, &score->lines[i], error))
-            return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
-    himc_performance_notice_drums(p);
-    // while one is played the next one waits for its end
-    bool queued = p->playing && !p->track;
-    if (!queued)
-        himc_planner_clear(p->planner);
-    double from = queued ? himc_planner_next_start(p->planner, step_time(p)) : 0;
-    if (!himc_planner_append_tempi(p->planner, score->tempi, score->tempo_count, from, error))
-        return himc_error_prefix(error, "%s", path);
-    for (int i = 0; i < score->stroke_count; i++) {
-        himc_stroke stroke = score->strokes[i];
-        stroke.beat += from;
-        if (!add_stroke(p, &stroke, error))
-            return himc_error_prefix(error, "%s", path);
-    }
-    return true;
-}
-
-bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    const char *path = c->atom[0].symbol;
-    himc_score *score = himc_score_load(path, error);
-    if (!score)
-        return false;
-    bool ok = fill_from_score(p, score, path, error);
-    himc_score_free(score);
-    if (ok)
-        himc_performance_drop_track(p);
-    p->replan = true;
-    return ok;
-}
-
 // says how much of a take the player cannot follow; the arm then stretches towards it
 static void note_reach(himc_performance *p, const himc_track *track, const char *path)
 {
@@ -188,6 +144,29 @@ static void note_reach(himc_performance *p, const himc_track *track, const char 
                               path, 100.0 * far / count, farthest);
 }
 
+// says how many strikes of a take are on none of the drum it is played on
+static void note_outside(himc_performance *p, himc_take *take, const himc_track *track,
+                         const himc_drum *drum, const char *path)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_error ignored;
+    const himc_place *place = himc_drum_place(drum);
+    if (!himc_take_tips(take, &p->take_options, tips, &ignored))
+        return;
+    int count = himc_take_strikes(take, tips, NULL, 0), outside = 0;
+    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
+    count = strikes ? himc_take_strikes(take, tips, strikes, count) : 0;
+    for (int i = 0; i < count; i++) {
+        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(track));
+        himc_vec3 local = himc_place_from_world(place, at);
+        outside += hypot(local.x, local.y) > place->radius;
+    }
+    free(strikes);
+    if (outside > 0)
+        himc_performance_note(p, "%s: %d of %d strikes are beside drum %s: a take is played on one",
+                              path, outside, count, himc_drum_name(drum));
+}
+
 bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
     int drum;
@@ -202,6 +181,8 @@ bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_e
         if (!track && error && strncmp(error->text, path, strlen(path)) != 0)
             himc_error_prefix(error, "%s", path);
     }
+    if (track)
+        note_outside(p, take, track, p->drum[drum].drum, path);
     himc_skeleton_config old = p->body;
     int measured = track ? himc_body_measure(take, &p->body) : 0;
     himc_take_free(take);
