@@ -39,7 +39,7 @@ few_strikes() { # few_strikes LEAST DRUM...: says so if there are fewer, or none
 
 too_soft() { # how loud the file is, if that is silence or more than a loudspeaker takes
     sed -n 's/.*biggest amplitude = //p' "$work/log" |
-        awk '{ n++; peak = $1 } END { if (n != 1 || peak < 0.05 || peak > 1) print "peak " peak + 0 }'
+        awk '{ n++; peak = $1 } END { if (n != 1 || peak < 0.02 || peak > 1) print "peak " peak + 0 }'
 }
 
 # patch, seconds, least number of strikes, drums that must have been struck
