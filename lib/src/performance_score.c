@@ -63,10 +63,14 @@ static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *er
     const char *word = c->count > 0 ? c->atom[0].symbol : "";
     himc_take *take;
     himc_recording *recording;
+    int joint;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
         return !p->make_drums || trial_drum(r, word, c->count > 1 ? c->atom[1].number : 23, error);
-    case HIMC_COMMAND_GAIN: return c->count == 1 || himc_performance_check_joint(word, error);
+    case HIMC_COMMAND_GAIN:
+        return c->count < 3 || himc_performance_find_joint(c, "gain", &joint, error);
+    case HIMC_COMMAND_STRENGTH:
+        return c->count < 2 || himc_performance_find_joint(c, "strength", &joint, error);
     case HIMC_COMMAND_TAKE:
     case HIMC_COMMAND_UNITS:
         take = c->id == HIMC_COMMAND_TAKE || c->count > 1

@@ -1,13 +1,15 @@
 /// performance_state.h: what a performance holds, shared by the files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_drums.c (what is
-/// struck), performance_command.c, performance_play.c and performance_score.c (what is asked),
-/// performance_report.c (what is told).
+/// struck), performance_command.c, performance_play.c, performance_score.c and performance_take.c
+/// (what is asked), performance_habit.c (how the arms go with it), performance_limits.c (how far
+/// joints turn and how strong they are), performance_push.c (who pushes), performance_report.c (what
+/// is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
-#include "himc/body.h"
 #include "himc/character.h"
 #include "himc/performance.h"
+#include "himc/player.h"
 #include "himc/recording.h"
 #include "himc/task.h"
 #include "himc/track.h"
@@ -61,19 +63,36 @@ struct himc_performance {
 
     // the body
     himc_skeleton_config body;
-    himc_skeleton skeleton;
+    himc_skeleton skeleton;       // as control believes it to be
+    himc_skeleton plant;          // as it is simulated: masses may differ
+    double weight[HIMC_SEGMENTS]; // of each segment, plant over belief
     himc_posture posture;
+    himc_pose manner;               // how the player of a take holds neck, head and legs ...
+    bool manner_known[HIMC_JOINTS]; // ... and which of them the take shows
+    himc_bearing bearing;           // the mean of the trunk in the take
+    himc_habit habit;               // what the null space is for instead of the posture, in `himc`
+    bool has_habit;
+    double habit_since; // when it was set or dropped (s)
     himc_grip grip;
     struct {
         himc_bearing from, goal;
-        double time; // of `from` (s)
-    } course;        // of trunk and grip
+        double time;             // of `from` (s)
+    } course;                    // of trunk and grip
+    himc_limits limits, learned; // in force, and those of the take's player
+    bool has_learned;
+    bool human; // strength
+    himc_strain strain;
     himc_controller controller;
     himc_character *character;
     himc_body_state state;
     himc_vec3 torque[HIMC_JOINTS];
     himc_reference reference;
     bool one_way;
+    struct {
+        himc_vec3 force; // (N)
+        double until;    // (s)
+    } push[HIMC_SEGMENTS];
+    double push_end; // of all pushes (s)
 
     // what to play
     himc_planner *planner;
@@ -139,6 +158,9 @@ void himc_performance_reset_clock(himc_performance *p);
 void himc_performance_notice_drums(himc_performance *p);
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
 
+// performance_habit.c
+void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *tick);
+
 // performance_touch.c
 stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, double t);
 void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS]);
@@ -154,8 +176,6 @@ typedef bool performance_action(himc_performance *p, const himc_command *command
 int himc_performance_word(const char *word, const char *const *words, int count);
 void himc_performance_run_due_commands(himc_performance *p);
 
-bool himc_performance_check_joint(const char *name, himc_error *error);
-
 // performance_score.c
 performance_action himc_performance_do_score;
 
@@ -169,9 +189,35 @@ void himc_performance_tell_places(himc_performance *p);
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
 performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_performance_do_hit,
     himc_performance_do_tempo, himc_performance_do_clear, himc_performance_do_play,
-    himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_take,
-    himc_performance_do_target, himc_performance_do_units;
+    himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_target,
+    himc_performance_do_units;
 void himc_performance_drop_track(himc_performance *p);
+
+// performance_take.c
+performance_action himc_performance_do_take;
+/// What the joints are to do as the tips do `tip` at `t`: the take's postures, else natural ones.
+void himc_performance_posture(const himc_performance *p, double t,
+                              const himc_target tip[HIMC_HANDS], himc_posture_motion *motion);
+
+// performance_limits.c
+performance_action himc_performance_do_limits, himc_performance_do_strength;
+bool himc_performance_find_joint(const himc_command *command, const char *name, int *joint,
+                                 himc_error *error);
+/// Whose limits they are may have changed: the body, the drum's place, the take.
+void himc_performance_renew_limits(himc_performance *p);
+bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+                                   himc_error *error);
+void himc_performance_keep_strength(himc_performance *p, const himc_controller *old);
+/// Takes a posture that is only shown into the limits, and stops the joints that it moves.
+void himc_performance_limit_shown(himc_performance *p, himc_pose *pose,
+                                  himc_vec3 rate[HIMC_JOINTS]);
+long himc_performance_limit_hits(const himc_performance *p);
+void himc_performance_describe_limits(const himc_performance *p, void (*line)(void *, const char *),
+                                      void *user);
+
+// performance_push.c
+performance_action himc_performance_do_push;
+void himc_performance_push_body(himc_performance *p, double t);
 
 // performance_report.c
 void himc_performance_emit(himc_performance *p, const himc_event *event);

@@ -168,7 +168,7 @@ static void features_of(const watch *w, const himc_strike *s, double f[FEATURES]
             bounce = i;
     f[0] = log(w->height[top][s->hand]);
     f[1] = log(s->velocity);
-    f[2] = w->height[bounce][s->hand] / w->height[top][s->hand];
+    f[2] = log(w->height[bounce][s->hand] / w->height[top][s->hand]);
     f[3] = log(fmax(s->x - w->away[back][s->hand], 1e-3));
 }
 
