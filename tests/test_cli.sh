@@ -110,6 +110,8 @@ refuses test_broken_block_is_refused '"1.5" is not a whole number' \
     render piece.txt -o x.wav --block 1.5
 refuses test_unknown_mode_is_refused "allowed himc id ik" render piece.txt -o x.wav --mode magic
 refuses test_unknown_axis_is_refused '"x", allowed y or z' render cut.trc -o x.wav --up x
+refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, allowed with a take" \
+    render piece.txt -o x.wav --left-tip LSTK
 refuses test_missing_score_is_refused "none.txt: No such file" render none.txt -o x.wav
 refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
 refuses test_folder_is_refused "directory" render . -o x.wav

@@ -6,6 +6,7 @@
 /// player holds them.
 #include "performance_state.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // says how much of a take the player cannot follow; the arm then stretches towards it
@@ -93,6 +94,29 @@ static bool adopt_player(himc_performance *p, const himc_player *player, const c
     return true;
 }
 
+// says how many strikes of a take are on none of the drum it is played on
+static void note_outside(himc_performance *p, himc_take *take, const himc_track *track,
+                         const himc_drum *drum, const char *path)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_error ignored;
+    const himc_place *place = himc_drum_place(drum);
+    if (!himc_take_tips(take, &p->take_options, tips, &ignored))
+        return;
+    int count = himc_take_strikes(take, tips, NULL, 0), outside = 0;
+    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
+    count = strikes ? himc_take_strikes(take, tips, strikes, count) : 0;
+    for (int i = 0; i < count; i++) {
+        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(track));
+        himc_vec3 local = himc_place_from_world(place, at);
+        outside += hypot(local.x, local.y) > place->radius;
+    }
+    free(strikes);
+    if (outside > 0)
+        himc_performance_note(p, "%s: %d of %d strikes are beside drum %s: a take is played on one",
+                              path, outside, count, himc_drum_name(drum));
+}
+
 static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
                       himc_error *error)
 {
@@ -113,6 +137,7 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     }
     himc_performance_notice_drums(p);
     note_reach(p, track, path);
+    note_outside(p, take, track, p->drum[drum].drum, path);
     himc_performance_drop_track(p);
     p->track = track;
     p->has_learned = player->pose != NULL;
