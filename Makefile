@@ -61,13 +61,14 @@ deps: ## install what is missing of tools/deps.txt (Debian packages; root or sud
 install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
+	test ! -x $(VIEWER) || install $(VIEWER) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib
 	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
 	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
 	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
 
 uninstall: ## remove what `make install` put there
-	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/bin/himc-viewer $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
 
 clean: ## remove all that was built
 	rm -rf build
@@ -87,6 +88,13 @@ view: deps ## build the viewer and show the improvisation in the browser
 	@mkdir -p $(BUILD)/demo
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
 	$(VIEWER) --play $(BUILD)/demo/view.csv
+
+still: deps ## a picture of it, by a browser without a window, in build/demo/still.png
+	@tools/deps.sh tools/deps-viewer.txt tools/deps-browser.txt
+	@$(MAKE) $(PROGRAM) $(VIEWER)
+	@mkdir -p $(BUILD)/demo
+	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
+	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png 20.2
 
 viewer: ## the viewer alone, build/bin/himc-viewer
 	@tools/deps.sh tools/deps-viewer.txt
@@ -146,7 +154,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+.PHONY: still mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
         figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands

@@ -13,7 +13,7 @@ timeout 60 "$HIMC_BUILD/bin/himc" serve --port $port >/dev/null &
 server=$!
 "$VMCP_PYTHON" - $port <<'EOF'
 import socket, struct, sys, time
-from vmcp.events import BoneTransformEvent, RootTransformEvent, StateEvent
+from vmcp.events import BoneTransformEvent, DeviceTransformEvent, RelativeTimeEvent, RootTransformEvent, StateEvent
 
 def pad(text):
     text = text.encode() + b"\0"
@@ -47,9 +47,11 @@ ear = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 ear.bind(("127.0.0.1", 0))
 ear.settimeout(0.2)
 ask = pad("/himc/subscribe") + pad(",sis") + pad("127.0.0.1") + struct.pack(">i", ear.getsockname()[1]) + pad("vmc")
-bones, faults, state, root = {}, [], 0, 0
-end = time.time() + 5
-while time.time() < end and len(bones) < 21:
+hit = pad("/himc/hit") + pad(",sss") + pad("left") + pad("accent") + pad("ff")
+ear.sendto(hit, ("127.0.0.1", int(sys.argv[1])))
+bones, places, mallets, notes, times, faults, state, root = {}, {}, {}, [], [], [], 0, 0
+end = time.time() + 8
+while time.time() < end and (len(bones) < 21 or len(mallets) < 2 or len(notes) < 2):
     ear.sendto(ask, ("127.0.0.1", int(sys.argv[1])))
     try:
         packet = ear.recv(65536)
@@ -60,6 +62,14 @@ while time.time() < end and len(bones) < 21:
             if path == "/VMC/Ext/Bone/Pos":
                 event = BoneTransformEvent.from_message_data("c", path, atoms)
                 bones[event.joint] = event
+                places[atoms[0]] = atoms[1:4]
+            elif path == "/VMC/Ext/Tra/Pos":
+                mallets[atoms[0]] = DeviceTransformEvent.from_message_data("c", path, atoms)
+                places[atoms[0]] = atoms[1:4]
+            elif path == "/VMC/Ext/T":
+                times.append(RelativeTimeEvent.from_message_data("c", path, atoms).delta)
+            elif path == "/VMC/Ext/Midi/Note":
+                notes.append(atoms)
             elif path == "/VMC/Ext/OK":
                 state += StateEvent.from_message_data("c", path, atoms) is not None
             elif path == "/VMC/Ext/Root/Pos":
@@ -73,7 +83,16 @@ def tell(name, good, why=""):
 
 failures = tell("test_vmcp_reads_all_bones", len(bones) == 21 and not faults, f"{len(bones)} bones {faults[:2]}")
 failures += tell("test_vmcp_reads_state_and_root", state and root, f"{state} {root}")
-print(f"-----------------------\n2 Tests {failures} Failures 0 Ignored")
+failures += tell("test_vmcp_reads_mallets_as_trackers", sorted(mallets) == ["left-mallet", "right-mallet"], f"{list(mallets)}")
+failures += tell("test_vmcp_reads_times_that_go_on", len(times) > 2 and times == sorted(times), f"{times[:4]}")
+# left-handed, y up: x to the performer's right, z forward
+at = lambda name, i: places.get(name, (9, 9, 9))[i]
+failures += tell("test_left_is_at_negative_x_and_up_is_y",
+                 at("LeftUpperLeg", 0) < 0 < at("RightUpperLeg", 0) and 0.3 < at("Hips", 1) < 1.2 and at("left-mallet", 2) > 0.2,
+                 f"{places}")
+failures += tell("test_a_strike_is_a_note_on_and_off", len(notes) >= 2 and notes[0][:2] == (1, 0) and 0 < notes[0][3] <= 1
+                 and notes[1] == (0, 0, notes[0][2], 0.0), f"{notes}")
+print(f"-----------------------\n6 Tests {failures} Failures 0 Ignored")
 EOF
 kill $server
 wait $server

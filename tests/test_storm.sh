@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A storm of packets, 100,000 a second of valid, malformed and random ones (storm.c), against `himc
 # serve` and against [himc~] in Pure Data: both go on, every packet is counted, memory stays flat. How
-# late blocks were is printed, beside a quiet run's. 3 s each; with HIMC_LONG 60 s, and once more
+# late blocks were is printed, beside a quiet run's of the same length. 3 s each; with HIMC_LONG 60 s, and once more
 # against builds with the address and undefined behaviour sanitizers.
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 dir=$HIMC_BUILD/tests/storm
@@ -68,7 +68,7 @@ serve() { # serve SECONDS: 0 is a storm's length
 }
 
 against_serve() { # against_serve NAME
-    serve 3
+    serve $seconds
     quiet="$(number late) of $(number blocks), the worst by $(number latest_ms) ms"
     serve 0
     report himc_serve_${1}goes_on_in_a_storm "$alive$([ $code = 0 ] || echo "exit status $code: $(tail -n 1 "$dir/err")")" "$pace packets/s"
@@ -150,7 +150,7 @@ in_pd() { # in_pd SECONDS: 0 is a storm's length
 }
 
 against_pd() { # against_pd NAME
-    in_pd 3
+    in_pd $seconds
     quiet=$(grep -a '^late' "$dir/pd" | tail -n 1)
     in_pd 0
     report himc_tilde_${1}goes_on_in_a_storm "$alive$(grep -a -m1 'ERROR: AddressSanitizer\|runtime error' "$dir/pd")" "$pace packets/s"

@@ -170,7 +170,8 @@ const cli_call cli_serve = {
     "",
     "the physics manager alone, driven and heard over OSC",
     "Loads a score or a take if one is given and waits: /himc/play begins,\n"
-    "/himc/subscribe 127.0.0.1 9001 pose sends the body there. SIGINT or SIGTERM ends it; the last line printed is one JSON object.",
+    "/himc/subscribe 127.0.0.1 9001 pose sends the body there. SIGINT or SIGTERM ends it;\n"
+    "the last line printed is one JSON object.",
     options,
     run,
 };

@@ -159,13 +159,14 @@ static int serve(const options *o, char error[256])
         free(motion);
         return complain(error);
     }
+    // before anybody knows that we are there
+    handle_signals();
     print_url(url, o->address, web_port(w));
     printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address,
            ear_port(config.ear));
     fflush(stdout);
     if (o->browser)
         open_browser(url);
-    handle_signals();
     web_run(w, &stop);
     web_free(w);
     free(motion);

@@ -199,8 +199,8 @@ static bool carry_out(himc_performance *performance, const osc_order *order, him
     return himc_error_set(error, "%s: no drum of that name", order->drum);
 }
 
-// commands may take a tenth of the time: a head of 2000 modes takes 25 ms to make anew, and who asks
-// for one over and over must not take the sound's time; what waits too long is counted `frequent`
+// commands may take a tenth of the time: a head of 2000 modes takes 25 ms to make anew, and who
+// asks for one over and over must not take the sound's; what finds no room to wait is `frequent`
 static bool time_left(himc_osc *osc)
 {
     return himc_osc_afford(&osc->work, 0);

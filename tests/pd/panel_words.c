@@ -1,5 +1,5 @@
-/// panel_words.c: reads lines `performer TEXT` or `drum TEXT`, and says which of them are not of the
-/// vocabulary, in the parser's words; 1 if there are any. For test_panel.sh.
+/// panel_words.c: reads lines `performer TEXT` or `drum TEXT`, and says which of them are not of
+/// the vocabulary, in the parser's words; 1 if there are any. For test_panel.sh.
 #include "himc/command.h"
 
 #include <stdio.h>
@@ -15,8 +15,8 @@ int main(void)
         char *text = strchr(line, ' ');
         line[strcspn(line, "\n")] = '\0';
         bool drum = strncmp(line, "drum ", 5) == 0;
-        if (text && himc_command_parse_text(&command, drum ? HIMC_DRUM : HIMC_PERFORMER, text + 1,
-                                            &error))
+        if (text &&
+            himc_command_parse_text(&command, drum ? HIMC_DRUM : HIMC_PERFORMER, text + 1, &error))
             continue;
         printf("%s: %s\n", line, text ? error.text : "not for performer or drum");
         wrong++;

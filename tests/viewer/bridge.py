@@ -4,10 +4,12 @@ import json
 import os
 import random
 import resource
+import shutil
 import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 
 import report
@@ -455,6 +457,24 @@ def test_it_ends_cleanly_when_told():
     with Viewer() as v:
         Stream(v)
     assert v.code == 0
+
+
+def test_it_runs_as_an_ordinary_user():
+    if os.geteuid() != 0:
+        return "as we do"
+    home = tempfile.mkdtemp(prefix="himc-viewer-")
+    try:
+        os.chmod(home, 0o755)
+        program = shutil.copy(VIEWER, home)
+        command = [program, "--no-browser", "--osc", "0", "--http", "0"]
+        with subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, user=65534, group=65534, extra_groups=[]
+        ) as viewer:
+            line = viewer.stdout.readline()
+            viewer.terminate()
+            assert viewer.wait(10) == 0 and "http://127.0.0.1" in line, line
+    finally:
+        shutil.rmtree(home)
 
 
 def test_eight_performers_and_drums_cost_less_than_a_twentieth_of_a_core():
