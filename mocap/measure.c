@@ -3,7 +3,8 @@
 /// All figures come from the frames at 250 Hz, as a laboratory would have them: the point 0.15 m
 /// behind the mallet, speeds by differences of neighbouring frames. A stroke's height is that of
 /// the highest frame since the hand's last impact over that of the impact, its fall is what lies
-/// between, its rebound the 0.15 s after it. The mallet's speed at impact is extrapolated.
+/// between, its rebound the 0.15 s after it. The mallet's speed at impact is the fastest of its last
+/// 20 ms.
 #include "mocap.h"
 
 #include <stdio.h>
@@ -64,7 +65,7 @@ static double speed(const himc_vec3 *x, int i)
 static void measure_stroke(const track *k, int begin, int end, himc_mocap_statistics *s)
 {
     int top = end, later = end + (int)(REBOUND * HIMC_MOCAP_RATE);
-    double down = 0, up = 0, high = 0, lo = HUGE_VAL, hi = -HUGE_VAL, sink = -HUGE_VAL;
+    double down = 0, up = 0, impact = 0, high = 0, lo = HUGE_VAL, hi = -HUGE_VAL, sink = -HUGE_VAL;
     for (int i = begin; i <= end; i++) {
         top = k->point[i].z > k->point[top].z ? i : top;
         high = fmax(high, k->tip[i].z);
@@ -73,9 +74,8 @@ static void measure_stroke(const track *k, int begin, int end, himc_mocap_statis
     }
     for (int i = top; i < end; i++)
         down = fmax(down, -speed(k->point, i));
-    // the contact may reach into the last two intervals; what was before is carried on
-    double before = -speed(k->tip, end - 3), earlier = -speed(k->tip, end - 4);
-    double impact = before + 2.5 * (before - earlier);
+    for (int i = end - 5; i < end; i++)
+        impact = fmax(impact, -speed(k->tip, i));
     for (int i = end; i < later && i + 1 < k->frames; i++)
         up = fmax(up, speed(k->point, i));
     for (int i = end - 3; i <= end + 3; i++)
