@@ -19,11 +19,10 @@ typedef enum player_point {
     POINT_KNEE = POINT_HIP + 2,
     POINT_ANKLE = POINT_KNEE + 2,
     POINT_TOE = POINT_ANKLE + 2,
-    POINT_BESIDE = POINT_TOE + 2, ///< markers that stand out of the flexion axis: upper arm, ...
-    POINT_BESIDE_FOREARM = POINT_BESIDE + 2,
-    POINT_BESIDE_HAND = POINT_BESIDE_FOREARM + 2,
-    POINT_BESIDE_STICK = POINT_BESIDE_HAND + 2,
-    POINT_COUNT = POINT_BESIDE_STICK + 2
+    POINT_TOE_END = POINT_TOE + 2,
+    POINT_HEAD_END = POINT_TOE_END + 2,
+    POINT_BESIDE = POINT_HEAD_END + 2, ///< beside a segment's joint, along its y: + the segment
+    POINT_COUNT = POINT_BESIDE + HIMC_SEGMENTS
 } player_point;
 
 typedef struct player_points {
