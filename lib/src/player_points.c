@@ -262,7 +262,7 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double himc_player_distance(const player_points *p, int from, int to)
+double himc_player_distance(const player_points *p, int from, int to, double quantile)
 {
     const himc_vec3 *a = p->x[from], *b = p->x[to];
     double *distance = a && b ? malloc((size_t)p->frames * sizeof *distance) : NULL;
@@ -271,7 +271,7 @@ double himc_player_distance(const player_points *p, int from, int to)
     for (int i = 0; i < p->frames; i++)
         distance[i] = himc_vec3_length(himc_vec3_sub(b[i], a[i]));
     qsort(distance, (size_t)p->frames, sizeof *distance, by_size);
-    double median = distance[p->frames / 2];
+    double length = distance[(int)(quantile * p->frames)];
     free(distance);
-    return median;
+    return length;
 }

@@ -36,8 +36,9 @@ typedef struct player_points {
 bool himc_player_points_find(player_points *points, himc_take *take,
                              const himc_take_options *options, himc_player *player);
 void himc_player_points_free(player_points *points);
-/// Median distance of two centres over the frames (m), 0 if one is not shown.
-double himc_player_distance(const player_points *points, int from, int to);
+/// Quantile (0 .. 0.99, 0.5 the median) of two centres' distance over the frames (m), 0 if one is
+/// not shown.
+double himc_player_distance(const player_points *points, int from, int to, double quantile);
 void himc_player_note(himc_player *player, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
