@@ -1,7 +1,7 @@
 /// player_check.c: what joint centres of one body must do, whatever the file calls them.
 ///
-/// Bones keep their length: two centres whose distance varies by more than VARIES of its median
-/// between its 10 % and 90 % quantiles are not the ends of one, as when markers' names are permuted;
+/// Bones keep their length: two centres whose distance varies by more than VARIES of a usual
+/// bone's length between its 10 % and 90 % quantiles are not the ends of one, as when markers' names are permuted;
 /// the farther one is dropped. Bones are of human size: if most are not, the file's unit is not
 /// what it says. A player's left shoulder is on the side of the left hip.
 #include "player_check.h"
@@ -38,7 +38,7 @@ static void drop_loose_end(player_points *p, const player_measure *m, int hand, 
     int from = (int)m->from + hand, to = (int)m->to + hand;
     double low = himc_player_distance(p, from, to, 0.1),
            high = himc_player_distance(p, from, to, 0.9);
-    if (high - low <= VARIES * himc_player_distance(p, from, to, 0.5))
+    if (high - low <= VARIES * m->usual)
         return;
     himc_player_note(player,
                      "%s: from %.3f to %.3f m long, which no bone is: are the points' names right?",
