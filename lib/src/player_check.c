@@ -1,7 +1,7 @@
 /// player_check.c: what joint centres of one body must do, whatever the file calls them.
 ///
-/// Bones keep their length: two centres whose distance varies by more than VARIES of a usual
-/// bone's length between its 10 % and 90 % quantiles are not the ends of one, as when markers' names are permuted;
+/// Bones keep their length: two centres whose distance varies by more than VARIES of a usual bone's
+/// length between its 10 % and 90 % quantiles are not the ends of one, as when names are permuted;
 /// the farther one is dropped. Bones are of human size: if most are not, the file's unit is not
 /// what it says. A player's left shoulder is on the side of the left hip.
 #include "player_check.h"
