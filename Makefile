@@ -209,7 +209,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
-$(BUILD)/tests/test_mocap: $(MOCAP_O)
+$(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes: $(MOCAP_O)
 
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
@@ -218,7 +218,7 @@ $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD
 $(UNIT) $(LONG): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
+	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIBRARY)
 	$(call say,link)

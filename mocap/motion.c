@@ -9,8 +9,6 @@
 /// is added, so the tip is where the stroke was aimed, on the head.
 #include "motion.h"
 
-#include "himc/recording.h"
-
 #include <stdlib.h>
 
 #define FIRST 1.0            // impact (s)
@@ -18,7 +16,7 @@
 #define MEMORY 0.4           // of the variation, from stroke to stroke
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.002    // deviations: of the aim (m)
+#define AIM_SPREAD 0.002     // deviations: of the aim (m)
 #define OUT_SPREAD 0.006     // of the elbow (rad)
 #define HAND_SPREAD 0.005    // of the hand's elevation (rad)
 #define SHOULDER_SPREAD 0.04 // of its share of the flexion
@@ -422,20 +420,4 @@ himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
     himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
     const mocap_stroke *s = &m->arm[hand].stroke[index / 2];
     return (himc_mocap_touch){hand, s->touch, s->aim};
-}
-
-bool himc_mocap_write(const himc_mocap *m, const char *path, himc_error *error)
-{
-    int frames = himc_mocap_frames(m);
-    himc_recording *r = himc_recording_new(path, &m->skeleton, HIMC_MOCAP_RATE,
-                                           (frames + 1) / HIMC_MOCAP_RATE, error);
-    for (int i = 0; r && i < frames; i++) {
-        himc_pose pose = himc_mocap_pose(m, i / HIMC_MOCAP_RATE);
-        himc_body_state state;
-        himc_pose_to_state(&m->skeleton, &pose, NULL, &state);
-        himc_recording_add(r, &state);
-    }
-    bool ok = r && himc_recording_write(r, error);
-    himc_recording_free(r);
-    return ok;
 }

@@ -141,7 +141,8 @@ const cli_call cli_info = {
     "FILE",
     "",
     "says what is in a score, or in a take (.bvh .c3d .trc)",
-    "Of a take: rate, length, points, gaps, the strikes found in it, where the drumhead is placed.",
+    "Of a take: rate, length, points, gaps, the strikes found in it, the player,\n"
+    "where drumhead and seat are placed.",
     options,
     run,
 };
