@@ -104,6 +104,7 @@ typedef enum himc_command_id {
     HIMC_COMMAND_PICKUP,
     HIMC_COMMAND_PICKUPS,
     HIMC_COMMAND_CHANNEL,
+    HIMC_COMMAND_TECHNIQUE,
     HIMC_COMMAND_STRIKE,
     HIMC_COMMANDS
 } himc_command_id;

@@ -55,8 +55,9 @@ static const himc_command_row table[] = {
      "how willingly each joint turns to bring the tip nearer"},
     {HIMC_COMMAND_LAW, HIMC_PERFORMER, "law", "printed|feedforward|computed-torque",
      "chooses the inverse dynamics"},
-    {HIMC_COMMAND_GAIN, HIMC_PERFORMER, "gain", "reset | JOINT KS KD",
-     "sets stiffness and damping of a joint's servo, or all as they were"},
+    {HIMC_COMMAND_GAIN, HIMC_PERFORMER, "gain", "reset | frequency FACTOR | JOINT KS KD",
+     "sets stiffness and damping of a joint's servo, the natural frequency of all over the usual, or "
+     "all as they were"},
     {HIMC_COMMAND_LIMITS, HIMC_PERFORMER, "limits", "ellipsoid|euler|off",
      "keeps the joints as far as the take's player turned them, or table 1's"},
     {HIMC_COMMAND_STRENGTH, HIMC_PERFORMER, "strength", "human|off | JOINT TORQUE",
@@ -106,6 +107,8 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_CHANNEL, HIMC_DRUM, "channel",
      "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
      "says where the sound of one of them is taken"},
+    {HIMC_COMMAND_TECHNIQUE, HIMC_DRUM, "technique", "modal|signal|clip",
+     "how blows become sound: by the head, or in Pure Data by the patch around it"},
     {HIMC_COMMAND_STRIKE, HIMC_DRUM, "strike", "X Y VELOCITY", "strikes without a performer"},
 };
 

@@ -172,10 +172,25 @@ static bool reset_gains(himc_performance *p)
     return true;
 }
 
+// k_s goes with the square of the natural frequency, k_d with the frequency itself
+static bool scale_frequencies(himc_performance *p, double factor)
+{
+    reset_gains(p);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_gain *gain = &p->controller.gain[j];
+        gain->stiffness = himc_vec3_scale(gain->stiffness, factor * factor);
+        gain->damping = himc_vec3_scale(gain->damping, factor);
+        p->controller.gain_set[j] = true;
+    }
+    return true;
+}
+
 static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
 {
     if (c->count == 1)
         return reset_gains(p);
+    if (c->count == 2)
+        return scale_frequencies(p, c->atom[1].number);
     int joint;
     if (!himc_performance_find_joint(c, "gain", &joint, error))
         return false;
