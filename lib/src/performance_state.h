@@ -201,7 +201,7 @@ void himc_performance_posture(const himc_performance *p, double t,
 
 // performance_limits.c
 performance_action himc_performance_do_limits, himc_performance_do_strength;
-bool himc_performance_find_joint(const himc_command *command, const char *name, int *joint,
+bool himc_performance_find_joint(const himc_command *c, const char *command, int *joint,
                                  himc_error *error);
 /// Whose limits they are may have changed: the body, the drum's place, the take.
 void himc_performance_renew_limits(himc_performance *p);
