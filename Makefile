@@ -29,13 +29,15 @@ VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 LIB_O     := $(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/*.c))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
+MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
 BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
+CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] pd-externals/*.[ch] viewer/*.[ch] \
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
@@ -47,20 +49,22 @@ ifneq ($(word 2,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 .SUFFIXES:
+.SECONDARY:
 .DELETE_ON_ERROR:
 
 ##@ Build
-all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) ## the library, the program and the externals (default)
+all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
 
 install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib
 	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
-	install -m 644 $(BUILD)/externals/himc/* $(DESTDIR)$(PDEXTRA)/himc
+	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
+	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
 
 uninstall: ## remove what `make install` put there
 	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
@@ -72,6 +76,10 @@ clean: ## remove all that was built
 demo: deps ## install, build, play the improvisation headless; leaves its sound and picture in build/demo
 	@$(MAKE) all
 	@tools/demo.sh
+
+mocap: $(BUILD)/bin/generate ## write the motion database, 45 sequences, into build/mocap
+	@mkdir -p $(BUILD)/mocap
+	$(BUILD)/bin/generate $(BUILD)/mocap
 
 view: deps ## build the viewer and show the improvisation in the browser
 	@tools/deps.sh tools/deps-viewer.txt
@@ -109,7 +117,18 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
 check-bench: all $(BENCH)
+	@$(PROGRAM) bench
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
+
+##@ Documentation
+figures: deps ## the pictures and sounds in docs, as far as they are out of date
+	@tools/deps.sh tools/deps-figures.txt
+	@$(MAKE) check-figures
+
+air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
+	@$(MAKE) $(BUILD)/tools/air/table
+	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
+	mv $(BUILD)/air_table.c lib/src/air_table.c
 
 ##@ Style
 manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
@@ -127,8 +146,8 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
-        manual lint format help
+.PHONY: mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+        figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -145,6 +164,16 @@ $(BUILD)/lib/%.o: lib/src/%.c
 $(BUILD)/tools/%.o: tools/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
+
+# small programs that make tables, figures and clips
+$(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+# the timpano's own blows, which the clip technique replays
+$(CLIPS): $(BUILD)/tools/clips/clips
+	$(call say,play)
+	$(Q)$< $(@D)
 
 $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
@@ -164,7 +193,17 @@ $(UNITY_O): $(UNITY_DIR)/unity.c
 	$(call say,cc  )
 	$(Q)$(CC) -O2 $(SANITIZE) $(UNITY) -c $< -o $@
 
-$(PROGRAM): $(TOOL_O) $(LIBRARY)
+$(BUILD)/mocap-o/%.o: mocap/%.c
+	$(call say,cc  )
+	$(Q)$(COMPILE) -c $< -o $@
+
+$(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+$(BUILD)/tests/test_mocap: $(MOCAP_O)
+
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
@@ -191,4 +230,8 @@ $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	$(Q)rm -r $(BUILD)/externals/work
 	@! nm -D --undefined-only $(EXTERNALS) | grep ' himc_' || { echo "$(@D): lacks the above; Pd would not load it" >&2; false; }
 
--include $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
+include tools/figures/figures.mk
+check-figures: $(FIGURES)
+
+-include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
+         $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))

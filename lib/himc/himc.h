@@ -33,12 +33,12 @@
 #include "himc/take.h"
 #include "himc/recording.h"
 #include "himc/units.h"
-#include "himc/body.h"
 #include "himc/planner.h"
+#include "himc/posture.h"
+#include "himc/player.h"
 #include "himc/track.h"
 
 // how the body is made to do it: algorithm 2
-#include "himc/posture.h"
 #include "himc/habit.h"
 #include "himc/ik.h"
 #include "himc/invdyn.h"

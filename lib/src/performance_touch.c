@@ -82,7 +82,7 @@ static void give_up(himc_performance *p, himc_hand hand, double t, const stroke_
 }
 
 // in `ik` the stick's end in contact is the micro-contact's, and the arm follows it
-static void follow_stick(himc_performance *p, himc_hand hand)
+static void follow_stick(himc_performance *p, himc_hand hand, double t)
 {
     touch *c = &p->touch[hand];
     himc_target *tip = &p->reference.tip[hand];
@@ -92,7 +92,7 @@ static void follow_stick(himc_performance *p, himc_hand hand)
     tip->x = himc_vec3_madd(tip->x, c->stick.height - height, n);
     tip->v = himc_vec3_madd(tip->v, c->stick.velocity - himc_vec3_dot(n, tip->v), n);
     tip->a = himc_vec3_madd(tip->a, -himc_vec3_dot(n, tip->a), n);
-    himc_posture_moving(&p->posture, p->reference.tip, &p->reference.posture);
+    himc_performance_posture(p, t, p->reference.tip, &p->reference.posture);
 }
 
 void himc_performance_release(himc_performance *p, double t)
@@ -111,7 +111,7 @@ void himc_performance_release(himc_performance *p, double t)
         if (drum < p->drums)
             p->reference.normal[hand] = himc_place_normal(himc_drum_place(p->drum[drum].drum));
         if (c->touching && p->controller.mode == HIMC_PIPELINE_IK)
-            follow_stick(p, (himc_hand)hand);
+            follow_stick(p, (himc_hand)hand, t);
     }
 }
 
@@ -149,15 +149,16 @@ static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local,
     himc_drum *drum = p->drum[c->drum].drum;
     himc_vec3 n = himc_place_normal(himc_drum_place(drum));
     bool kinematic = p->controller.mode == HIMC_PIPELINE_IK;
-    c->stick.head = *himc_drum_mallet(drum);
-    c->stick.mass = himc_effective_mass(&p->skeleton, &p->state, art, hand, n);
+    if (!c->stick.touching) // mallets are changed in the air
+        c->stick.head = *himc_drum_mallet(drum);
+    c->stick.mass = himc_effective_mass(&p->plant, &p->state, art, hand, n);
     c->stick.one_way = p->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
     c->stick.acceleration = 0;
     if (!kinematic)
         c->stick.acceleration =
-            himc_vec3_dot(n, himc_tip_acceleration(&p->skeleton, &p->state, hand, relative));
+            himc_vec3_dot(n, himc_tip_acceleration(&p->plant, &p->state, hand, relative));
     if (kinematic && c->touching)
         return;
     c->stick.height = local.z + c->offset;
@@ -206,6 +207,9 @@ static double note_forces(himc_performance *p, himc_hand hand, int n, double vel
         c->peak_row = fmax(c->peak_row, force);
         impulse += force * dt;
     }
+    // within a sample a stiff contact's force is higher than its mean
+    if (c->touching)
+        c->strike.force = fmax(c->strike.force, c->stick.peak);
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     p->peak_force = fmax(p->peak_force, c->strike.force);
@@ -226,9 +230,9 @@ void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HI
         memset(p->force[hand], 0, (size_t)n * sizeof(double));
     }
     if (any) {
-        himc_articulate(&p->skeleton, &p->state, &art);
+        himc_articulate(&p->plant, &p->state, &art);
         if (p->controller.mode != HIMC_PIPELINE_IK)
-            himc_forward_dynamics(&p->skeleton, &p->state, &art, p->torque, NULL, relative);
+            himc_forward_dynamics(&p->plant, &p->state, &art, p->torque, NULL, relative);
     }
     for (int i = 0; i < p->drums; i++) {
         himc_stick *sticks[HIMC_HANDS];
