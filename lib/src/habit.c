@@ -127,6 +127,14 @@ static void correct(const himc_habit *habit, himc_hand hand, himc_vec3 place, hi
     }
 }
 
+void himc_habit_usual(himc_habit *habit)
+{
+    *habit = (himc_habit){0};
+    memcpy(habit->weight, himc_habit_table.weight, sizeof habit->weight);
+    memcpy(habit->trunk, himc_habit_table.trunk, sizeof habit->trunk);
+    memcpy(habit->spread, himc_habit_table.spread, sizeof habit->spread);
+}
+
 // how the trunk sways with the sticks, from where it bears itself on average
 static himc_quat sway(const himc_habit *habit, const himc_vec3 tip[TAPS][HIMC_HANDS],
                       himc_quat trunk)

@@ -10,6 +10,14 @@
 #define ANGLES (3 * HIMC_ARM_JOINTS)
 #define TRUNK (HIMC_TRUNK - 1) // the joint
 
+/// A habit's numbers as they lie in a table.
+typedef struct himc_habit_numbers {
+    double weight[HIMC_HANDS * ANGLES * TERMS], trunk[3 * TRUNK_TERMS];
+    double spread[HIMC_HANDS * ANGLES * ANGLES];
+} himc_habit_numbers;
+
+extern const himc_habit_numbers himc_habit_table;
+
 /// A place as the trunk sees it, from where it turns (m).
 HIMC_RT himc_vec3 himc_habit_seen(himc_vec3 waist, himc_quat trunk, himc_vec3 x);
 /// The terms of a hand's tip, the trunk being as given.

@@ -62,6 +62,8 @@ void himc_performance_drop_track(himc_performance *p)
     himc_track_free(p->track);
     p->track = NULL;
     p->track_start = INFINITY;
+    if (p->habit_of_take)
+        himc_performance_set_habit(p, NULL);
 }
 
 bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
