@@ -43,7 +43,9 @@ void himc_performance_renew_limits(himc_performance *p)
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error)
 {
-    if (player->pose && !himc_limits_learn(learned, player->pose, player->frames, MARGIN, error))
+    if (!player->pose)
+        return true;
+    if (!himc_limits_learn(learned, player->pose, player->frames, MARGIN, error))
         return false;
     himc_limits_loosen(learned, LEAST);
     return true;

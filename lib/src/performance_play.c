@@ -63,6 +63,8 @@ void himc_performance_drop_track(himc_performance *p)
     p->track_start = INFINITY;
     p->has_learned = false;
     himc_performance_renew_limits(p);
+    if (p->habit_of_take)
+        himc_performance_set_habit(p, NULL);
 }
 
 bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)

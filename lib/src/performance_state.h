@@ -72,6 +72,7 @@ struct himc_performance {
     himc_bearing bearing;           // the mean of the trunk in the take
     himc_habit habit;               // what the null space is for instead of the posture, in `himc`
     bool has_habit;
+    bool habit_of_take; // it goes with the take
     double habit_since; // when it was set or dropped (s)
     himc_grip grip;
     struct {
@@ -159,6 +160,9 @@ void himc_performance_notice_drums(himc_performance *p);
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
 
 // performance_habit.c
+/// A take's player bears himself as the take has it, not as the strokes ask: from there the habit's
+/// trunk departs.
+void himc_performance_fit_habit(himc_performance *p);
 void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *tick);
 
 // performance_touch.c

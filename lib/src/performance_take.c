@@ -3,7 +3,7 @@
 ///
 /// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known, and
 /// the null space has the natural posture, with neck, head, legs and the trunk's mean as this
-/// player holds them.
+/// player holds them; of a take that shows both arms, their means with the usual habit about them.
 #include "performance_state.h"
 
 #include <stdlib.h>
@@ -117,6 +117,28 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
                               path, outside, count, himc_drum_name(drum));
 }
 
+// of both arms, hands and sticks included
+static bool shows_arms(const himc_player *player)
+{
+    bool all = player->pose && !player->walks && player->known[HIMC_TRUNK - 1];
+    for (int i = 0; i < HIMC_HANDS * HIMC_ARM_JOINTS; i++)
+        all = all && player->known[himc_arm_joint((himc_hand)(i % 2), i / 2)];
+    return all;
+}
+
+// the usual habit about this player's means, unless another has been set
+static void adopt_habit(himc_performance *p, const himc_player *player, const himc_take *take)
+{
+    himc_habit habit;
+    himc_habit_take seen = {&p->skeleton, player->pose, player->frames, himc_take_rate(take)};
+    if (p->has_habit && !p->habit_of_take)
+        return;
+    himc_habit_usual(&habit);
+    bool met = shows_arms(player) && himc_habit_meet(&habit.player, &seen, 1, NULL);
+    himc_performance_set_habit(p, met ? &habit : NULL);
+    p->habit_of_take = met;
+}
+
 static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
                       himc_error *error)
 {
@@ -144,6 +166,8 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     if (p->has_learned)
         p->learned = learned;
     himc_performance_renew_limits(p);
+    adopt_habit(p, player, take);
+    himc_performance_fit_habit(p);
     p->replan = true;
     return true;
 }
