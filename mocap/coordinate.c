@@ -16,7 +16,7 @@
 // parts slower (s)
 static const double turns[HIMC_ARM_JOINTS] = {0.060, 0.050, 0.022, 0.007};
 // share of the grip's rate in the joint's, the rest is the elbow's
-static const double distal[HIMC_ARM_JOINTS] = {0, 0, 0.5, 1};
+static const double distal[HIMC_ARM_JOINTS] = {0, 0, 0.15, 1};
 
 void himc_mocap_share_out(const mocap_arm *arm, const mocap_stroke *stroke,
                           const double share[HIMC_ARM_JOINTS], himc_quat joint[HIMC_ARM_JOINTS])

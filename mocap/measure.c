@@ -64,7 +64,7 @@ static double speed(const himc_vec3 *x, int i)
 static void measure_stroke(const track *k, int begin, int end, himc_mocap_statistics *s)
 {
     int top = end, later = end + (int)(REBOUND * HIMC_MOCAP_RATE);
-    double down = 0, up = 0, high = 0, lo = HUGE_VAL, hi = -HUGE_VAL, sink = -HUGE_VAL;
+    double down = 0, up = 0, impact = 0, high = 0, lo = HUGE_VAL, hi = -HUGE_VAL, sink = -HUGE_VAL;
     for (int i = begin; i <= end; i++) {
         top = k->point[i].z > k->point[top].z ? i : top;
         high = fmax(high, k->tip[i].z);
@@ -73,6 +73,8 @@ static void measure_stroke(const track *k, int begin, int end, himc_mocap_statis
     }
     for (int i = top; i < end; i++)
         down = fmax(down, -speed(k->point, i));
+    for (int i = end - 5; i < end; i++)
+        impact = fmax(impact, -speed(k->tip, i));
     for (int i = end; i < later && i + 1 < k->frames; i++)
         up = fmax(up, speed(k->point, i));
     for (int i = end - 3; i <= end + 3; i++)
@@ -80,7 +82,7 @@ static void measure_stroke(const track *k, int begin, int end, himc_mocap_statis
     add(s, HIMC_MOCAP_HEIGHT, k->point[top].z - k->point[end].z);
     add(s, HIMC_MOCAP_DOWN, down);
     add(s, HIMC_MOCAP_UP, up);
-    add(s, HIMC_MOCAP_IMPACT, fmax(-speed(k->tip, end - 2), -speed(k->tip, end - 3)));
+    add(s, HIMC_MOCAP_IMPACT, impact);
     add(s, HIMC_MOCAP_TIP_HEIGHT, high - k->tip[end].z);
     add(s, HIMC_MOCAP_DEPTH, hi - lo);
     add(s, HIMC_MOCAP_ELEVATION, k->elevation[end]);

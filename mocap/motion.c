@@ -18,17 +18,18 @@
 #define MEMORY 0.4           // of the variation, from stroke to stroke
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.007     // deviations: of the aim (m)
-#define OUT_SPREAD 0.008     // of the elbow (rad)
-#define HAND_SPREAD 0.008    // of the hand's elevation (rad)
+#define AIM_SPREAD 0.002    // deviations: of the aim (m)
+#define OUT_SPREAD 0.006     // of the elbow (rad)
+#define HAND_SPREAD 0.005    // of the hand's elevation (rad)
 #define SHOULDER_SPREAD 0.04 // of its share of the flexion
-#define MOST_FLEXION 2.0     // of the elbow (rad)
-#define RISE_SPREAD 0.04     // of the wrist's share of its flexion and the fingers'
-#define LEVEL_SPREAD 0.02    // of the stick's elevation at impact (rad)
+#define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
+#define FLEXION_STEP 0.02    // (rad)
+#define RISE_SPREAD 0.03     // of the wrist's share of its flexion and the fingers'
+#define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
 #define WANDER 0.004         // of a joint between impacts (rad)
-#define TRUNK_WANDER 0.01    // (rad)
+#define TRUNK_WANDER 0.003   // (rad)
 
 himc_mocap_config himc_mocap_default(void)
 {
@@ -130,38 +131,68 @@ static double rise_of(const himc_mocap *m, himc_hand hand, const himc_quat low[]
            himc_mocap_stick_point(&m->skeleton, trunk, hand, low, POINT).z;
 }
 
-// the apex is where the elbow's flexion has lifted the point to its height: by bisection
-static bool find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, const himc_quat low[])
+// the elbow's flexion at which the point is as high as asked for, or as high as this arm gets
+static double find_flexion(const himc_mocap *m, himc_hand hand, const mocap_gesture *g,
+                           const himc_quat low[], const himc_vec3 axis[])
 {
-    himc_vec3 axis[HIMC_ARM_JOINTS], way[HIMC_ARM_JOINTS];
-    double from = MOST_FLEXION, to = MOST_FLEXION;
-    himc_mocap_flexion(bearing(0, mean_lean(m)), low, axis);
-    for (from = 0, to = MOST_FLEXION; to - from > 1e-9;) {
+    himc_vec3 way[HIMC_ARM_JOINTS];
+    double best = 0, highest = -HUGE_VAL, from = 0, to = 0;
+    for (to = 0; to < MOST_FLEXION; from = to, to += FLEXION_STEP) {
+        flex(g, axis, to, way);
+        double height = rise_of(m, hand, low, way);
+        if (height >= g->height)
+            break;
+        best = height > highest ? to : best;
+        highest = fmax(highest, height);
+    }
+    if (to >= MOST_FLEXION)
+        return best;
+    while (to - from > 1e-9) {
         double middle = 0.5 * (from + to);
-        flex(&s->gesture, axis, middle, way);
-        if (rise_of(m, hand, low, way) < s->gesture.height)
+        flex(g, axis, middle, way);
+        if (rise_of(m, hand, low, way) < g->height)
             from = middle;
         else
             to = middle;
     }
+    return to;
+}
+
+static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, const himc_quat low[])
+{
+    himc_vec3 axis[HIMC_ARM_JOINTS], way[HIMC_ARM_JOINTS];
+    himc_mocap_flexion(bearing(0, mean_lean(m)), low, axis);
+    flex(&s->gesture, axis, find_flexion(m, hand, &s->gesture, low, axis), way);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_quat high = himc_quat_mul(low[k], himc_quat_exp(way[k]));
+        double loop = k == 0 ? -s->gesture.loop : k == 1 ? s->gesture.loop : 0;
         s->apex[k] = himc_quat_log(himc_quat_mul(himc_quat_conj(m->arm[hand].mean[k]), high));
-        s->loop[k] = himc_vec3_scale(axis[k], k == 0 ? -s->gesture.loop : 0);
-        if (k == 1)
-            s->loop[k] = himc_vec3_scale(axis[k], s->gesture.loop);
+        s->loop[k] = himc_vec3_scale(axis[k], loop);
     }
-    return from > 0 && to < MOST_FLEXION;
+}
+
+// the trunk carries the arm along: the place struck moves with it, except up and down
+static void carry_aim(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
+{
+    const himc_quat *mean = m->arm[hand].mean;
+    himc_vec3 there =
+        himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, mean, 0);
+    himc_vec3 usual = himc_mocap_stick_point(&m->skeleton, bearing(0, mean_lean(m)), hand, mean, 0);
+    s->aim.x += there.x - usual.x;
+    s->aim.y += there.y - usual.y;
+    s->low.tip = s->aim;
 }
 
 static bool find_postures(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
 {
     himc_quat low[HIMC_ARM_JOINTS];
+    carry_aim(m, hand, s);
     if (!himc_mocap_arm(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, &s->low, low))
         return false;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         s->impact[k] = himc_quat_log(himc_quat_mul(himc_quat_conj(m->arm[hand].mean[k]), low[k]));
-    return find_apex(m, hand, s, low);
+    find_apex(m, hand, s, low);
+    return true;
 }
 
 // strokes of both hands in turn, the right one first

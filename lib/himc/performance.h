@@ -45,6 +45,16 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
 
+#define HIMC_APPROACH \
+    1.0 ///< from wherever the sticks are to the beginning of a take, at `play` (s)
+
+/// What the `take` command does, with a take that is in memory (borrowed); `name` begins notes and
+/// errors.
+bool himc_performance_play_take(himc_performance *performance, himc_take *take, const char *name,
+                                himc_error *error);
+/// Added to the coordinates of the take being played to make ours (m).
+himc_vec3 himc_performance_take_offset(const himc_performance *performance);
+
 /// From now on the simulated segments weigh `factor` (HIMC_SEGMENTS, 0.2 .. 5; NULL for 1) times
 /// what control believes, inertia included: what an uncertain body does to control. The body is
 /// put anew where the targets have it.

@@ -47,14 +47,17 @@ static const himc_command_row table[] = {
      "chooses the inverse kinematics"},
     {HIMC_COMMAND_DAMPING, HIMC_PERFORMER, "damping", "LAMBDA",
      "sets the damping of the least squares"},
+    {HIMC_COMMAND_POSTURE, HIMC_PERFORMER, "posture", "SWITCH",
+     "whether the tips' null space is for a natural posture (1), or for nothing, as published"},
     {HIMC_COMMAND_ELBOW, HIMC_PERFORMER, "elbow", "SWITCH",
      "whether the elbow's place comes before the rest of the posture"},
     {HIMC_COMMAND_WEIGHTS, HIMC_PERFORMER, "weights", "SHOULDER ELBOW WRIST GRIP",
      "how willingly each joint turns to bring the tip nearer"},
     {HIMC_COMMAND_LAW, HIMC_PERFORMER, "law", "printed|feedforward|computed-torque",
      "chooses the inverse dynamics"},
-    {HIMC_COMMAND_GAIN, HIMC_PERFORMER, "gain", "reset | JOINT KS KD",
-     "sets stiffness and damping of a joint's servo, or all as they were"},
+    {HIMC_COMMAND_GAIN, HIMC_PERFORMER, "gain", "reset | frequency FACTOR | JOINT KS KD",
+     "sets stiffness and damping of a joint's servo, the natural frequency of all over the usual, or "
+     "all as they were"},
     {HIMC_COMMAND_RATE, HIMC_PERFORMER, "rate", "physics HZ | task HZ",
      "sets the rate of simulation or control"},
     {HIMC_COMMAND_COUPLING, HIMC_PERFORMER, "coupling", "two-way|one-way",
@@ -100,6 +103,8 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_CHANNEL, HIMC_DRUM, "channel",
      "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
      "says where the sound of one of them is taken"},
+    {HIMC_COMMAND_TECHNIQUE, HIMC_DRUM, "technique", "modal|signal|clip",
+     "how blows become sound: by the head, or in Pure Data by the patch around it"},
     {HIMC_COMMAND_STRIKE, HIMC_DRUM, "strike", "X Y VELOCITY", "strikes without a performer"},
 };
 

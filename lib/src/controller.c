@@ -56,18 +56,6 @@ static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s
     }
 }
 
-// what lies beyond a joint's bounds is not wished for: the null space has better to do
-static void forget_beyond(const himc_limit_hits *hits, errors *e)
-{
-    for (int h = 0; h < hits->count; h++) {
-        int j = hits->joint[h];
-        himc_vec3 n = hits->inward[h], *part[3] = {&e->angle[j], &e->rate[j], &e->acceleration[j]};
-        bool beyond = himc_vec3_dot(n, e->angle[j]) < 0;
-        for (int i = 0; beyond && i < 3; i++)
-            *part[i] = himc_vec3_madd(*part[i], -himc_vec3_dot(n, *part[i]), n);
-    }
-}
-
 static himc_vec3 clamp_length(himc_vec3 v, double most)
 {
     double length = himc_vec3_length(v);
@@ -112,6 +100,8 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
     himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     gather_arm(all, tasks->hand, posture);
+    for (int k = 0; c->aimless && k < HIMC_ARM_JOINTS; k++)
+        posture[k] = himc_vec3_make(0, 0, 0);
     if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
         inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
     himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
@@ -262,6 +252,7 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
         resistance[j] = himc_vec3_madd(himc_vec3_scale(c->gain[j].damping, c->step),
                                        c->step * c->step, c->gain[j].stiffness);
     }
+    himc_limits_resist(c, skeleton, s, torque, resistance);
     himc_articulate_resisting(skeleton, s, resistance, &art);
     release_forces(skeleton, s, reference, &art, torque, force);
     himc_forward_dynamics(skeleton, s, &art, torque, force, relative);
@@ -312,10 +303,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
 {
     errors e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
-    himc_limit_hits hits;
-    himc_limits_meet(c, skeleton, s, &hits);
     joint_errors(skeleton, s, &reference->posture, &e);
-    forget_beyond(&hits, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
         if (c->mode == HIMC_PIPELINE_HIMC)
@@ -325,11 +313,10 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
-        himc_limits_yield(&hits, skeleton, s, jacobian, wanted);
+        himc_limits_yield(c, skeleton, s, jacobian, wanted);
         himc_inverse_dynamics(skeleton, s, wanted, false, torque);
     } else {
         servo_torques(c, skeleton, s, reference, &e, torque);
-        himc_limits_resist(&hits, skeleton, s, torque);
     }
     himc_strength_apply(c, torque);
 }
@@ -371,11 +358,13 @@ static double servo_frequency(int joint)
 void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *posture)
 {
-    *c = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE,
-                           .damping = 0.01,
-                           .weight = {1, 1, 1, 1},
-                           .bandwidth = 20,
-                           .step = 1e-4};
+    *c = (himc_controller){
+        .law = HIMC_LAW_COMPUTED_TORQUE,
+        .damping = 0.01,
+        .weight = {1, 1, 1, 1},
+        .bandwidth = 20,
+        .step = 1e-4,
+    };
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 i = hanging_inertia(skeleton, posture, j);
         double w = 2 * HIMC_PI * servo_frequency(j);

@@ -156,6 +156,7 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
         c->damping = old.damping;
         c->bandwidth = old.bandwidth;
         c->elbow = old.elbow;
+        c->aimless = old.aimless;
         memcpy(c->weight, old.weight, sizeof c->weight);
     }
     for (int j = 0; j < HIMC_JOINTS; j++)

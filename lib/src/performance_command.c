@@ -126,6 +126,13 @@ static bool do_damping(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
+static bool do_posture(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    p->controller.aimless = c->atom[0].number == 0;
+    return true;
+}
+
 static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
@@ -165,10 +172,25 @@ static bool reset_gains(himc_performance *p)
     return true;
 }
 
+// k_s goes with the square of the natural frequency, k_d with the frequency itself
+static bool scale_frequencies(himc_performance *p, double factor)
+{
+    reset_gains(p);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_gain *gain = &p->controller.gain[j];
+        gain->stiffness = himc_vec3_scale(gain->stiffness, factor * factor);
+        gain->damping = himc_vec3_scale(gain->damping, factor);
+        p->controller.gain_set[j] = true;
+    }
+    return true;
+}
+
 static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
 {
     if (c->count == 1)
         return reset_gains(p);
+    if (c->count == 2)
+        return scale_frequencies(p, c->atom[1].number);
     int joint = himc_joint_find(c->atom[0].symbol);
     if (joint < 0) {
         himc_error_set(error, "gain: JOINT: %s, allowed", c->atom[0].symbol);
@@ -335,6 +357,7 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_MODE] = do_mode,
     [HIMC_COMMAND_SOLVER] = do_solver,
     [HIMC_COMMAND_DAMPING] = do_damping,
+    [HIMC_COMMAND_POSTURE] = do_posture,
     [HIMC_COMMAND_ELBOW] = do_elbow,
     [HIMC_COMMAND_WEIGHTS] = do_weights,
     [HIMC_COMMAND_LAW] = do_law,

@@ -177,14 +177,15 @@ performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_pe
     himc_performance_do_target, himc_performance_do_units;
 void himc_performance_drop_track(himc_performance *p);
 
-// performance_push.c
-performance_action himc_performance_do_push;
-void himc_performance_push_body(himc_performance *p, double t);
 // performance_take.c
 performance_action himc_performance_do_take;
 /// What the joints are to do as the tips do `tip` at `t`: the take's postures, else natural ones.
 void himc_performance_posture(const himc_performance *p, double t,
                               const himc_target tip[HIMC_HANDS], himc_posture_motion *motion);
+
+// performance_push.c
+performance_action himc_performance_do_push;
+void himc_performance_push_body(himc_performance *p, double t);
 
 // performance_report.c
 void himc_performance_emit(himc_performance *p, const himc_event *event);

@@ -9,6 +9,7 @@
 #include "track_state.h"
 
 #include "noise.h"
+#include "player_sit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +20,7 @@
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
 #define SLOWEST 0.2       // pace of a take's time from which on nothing is replanned
 #define HOVER 0.08        // of a tip at rest above the head (m)
+#define IN_THE_AIR 0.05   // a strike's tip is not so high above the head (m)
 #define LEAST_FRAMES 8
 #define MAX_STRIKES 4096
 
@@ -89,6 +91,13 @@ static himc_quintic come_to_rest(const himc_place *place, const himc_target *s)
     return himc_quintic_make(s, &rest, SETTLE);
 }
 
+// a stick pulled up sharply may look as if it had struck
+static bool is_in_the_air(const himc_track *track, const himc_take_strike *strike)
+{
+    himc_vec3 x = himc_vec3_add(strike->x, track->offset);
+    return himc_place_from_world(&track->place, x).z > IN_THE_AIR;
+}
+
 // cuts the strikes of one hand out of its capture and fits what is between
 static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
                         const himc_take_strike *strikes, int count)
@@ -97,7 +106,8 @@ static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
     int start = 0, cut = (int)ceil(CUT * track->rate);
     for (int i = 0; i < count; i++) {
         int frame = strikes[i].frame;
-        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3)
+        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
+            is_in_the_air(track, &strikes[i]))
             continue;
         bridge *b = &h->planned[h->bridge_count++];
         b->last = frame - cut;
@@ -129,31 +139,6 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     return h->present;
 }
 
-// moves the mean of the strikes' places onto the head's usual spot
-static himc_vec3 find_offset(const himc_take_strike *strikes, int count,
-                             const himc_take_tip tips[HIMC_HANDS], int frames,
-                             const himc_place *place, double mallet_radius)
-{
-    himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
-    double sx, sy;
-    himc_stroke_spot(&usual, place->radius, &sx, &sy);
-    himc_vec3 spot = himc_place_to_world(place, sx, 0), mean = {0, 0, 0};
-    spot = himc_vec3_madd(spot, mallet_radius, himc_place_normal(place));
-    himc_take_strike_place(strikes, count, &mean);
-    bool one_handed = !tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present;
-    if (count == 0) { // nothing struck: the lowest point above the spot
-        const himc_vec3 *x = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
-        mean = x[0];
-        for (int i = 1; i < frames; i++)
-            if (x[i].z < mean.z)
-                mean = x[i];
-        spot.z += 0.05;
-    }
-    if (one_handed)
-        spot.y += tips[HIMC_LEFT].present ? fabs(sy) : -fabs(sy);
-    return himc_vec3_sub(spot, mean);
-}
-
 // what is there of the take's strikes, to be freed; NULL without memory
 static himc_take_strike *find_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                                       int *count)
@@ -176,9 +161,9 @@ static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
         track->frames = himc_take_frames(take);
         track->place = *place;
         track->stop = INFINITY;
-        track->offset = player && player->seated ? player->offset
-                                                 : find_offset(strikes, count, tips, track->frames,
-                                                               place, mallet_radius);
+        track->offset = player && player->seated
+                            ? player->offset
+                            : himc_strike_offset(take, tips, place, mallet_radius);
     }
     for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
         if (tips[hand].present) {

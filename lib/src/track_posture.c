@@ -16,7 +16,7 @@
 #define BENDS 5            // Gauss-Newton steps: quadratic, from 5 cm to rounding
 #define LARGEST_BEND 0.1   // of the tip, one step (m)
 #define DAMPING 1e-8       // of a straight arm (m^2)
-#define DIFFERENCE 1e-3    // step of the differences (s)
+#define DIFFERENCE 5e-4    // step of the differences (s)
 #define LARGEST_WINDOW 512 // frames of one fit: 50 ms at 10 kHz
 
 static int hand_of(int joint)
