@@ -187,7 +187,9 @@ static void add_rows(problem *p, const himc_habit_player *player, const himc_hab
     }
 }
 
-static bool solve(himc_habit *habit, himc_hand hand, const problem *p, himc_error *error)
+// `moves` is false if the hand's tip does not: then there is nothing to learn from it
+static bool solve(himc_habit *habit, himc_hand hand, const problem *p, bool *moves,
+                  himc_error *error)
 {
     double singular[TERMS];
     lapack_int rank = 0;
@@ -198,13 +200,23 @@ static bool solve(himc_habit *habit, himc_hand hand, const problem *p, himc_erro
     if (info != 0)
         return himc_error_set(error, "habit: no singular values for the %s hand",
                               himc_hand_name(hand));
-    if (rank < LEAST_RANK)
-        return himc_error_set(error, "habit: the %s tip hardly moves: nothing to learn from it",
-                              himc_hand_name(hand));
+    *moves = rank >= LEAST_RANK;
     for (int c = 0; c < ANGLES; c++)
         for (int t = 0; t < TERMS; t++)
             habit->weight[hand][c / 3][c % 3][t] = p->angle[ANGLES * t + c];
     return true;
+}
+
+// an arm that was not seen moves like the other one in a mirror: y changes its sign, of rotations x
+// and z do
+static void mirror(himc_habit *habit, himc_hand unseen)
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        for (int c = 0; c < 3; c++)
+            for (int t = 0; t < TERMS; t++) {
+                double sign = (c == 1) == (t % 3 != 2) ? 1 : -1; // terms 2, 5, 8 are of y
+                habit->weight[unseen][k][c][t] = sign * habit->weight[1 - unseen][k][c][t];
+            }
 }
 
 // takes from `from` on that are one player's
@@ -246,6 +258,7 @@ static bool allocate(problem *p, int rows, himc_error *error)
 bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error)
 {
     problem p[HIMC_HANDS] = {{0}};
+    bool moves[HIMC_HANDS] = {false, false};
     int rows = 0;
     if (count < 1)
         return himc_error_set(error, "habit: no take to learn from, allowed 1 or more");
@@ -257,10 +270,15 @@ bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count,
     bool ok = allocate(&p[HIMC_LEFT], rows, error) && allocate(&p[HIMC_RIGHT], rows, error) &&
               gather(habit, p, take, count, error);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        ok = ok && solve(habit, (himc_hand)hand, &p[hand], error);
+        ok = ok && solve(habit, (himc_hand)hand, &p[hand], &moves[hand], error);
         free(p[hand].term);
         free(p[hand].angle);
     }
+    if (ok && !moves[HIMC_LEFT] && !moves[HIMC_RIGHT])
+        return himc_error_set(error, "habit: no tip moves: nothing to learn from it");
+    for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
+        if (!moves[hand])
+            mirror(habit, (himc_hand)hand);
     return ok;
 }
 
