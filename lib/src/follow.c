@@ -7,7 +7,7 @@
 ///
 /// A tracker's noise must not be differentiated. It shows in third differences, of variance 20
 /// sigma^2, in which motion nearly cancels; sigma follows their median in steps that a single jump
-/// cannot hurry. Targets that shake are replaced by a parabola fitted to all of them, weights fading
+/// cannot hurry. Targets that shake are replaced by a parabola fitted to all, weights fading
 /// with a memory tau (Morrison 1969, the critically damped g-h-k filter; it does not lag behind
 /// steady acceleration), which leaves of acceleration sigma_a^2 = 0.187 sigma^2 T / tau^5: tau is
 /// what makes that RESTLESS. A target after a pause is a place to go to. When no more come,
