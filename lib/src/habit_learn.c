@@ -19,6 +19,7 @@
 typedef struct problem {
     double *term, *angle;
     int rows, terms, angles;
+    bool moves; // the tips do, so there is something to learn
 } problem;
 
 #define PROBLEMS (HIMC_HANDS + 1) // each arm, and the trunk
@@ -205,8 +206,25 @@ static bool solve(problem *p, const char *whose, himc_error *error)
         return himc_error_set(error, "habit: out of memory for %d frames", p->rows);
     if (info != 0)
         return himc_error_set(error, "habit: no singular values for the %s", whose);
-    return rank >= LEAST_RANK ||
-           himc_error_set(error, "habit: the %s hardly moves: nothing to learn from it", whose);
+    p->moves = rank >= LEAST_RANK;
+    return true;
+}
+
+// an arm that was not seen moves like the other one in a mirror: y changes its sign, of rotations x
+// and z do
+static void mirror(himc_habit *habit, himc_hand unseen)
+{
+    for (int c = 0; c < ANGLES; c++)
+        for (int t = 0; t < TERMS; t++) {
+            double sign = (c % 3 == 1) == (t % 3 != 2) ? 1 : -1; // terms 2, 5, 8 are of y
+            habit->weight[unseen][c / 3][c % 3][t] =
+                sign * habit->weight[1 - unseen][c / 3][c % 3][t];
+        }
+    for (int c = 0; c < ANGLES; c++)
+        for (int d = 0; d < ANGLES; d++) {
+            double sign = (c % 3 == 1) == (d % 3 == 1) ? 1 : -1;
+            habit->spread[unseen][c][d] = sign * habit->spread[1 - unseen][c][d];
+        }
 }
 
 // the covariance of what is left of the rows
@@ -287,11 +305,16 @@ static bool learn(himc_habit *habit, problem p[PROBLEMS], const himc_habit_take 
     for (int i = 0; i < PROBLEMS; i++)
         if (!solve(&p[i], whose[i], error))
             return false;
+    if (!p[HIMC_LEFT].moves && !p[HIMC_RIGHT].moves)
+        return himc_error_set(error, "habit: no tip moves: nothing to learn from it");
     take_weights(habit, p);
     if (!gather(habit, p, take, count, error)) // the solutions stand where the rows were
         return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         measure_spread(habit, (himc_hand)hand, &p[hand]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (!p[hand].moves)
+            mirror(habit, (himc_hand)hand);
     return true;
 }
 

@@ -64,6 +64,8 @@ static void adopt_manner(himc_performance *p, const himc_player *player)
 {
     memcpy(p->manner_known, player->known, sizeof p->manner_known);
     p->manner = player->mean;
+    // one seated by the shoulders has them where they were seen with this trunk only
+    p->manner_known[HIMC_TRUNK - 1] = player->known[HIMC_TRUNK - 1] || player->placed;
     himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
     himc_vec3 up = himc_quat_rotate(q, himc_vec3_make(0, 0, 1)),
               left = himc_quat_rotate(q, himc_vec3_make(0, 1, 0));

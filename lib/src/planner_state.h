@@ -40,6 +40,11 @@ typedef struct planner_stream {
     double period; ///< between them (s), 0 before the second
     bool moving;   ///< `v` has been seen
     himc_vec3 x, v;
+    himc_vec3 before[2];  ///< targets before x, the latest first
+    int heard;            ///< how many of them there are
+    double noise;         ///< of each coordinate, one standard deviation (m)
+    double memory;        ///< of the filter (s)
+    himc_target filtered; ///< where the last target really was
 } planner_stream;
 
 typedef struct planner_hand {

@@ -6,7 +6,7 @@
 #define WINDOW 0.025       // half width of the local fits (s)
 #define EDGE 6             // frames of the one-sided fit beside a strike ...
 #define LONGEST_EDGE 0.048 // ... and as much of a noisy capture as it takes (s) ...
-#define SURE_RATE 0.06     // ... until its rate is sure to that (m/s)
+#define SURE_RATE 0.03     // ... until its rate is sure to that (m/s)
 
 // the rate at the end of a parabola through n points errs by sqrt(192 / n^3) noise / dt
 int himc_fit_edge(double noise, double rate)
