@@ -14,6 +14,8 @@
 #define FIRST 1.0            // impact (s)
 #define LAST 0.8             // after the last (s)
 #define MEMORY 0.4           // of the variation, from stroke to stroke
+#define ALIKE 0.8            // of a speed's variation, that goes with the height's
+#define OWN 0.6              // and that does not: the squares sum to one
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
 #define AIM_SPREAD 0.002     // deviations: of the aim (m)
@@ -77,8 +79,8 @@ static mocap_gesture vary_gesture(const himc_mocap *m, const mood *now)
     mocap_gesture g = himc_mocap_gesture[m->config.nuance];
     const mocap_player *p = m->player;
     double height = p->size * exp(p->looseness * g.spread[0] * now->height);
-    double down = exp(p->looseness * g.spread[1] * now->down);
-    double up = exp(p->looseness * g.spread[2] * now->up);
+    double down = exp(p->looseness * g.spread[1] * (ALIKE * now->height + OWN * now->down));
+    double up = exp(p->looseness * g.spread[2] * (ALIKE * now->height + OWN * now->up));
     double fingers = p->fingers * g.wrist, rise = 1 + RISE_SPREAD * p->looseness * now->rise;
     g.height *= height;
     g.wrist = height * rise * (g.wrist - fingers);
@@ -271,7 +273,7 @@ static bool make_room(himc_mocap *m)
         ok = arm->stroke && himc_mocap_curve_init(&arm->loop, 3 * room) &&
              himc_mocap_curve_init(&arm->effort, 3 * room);
         for (int k = 0; ok && k < HIMC_ARM_JOINTS; k++)
-            ok = himc_mocap_curve_init(&arm->share[k], 4 * room + 1);
+            ok = himc_mocap_curve_init(&arm->share[k], MOCAP_GRIP_KNOTS * room + 1);
     }
     return ok;
 }
@@ -418,6 +420,9 @@ int himc_mocap_touches(const himc_mocap *m)
 himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
 {
     himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
-    const mocap_stroke *s = &m->arm[hand].stroke[index / 2];
-    return (himc_mocap_touch){hand, s->touch, s->aim};
+    double t = m->arm[hand].stroke[index / 2].landed;
+    himc_quat joint[HIMC_ARM_JOINTS];
+    himc_mocap_arm_at(m, hand, t, joint);
+    himc_quat trunk = himc_mocap_trunk(m, t);
+    return (himc_mocap_touch){hand, t, himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0)};
 }
