@@ -35,8 +35,9 @@ UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
 BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
+CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
@@ -48,20 +49,22 @@ ifneq ($(word 2,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 .SUFFIXES:
+.SECONDARY:
 .DELETE_ON_ERROR:
 
 ##@ Build
-all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) ## the library, the program and the externals (default)
+all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
 
 install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib
 	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
-	install -m 644 $(BUILD)/externals/himc/* $(DESTDIR)$(PDEXTRA)/himc
+	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
+	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
 
 uninstall: ## remove what `make install` put there
 	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
@@ -117,6 +120,16 @@ check-bench: all $(BENCH)
 	@$(PROGRAM) bench
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
+##@ Documentation
+figures: deps ## the pictures and sounds in docs, as far as they are out of date
+	@tools/deps.sh tools/deps-figures.txt
+	@$(MAKE) check-figures
+
+air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
+	@$(MAKE) $(BUILD)/tools/air/table
+	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
+	mv $(BUILD)/air_table.c lib/src/air_table.c
+
 ##@ Style
 manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
 	@HIMC_WRITE_MANUAL=1 $< >/dev/null && echo "wrote docs/manual.md"
@@ -134,7 +147,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
 .PHONY: mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
-        manual lint format help
+        figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -151,6 +164,16 @@ $(BUILD)/lib/%.o: lib/src/%.c
 $(BUILD)/tools/%.o: tools/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
+
+# small programs that make tables, figures and clips
+$(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+# the timpano's own blows, which the clip technique replays
+$(CLIPS): $(BUILD)/tools/clips/clips
+	$(call say,play)
+	$(Q)$< $(@D)
 
 $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
@@ -180,7 +203,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 
 $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes: $(MOCAP_O)
 
-$(PROGRAM): $(TOOL_O) $(LIBRARY)
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
@@ -207,4 +230,8 @@ $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	$(Q)rm -r $(BUILD)/externals/work
 	@! nm -D --undefined-only $(EXTERNALS) | grep ' himc_' || { echo "$(@D): lacks the above; Pd would not load it" >&2; false; }
 
--include $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
+include tools/figures/figures.mk
+check-figures: $(FIGURES)
+
+-include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
+         $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))

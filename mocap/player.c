@@ -73,7 +73,7 @@ const mocap_player himc_mocap_player[HIMC_MOCAP_PLAYERS] = {
 
 const mocap_gesture himc_mocap_gesture[HIMC_NUANCES] = {
     [HIMC_LEGATO] = {.height = 0.309,
-                     .shoulder = 1.05,
+                     .shoulder = 1.12,
                      .wrist = 0.2,
                      .grip = 0.78,
                      .loop = 0.02,
@@ -86,7 +86,7 @@ const mocap_gesture himc_mocap_gesture[HIMC_NUANCES] = {
                      .interval = 0.56,
                      .spread = {0.12, 0.15, 0.19}},
     [HIMC_TENUTO] = {.height = 0.352,
-                     .shoulder = 1.1,
+                     .shoulder = 1.2,
                      .wrist = 0.18,
                      .grip = 0.72,
                      .loop = 0.01,
@@ -125,7 +125,7 @@ const mocap_gesture himc_mocap_gesture[HIMC_NUANCES] = {
                               .interval = 0.68,
                               .spread = {0.11, 0.14, 0.22}},
     [HIMC_STACCATO] = {.height = 0.328,
-                       .shoulder = 0.8,
+                       .shoulder = 0.74,
                        .wrist = 0.2,
                        .grip = 0.66,
                        .loop = 0.01,

@@ -10,10 +10,14 @@ change, and costs nothing before the first force. */
 #include "himc/membrane.h"
 
 #define LAYER_CHUNK 64 /* samples at a time, on the stack of the perform routine */
+#define LAYER_OUTS (HIMC_PICKUPS + 1)
+#define LAYER_FADE 0.010 /* as the drum's own sound fades for another technique (s) */
 
 typedef struct t_layer {
     himc_membrane *l_membrane;
-    bool l_sounds; /* it has felt a force */
+    bool l_sounds;  /* it has felt a force */
+    bool l_silent;  /* another technique sounds */
+    double l_level; /* that it has faded to, 0 .. 1 */
 } t_layer;
 
 /* Whether it is made and heard as the drum's head is. */
@@ -28,11 +32,21 @@ static inline bool layer_fit(t_layer *layer, const himc_membrane *drum, himc_err
     return layer_fits(layer, drum) || himc_membrane_follow(layer->l_membrane, drum, error);
 }
 
-/* Adds to sound and displacement, out[0] and out[1], what the force in[0] at in[1], in[2] makes. */
-static inline void layer_play(t_layer *layer, int n, double in[3][LAYER_CHUNK],
-                              double out[2][LAYER_CHUNK])
+static inline double layer_fade(t_layer *layer)
 {
-    double heard[LAYER_CHUNK], seen[LAYER_CHUNK];
+    double goal = !layer->l_silent, step = 1 / (LAYER_FADE * himc_membrane_rate(layer->l_membrane));
+    if (layer->l_level != goal)
+        layer->l_level += fmin(fmax(goal - layer->l_level, -step), step);
+    return layer->l_level;
+}
+
+/* Adds to the sound of `channels` pickups and to the displacement, which comes after them, what the
+force in[0] at in[1], in[2] makes. */
+static inline void layer_play(t_layer *layer, int channels, int n, double in[3][LAYER_CHUNK],
+                              double out[LAYER_OUTS][LAYER_CHUNK])
+{
+    double heard[HIMC_PICKUPS][LAYER_CHUNK] = {{0}}, seen[LAYER_CHUNK];
+    double *rest[HIMC_PICKUPS];
     for (int i = 0; i < n && !layer->l_sounds; i++)
         layer->l_sounds = in[0][i] != 0;
     if (!layer->l_sounds)
@@ -45,11 +59,15 @@ static inline void layer_play(t_layer *layer, int n, double in[3][LAYER_CHUNK],
         himc_membrane_watch(layer->l_membrane, in[1][i], in[2][i]);
         if (in[0][i] != 0)
             himc_membrane_push(layer->l_membrane, in[1][i], in[2][i], in[0][i]);
-        himc_membrane_run(layer->l_membrane, run, heard + i, seen + i);
+        for (int k = 0; k < HIMC_PICKUPS; k++)
+            rest[k] = heard[k] + i;
+        himc_membrane_run_all(layer->l_membrane, run, rest, seen + i);
     }
     for (int i = 0; i < n; i++) {
-        out[0][i] += heard[i];
-        out[1][i] += seen[i];
+        double level = layer_fade(layer);
+        for (int k = 0; k < channels; k++)
+            out[k][i] += level * heard[k][i];
+        out[channels][i] += seen[i];
     }
 }
 

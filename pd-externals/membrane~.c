@@ -1,11 +1,18 @@
-/* [membrane~ NAME [INCHES]]: a drum: a membrane that [himc~ NAME], a signal or a message strikes.
+/* [membrane~ NAME [INCHES [CHANNELS]]]: a drum: a membrane that [himc~ NAME], a signal or a message
+strikes.
 
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
          (himc/command.h); x and y of the spot (m from the head's centre, x away from the
          performer, signal or float)
-outlets  sound, displacement under the spot (m), messages:
+outlets  sound, one for each of CHANNELS pickups; displacement under the spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
+         touch TIME X Y VELOCITY PLACE PITCH       anyone's blow begins: distance from the centre
+                                                   per radius, the principal mode's frequency (Hz)
+         technique NAME                            says how blows sound from now on
          info ...
+
+A `touch` comes when its sample has been put out, by a block later than it sounds here and just as
+late in each block, so that what a patch starts on it is exact to the sample ([vline~]).
 
 Glue only. Without a performer the object advances its drum itself. With one, the performer steps
 head and sticks together, so the inlet's force plays on a second head beside it (layer.h), and the
@@ -22,18 +29,23 @@ typedef struct t_membrane {
     t_symbol *x_symbol; /* that the object is bound to; NULL if it has no name */
     t_clock *x_clock;
     t_outlet *x_messages;
+    int x_channels;
 
     t_layer x_layer; /* plays the inlet's force while a performer plays the drum */
 
     t_stream x_stream;
     t_sample *x_in[3];
-    t_sample *x_out[2];
+    t_sample *x_out[LAYER_OUTS];
 
     bool x_waiting; /* x_report is to be sent */
     himc_contact_report x_report;
-    long x_refused; /* samples of force or place that were not numbers */
-    bool x_apart;   /* runs at another sample rate than its performer */
-    bool x_told;    /* of either, since the graph was built */
+    t_clock *x_touch_clock; /* runs when x_touch is to be sent */
+    bool x_touching;
+    himc_touch x_touch;
+    himc_technique x_technique; /* that was told last */
+    long x_refused;             /* samples of force or place that were not numbers */
+    bool x_apart;               /* runs at another sample rate than its performer */
+    bool x_told;                /* of either, since the graph was built */
 } t_membrane;
 
 _Static_assert(offsetof(t_membrane, x_link) == sizeof(t_object), "[himc~] looks for it there");
@@ -55,22 +67,31 @@ static void membrane_fit_layer(t_membrane *x)
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
+/* What the drum has put out: its channels, then the displacement. */
+static void membrane_read(t_membrane *x, int n, double out[LAYER_OUTS][LAYER_CHUNK])
+{
+    for (int k = 0; k < x->x_channels; k++)
+        himc_drum_read_channel(x->x_link.l_drum, k, x->x_stream.s_count, n, out[k]);
+    himc_drum_read(x->x_link.l_drum, x->x_stream.s_count, n, NULL, out[x->x_channels]);
+}
+
 static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
-                          double out[2][LAYER_CHUNK])
+                          double out[LAYER_OUTS][LAYER_CHUNK])
 {
     himc_drum *drum = x->x_link.l_drum;
     himc_drum_driver driver = himc_drum_get_driver(drum);
     x->x_apart = x->x_link.l_rate != x->x_stream.s_rate;
     if (x->x_apart) {
-        memset(out, 0, 2 * sizeof *out);
+        memset(out, 0, LAYER_OUTS * sizeof *out);
     } else if (driver.performer) {
         himc_membrane_watch(himc_drum_membrane(drum), in[1][0], in[2][0]);
         driver.advance_to(driver.performer, x->x_stream.s_count + (uint64_t)n);
-        himc_drum_read(drum, x->x_stream.s_count, n, out[0], out[1]);
-        layer_play(&x->x_layer, n, in, out);
+        membrane_read(x, n, out);
+        x->x_layer.l_silent = himc_drum_technique(drum) != HIMC_TECHNIQUE_MODAL;
+        layer_play(&x->x_layer, x->x_channels, n, in, out);
     } else {
         himc_drum_advance(drum, n, NULL, 0, NULL, in[0], in[1], in[2]);
-        himc_drum_read(drum, x->x_stream.s_count, n, out[0], out[1]);
+        membrane_read(x, n, out);
     }
     x->x_stream.s_count += (uint64_t)n;
 }
@@ -81,10 +102,22 @@ static bool membrane_troubled(const t_membrane *x)
     return (x->x_refused || x->x_apart) && !x->x_told;
 }
 
+/* Has the next touch sent a block after its sample, as any message's time is in the block to come.
+Called when the stream is at the end of a block. */
+static void membrane_await_touch(t_membrane *x)
+{
+    if (x->x_touching || !himc_drum_touch_next(x->x_link.l_drum, &x->x_touch))
+        return;
+    x->x_touching = true;
+    double samples = (double)x->x_touch.at + x->x_stream.s_length - (double)x->x_stream.s_count;
+    double passed = clock_gettimesince(x->x_stream.s_start);
+    clock_delay(x->x_touch_clock, fmax(samples * 1000 / x->x_stream.s_rate - passed, 0));
+}
+
 static t_int *membrane_perform(t_int *w)
 {
     t_membrane *x = (t_membrane *)w[1];
-    double in[3][LAYER_CHUNK], out[2][LAYER_CHUNK];
+    double in[3][LAYER_CHUNK], out[LAYER_OUTS][LAYER_CHUNK];
     const t_player *player = himc_drum_get_driver(x->x_link.l_drum).performer;
     stream_begin(&x->x_stream, player ? player->p_time : himc_drum_time(x->x_link.l_drum));
     for (int done = 0, n; done < x->x_stream.s_length; done += n) {
@@ -94,14 +127,16 @@ static t_int *membrane_perform(t_int *w)
             for (int i = 0; i < n; i++)
                 in[k][i] = membrane_number(x, x->x_in[k][done + i]);
         membrane_play(x, n, in, out);
-        for (int k = 0; k < 2; k++)
+        for (int k = 0; k <= x->x_channels; k++)
             for (int i = 0; i < n; i++)
                 x->x_out[k][done + i] = (t_sample)out[k][i];
     }
     stream_end(&x->x_stream);
+    membrane_await_touch(x);
     if (!x->x_waiting)
         x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
     if (x->x_waiting || membrane_troubled(x) ||
+        himc_drum_technique(x->x_link.l_drum) != x->x_technique ||
         !layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
         clock_delay(x->x_clock, 0);
     return w + 2;
@@ -120,7 +155,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
     } else {
         for (int k = 0; k < 3; k++)
             x->x_in[k] = sp[k]->s_vec;
-        for (int k = 0; k < 2; k++)
+        for (int k = 0; k <= x->x_channels; k++)
             x->x_out[k] = sp[3 + k]->s_vec;
         stream_restart(&x->x_stream, sp[0]);
         if (!driven) {
@@ -132,18 +167,44 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
         dsp_add(membrane_perform, 1, x);
         return;
     }
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k <= x->x_channels; k++)
         dsp_add_zero(sp[3 + k]->s_vec, sp[3 + k]->s_n);
 }
 
-static void membrane_send(t_membrane *x, const himc_contact_report *report)
+static void membrane_send(t_membrane *x, const char *selector, const double value[6])
 {
-    const double value[] = {report->time,     report->x,     report->y,
-                            report->velocity, report->force, report->duration};
     t_atom atom[6];
     for (int i = 0; i < 6; i++)
         SETFLOAT(atom + i, (t_float)value[i]);
-    outlet_anything(x->x_messages, gensym("strike"), 6, atom);
+    outlet_anything(x->x_messages, gensym(selector), 6, atom);
+}
+
+static void membrane_send_strike(t_membrane *x, const himc_contact_report *r)
+{
+    const double value[] = {r->time, r->x, r->y, r->velocity, r->force, r->duration};
+    membrane_send(x, "strike", value);
+}
+
+/* What is sent may come back as a command, so the state is written first. */
+static void membrane_touch_tick(t_membrane *x)
+{
+    const himc_touch t = x->x_touch;
+    const double time = (double)t.at / himc_drum_rate(x->x_link.l_drum);
+    const double value[] = {time, t.x, t.y, t.velocity, t.place, t.pitch};
+    x->x_touching = false;
+    membrane_await_touch(x);
+    membrane_send(x, "touch", value);
+}
+
+static void membrane_tell_technique(t_membrane *x)
+{
+    himc_technique now = himc_drum_technique(x->x_link.l_drum);
+    if (now == x->x_technique)
+        return;
+    t_atom atom;
+    x->x_technique = now;
+    SETSYMBOL(&atom, gensym(himc_technique_name(now)));
+    outlet_anything(x->x_messages, gensym("technique"), 1, &atom);
 }
 
 static void membrane_tick(t_membrane *x)
@@ -157,11 +218,11 @@ static void membrane_tick(t_membrane *x)
                  name);
     x->x_told |= membrane_troubled(x);
     membrane_fit_layer(x);
+    membrane_tell_technique(x);
     while (x->x_waiting) {
-        /* what is sent may come back as a command, so the state is written first */
         himc_contact_report report = x->x_report;
         x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
-        membrane_send(x, &report);
+        membrane_send_strike(x, &report);
     }
 }
 
@@ -190,6 +251,7 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     if (!himc_drum_command(drum, &command, error))
         return false;
     membrane_fit_layer(x);
+    membrane_tell_technique(x);
     return true;
 }
 
@@ -202,9 +264,27 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
         pd_error(x, "membrane~: %s", error.text);
 }
 
-/* NAME and INCHES, both optional: without a name no performer finds it. */
-static bool membrane_arguments(int argc, const t_atom *argv, const char **name, double *inches,
-                               himc_error *error)
+/* The object's arguments; all are optional, and without a name no performer finds it. */
+typedef struct t_wish {
+    const char *w_name;
+    double w_inches, w_channels;
+} t_wish;
+
+/* Argument `index` (from 1), a number, if it is there. */
+static bool membrane_number_argument(int argc, const t_atom *argv, int index, const char *what,
+                                     double *number, himc_error *error)
+{
+    char text[80] = "";
+    if (argc < index)
+        return true;
+    atom_string(argv + index - 1, text, sizeof text);
+    if (argv[index - 1].a_type != A_FLOAT)
+        return himc_error_set(error, "argument %d: %s, allowed: %s", index, text, what);
+    *number = argv[index - 1].a_w.w_float;
+    return true;
+}
+
+static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_error *error)
 {
     char text[80] = "";
     if (argc > 0)
@@ -213,14 +293,34 @@ static bool membrane_arguments(int argc, const t_atom *argv, const char **name, 
         return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 23]",
                               text);
     if (argc > 0)
-        *name = argv[0].a_w.w_symbol->s_name;
-    if (argc > 1)
-        atom_string(argv + 1, text, sizeof text);
-    if (argc > 1 && argv[1].a_type != A_FLOAT)
-        return himc_error_set(error, "argument 2: %s, allowed: a diameter in inches", text);
-    if (argc > 1)
-        *inches = argv[1].a_w.w_float;
-    return argc <= 2 || himc_error_set(error, "%d arguments, allowed: NAME [INCHES]", argc);
+        wish->w_name = argv[0].a_w.w_symbol->s_name;
+    if (!membrane_number_argument(argc, argv, 2, "a diameter in inches", &wish->w_inches, error) ||
+        !membrane_number_argument(argc, argv, 3, "a number of channels", &wish->w_channels,
+                                  error) ||
+        !himc_check_range("channels", wish->w_channels, 1, HIMC_PICKUPS, "", error))
+        return false;
+    if (wish->w_channels != floor(wish->w_channels))
+        return himc_error_set(error, "channels: %g, allowed a whole number", wish->w_channels);
+    return argc <= 3 ||
+           himc_error_set(error, "%d arguments, allowed: NAME [INCHES [CHANNELS]]", argc);
+}
+
+/* A drum with as many pickups as the object has outlets, and the head beside it. */
+static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer, himc_error *error)
+{
+    const char *name = wish->w_name ? wish->w_name : "nameless";
+    himc_command pickups = {.id = HIMC_COMMAND_PICKUPS, .count = 1};
+    pickups.atom[0] = (himc_atom){HIMC_ATOM_NUMBER, wish->w_channels, NULL};
+    himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
+    if (drum && himc_drum_command(drum, &pickups, error))
+        layer->l_membrane =
+            himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, error);
+    if (layer->l_membrane) {
+        himc_drum_set_answered(drum, true);
+        return drum;
+    }
+    himc_drum_release(drum);
+    return NULL;
 }
 
 static void membrane_bind(t_membrane *x, const char *name)
@@ -240,34 +340,32 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 {
     (void)s;
     himc_error error;
-    const char *name = NULL;
-    double inches = 23, rate = sys_getsr();
+    t_wish wish = {NULL, 23, 1};
+    double rate = sys_getsr();
+    t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;
-    t_layer layer = {NULL, false};
-    if (membrane_arguments(argc, argv, &name, &inches, &error))
-        drum = himc_drum_new(name ? name : "nameless", inches, rate, &error);
-    if (drum)
-        layer.l_membrane =
-            himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, &error);
-    if (!layer.l_membrane) {
-        himc_drum_release(drum);
+    if (membrane_arguments(argc, argv, &wish, &error))
+        drum = membrane_make(&wish, rate, &layer, &error);
+    if (!drum) {
         pd_error(NULL, "membrane~: %s", error.text);
         return NULL;
     }
     t_membrane *x = (t_membrane *)pd_new(membrane_class);
     x->x_link = drum_link(drum, rate);
     x->x_layer = layer;
+    x->x_channels = (int)wish.w_channels;
     x->x_clock = clock_new(x, (t_method)membrane_tick);
+    x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
     himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
     double spot_x, spot_y;
     himc_stroke_spot(&normal, himc_drum_place(drum)->radius, &spot_x, &spot_y);
     signalinlet_new(&x->x_obj, (t_float)spot_x);
     signalinlet_new(&x->x_obj, 0);
-    outlet_new(&x->x_obj, &s_signal);
-    outlet_new(&x->x_obj, &s_signal);
+    for (int k = 0; k <= x->x_channels; k++)
+        outlet_new(&x->x_obj, &s_signal);
     x->x_messages = outlet_new(&x->x_obj, NULL);
-    if (name)
-        membrane_bind(x, name);
+    if (wish.w_name)
+        membrane_bind(x, wish.w_name);
     return x;
 }
 
@@ -279,6 +377,7 @@ static void membrane_free(t_membrane *x)
     himc_drum_release(x->x_link.l_drum);
     himc_membrane_free(x->x_layer.l_membrane);
     clock_free(x->x_clock);
+    clock_free(x->x_touch_clock);
 }
 
 /* the one symbol this binary exports */

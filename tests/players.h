@@ -36,10 +36,11 @@ static inline player make_player(int who)
     double far = 0.27 * height[who] + 0.01 * who;
     himc_vec3 tip[HIMC_HANDS] = {{far, 0.10, PLAYER_LEVEL}, {far, -0.10, PLAYER_LEVEL}};
     himc_posture_at(&posture, tip, &p.low);
-    const double rise[HIMC_ARM_JOINTS] = {0.12, 0.30, 0.45, 0.25},
+    const double rise[HIMC_ARM_JOINTS] = {0.18, 0.30, 0.45, 0.25},
                  lead[HIMC_ARM_JOINTS] = {0.020, 0.015, 0.005, 0};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        p.swing[k] = himc_vec3_make(k == 0 ? 0.08 : 0.02, -rise[k] * vary[who][k], 0.02);
+        p.swing[k] =
+            himc_vec3_make(k == 0 ? 0.22 * vary[who][k] : 0.02, -rise[k] * vary[who][k], 0.02);
         p.lead[k] = lead[k] + (k < 2 ? 0.001 * (who - 1) : 0);
     }
     return p;

@@ -242,7 +242,10 @@ static void test_drum_commands_set_what_they_say(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.8, himc_drum_place(drum)->center.z);
     says("mallet wood");
     TEST_ASSERT_EQUAL_DOUBLE(1e10, himc_drum_mallet(drum)->stiffness);
+    TEST_ASSERT_EQUAL_DOUBLE(2.5, himc_drum_mallet(drum)->exponent);
     says("mallet 1e8 2.5 0.025");
+    TEST_ASSERT_DOUBLE_WITHIN(10, 1e8, himc_drum_mallet(drum)->stiffness);
+    TEST_ASSERT_EQUAL_DOUBLE(2.5, himc_drum_mallet(drum)->exponent);
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_drum_mallet(drum)->loss);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.025, himc_drum_mallet(drum)->mass);
     TEST_ASSERT_EQUAL_UINT(revision + 5, himc_drum_revision(drum));

@@ -135,8 +135,9 @@ static double energy(int count)
     return sum;
 }
 
-// a blow of `count` sticks: the energy's largest drift and step up, as fractions of it
-static void blow(int count, double k, double mu, double *drift, double *rise)
+// a blow of `count` sticks: the energy's largest drift, and growth above its lowest so far, as
+// fractions of it
+static void blow(int count, double k, double mu, double *drift, double *growth)
 {
     remake(RATE);
     place(0, -0.75, 0, 8, k);
@@ -145,14 +146,14 @@ static void blow(int count, double k, double mu, double *drift, double *rise)
     place(3, -0.75, 0, 6, k);
     for (int i = 0; i < count; i++)
         stick[i].head.loss = mu;
-    double start = energy(count), before = start, most = 0;
-    *drift = *rise = 0;
+    double start = energy(count), lowest = start, most = 0;
+    *drift = *growth = 0;
     for (int n = 0; n < 1200; n++) {
         himc_contact_step(membrane, sticks, count);
         double now = energy(count);
         *drift = fmax(*drift, fabs(now - start) / start);
-        *rise = fmax(*rise, (now - before) / start);
-        before = now;
+        *growth = fmax(*growth, (now - lowest) / start);
+        lowest = fmin(lowest, now);
         most = fmax(most, himc_membrane_rise(membrane));
     }
     TEST_ASSERT_TRUE(most > 50);
@@ -163,9 +164,9 @@ static void test_glide_keeps_energy_when_nothing_is_lossy_with_any_sticks(void)
     double worst = 0;
     head.decay_constant = head.decay_square = 0;
     for (int count = 1; count <= STICKS; count++) {
-        for (double k = 1e6; k < 2e12; k *= 1000) {
-            double drift, rise;
-            blow(count, k, 0, &drift, &rise);
+        for (double k = 1e6; k < 2e12; k *= 100) {
+            double drift, growth;
+            blow(count, k, 0, &drift, &growth);
             worst = fmax(worst, drift);
         }
     }
@@ -181,13 +182,13 @@ static void test_glide_energy_never_grows_in_any_step_with_losses_air_and_sticks
     head.air = true;
     for (int count = 1; count <= STICKS; count++) {
         for (double k = 1e6; k < 2e12; k *= 100) {
-            double drift, rise;
-            blow(count, k, 0.2, &drift, &rise);
-            worst = fmax(worst, rise);
+            double drift, growth;
+            blow(count, k, 0.2, &drift, &growth);
+            worst = fmax(worst, growth);
         }
     }
-    printf("largest step up %.2g of the blow\n", worst);
-    TEST_ASSERT_TRUE(worst < 1e-13);
+    printf("largest growth %.2g of the blow\n", worst);
+    TEST_ASSERT_TRUE(worst < 1e-12);
 }
 
 static void test_glide_ends_with_the_sound_and_gives_the_same_bits_in_any_blocks(void)

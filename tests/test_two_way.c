@@ -91,7 +91,7 @@ static result strike(double k, double rate, int samples, int steps)
         for (int i = 0; i < n; i++, played++) {
             himc_contact_step(membrane, &one, 1);
             impulse += stick.force / rate;
-            r.force = fmax(r.force, stick.force);
+            r.force = fmax(r.force, fmax(stick.force, stick.peak));
             r.contact += stick.force > 0 ? 1 / rate : 0;
         }
         r.impulse += impulse;
@@ -108,11 +108,9 @@ static result strike(double k, double rate, int samples, int steps)
 
 static void test_two_way_contact_is_that_of_a_fine_simulation_of_arm_and_head_together(void)
 {
-    // soft, medium and hard felt, wood: wood first meets the head in a spike of a few samples, and
+    // soft, medium and hard felt, wood, which first meets the head in a spike of a few samples and
     // parts from it grazing
     static const double k[] = {1e7, 1.6e8, 1e9, 1e10};
-    static const double impulse[] = {1e-3, 1e-3, 1e-3, 2e-3}, force[] = {1e-2, 1e-2, 1e-2, 5e-2};
-    static const double contact[] = {2e-2, 2e-2, 2e-2, 6e-2};
     for (int i = 0; i < 4; i++) {
         result fine = strike(k[i], FINE, 1, 1), now = strike(k[i], 48000, 24, 5);
         printf("k %.2g: impulse %.4f Ns (%+.3f %%), force %.1f N (%+.2f %%), contact %.2f ms "
@@ -120,9 +118,9 @@ static void test_two_way_contact_is_that_of_a_fine_simulation_of_arm_and_head_to
                k[i], fine.impulse, 100 * (now.impulse / fine.impulse - 1), fine.force,
                100 * (now.force / fine.force - 1), fine.contact * 1e3,
                100 * (now.contact / fine.contact - 1));
-        TEST_ASSERT_DOUBLE_WITHIN(impulse[i] * fine.impulse, fine.impulse, now.impulse);
-        TEST_ASSERT_DOUBLE_WITHIN(force[i] * fine.force, fine.force, now.force);
-        TEST_ASSERT_DOUBLE_WITHIN(contact[i] * fine.contact, fine.contact, now.contact);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3 * fine.impulse, fine.impulse, now.impulse);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-2 * fine.force, fine.force, now.force);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-2 * fine.contact, fine.contact, now.contact);
     }
 }
 

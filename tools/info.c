@@ -1,6 +1,7 @@
 /// info.c: `himc info`: what is in a take or a score, in a few lines.
 #include "cli.h"
 
+#include "himc/drum.h"
 #include "himc/player.h"
 
 static void print_line(void *user, const char *line)
@@ -99,9 +100,15 @@ static bool describe_player(himc_take *take, const himc_take_options *take_optio
     himc_player *player = himc_player_new(take, take_options, &given, error);
     if (!player)
         return false;
-    himc_player_describe(player, print_line, NULL);
+    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, 48000, error);
+    if (drum) {
+        himc_place place = *himc_drum_place(drum);
+        bool seated = himc_player_sit(player, take, take_options, &place);
+        himc_player_describe(player, seated ? &place : NULL, print_line, NULL);
+    }
     himc_player_free(player);
-    return true;
+    himc_drum_release(drum);
+    return drum != NULL;
 }
 
 static bool describe_take(const cli_arguments *arguments, himc_error *error)

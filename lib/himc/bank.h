@@ -29,6 +29,11 @@ HIMC_RT int himc_bank_padded(const himc_bank *bank);
 /// are silent: they would be heard at a wrong pitch.
 HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
                            double rate);
+/// From the next himc_bank_set on, a sample can also be stepped through in so many parts.
+HIMC_RT void himc_bank_divide(himc_bank *bank, int parts);
+/// What a step is in all functions below that step, push or answer: gear 0 a whole sample, 1 a part.
+#define HIMC_BANK_GEARS 2
+HIMC_RT void himc_bank_shift(himc_bank *bank, int gear);
 /// Those that swing (not silent).
 HIMC_RT int himc_bank_count(const himc_bank *bank);
 

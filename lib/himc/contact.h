@@ -29,11 +29,15 @@ typedef struct himc_stick {
     double acceleration;     ///< without contact (m/s^2, up positive)
     double x, y;             ///< place on the head (m)
     double height, velocity; ///< up positive (m, m/s)
-    double force;            ///< of the last sample (N, >= 0, on the stick upwards)
+    double force;            ///< of the last sample, its mean (N, >= 0, on the stick upwards)
     bool one_way;  ///< the stick meets a head at rest; the head's vibration does not push back
     bool touching; ///< c > 0 after the last sample; contact.c's own, false to begin with
     double touch_x, touch_y; ///< where, while it touches (m); contact.c's own
+    double dent;             ///< of the head under it after that (m); contact.c's own
     double peak;             ///< largest force of this touch (N); contact.c's own
+    unsigned touches;        ///< begun so far, chatter counted once; contact.c's own
+    double chatter;          ///< a force within this time (s) is still the same touch; its own
+    double impact;           ///< downward velocity as the touch began (m/s); contact.c's own
 } himc_stick;
 
 #define HIMC_STICKS 8
@@ -44,7 +48,8 @@ typedef struct himc_stick {
 /// One-way, the head is driven by F_s = k_s c^alpha with k_s = k F_m / HIMC_ONE_WAY_FORCE and F_m
 /// the largest force of the stick's motion in this touch (2012 paper, table 2 and equation 6: k
 /// proportional to F_m). At 100 N the head meets the mallet's own stiffness; softer blows meet
-/// softer felt.
+/// softer felt. F_s is never more than the motion's own force: the path does not yield as a stick
+/// does, and a head that swings back into it would be pushed without bound.
 #define HIMC_ONE_WAY_FORCE 100.0 // (N)
 
 /// What a finished contact was.

@@ -30,8 +30,8 @@ typedef struct himc_gain {
 /// What limits and strength had to do since this was cleared, joint by joint.
 typedef struct himc_strain {
     double measure[HIMC_JOINTS];  ///< himc_limit_measure at the last step
-    bool beyond[HIMC_JOINTS];     ///< gone beyond the bounds and not well within since
-    long hits[HIMC_JOINTS];       ///< times a joint went beyond
+    bool held[HIMC_JOINTS];       ///< at its bounds and not well within since
+    long hits[HIMC_JOINTS];       ///< times a joint came to its bounds
     double farthest[HIMC_JOINTS]; ///< largest angle beyond (rad)
     double torque[HIMC_JOINTS];   ///< largest asked for (N m)
     long weak[HIMC_JOINTS];       ///< steps in which that was more than the strength
@@ -45,8 +45,10 @@ typedef struct himc_controller {
     himc_solver solver;
     double damping;                 ///< lambda of the inverse kinematics (m), default 0.01
     double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in it, default 1 each
-    bool elbow; ///< the elbow's place comes second, before the rest of the posture; default false
-    double bandwidth;            ///< of computed torque, critically damped (Hz), default 20
+    bool aimless; ///< the null space of the tips is for nothing, as published; default false
+    bool elbow;   ///< the elbow's place comes second, before the rest of the posture; default false
+    double bandwidth; ///< of computed torque, critically damped (Hz), default 20
+    double step;      ///< of the physics (s), over which servos are implicit; 0: explicit
     himc_gain gain[HIMC_JOINTS]; ///< of the PD laws
     bool gain_set
         [HIMC_JOINTS]; ///< by the user: computed torque uses it too, over the joint's inertia
@@ -66,8 +68,8 @@ typedef struct himc_reference {
 } himc_reference;
 
 /// Default gains: stiffness I w^2 and damping 2 I w, critically damped, I the inertia of all that
-/// hangs on the joint in the given posture about each axis (about a segment's own length its
-/// own), w three times 2 pi 8 Hz at the shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
+/// hangs on the joint in the given posture about each axis, w three times 2 pi 8 Hz at the
+/// shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
 HIMC_RT void himc_controller_init(himc_controller *controller, const himc_skeleton *skeleton,
                                   const himc_body_state *posture);
 

@@ -63,6 +63,34 @@ HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
 /// sound goes on.
 HIMC_RT void himc_drum_realign(himc_drum *drum, int ahead);
 
+/// How blows become sound: by the head's modes, or by whoever asks for its touches (by signals, or
+/// clips of recorded sound). The head goes on swinging and pushing back in any case.
+typedef enum himc_technique {
+    HIMC_TECHNIQUE_MODAL,
+    HIMC_TECHNIQUE_SIGNAL,
+    HIMC_TECHNIQUE_CLIP
+} himc_technique;
+
+/// "modal", "signal", "clip".
+const char *himc_technique_name(himc_technique technique);
+/// What `technique` has set; while it is not modal the sound has faded (10 ms).
+HIMC_RT himc_technique himc_drum_technique(const himc_drum *drum);
+/// Whether somebody asks for its touches and sounds them. Until then modal alone is allowed.
+void himc_drum_set_answered(himc_drum *drum, bool answered);
+
+/// A blow as it begins, whoever strikes.
+typedef struct himc_touch {
+    int64_t at;      ///< its first sample, counted as himc_drum_time does
+    double x, y;     ///< place on the head (m)
+    double velocity; ///< of impact, downward positive (m/s)
+    double place;    ///< distance from the centre per radius, 0 .. 1
+    double pitch;    ///< of the head's principal mode (Hz)
+} himc_touch;
+
+/// The oldest touch that nobody has asked for; of more than 64 the latest are kept. False if none
+/// waits.
+HIMC_RT bool himc_drum_touch_next(himc_drum *drum, himc_touch *touch);
+
 /// Who advances this drum: the performer that has taken it, or nobody (then its own object does).
 typedef struct himc_drum_driver {
     void (*advance_to)(void *performer,

@@ -25,6 +25,7 @@
 #include "himc/skeleton.h"
 #include "himc/pose.h"
 #include "himc/limits.h"
+#include "himc/reach.h"
 
 // what to play: written or captured
 #include "himc/command.h"

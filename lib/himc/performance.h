@@ -45,6 +45,16 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
 
+#define HIMC_APPROACH \
+    1.0 ///< from wherever the sticks are to the beginning of a take, at `play` (s)
+
+/// What the `take` command does, with a take that is in memory (borrowed); `name` begins notes and
+/// errors.
+bool himc_performance_play_take(himc_performance *performance, himc_take *take, const char *name,
+                                himc_error *error);
+/// Added to the coordinates of the take being played to make ours (m).
+himc_vec3 himc_performance_take_offset(const himc_performance *performance);
+
 /// From now on the simulated segments weigh `factor` (HIMC_SEGMENTS, 0.2 .. 5; NULL for 1) times
 /// what control believes, inertia included: what an uncertain body does to control. The body is
 /// put anew where the targets have it.
@@ -113,6 +123,7 @@ typedef struct himc_motion_row {
     double force[HIMC_HANDS];     ///< largest since the last row (N)
     himc_vec3 joint[HIMC_JOINTS]; ///< rotation vector from the zero pose, parent's frame (rad)
     himc_vec3 elbow[HIMC_HANDS];  ///< position (m)
+    double limit[HIMC_JOINTS];    ///< himc_limit_measure: above 1 beyond the bounds; 0 without any
 } himc_motion_row;
 
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it.
@@ -144,6 +155,7 @@ typedef struct himc_performance_stats {
     double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)
     double longest_latency; ///< of all hits (s)
     long recoveries;        ///< times a non-finite state was met and the last good one restored
+    long limit_hits;        ///< times a joint came to its bounds
     long events_lost;       ///< because nobody took them
     double sample_rate, physics_rate, task_rate; ///< in force (Hz)
 } himc_performance_stats;

@@ -22,11 +22,12 @@ typedef struct himc_player {
     himc_pose mean;              ///< default posture: means of the known, the natural ones else
     int frames;                  ///< of the take
     himc_pose *pose;    ///< (frames), owned; NULL if no joint is known. Joints not known as in mean
+    bool walks;         ///< too far for a held pelvis: postures are those about the moving hips
     bool placed;        ///< the take shows where the player is: hips or shoulders
-    himc_vec3 hips;     ///< between the hip joints, in the take (m)
+    himc_vec3 hips;     ///< between the hip joints, in the take (m); mean, or by himc_player_sit
     bool seated;        ///< himc_player_sit has put the player where config.seat and offset say
     himc_vec3 offset;   ///< to be added to the take's coordinates to make ours (m)
-    char notes[4][192]; ///< what is missing or was repaired
+    char notes[8][192]; ///< what is missing or was repaired
     int note_count;
 } himc_player;
 
@@ -38,15 +39,17 @@ himc_player *himc_player_new(himc_take *take, const himc_take_options *options,
                              const himc_skeleton_config *given, himc_error *error);
 void himc_player_free(himc_player *player);
 
-/// Puts a placed player over the world's origin and raises or lowers the seat so that the take's
-/// strikes meet a head at the drum's height. `drum` is moved under the strikes where they would
-/// miss the head, or where no seat (0.3 .. 1.3 m) would do. False, and nothing changed, if the
-/// player is not placed or the take has no strikes.
+/// Puts the player over the world's origin. One that the take places has the seat raised or lowered
+/// so that the take's strikes meet a head at the drum's height; `drum` is moved under the strikes
+/// where they would miss the head, or where no seat (0.3 .. 1.3 m) would do. One that it does not
+/// place sits where the strikes fall on the drum's usual spot. False, and nothing changed, if the
+/// take has no strikes.
 bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
                      himc_place *drum);
 
-/// One line per fact, for `himc info`. A line is at most 255 characters.
-void himc_player_describe(const himc_player *player, void (*line)(void *, const char *),
-                          void *user);
+/// One line per fact, for `himc info`; with `drum` (NULL if the player is not seated) where it
+/// stands. A line is at most 255 characters.
+void himc_player_describe(const himc_player *player, const himc_place *drum,
+                          void (*line)(void *, const char *), void *user);
 
 #endif

@@ -61,6 +61,9 @@ typedef struct himc_skeleton_config {
 
 himc_skeleton_config himc_skeleton_default(void);
 
+/// Height of the hip joints above the floor (m).
+double himc_skeleton_seat(const himc_skeleton_config *config);
+
 typedef struct himc_segment {
     int parent;        ///< -1 for the pelvis
     double mass;       ///< (kg)

@@ -43,6 +43,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     }
     snprintf(drum->name, sizeof drum->name, "%s", name);
     drum->references = 1;
+    drum->level = 1;
     drum->membrane = membrane;
     himc_drum_mallet_preset("medium", &drum->mallet);
     snprintf(drum->mallet_name, sizeof drum->mallet_name, "medium");
@@ -163,8 +164,9 @@ static int channels(const himc_drum *drum)
 static void keep(himc_drum *drum)
 {
     size_t at = drum->time++ % HIMC_DRUM_RING;
+    double level = himc_drum_loudness(drum);
     for (int k = 0, count = channels(drum); k < HIMC_PICKUPS; k++)
-        drum->sound[k][at] = k < count ? himc_membrane_heard_by(drum->membrane, k) : 0;
+        drum->sound[k][at] = k < count ? level * himc_membrane_heard_by(drum->membrane, k) : 0;
     drum->seen[at] = himc_membrane_seen(drum->membrane);
 }
 
@@ -180,8 +182,9 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
         into[k] = heard[k];
     himc_membrane_run_all(drum->membrane, n, into, seen);
     for (int i = 0; i < n; i++, drum->time++) {
+        double level = himc_drum_loudness(drum);
         for (int k = 0; k < HIMC_PICKUPS; k++)
-            drum->sound[k][drum->time % HIMC_DRUM_RING] = heard[k][i];
+            drum->sound[k][drum->time % HIMC_DRUM_RING] = level * heard[k][i];
         drum->seen[drum->time % HIMC_DRUM_RING] = seen[i];
     }
     for (int k = 0; k < count; k++) {
@@ -199,7 +202,13 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     if (force != 0)
         himc_membrane_push(drum->membrane, drum->spot_x, drum->spot_y, force);
     int count = given + himc_drum_add_mallets(drum, all + given);
+    unsigned known[2 * HIMC_STICKS];
+    for (int k = 0; k < count; k++)
+        known[k] = all[k]->touches;
     himc_contact_step(drum->membrane, all, count);
+    for (int k = 0; k < count; k++)
+        if (all[k]->touches != known[k])
+            himc_drum_keep_touch(drum, all[k]);
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;

@@ -302,6 +302,23 @@ static bool set_shape(himc_drum *drum, const himc_command *c, himc_error *error)
     return take_shape(drum, &shape, &head, error);
 }
 
+static bool set_technique(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    int wanted = HIMC_TECHNIQUE_MODAL;
+    while (is_symbol(c, 0) && wanted <= HIMC_TECHNIQUE_CLIP &&
+           strcmp(c->atom[0].symbol, himc_technique_name((himc_technique)wanted)) != 0)
+        wanted++;
+    if (c->count != 1 || !is_symbol(c, 0) || wanted > HIMC_TECHNIQUE_CLIP)
+        return himc_error_set(error, "technique: allowed modal signal clip");
+    if (wanted != HIMC_TECHNIQUE_MODAL && !drum->answered)
+        return himc_error_set(error,
+                              "technique: %s, allowed modal here: signal and clip are patches, "
+                              "[technique~ NAME] in Pure Data",
+                              c->atom[0].symbol);
+    drum->technique = (himc_technique)wanted;
+    return true;
+}
+
 static bool strike(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     return numbers(c, "strike", 3, error) &&
@@ -332,6 +349,7 @@ bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error 
     case HIMC_COMMAND_PICKUP: return set_pickup(drum, command, error);
     case HIMC_COMMAND_PICKUPS: return set_pickups(drum, command, error);
     case HIMC_COMMAND_CHANNEL: return set_channel(drum, command, error);
+    case HIMC_COMMAND_TECHNIQUE: return set_technique(drum, command, error);
     case HIMC_COMMAND_STRIKE: return strike(drum, command, error);
     default: return himc_error_set(error, "command %d: not one to a drum", (int)command->id);
     }
@@ -345,8 +363,8 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
     snprintf(text, size,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), "
-             "mallet %s, at %.4g %.4g %.4g m",
+             "mallet %s, technique %s, at %.4g %.4g %.4g m",
              drum->name, head->radius, head->tension, head->density, principal, head->modes,
-             himc_membrane_audible(drum->membrane), drum->mallet_name, p->center.x, p->center.y,
-             p->center.z);
+             himc_membrane_audible(drum->membrane), drum->mallet_name,
+             himc_technique_name(drum->technique), p->center.x, p->center.y, p->center.z);
 }

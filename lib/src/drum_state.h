@@ -1,5 +1,5 @@
-/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets)
-/// and drum_command.c.
+/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets),
+/// drum_touch.c (blows told as they begin) and drum_command.c.
 #ifndef HIMC_DRUM_STATE_H
 #define HIMC_DRUM_STATE_H
 
@@ -8,6 +8,7 @@
 #define DRUM_WAITING 64
 #define DRUM_REPORTS 64
 #define DRUM_MAX_DELAY 8192
+#define DRUM_TOUCHES 64
 
 /// A strike that is to begin with sample `at`.
 typedef struct drum_waiting {
@@ -45,6 +46,11 @@ struct himc_drum {
     drum_mallet mallets[HIMC_STICKS];
     himc_contact_report reports[DRUM_REPORTS]; ///< ring, oldest first
     int report_first, report_count;
+    himc_technique technique;
+    bool answered;
+    double level;                     ///< that the head's own sound has faded to, 0 .. 1
+    himc_touch touches[DRUM_TOUCHES]; ///< ring, oldest first; `at` is in samples of `time`
+    int touch_first, touch_count;
 };
 
 /// Launches the strikes that are due while a mallet is free; the rest go on waiting.
@@ -56,6 +62,11 @@ HIMC_RT int himc_drum_until_launch(const himc_drum *drum, int most);
 HIMC_RT int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks);
 /// Keeps the books of the mallets after a sample: touch, peak, impulse, and the end.
 HIMC_RT void himc_drum_follow_mallets(himc_drum *drum);
+
+/// Keeps the touch that this stick has begun in the last sample.
+HIMC_RT void himc_drum_keep_touch(himc_drum *drum, const himc_stick *stick);
+/// Level of the head's own sound in the coming sample.
+HIMC_RT double himc_drum_loudness(himc_drum *drum);
 
 /// The preset's numbers; false if there is none of that name.
 bool himc_drum_mallet_preset(const char *name, himc_mallet_head *head);

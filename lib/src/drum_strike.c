@@ -119,7 +119,7 @@ static void follow(himc_drum *drum, drum_mallet *m)
             m->touch = drum->time - 1;
         m->touched = true;
         m->release = drum->time;
-        m->report.force = fmax(m->report.force, s->force);
+        m->report.force = fmax(m->report.force, fmax(s->force, s->peak));
         m->report.impulse += s->force / drum->rate;
     }
     m->age++;

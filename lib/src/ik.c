@@ -99,7 +99,9 @@ static spectrum spectrum_of(const himc_mat3 *gram)
     spectrum s;
     for (int i = 0; i < 9; i++)
         a[i / 3][i % 3] = gram->m[i / 3][i % 3];
-    for (int sweep = 0; sweep < 8; sweep++) {
+    double trace = a[0][0] + a[1][1] + a[2][2];
+    for (int sweep = 0; sweep < 8 && fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]) > 1e-17 * trace;
+         sweep++) {
         jacobi_rotate(a, v, 0, 1);
         jacobi_rotate(a, v, 0, 2);
         jacobi_rotate(a, v, 1, 2);

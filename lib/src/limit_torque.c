@@ -1,179 +1,218 @@
-/// limit_torque.c: a joint beyond its bounds comes back at least as fast as a critically damped
-/// spring would bring it (2012 paper, section 3.1: the torque towards the nearest orientation
-/// within):
+/// limit_torque.c: joints beyond their bounds are brought back towards the nearest orientation
+/// within (2012 paper, section 3.1), by accelerations where the law asks for those, by torques where
+/// it makes those. Limits win over tips, tips over posture.
 ///
-///     n . alpha >= w^2 e - 2 w n . omega,     e n = log(q^-1 q_lim),  e the angle it is beyond
+/// Computed torque: where a joint would be in a moment T is kept within its bounds,
+///     q_T = exp(omega T + alpha T^2 / 2) q,     alpha += 2 / T^2 log(q_T^-1 q_lim(q_T)),
+/// from outside e'' = -2 / T^2 e - 2 / T e', a spring damped by .71 of critical. A motion that turns
+/// back by itself is left alone, one along the limit slides freely. What that takes from the tips
+/// the arm's other freedoms give back: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
+/// directions of the corrections.
 ///
-/// and only along n, the way back, so that it slides along its limit freely. A spring beside the
-/// servo would share the error with it; an inequality wins.
-///
-/// Where accelerations are asked for (computed torque) they are corrected, and the arm's other
-/// freedoms give the tips back what that takes: d = P J' (J P J' + lambda^2)^-1 lost, P without
-/// the directions n. Where there are torques, each joint gets its own torque x n, x >= 0, such that
-/// A x + a_free >= a, A_kl = n_k M^-1 n_l: a linear complementarity problem, by projected
-/// Gauss-Seidel (Catto 2005). A torque that only acts inward takes energy from a joint going out.
+/// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion of
+/// that orientation, so that nothing damps the way along the limit; implicit over the step like the
+/// servos themselves, which drive no joint further out. It is a spring and a damper: it pumps no
+/// energy.
 #include "limit_torque.h"
 
-#define BANDWIDTH 40.0  // of the way back (Hz)
-#define FARTHEST 0.02   // what is beyond by more comes back no faster (rad)
-#define NEGLIGIBLE 1e-9 // beyond by less is within (rad)
-#define INSIDE 0.95     // a joint has to come back this far before it can hit its limit again
-#define DAMPING 0.01    // lambda, of what the tips get back (m)
-#define PASSES 3        // over joints that hold
-#define SWEEPS 12       // of Gauss-Seidel
+#define MOMENT 0.0056   // T: a spring of 40 Hz (s)
+#define RETURN 3.0      // speed of the way back from far beyond (rad/s)
+#define SPRING 60.0     // beside a servo (Hz)
+#define FARTHEST 0.02   // what is beyond by more is pulled no harder (rad)
+#define NEGLIGIBLE 1e-9 // what is beyond by less is within (rad)
+#define SOON 1e-4       // over which motion along a limit is seen (s)
+#define ENOUGH 0.01     // corrections smaller than that are none (rad/s^2)
+#define DAMPING 0.05    // lambda, of what the tips get back (m)
+#define PASSES 3        // of giving back: it may send out another joint
+#define INSIDE 0.95     // a joint held so near its bounds has hit them ...
+#define FREE 0.85       // ... and has to come back this far before it can hit them again
 
-static void count_measure(himc_strain *strain, int j, double measure, double angle)
+/// A joint in its parent's frame.
+typedef struct place {
+    himc_quat q;
+    himc_vec3 spin; // (rad/s)
+    double beyond;  // its bounds (rad)
+} place;
+
+/// Corrections of joints, each along one direction.
+typedef struct stops {
+    int count;
+    int joint[HIMC_JOINTS];
+    himc_vec3 inward[HIMC_JOINTS]; // unit vectors of the world
+    double more[HIMC_JOINTS];      // acceleration along them (rad/s^2)
+} stops;
+
+// how far a rotation is from another (rad)
+static double angle_between(himc_quat a, himc_quat b)
 {
-    if (!strain)
-        return;
-    strain->measure[j] = measure;
-    strain->farthest[j] = fmax(strain->farthest[j], angle);
-    if (angle > 0 && !strain->beyond[j])
-        strain->hits[j]++;
-    strain->beyond[j] = angle > 0 || (strain->beyond[j] && measure > INSIDE);
+    return himc_vec3_length(himc_quat_log(himc_quat_mul(a, himc_quat_conj(b))));
 }
 
-void himc_limits_meet(const himc_controller *c, const himc_skeleton *skeleton,
-                      const himc_body_state *s, himc_limit_hits *hits)
+static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
+                        const himc_body_state *s, place at[HIMC_JOINTS])
 {
-    const double w = 2 * HIMC_PI * BANDWIDTH;
-    hits->count = 0;
-    for (int j = 0; c->limits && j < HIMC_JOINTS; j++) {
+    for (int j = 0; j < HIMC_JOINTS; j++) {
         int p = skeleton->segment[j + 1].parent;
-        himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
-        double measure = himc_limit_measure(c->limits, j, q), angle = 0;
-        himc_vec3 back = {0, 0, 0};
-        if (measure > 1) {
-            himc_quat near = himc_limit_closest(c->limits, j, q);
-            back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(q)));
-            angle = himc_vec3_length(back);
-        }
-        if (angle < NEGLIGIBLE)
-            angle = 0;
-        count_measure(c->strain, j, measure, angle);
-        if (angle == 0)
+        himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
+        at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+        at[j].spin = himc_mat3_apply_transposed(&s->rotation[p], spin);
+        at[j].beyond = 0;
+        double measure = himc_limit_measure(c->limits, j, at[j].q);
+        if (measure > 1)
+            at[j].beyond = angle_between(himc_limit_closest(c->limits, j, at[j].q), at[j].q);
+        if (!c->strain)
             continue;
-        himc_vec3 n = himc_mat3_apply(&s->rotation[p], himc_vec3_scale(back, 1 / angle));
-        double rate = himc_vec3_dot(n, himc_vec3_sub(s->spin[j + 1], s->spin[p]));
-        hits->joint[hits->count] = j;
-        hits->inward[hits->count] = n;
-        hits->least[hits->count++] = w * w * fmin(angle, FARTHEST) - 2 * w * rate;
+        c->strain->measure[j] = measure;
+        c->strain->farthest[j] = fmax(c->strain->farthest[j], at[j].beyond);
+        c->strain->held[j] = c->strain->held[j] && measure > FREE;
     }
 }
 
-/// The joints hit, and which of them must be turned back.
-typedef struct holding {
-    const himc_limit_hits *hits;
-    bool held[HIMC_JOINTS]; // (hits->count)
-} holding;
+// what a joint's acceleration lacks, in its parent's frame (rad/s^2)
+static himc_vec3 correction(const himc_limits *limits, int j, const place *at, himc_vec3 alpha)
+{
+    himc_vec3 turn =
+        himc_vec3_madd(himc_vec3_scale(at->spin, MOMENT), 0.5 * MOMENT * MOMENT, alpha);
+    himc_quat then = himc_quat_mul(himc_quat_exp(turn), at->q);
+    himc_quat near = himc_limit_closest(limits, j, then);
+    himc_vec3 back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(then)));
+    double angle = himc_vec3_length(back), late = fmax(at->beyond - RETURN * MOMENT, 0);
+    if (angle <= late)
+        return himc_vec3_make(0, 0, 0);
+    return himc_vec3_scale(back, (1 - late / angle) * 2 / (MOMENT * MOMENT));
+}
 
-// accelerations of the arm that move its tip so and turn no held joint along its way back
-static void give_back(const holding *holding, const himc_arm_jacobian *jacobian, himc_hand hand,
+// the joints that these accelerations would take out of their bounds
+static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
+                       const himc_body_state *s, const place at[HIMC_JOINTS],
+                       const himc_vec3 *relative, stops *found)
+{
+    found->count = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        if (!c->limits->joint[j].bound)
+            continue;
+        int p = skeleton->segment[j + 1].parent;
+        // seen from the parent, which turns
+        himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
+        himc_vec3 alpha = himc_vec3_sub(relative[j], himc_vec3_cross(s->spin[p], spin));
+        alpha = himc_mat3_apply_transposed(&s->rotation[p], alpha);
+        himc_vec3 more = himc_mat3_apply(&s->rotation[p], correction(c->limits, j, &at[j], alpha));
+        double size = himc_vec3_length(more);
+        if (size < ENOUGH)
+            continue;
+        found->joint[found->count] = j;
+        found->inward[found->count] = himc_vec3_scale(more, 1 / size);
+        found->more[found->count++] = size;
+    }
+}
+
+static void count_hit(himc_strain *strain, int j)
+{
+    if (!strain || strain->measure[j] < INSIDE)
+        return;
+    strain->hits[j] += !strain->held[j];
+    strain->held[j] = true;
+}
+
+// accelerations of the arm that move its tip so and turn no stopped joint along its way back
+static void give_back(const stops *stop, const himc_arm_jacobian *jacobian, himc_hand hand,
                       himc_vec3 lost, himc_vec3 wanted[HIMC_JOINTS])
 {
     himc_vec3 way[HIMC_ARM_JOINTS] = {{0, 0, 0}};
     himc_mat3 gram = jacobian->gram;
-    for (int h = 0; h < holding->hits->count; h++)
+    for (int h = 0; h < stop->count; h++)
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            if (holding->held[h] && holding->hits->joint[h] == himc_arm_joint(hand, k))
-                way[k] = holding->hits->inward[h];
+            if (stop->joint[h] == himc_arm_joint(hand, k))
+                way[k] = stop->inward[h];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_vec3 v = himc_vec3_cross(way[k], jacobian->lever[k]);
         const double b[3] = {v.x, v.y, v.z};
         for (int i = 0; i < 9; i++)
-            gram.m[i / 3][i % 3] -= b[i / 3] * b[i % 3];
+            gram.m[i / 3][i % 3] -= jacobian->weight[k] * b[i / 3] * b[i % 3];
     }
     for (int i = 0; i < 3; i++)
         gram.m[i][i] += DAMPING * DAMPING;
     himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);
     himc_vec3 f = himc_mat3_apply(&inverse, lost);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        himc_vec3 d = himc_vec3_cross(jacobian->lever[k], f);
-        d = himc_vec3_madd(d, -himc_vec3_dot(d, way[k]), way[k]);
-        int j = himc_arm_joint(hand, k);
-        wanted[j] = himc_vec3_add(wanted[j], d);
+        himc_vec3 d = himc_vec3_scale(himc_vec3_cross(jacobian->lever[k], f), jacobian->weight[k]),
+                  *to = &wanted[himc_arm_joint(hand, k)];
+        *to = himc_vec3_add(*to, himc_vec3_madd(d, -himc_vec3_dot(d, way[k]), way[k]));
     }
 }
 
-// turns back those that would not turn back enough; true if one of them was not held yet
-static bool hold(holding *holding, himc_vec3 wanted[HIMC_JOINTS])
-{
-    const himc_limit_hits *hits = holding->hits;
-    bool more = false;
-    for (int h = 0; h < hits->count; h++) {
-        himc_vec3 *a = &wanted[hits->joint[h]], n = hits->inward[h];
-        double missing = hits->least[h] - himc_vec3_dot(n, *a);
-        if (missing <= 0)
-            continue;
-        *a = himc_vec3_madd(*a, missing, n);
-        more = more || !holding->held[h];
-        holding->held[h] = true;
-    }
-    return more;
-}
-
-void himc_limits_yield(const himc_limit_hits *hits, const himc_skeleton *skeleton,
+void himc_limits_yield(const himc_controller *c, const himc_skeleton *skeleton,
                        const himc_body_state *s, const himc_arm_jacobian jacobian[HIMC_HANDS],
                        himc_vec3 wanted[HIMC_JOINTS])
 {
-    holding holding = {.hits = hits};
+    place at[HIMC_JOINTS];
+    stops stop = {.count = 0};
     himc_vec3 before[HIMC_HANDS];
-    for (int hand = 0; hits->count > 0 && hand < HIMC_HANDS; hand++)
+    if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
+        return;
+    find_places(c, skeleton, s, at);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
         before[hand] = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
-    // what is given back may turn out another joint
-    for (int pass = 0; hold(&holding, wanted) && pass < PASSES; pass++)
-        for (int i = 0; i < HIMC_HANDS; i++) {
-            himc_hand hand = (himc_hand)i;
-            himc_vec3 now = himc_tip_acceleration(skeleton, s, hand, wanted);
-            himc_vec3 lost = himc_vec3_sub(before[i], now);
-            give_back(&holding, &jacobian[i], hand, lost, wanted);
+    for (int pass = 0; pass <= PASSES; pass++) {
+        find_stops(c, skeleton, s, at, wanted, &stop);
+        if (stop.count == 0)
+            break;
+        for (int h = 0; h < stop.count; h++) {
+            count_hit(c->strain, stop.joint[h]);
+            himc_vec3 *a = &wanted[stop.joint[h]];
+            *a = himc_vec3_madd(*a, stop.more[h], stop.inward[h]);
         }
-}
-
-/// Relative accelerations of the hit joints, each along its way back.
-typedef struct response {
-    double free[HIMC_JOINTS];              // under the torques as they are
-    double unit[HIMC_JOINTS][HIMC_JOINTS]; // [k][l]: of k for 1 N m at l
-} response;
-
-static void probe(const himc_limit_hits *hits, const himc_skeleton *skeleton,
-                  const himc_body_state *s, const himc_vec3 *torque, response *r)
-{
-    himc_articulation art;
-    himc_vec3 relative[HIMC_JOINTS] = {{0, 0, 0}}, pushed[HIMC_JOINTS];
-    himc_articulate(skeleton, s, &art);
-    himc_forward_dynamics(skeleton, s, &art, torque, NULL, relative);
-    for (int k = 0; k < hits->count; k++)
-        r->free[k] = himc_vec3_dot(hits->inward[k], relative[hits->joint[k]]);
-    for (int l = 0; l < hits->count; l++) {
-        himc_vec3 *at = &pushed[hits->joint[l]];
-        for (int j = 0; j < HIMC_JOINTS; j++)
-            pushed[j] = torque[j];
-        *at = himc_vec3_add(*at, hits->inward[l]);
-        himc_forward_dynamics(skeleton, s, &art, pushed, NULL, relative);
-        for (int k = 0; k < hits->count; k++)
-            r->unit[k][l] = himc_vec3_dot(hits->inward[k], relative[hits->joint[k]]) - r->free[k];
+        for (int hand = 0; pass < PASSES && hand < HIMC_HANDS; hand++) {
+            himc_vec3 now = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
+            himc_vec3 lost = himc_vec3_sub(before[hand], now);
+            give_back(&stop, &jacobian[hand], (himc_hand)hand, lost, wanted);
+        }
     }
 }
 
-void himc_limits_resist(const himc_limit_hits *hits, const himc_skeleton *skeleton,
-                        const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS])
+static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3 v)
 {
-    response r;
-    double x[HIMC_JOINTS] = {0};
-    if (hits->count == 0)
+    himc_vec3 local = himc_mat3_apply_transposed(rotation, v);
+    return himc_mat3_apply(rotation,
+                           himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
+}
+
+// the way to the nearest orientation within, and how fast that is left, in the parent's frame
+static void find_way(const himc_limits *limits, int j, const place *at, himc_vec3 *way,
+                     himc_vec3 *rate)
+{
+    himc_quat near = himc_limit_closest(limits, j, at->q);
+    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(at->spin, SOON)), at->q);
+    himc_quat moved = himc_quat_mul(himc_limit_closest(limits, j, next), himc_quat_conj(near));
+    *way = himc_quat_log(himc_quat_mul(near, himc_quat_conj(at->q)));
+    *way = himc_vec3_scale(*way, fmin(1, FARTHEST / himc_vec3_length(*way)));
+    *rate = himc_vec3_madd(at->spin, -1 / SOON, himc_quat_log(moved));
+}
+
+void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
+                        const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS],
+                        himc_vec3 resistance[HIMC_JOINTS])
+{
+    const double w = 2 * HIMC_PI * SPRING, h = c->step;
+    place at[HIMC_JOINTS];
+    if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
-    probe(hits, skeleton, s, torque, &r);
-    for (int sweep = 0; sweep < SWEEPS; sweep++)
-        for (int k = 0; k < hits->count; k++) {
-            double missing = hits->least[k] - r.free[k];
-            for (int l = 0; l < hits->count; l++)
-                missing -= r.unit[k][l] * x[l];
-            if (r.unit[k][k] > 0)
-                x[k] = fmax(x[k] + missing / r.unit[k][k], 0);
-        }
-    for (int k = 0; k < hits->count; k++) {
-        himc_vec3 *at = &torque[hits->joint[k]];
-        *at = himc_vec3_madd(*at, x[k], hits->inward[k]);
+    find_places(c, skeleton, s, at);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 way, rate;
+        if (at[j].beyond < NEGLIGIBLE)
+            continue;
+        count_hit(c->strain, j);
+        find_way(c->limits, j, &at[j], &way, &rate);
+        const himc_mat3 *parent = &s->rotation[skeleton->segment[j + 1].parent];
+        const himc_mat3 *child = &s->rotation[j + 1];
+        himc_vec3 i = c->inertia[j], light = himc_vec3_make(1 / i.x, 1 / i.y, 1 / i.z);
+        himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);
+        himc_vec3 n = himc_mat3_apply(parent, himc_vec3_unit(way));
+        // what a servo does to a joint's inertia drives it no further out
+        double outward = fmin(himc_vec3_dot(n, scale_axes(child, light, torque[j])), 0);
+        a = himc_vec3_madd(himc_mat3_apply(parent, a), -outward, n);
+        torque[j] = himc_vec3_add(torque[j], scale_axes(child, i, a));
+        resistance[j] = himc_vec3_madd(resistance[j], h * w * (2 + h * w), i);
     }
 }

@@ -15,177 +15,44 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Mylar: Young's modulus, Poisson's ratio and density of the film, whose thickness follows from its
-// mass
-#define YOUNG 4e9    // (Pa)
-#define POISSON 0.38 //
-#define FILM 1390.0  // (kg/m^3)
-
-static void core_free(core *c)
-{
-    himc_modes_free(c->modes);
-    himc_bank_free(c->bank);
-    free(c->oscillators);
-    free(c->memory);
-}
-
-// hands out arrays of zeros, aligned as the bank likes them
-static double *take(double **memory, int length)
-{
-    double *array = *memory;
-    *memory += length;
-    return array;
-}
-
-static himc_tap take_tap(double **memory, int length)
-{
-    double *p = take(memory, length);
-    return (himc_tap){p, take(memory, length)};
-}
-
-static bool core_new(core *c, spot spots[SPOTS], const himc_shape *shape, int count,
-                     himc_error *error)
-{
-    *c = (core){.modes = himc_modes_new_of(shape, count, error),
-                .bank = himc_bank_new(count, error)};
-    c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
-    int padded = c->bank ? himc_bank_padded(c->bank) : 0;
-    size_t bytes = sizeof(double) * (size_t)padded * (10 + 3 * (HIMC_PICKUPS + SPOTS));
-    double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!c->modes || !c->bank || !c->oscillators || !memory) {
-        if (c->modes)
-            himc_error_set(error, "modes: no memory for %d modes", count);
-        core_free(c);
-        return false;
-    }
-    memset(memory, 0, bytes);
-    c->on_q = take(&memory, padded);
-    c->on_v = take(&memory, padded);
-    c->on_force = take(&memory, padded);
-    c->scratch = take(&memory, padded);
-    c->watch_answer = take(&memory, padded);
-    c->stretch = take(&memory, padded);
-    c->weight = take(&memory, padded);
-    c->pull.shape = take(&memory, padded);
-    c->watch = take_tap(&memory, padded);
-    for (int i = 0; i < HIMC_PICKUPS; i++)
-        c->ears[i] = (ear){take_tap(&memory, padded), take(&memory, padded)};
-    for (int i = 0; i < SPOTS; i++)
-        spots[i] = (spot){.shape = take(&memory, padded), .tap = take_tap(&memory, padded)};
-    return true;
-}
-
-static double kettle_of(const himc_head *head)
-{
-    return head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius);
-}
-
-// a mode as it sounds
-static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
-{
-    return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
-}
-
-double himc_membrane_film(const himc_membrane *m)
-{
-    double thickness = m->head.density / FILM;
-    double area = himc_modes_area(m->core.modes, m->head.radius);
-    return m->head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
-}
-
-// frequencies, decays and masses, and how the film is stretched: Lam_i is a bare mode's stiffness
-// per tension
-static void find_oscillators(himc_membrane *m)
-{
-    core *c = &m->core;
-    double root = sqrt(2 * himc_membrane_film(m));
-    for (int i = 0; i < m->head.modes; i++) {
-        himc_mode bare = himc_modes_get(c->modes, &m->head, i);
-        c->stretch[i] = root * bare.stiffness / m->head.tension;
-        // both of a pair are alike
-        if (bare.sine && i > 0) {
-            c->oscillators[i] = c->oscillators[i - 1];
-            continue;
-        }
-        himc_mode mode = loaded(m, &bare);
-        c->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
-    }
-}
-
-static void aim_watch(himc_membrane *m)
-{
-    core *c = &m->core;
-    himc_modes_shapes(c->modes, m->head.radius, m->watch_x, m->watch_y, c->scratch);
-    himc_bank_tap(c->bank, c->scratch, NULL, &c->watch);
-    himc_bank_answer(c->bank, &c->watch, c->watch_answer);
-    for (int i = 0; i < SPOTS; i++)
-        if (m->spots[i].used)
-            m->spots[i].seen = himc_bank_sum(c->bank, m->spots[i].shape, c->watch_answer);
-}
-
-static void aim_ear(himc_membrane *m, int index)
-{
-    core *c = &m->core;
-    ear *e = &c->ears[index];
-    const himc_pickup *pickup = &m->pickups[index];
-    himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
-    for (int i = 0; i < m->head.modes; i++) {
-        const himc_oscillator *o = &c->oscillators[i];
-        himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        mode.frequency = o->omega / (2 * HIMC_PI);
-        mode.decay = o->decay;
-        mode.mass = o->mass;
-        hearing h = himc_pickup_hears(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
-        c->on_q[i] = h.displacement;
-        c->on_v[i] = h.velocity;
-        c->on_force[i] = h.force;
-    }
-    himc_bank_tap(c->bank, c->on_q, c->on_v, &e->tap);
-    // through the state and, for accelerations, directly
-    himc_bank_answer(c->bank, &e->tap, e->answer);
-    for (int i = 0; i < himc_bank_count(c->bank); i++)
-        e->answer[i] += c->on_force[i];
-    for (int i = 0; i < SPOTS; i++)
-        if (m->spots[i].used)
-            m->spots[i].heard[index] = himc_bank_sum(c->bank, m->spots[i].shape, e->answer);
-}
-
-// the film's energy as the state has it
-static void find_tension(himc_membrane *m)
-{
-    tension *t = &m->tension;
-    t->s = 0;
-    for (int i = 0; i < m->head.modes; i++) {
-        double q, v;
-        himc_bank_state(m->core.bank, i, &q, &v);
-        t->s += 0.5 * m->core.stretch[i] * q * q;
-    }
-    t->on = t->s > 0;
-}
-
-// after head or rate changed: oscillators, taps; spots are computed again when asked for
-static void retune(himc_membrane *m)
-{
-    core *c = &m->core;
-    m->air = himc_air_around(&m->head, kettle_of(&m->head));
-    find_oscillators(m);
-    himc_bank_set(c->bank, c->oscillators, m->head.modes, m->rate);
-    himc_bank_weigh(c->bank, c->stretch, c->weight);
-    for (int i = 0; i < SPOTS; i++)
-        m->spots[i].used = false;
-    for (int i = 0; i < m->pickup_count; i++)
-        aim_ear(m, i);
-    aim_watch(m);
-    if (m->tension.on || m->head.glide > 0)
-        find_tension(m);
-}
-
 // what every pickup reads now and next
 typedef struct hearings {
     sound of[HIMC_PICKUPS];
 } hearings;
 
-static hearings listen(const himc_membrane *m)
+// what the film's pull drives each mode by, as `direct` hears it
+static double film_drive(const himc_membrane *m, const double *direct)
+{
+    double sum = 0;
+    for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
+        double q, v;
+        himc_bank_state(m->core.bank, i, &q, &v);
+        sum -= m->tension.s * m->core.stretch[i] * q * direct[i];
+    }
+    return sum;
+}
+
+// An acceleration is heard of a force directly, and much of that cancels what the bent head's modes
+// say; so the forces of the last sample count as if they went on.
+static void listen_to_forces(himc_membrane *m, int index, sound *heard)
+{
+    core *c = &m->core;
+    const ear *e = &c->ears[index];
+    himc_bank_answer(c->bank, &e->tap, c->scratch);
+    for (int i = 0; i < himc_bank_padded(c->bank); i++)
+        c->scratch[i] = e->answer[0][i] - c->scratch[i];
+    double film = m->tension.on ? film_drive(m, c->scratch) : 0;
+    heard->now += film;
+    heard->next += film;
+    for (int i = 0; i < m->pressed_count; i++) {
+        const push *p = &m->pressed[i];
+        const spot *s = himc_membrane_spot(m, p->x, p->y);
+        heard->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
+        heard->next += p->force * s->effect[0].heard[index];
+    }
+}
+
+static hearings listen(himc_membrane *m)
 {
     hearings h = {0};
     for (int i = 0; i < m->pickup_count; i++) {
@@ -193,6 +60,7 @@ static hearings listen(const himc_membrane *m)
         const fade *f = &m->fades[i];
         h.of[i] = (sound){himc_bank_read(m->core.bank, tap) + fade_at(f, f->at - 1),
                           himc_bank_peek(m->core.bank, tap) + fade_at(f, f->at)};
+        listen_to_forces(m, i, &h.of[i]);
     }
     return h;
 }
@@ -222,8 +90,8 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
         !himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
-    if (!m ||
-        !core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
+    if (!m || !himc_core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes,
+                             error)) {
         if (!m)
             himc_error_set(error, "membrane: no memory");
         free(m);
@@ -232,8 +100,9 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
     m->head = *head;
     m->pickups[0] = himc_pickup_default();
     m->pickup_count = 1;
+    m->part_last = true;
     m->rate = rate;
-    retune(m);
+    himc_membrane_retune(m);
     return m;
 }
 
@@ -241,7 +110,7 @@ void himc_membrane_free(himc_membrane *membrane)
 {
     if (!membrane)
         return;
-    core_free(&membrane->core);
+    himc_core_free(&membrane->core);
     free(membrane);
 }
 
@@ -249,7 +118,7 @@ void himc_membrane_free(himc_membrane *membrane)
 static bool resize(himc_membrane *m, int count, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!core_new(&fresh, m->spots, himc_modes_outline(old.modes), count, error))
+    if (!himc_core_new(&fresh, m->spots, himc_modes_outline(old.modes), count, error))
         return false;
     int common = count < m->head.modes ? count : m->head.modes;
     himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
@@ -259,8 +128,25 @@ static bool resize(himc_membrane *m, int count, himc_error *error)
         himc_bank_excite(fresh.bank, i, q, v);
     }
     m->core = fresh;
-    core_free(&old);
+    himc_core_free(&old);
     return true;
+}
+
+// modes from `first` on are new: where something presses they begin bent as they would be by now
+static void bend_new(himc_membrane *m, int first)
+{
+    for (int i = first; i < himc_bank_count(m->core.bank); i++) {
+        const himc_oscillator *o = &m->core.oscillators[i];
+        double q = 0;
+        for (int k = 0; k < m->pressed_count; k++) {
+            const push *p = &m->pressed[k];
+            q += himc_membrane_spot(m, p->x, p->y)->shape[i] * p->force;
+        }
+        if (q != 0)
+            himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
+    }
+    if (m->tension.on)
+        himc_membrane_find_tension(m);
 }
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
@@ -268,10 +154,14 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
     if (!check_head(head, himc_membrane_shape(membrane)->kind, error))
         return false;
     hearings before = listen(membrane);
-    if (head->modes != membrane->head.modes && !resize(membrane, head->modes, error))
+    double energy = himc_membrane_energy(membrane);
+    int known = membrane->head.modes;
+    if (head->modes != known && !resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
-    retune(membrane);
+    himc_membrane_retune(membrane);
+    bend_new(membrane, known);
+    himc_membrane_keep_energy(membrane, energy);
     splice(membrane, before);
     return true;
 }
@@ -282,16 +172,16 @@ bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
     core fresh, old = membrane->core;
     spot spots[SPOTS];
     if (!check_head(head, shape->kind, error) ||
-        !core_new(&fresh, spots, shape, head->modes, error))
+        !himc_core_new(&fresh, spots, shape, head->modes, error))
         return false;
     hearings before = listen(membrane);
     memcpy(membrane->spots, spots, sizeof spots);
     membrane->core = fresh;
     membrane->head = *head;
     membrane->tension = (tension){0};
-    retune(membrane);
+    himc_membrane_retune(membrane);
     splice(membrane, before);
-    core_free(&old);
+    himc_core_free(&old);
     return true;
 }
 
@@ -314,7 +204,7 @@ bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *picku
     for (int i = 0; i < SPOTS; i++)
         membrane->spots[i].used = false;
     for (int i = 0; i < count; i++)
-        aim_ear(membrane, i);
+        himc_membrane_aim_ear(membrane, i);
     splice(membrane, before);
     return true;
 }
@@ -337,7 +227,7 @@ bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *er
         s->next = s->now + (s->next - s->now) * (membrane->rate / rate);
     }
     membrane->rate = rate;
-    retune(membrane);
+    himc_membrane_retune(membrane);
     splice(membrane, before);
     return true;
 }
@@ -403,7 +293,7 @@ double himc_membrane_rate(const himc_membrane *membrane)
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
     himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
-    return loaded(membrane, &bare);
+    return himc_membrane_loaded(membrane, &bare);
 }
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
@@ -414,7 +304,7 @@ double himc_membrane_principal(const himc_membrane *membrane, const himc_head *h
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
     if (!head->air)
         return bare;
-    himc_air air = himc_air_around(head, kettle_of(head));
+    himc_air air = himc_air_around(head, himc_head_kettle(head));
     return bare * himc_air_on(&air, 1, 1, zero).frequency;
 }
 
@@ -444,7 +334,7 @@ void himc_membrane_watch(himc_membrane *membrane, double x, double y)
         return;
     membrane->watch_x = x;
     membrane->watch_y = y;
-    aim_watch(membrane);
+    himc_membrane_aim_watch(membrane);
 }
 
 void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)
@@ -488,7 +378,7 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)
 {
     himc_bank_excite(membrane->core.bank, index, q, v);
-    find_tension(membrane);
+    himc_membrane_find_tension(membrane);
 }
 
 void himc_membrane_rest(himc_membrane *membrane)

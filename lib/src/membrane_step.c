@@ -20,7 +20,8 @@
 
 #include <math.h>
 
-#define SLACK 1e-6 // of the tension
+#define SLACK 1e-6    // of the tension
+#define FINE 192000.0 // (Hz) steps of stiff contacts
 
 // finds the spot's shapes and what a newton there does
 static void place_spot(himc_membrane *m, spot *s, double x, double y)
@@ -31,10 +32,32 @@ static void place_spot(himc_membrane *m, spot *s, double x, double y)
     s->y = y;
     himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
     himc_bank_tap(c->bank, s->shape, NULL, &s->tap);
-    s->compliance = himc_bank_response(c->bank, s->shape, &s->tap);
-    for (int i = 0; i < m->pickup_count; i++)
-        s->heard[i] = himc_bank_sum(c->bank, s->shape, c->ears[i].answer);
-    s->seen = himc_bank_sum(c->bank, s->shape, c->watch_answer);
+    for (int g = 0; g < HIMC_BANK_GEARS; g++) {
+        effect *e = &s->effect[g];
+        himc_bank_shift(c->bank, g);
+        e->compliance = himc_bank_response(c->bank, s->shape, &s->tap);
+        for (int i = 0; i < m->pickup_count; i++)
+            e->heard[i] = himc_bank_sum(c->bank, s->shape, c->ears[i].answer[g]);
+        e->seen = himc_bank_sum(c->bank, s->shape, c->watch_answer[g]);
+    }
+    himc_bank_shift(c->bank, m->gear);
+}
+
+int himc_membrane_parts(const himc_membrane *membrane)
+{
+    return (int)ceil(FINE / membrane->rate);
+}
+
+void himc_membrane_part(himc_membrane *membrane, int index, int parts)
+{
+    membrane->gear = parts > 1;
+    membrane->part_last = index == parts - 1;
+    himc_bank_shift(membrane->core.bank, membrane->gear);
+}
+
+const effect *himc_spot_effect(const himc_membrane *membrane, const spot *s)
+{
+    return &s->effect[membrane->gear];
 }
 
 spot *himc_membrane_spot(himc_membrane *membrane, double x, double y)
@@ -81,9 +104,12 @@ void himc_spot_apply(himc_membrane *membrane, const spot *s, double force)
     if (force == 0)
         return;
     himc_bank_push(membrane->core.bank, s->shape, force);
+    const effect *e = himc_spot_effect(membrane, s);
     for (int i = 0; i < membrane->pickup_count; i++)
-        membrane->heard[i] += s->heard[i] * force;
-    membrane->seen += s->seen * force;
+        membrane->heard[i] += e->heard[i] * force;
+    membrane->seen += e->seen * force;
+    if (membrane->pressed_count < SPOTS)
+        membrane->pressed[membrane->pressed_count++] = (push){s->x, s->y, force};
     if (membrane->head.glide > 0 && !membrane->tension.on)
         membrane->tension = (tension){.on = true};
 }
@@ -102,9 +128,10 @@ static void advance(himc_membrane *m, int n, double *const *heard, double *seen)
     taps[count] = &c->watch;
     read[count] = seen;
     himc_bank_run(c->bank, n, taps, count + 1, read);
+    m->pressed_count = 0;
     for (int k = 0; k < count; k++) {
         fade *f = &m->fades[k];
-        for (int i = 0; i < n && f->at < f->length; i++)
+        for (int i = 0; i < n && m->part_last && f->at < f->length; i++)
             heard[k][i] += fade_at(f, f->at++);
         m->heard[k] = heard[k][n - 1];
     }
@@ -117,13 +144,14 @@ static void advance_stretched(himc_membrane *m)
     core *c = &m->core;
     tension *t = &m->tension;
     himc_bank_run_pulled(c->bank, c->weight, &c->pull);
+    m->pressed_count = 0;
     double yielding = 1 + 0.5 * c->pull.compliance;
     t->half = 0.5 / yielding;
     t->base = t->s + t->half * (c->pull.climb - c->pull.compliance * t->s);
     for (int k = 0; k < m->pickup_count; k++) {
         fade *f = &m->fades[k];
         m->heard[k] = himc_bank_read(c->bank, &c->ears[k].tap);
-        if (f->at < f->length)
+        if (m->part_last && f->at < f->length)
             m->heard[k] += fade_at(f, f->at++);
     }
     m->seen = himc_bank_displacement(c->bank, &c->watch);
@@ -150,8 +178,9 @@ void himc_membrane_settle(himc_membrane *membrane, double taken)
     double mean = t->base - t->half * taken;
     himc_bank_push(c->bank, c->pull.shape, -mean);
     for (int k = 0; k < membrane->pickup_count; k++)
-        membrane->heard[k] -= mean * himc_bank_sum(c->bank, c->pull.shape, c->ears[k].answer);
-    membrane->seen -= mean * himc_bank_sum(c->bank, c->pull.shape, c->watch_answer);
+        membrane->heard[k] -=
+            mean * himc_bank_sum(c->bank, c->pull.shape, c->ears[k].answer[membrane->gear]);
+    membrane->seen -= mean * himc_bank_sum(c->bank, c->pull.shape, c->watch_answer[membrane->gear]);
     t->s += 2 * (mean - t->s);
     if (++t->glance % GLANCE == 0 && stretched(membrane) < SLACK)
         *t = (tension){.on = false};
@@ -173,7 +202,8 @@ double himc_membrane_free_step(himc_membrane *membrane)
         taken += stretching ? himc_spot_pull(membrane, s) * p->force : 0;
         himc_spot_apply(membrane, s, -p->force);
     }
-    membrane->push_count = 0;
+    if (membrane->part_last)
+        membrane->push_count = 0;
     return taken;
 }
 

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define TORN 0.01     // a joint further apart holds nothing (m)
 #define FORESIGHT 1.2 // a stroke further ahead does not turn the trunk yet (s)
 
 himc_performance_config himc_performance_default(void)
@@ -155,6 +156,7 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
         c->damping = old.damping;
         c->bandwidth = old.bandwidth;
         c->elbow = old.elbow;
+        c->aimless = old.aimless;
         memcpy(c->weight, old.weight, sizeof c->weight);
     }
     for (int j = 0; j < HIMC_JOINTS; j++)
@@ -162,6 +164,8 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
             c->gain[j] = old.gain[j];
             c->gain_set[j] = true;
         }
+    himc_performance_keep_strength(p, &old);
+    himc_performance_renew_limits(p);
     p->replan = true;
     return true;
 }
@@ -187,6 +191,7 @@ void himc_performance_notice_drums(himc_performance *p)
         himc_planner_set_drum(p->planner, i, place);
         if (i == 0)
             p->posture.level = place->center.z + p->skeleton.mallet_radius;
+        himc_performance_renew_limits(p);
         p->replan = true;
     }
 }
@@ -195,23 +200,42 @@ void himc_performance_notice_drums(himc_performance *p)
 static void recover(himc_performance *p)
 {
     if (p->recoveries++ == 0)
-        himc_performance_note(p, "the body flew apart and was put back: gains too high for %g Hz",
+        himc_performance_note(p, "the body flew apart at a physics rate of %g Hz and was put back",
                               p->physics_rate);
     place_body(p);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         p->touch[hand] = (touch){.answered = p->touch[hand].answered};
 }
 
+// the engine keeps joints together to a micrometre; where it could not, numbers are still finite
+// but there is no body any more
+static bool torn_apart(const himc_performance *p)
+{
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *segment = &p->skeleton.segment[i];
+        himc_vec3 r = himc_mat3_apply(&p->state.rotation[segment->parent], segment->origin);
+        himc_vec3 gap =
+            himc_vec3_sub(himc_vec3_add(p->state.origin[segment->parent], r), p->state.origin[i]);
+        if (!(himc_vec3_dot(gap, gap) < TORN * TORN))
+            return true;
+    }
+    return false;
+}
+
 // Inverse kinematics, inverse dynamics, forward dynamics; the contact is solved inside the same
 // step
-static void step_dynamics(himc_performance *p, int n, double h)
+static void step_dynamics(himc_performance *p, int n, double h, bool tick)
 {
     himc_vec3 tip_force[HIMC_HANDS];
     himc_character_observe(p->character, &p->state);
+    if (tick && torn_apart(p))
+        recover(p);
     himc_performance_after_contact(p, step_time(p));
+    p->controller.step = h;
     himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
     himc_performance_contact(p, n, tip_force);
     himc_performance_measure_step(p);
+    himc_performance_push_body(p, step_time(p));
     if (!himc_character_step(p->character, p->torque, tip_force, h))
         recover(p);
 }
@@ -221,8 +245,11 @@ static void step_kinematics(himc_performance *p, int n)
 {
     himc_pose pose;
     himc_vec3 unused[HIMC_HANDS];
+    himc_vec3 rate[HIMC_JOINTS];
     memcpy(pose.joint, p->reference.posture.joint, sizeof pose.joint);
-    himc_pose_to_state(&p->skeleton, &pose, p->reference.posture.rate, &p->state);
+    memcpy(rate, p->reference.posture.rate, sizeof rate);
+    himc_performance_limit_shown(p, &pose, rate);
+    himc_pose_to_state(&p->skeleton, &pose, rate, &p->state);
     himc_performance_after_contact(p, step_time(p));
     himc_performance_contact(p, n, unused);
     himc_performance_measure_step(p);
@@ -242,7 +269,7 @@ static void performance_step(himc_performance *p)
     if (p->controller.mode == HIMC_PIPELINE_IK)
         step_kinematics(p, n);
     else
-        step_dynamics(p, n, n / p->config.sample_rate);
+        step_dynamics(p, n, n / p->config.sample_rate, tick);
     if (tick)
         himc_performance_motion_row(p, t);
     himc_performance_watch(p, t);

@@ -8,7 +8,6 @@
 
 #include <string.h>
 
-#define APPROACH 1.0        // from wherever the sticks are to the beginning of a take (s)
 #define DEEPEST_TARGET 0.01 // of a live target under the head (m)
 
 bool himc_performance_do_loop(himc_performance *p, const himc_command *c, himc_error *error)
@@ -63,6 +62,8 @@ void himc_performance_drop_track(himc_performance *p)
     himc_track_free(p->track);
     p->track = NULL;
     p->track_start = INFINITY;
+    p->has_learned = false;
+    himc_performance_renew_limits(p);
 }
 
 bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
@@ -75,12 +76,12 @@ bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_
 
 static void start_track(himc_performance *p, double t)
 {
-    double start = t + APPROACH;
+    double start = t + HIMC_APPROACH;
     himc_track_rewind(p->track);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (himc_track_present(p->track, (himc_hand)hand)) {
             himc_target now = p->reference.tip[hand];
-            himc_track_approach(p->track, (himc_hand)hand, &now, APPROACH);
+            himc_track_approach(p->track, (himc_hand)hand, &now, HIMC_APPROACH);
         }
     himc_track_approach_posture(p->track, &p->reference.posture);
     p->track_start = start;

@@ -76,8 +76,10 @@ static void adopt_manner(himc_performance *p, const himc_player *player)
 static bool adopt_player(himc_performance *p, const himc_player *player, const char *path,
                          himc_error *error)
 {
-    if (player->lengths == 0)
+    if (player->lengths == 0) {
+        memset(p->manner_known, 0, sizeof p->manner_known);
         return true;
+    }
     himc_skeleton_config old = p->body;
     p->body = player->config;
     adopt_manner(p, player);
@@ -97,7 +99,10 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     int drum;
     if (!himc_performance_ensure_drum(p, "", &drum, error))
         return false;
+    himc_limits learned;
     himc_place place = *himc_drum_place(p->drum[drum].drum);
+    if (!himc_performance_learn_limits(player, &learned, error))
+        return false;
     himc_player_sit(player, take, &p->take_options, &place);
     himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
     if (!track)
@@ -110,19 +115,34 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     note_reach(p, track, path);
     himc_performance_drop_track(p);
     p->track = track;
+    p->has_learned = player->pose != NULL;
+    if (p->has_learned)
+        p->learned = learned;
+    himc_performance_renew_limits(p);
     p->replan = true;
     return true;
 }
 
+bool himc_performance_play_take(himc_performance *p, himc_take *take, const char *name,
+                                himc_error *error)
+{
+    himc_player *player = himc_player_new(take, &p->take_options, &p->body, error);
+    bool played = player && play_take(p, take, player, name, error);
+    himc_player_free(player);
+    if (!played && error && strncmp(error->text, name, strlen(name)) != 0)
+        himc_error_prefix(error, "%s", name);
+    return played;
+}
+
 bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    const char *path = c->atom[0].symbol;
-    himc_take *take = himc_take_load(path, &p->take_options, error);
-    himc_player *player = take ? himc_player_new(take, &p->take_options, &p->body, error) : NULL;
-    bool read = take != NULL, played = player && play_take(p, take, player, path, error);
-    himc_player_free(player);
+    himc_take *take = himc_take_load(c->atom[0].symbol, &p->take_options, error);
+    bool played = take && himc_performance_play_take(p, take, c->atom[0].symbol, error);
     himc_take_free(take);
-    if (read && !played && error && strncmp(error->text, path, strlen(path)) != 0)
-        himc_error_prefix(error, "%s", path);
     return played;
+}
+
+himc_vec3 himc_performance_take_offset(const himc_performance *p)
+{
+    return p->track ? himc_track_offset(p->track) : himc_vec3_make(0, 0, 0);
 }

@@ -149,7 +149,8 @@ static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local,
     himc_drum *drum = p->drum[c->drum].drum;
     himc_vec3 n = himc_place_normal(himc_drum_place(drum));
     bool kinematic = p->controller.mode == HIMC_PIPELINE_IK;
-    c->stick.head = *himc_drum_mallet(drum);
+    if (!c->stick.touching) // mallets are changed in the air
+        c->stick.head = *himc_drum_mallet(drum);
     c->stick.mass = himc_effective_mass(&p->plant, &p->state, art, hand, n);
     c->stick.one_way = p->one_way;
     c->stick.x = local.x;
@@ -206,6 +207,9 @@ static double note_forces(himc_performance *p, himc_hand hand, int n, double vel
         c->peak_row = fmax(c->peak_row, force);
         impulse += force * dt;
     }
+    // within a sample a stiff contact's force is higher than its mean
+    if (c->touching)
+        c->strike.force = fmax(c->strike.force, c->stick.peak);
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     p->peak_force = fmax(p->peak_force, c->strike.force);

@@ -20,9 +20,7 @@
 #define REFERENCE_TORSO 0.5319  // hips to neck (m)
 #define LEAST 0.5               // of the reference: shorter and longer segments are not believed
 #define MOST 1.6
-#define LOWEST_SEAT 0.3 // (m)
-#define HIGHEST_SEAT 1.3
-#define ON_HEAD 0.97 // of the radius: strikes further out would miss
+#define WALK 0.15 // of the hips, RMS (m)
 
 typedef struct measure {
     int segment; // of the left side
@@ -173,6 +171,21 @@ static bool center_hips(player_points *p)
     return true;
 }
 
+// a held pelvis stands for one that sways a little, not for one that goes somewhere
+static void find_walk(const player_points *p, himc_vec3 mean, himc_player *player)
+{
+    double square = 0;
+    for (int i = 0; i < p->frames; i++) {
+        himc_vec3 d = himc_vec3_sub(p->x[POINT_HIPS][i], mean);
+        square += himc_vec3_dot(d, d) / p->frames;
+    }
+    player->walks = sqrt(square) > WALK;
+    if (player->walks)
+        himc_player_note(player,
+                         "the player walks: the hips move by %.2f m RMS, here they are held",
+                         sqrt(square));
+}
+
 // where the player is, by the hips, else by the shoulders of a body that sits as usual
 static void find_place(const player_points *p, const himc_skeleton *s, himc_player *player)
 {
@@ -183,6 +196,7 @@ static void find_place(const player_points *p, const himc_skeleton *s, himc_play
         player->hips =
             waist ? himc_vec3_sub(mean_place(p, POINT_WAIST), up) : mean_place(p, POINT_HIPS);
         player->placed = true;
+        find_walk(p, mean_place(p, POINT_HIPS), player);
         return;
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -258,45 +272,4 @@ void himc_player_free(himc_player *player)
         return;
     free(player->pose);
     free(player);
-}
-
-// the middle of the take's strikes; false without any
-static bool strike_place(himc_take *take, const himc_take_options *options, himc_vec3 *place)
-{
-    himc_take_tip tips[HIMC_HANDS];
-    if (!himc_take_tips(take, options, tips, NULL))
-        return false;
-    int count = himc_take_strikes(take, tips, NULL, 0);
-    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
-    bool found = strikes && himc_take_strikes(take, tips, strikes, count) > 0 &&
-                 himc_take_strike_place(strikes, count, place);
-    free(strikes);
-    return found;
-}
-
-bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
-                     himc_place *drum)
-{
-    himc_vec3 struck;
-    double radius = player->config.mallet_radius;
-    if (!player->placed || !strike_place(take, options, &struck))
-        return false;
-    himc_vec3 spot = himc_vec3_sub(struck, player->hips); // as the player sees it
-    himc_vec3 local = himc_place_from_world(drum, himc_vec3_make(spot.x, spot.y, drum->center.z));
-    if (hypot(local.x, local.y) > ON_HEAD * drum->radius) {
-        himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
-        double x, y;
-        himc_stroke_spot(&usual, drum->radius, &x, &y);
-        double far = hypot(spot.x, spot.y), away = far > 0.1 ? (far - x) / far : 1;
-        drum->center.x = far > 0.1 ? spot.x * away : spot.x - x;
-        drum->center.y = far > 0.1 ? spot.y * away : spot.y;
-        local = himc_place_from_world(drum, himc_vec3_make(spot.x, spot.y, drum->center.z));
-    }
-    double head = himc_place_to_world(drum, local.x, local.y).z + radius, seat = head - spot.z;
-    double kept = fmin(fmax(seat, LOWEST_SEAT), HIGHEST_SEAT);
-    drum->center.z += kept - seat;
-    player->config.seat = kept;
-    player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, kept - player->hips.z);
-    player->seated = true;
-    return true;
 }

@@ -47,6 +47,7 @@ typedef struct reader {
     himc_quat *node; // world rotations of the file's joints, or NULL
     limb_frame frame[LIMBS][HIMC_HANDS];
     himc_vec3 waist; // where the held pelvis ends (m), if hips are shown
+    himc_vec3 hips;  // mean of the centre between the hip joints (m)
     bool has_trunk;
 } reader;
 
@@ -140,14 +141,17 @@ static void prepare_limb(reader *r, int i, int hand)
     f->plane = himc_vec3_scale(himc_vec3_unit(sum), STRAIGHT);
 }
 
-// level, to the left of where the stick points
+// level, to the left of where the tip is as seen from the elbow: a raised stick itself may point up
+// or back
 static himc_vec3 across_stroke(const reader *r, int hand, int frame)
 {
     himc_vec3 *const *x = r->points->x;
-    int to = POINT_TIP + hand;
-    to = x[to] ? to : x[POINT_GRIP + hand] ? POINT_GRIP + hand : POINT_WRIST + hand;
-    int from = x[POINT_WRIST + hand] && to != POINT_WRIST + hand ? POINT_WRIST : POINT_ELBOW;
-    himc_vec3 d = between_points(r, from + hand, to, frame);
+    int from = POINT_ELBOW + hand, to = POINT_TIP + hand;
+    while (from < POINT_GRIP + hand && !x[from])
+        from += 2;
+    while (to > POINT_WRIST + hand && !x[to])
+        to -= 2;
+    himc_vec3 d = between_points(r, from, to, frame);
     return himc_vec3_make(-d.y, d.x, 0);
 }
 
@@ -174,10 +178,16 @@ static bool trunk_rotation(const reader *r, int frame, himc_quat *q)
     himc_vec3 *const *x = r->points->x;
     if (!r->has_trunk)
         return false;
-    himc_vec3 left = x[POINT_SHOULDER][frame], right = x[POINT_SHOULDER + 1][frame];
-    himc_vec3 top =
-        x[POINT_NECK] ? x[POINT_NECK][frame] : himc_vec3_scale(himc_vec3_add(left, right), 0.5);
-    himc_vec3 down = himc_vec3_unit(himc_vec3_sub(r->waist, top));
+    const himc_vec3 *neck = x[POINT_NECK], *lx = x[POINT_SHOULDER], *rx = x[POINT_SHOULDER + 1];
+    himc_vec3 left = lx ? lx[frame] : neck[frame], right = rx ? rx[frame] : neck[frame];
+    himc_vec3 top = neck ? neck[frame] : himc_vec3_scale(himc_vec3_add(left, right), 0.5);
+    himc_vec3 waist = r->waist;
+    if (r->player->walks)
+        waist = himc_vec3_add(waist, himc_vec3_sub(x[POINT_HIPS][frame], r->hips));
+    himc_vec3 down = himc_vec3_sub(waist, top);
+    if (himc_vec3_length(down) < 1e-6)
+        return false;
+    down = himc_vec3_unit(down);
     *q = frame_along(down, himc_vec3_sub(left, right));
     return true;
 }
@@ -193,6 +203,15 @@ static void turn_nodes(reader *r, int frame)
     }
 }
 
+// an end site has no rotation of its own
+static bool has_child(const himc_take *take, int node)
+{
+    for (int i = node + 1; i < himc_take_points(take); i++)
+        if (himc_take_parent(take, i) == node)
+            return true;
+    return false;
+}
+
 // neck, head and feet have only the skeleton's word for it
 static int plain_node(const reader *r, int segment)
 {
@@ -204,7 +223,8 @@ static int plain_node(const reader *r, int segment)
         which = POINT_ANKLE + segment - HIMC_LEFT_FOOT;
     else if (segment == HIMC_LEFT_TOES || segment == HIMC_RIGHT_TOES)
         which = POINT_TOE + segment - HIMC_LEFT_TOES;
-    return r->node && which >= 0 ? r->points->node[which] : -1;
+    int node = r->node && which >= 0 ? r->points->node[which] : -1;
+    return node >= 0 && has_child(r->points->take, node) ? node : -1;
 }
 
 static int limb_of(int segment)
@@ -272,16 +292,28 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
         free(r.node);
         return false;
     }
-    r.has_trunk = waist && points->x[POINT_SHOULDER] && points->x[POINT_SHOULDER + 1];
-    r.waist = waist ? *waist : himc_vec3_make(0, 0, 0);
+    // a shoulder that is not seen is where the neck is, for the direction across
+    int across = !!points->x[POINT_SHOULDER] + !!points->x[POINT_SHOULDER + 1];
+    r.has_trunk = waist && across + !!points->x[POINT_NECK] >= 2 && across > 0;
+    if (waist)
+        r.waist = *waist;
+    for (int i = 0; waist && i < points->frames; i++)
+        r.hips = himc_vec3_madd(r.hips, 1.0 / points->frames, points->x[POINT_HIPS][i]);
     for (int i = 0; i < LIMBS; i++)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
         read_frame(&r, skeleton, frame);
-    for (int j = 0; j < HIMC_JOINTS; j++)
+    int known = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])
             player->mean.joint[j] = mean_rotation(player->pose, points->frames, j);
+        known += player->known[j];
+    }
+    if (known == 0) {
+        free(player->pose);
+        player->pose = NULL;
+    }
     free(r.node);
     return true;
 }

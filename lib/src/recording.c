@@ -2,9 +2,9 @@
 ///
 /// A frame is the rotation of each joint in its parent's frame, in single precision: 1e-7 rad over
 /// an arm is a tenth of a micrometre. All memory is taken in advance, so that keeping a frame is
-/// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the
-/// two tips. A file of markers knows no rotations; there each segment has a second marker beside
-/// its joint, and one at its end where nothing is joined to it, which together hold them.
+/// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the two
+/// tips, then the ends of head and toes, without which a BVH would not have their rotations. A file
+/// of markers knows no rotations; there each segment has a second marker beside its joint.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/recording.h"
 
@@ -16,7 +16,8 @@
 #include <string.h>
 #include <strings.h>
 
-#define POINTS (HIMC_SEGMENTS + HIMC_HANDS)
+#define ENDS 3
+#define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
 #define BESIDE 0.05 // of a marker beside a joint, along the segment's y (m)
 
 typedef struct frame {
@@ -31,11 +32,38 @@ struct himc_recording {
     frame *frames; ///< owned (room)
 };
 
-static const char *const names[POINTS] = {
-    "Hips",        "Spine",        "Neck",          "Head",          "LeftArm",   "RightArm",
-    "LeftForeArm", "RightForeArm", "LeftHand",      "RightHand",     "LeftStick", "RightStick",
-    "LeftUpLeg",   "RightUpLeg",   "LeftLeg",       "RightLeg",      "LeftFoot",  "RightFoot",
-    "LeftToeBase", "RightToeBase", "LeftStick_end", "RightStick_end"};
+static const char *const names[POINTS] = {"Hips",
+                                          "Spine",
+                                          "Neck",
+                                          "Head",
+                                          "LeftArm",
+                                          "RightArm",
+                                          "LeftForeArm",
+                                          "RightForeArm",
+                                          "LeftHand",
+                                          "RightHand",
+                                          "LeftStick",
+                                          "RightStick",
+                                          "LeftUpLeg",
+                                          "RightUpLeg",
+                                          "LeftLeg",
+                                          "RightLeg",
+                                          "LeftFoot",
+                                          "RightFoot",
+                                          "LeftToeBase",
+                                          "RightToeBase",
+                                          "LeftStick_end",
+                                          "RightStick_end",
+                                          "Head_end",
+                                          "LeftToeBase_end",
+                                          "RightToeBase_end"};
+static const int ends[ENDS] = {HIMC_HEAD, HIMC_LEFT_TOES, HIMC_RIGHT_TOES};
+
+// the far end of a segment, in its frame
+static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
+{
+    return himc_vec3_scale(skeleton->segment[segment].axis, skeleton->segment[segment].length);
+}
 
 // opened as if to append: what is there stays until there is something to write
 static bool check_path(const char *path, himc_error *error)
@@ -109,24 +137,17 @@ const char *himc_recording_path(const himc_recording *r)
 static void fill_skeleton(himc_take *take, const himc_skeleton *skeleton)
 {
     for (int i = 0; i < POINTS; i++) {
-        bool tip = i >= HIMC_SEGMENTS;
+        int tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
         himc_take_set_name(take, i, names[i], strlen(names[i]));
-        take->parents[i] = tip ? HIMC_LEFT_STICK + i - HIMC_SEGMENTS : skeleton->segment[i].parent;
-        take->offsets[i] = tip ? skeleton->tip : skeleton->segment[i].origin;
+        take->parents[i] = end >= 0   ? ends[end]
+                           : tip >= 0 ? HIMC_LEFT_STICK + tip
+                                      : skeleton->segment[i].parent;
+        take->offsets[i] = end >= 0   ? far_end(skeleton, ends[end])
+                           : tip >= 0 ? skeleton->tip
+                                      : skeleton->segment[i].origin;
     }
     take->offsets[0] = himc_vec3_make(0, 0, 0);
 }
-
-// the ends of what nothing is joined to, sticks apart
-static const struct {
-    const char *name;
-    int segment;
-} ends[] = {{"Head_end", HIMC_HEAD},
-            {"LeftToeBase_end", HIMC_LEFT_TOES},
-            {"RightToeBase_end", HIMC_RIGHT_TOES}};
-
-#define ENDS ((int)(sizeof ends / sizeof ends[0]))
-#define MARKERS (POINTS + HIMC_SEGMENTS + ENDS)
 
 static bool has_skeleton(const himc_recording *r)
 {
@@ -143,25 +164,13 @@ static void name_markers(himc_take *take)
         int n = snprintf(side, sizeof side, "%s_side", names[i]);
         himc_take_set_name(take, POINTS + i, side, (size_t)n);
     }
-    for (int i = 0; i < ENDS; i++)
-        himc_take_set_name(take, POINTS + HIMC_SEGMENTS + i, ends[i].name, strlen(ends[i].name));
 }
 
-static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
+static void fill_markers(himc_take *take, int index, const himc_body_state *state)
 {
-    return himc_vec3_add(state->origin[i], himc_mat3_apply(&state->rotation[i], x));
-}
-
-static void fill_markers(himc_take *take, int index, const himc_skeleton *skeleton,
-                         const himc_body_state *state)
-{
-    himc_vec3 *x = himc_take_at(take, index, POINTS);
-    for (int i = 0; i < HIMC_SEGMENTS; i++)
-        x[i] = on_segment(state, i, himc_vec3_make(0, BESIDE, 0));
-    for (int i = 0; i < ENDS; i++) {
-        const himc_segment *s = &skeleton->segment[ends[i].segment];
-        himc_vec3 end = himc_vec3_scale(s->axis, s->length);
-        x[HIMC_SEGMENTS + i] = on_segment(state, ends[i].segment, end);
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 side = himc_mat3_apply(&state->rotation[i], himc_vec3_make(0, BESIDE, 0));
+        *himc_take_at(take, index, POINTS + i) = himc_vec3_add(state->origin[i], side);
     }
 }
 
@@ -176,9 +185,13 @@ static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton
     for (int i = 0; rotation && i < POINTS; i++)
         rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
     if (!rotation)
-        fill_markers(take, index, skeleton, &state);
+        fill_markers(take, index, &state);
     memcpy(himc_take_at(take, index, 0), state.origin, sizeof state.origin);
     memcpy(himc_take_at(take, index, HIMC_SEGMENTS), state.tip, sizeof state.tip);
+    for (int i = 0; i < ENDS; i++)
+        *himc_take_at(take, index, HIMC_SEGMENTS + HIMC_HANDS + i) =
+            himc_vec3_add(state.origin[ends[i]],
+                          himc_mat3_apply(&state.rotation[ends[i]], far_end(skeleton, ends[i])));
 }
 
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
@@ -191,8 +204,8 @@ himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
     snprintf(take->file, sizeof take->file, "%.180s", r->path);
     snprintf(take->format, sizeof take->format, "recording");
     bool skeleton = has_skeleton(r);
-    if (!himc_take_allocate(take, r->rate, r->count, skeleton ? POINTS : MARKERS, skeleton,
-                            error)) {
+    int points = skeleton ? POINTS : POINTS + HIMC_SEGMENTS;
+    if (!himc_take_allocate(take, r->rate, r->count, points, skeleton, error)) {
         himc_take_free(take);
         return NULL;
     }

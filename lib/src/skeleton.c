@@ -215,6 +215,11 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
     s->inertia = himc_vec3_make(ml2 * g[0] * g[0], ml2 * g[1] * g[1], ml2 * g[2] * g[2]);
 }
 
+double himc_skeleton_seat(const himc_skeleton_config *config)
+{
+    return config->seat > 0 ? config->seat : SEAT * config->height;
+}
+
 bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *config,
                         himc_error *error)
 {
@@ -230,7 +235,7 @@ bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *con
     merge_trunk(&skeleton->segment[HIMC_TRUNK]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         build_stick(&skeleton->segment[HIMC_LEFT_STICK + hand], skeleton->tip, config);
-    skeleton->root = himc_vec3_make(0, 0, config->seat > 0 ? config->seat : SEAT * config->height);
+    skeleton->root = himc_vec3_make(0, 0, himc_skeleton_seat(config));
     return true;
 }
 

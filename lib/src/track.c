@@ -8,22 +8,28 @@
 /// at separation by one from the measured state.
 #include "track_state.h"
 
+#include "noise.h"
+#include "player_sit.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #define CUT 0.0125        // of the capture around a strike's lowest point (s)
+#define TOO_LATE 0.015    // with less of the take left, its bridge is left as it is (s)
 #define REJOIN 0.040      // from separation back to the capture (s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
+#define SLOWEST 0.2       // pace of a take's time from which on nothing is replanned
 #define HOVER 0.08        // of a tip at rest above the head (m)
+#define IN_THE_AIR 0.05   // a strike's tip is not so high above the head (m)
 #define LEAST_FRAMES 8
 #define MAX_STRIKES 4096
 
 // frames lo..hi: one stretch between strikes
 static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
 {
+    fit_series series = {track->frames, track->edge, track->rate};
     for (int k = lo; k <= hi; k++)
-        h->frame[k] =
-            himc_fit(x, himc_fit_window(k, lo, hi, track->frames, track->rate), 1 / track->rate);
+        h->frame[k] = himc_fit(x, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
 }
 
 // when the approach from frame state `s` reaches the head, its acceleration fading to nothing on
@@ -85,6 +91,13 @@ static himc_quintic come_to_rest(const himc_place *place, const himc_target *s)
     return himc_quintic_make(s, &rest, SETTLE);
 }
 
+// a stick pulled up sharply may look as if it had struck
+static bool is_in_the_air(const himc_track *track, const himc_take_strike *strike)
+{
+    himc_vec3 x = himc_vec3_add(strike->x, track->offset);
+    return himc_place_from_world(&track->place, x).z > IN_THE_AIR;
+}
+
 // cuts the strikes of one hand out of its capture and fits what is between
 static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
                         const himc_take_strike *strikes, int count)
@@ -93,7 +106,8 @@ static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
     int start = 0, cut = (int)ceil(CUT * track->rate);
     for (int i = 0; i < count; i++) {
         int frame = strikes[i].frame;
-        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3)
+        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
+            is_in_the_air(track, &strikes[i]))
             continue;
         bridge *b = &h->planned[h->bridge_count++];
         b->last = frame - cut;
@@ -125,31 +139,6 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     return h->present;
 }
 
-// moves the mean of the strikes' places onto the head's usual spot
-static himc_vec3 find_offset(const himc_take_strike *strikes, int count,
-                             const himc_take_tip tips[HIMC_HANDS], int frames,
-                             const himc_place *place, double mallet_radius)
-{
-    himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
-    double sx, sy;
-    himc_stroke_spot(&usual, place->radius, &sx, &sy);
-    himc_vec3 spot = himc_place_to_world(place, sx, 0), mean = {0, 0, 0};
-    spot = himc_vec3_madd(spot, mallet_radius, himc_place_normal(place));
-    himc_take_strike_place(strikes, count, &mean);
-    bool one_handed = !tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present;
-    if (count == 0) { // nothing struck: the lowest point above the spot
-        const himc_vec3 *x = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
-        mean = x[0];
-        for (int i = 1; i < frames; i++)
-            if (x[i].z < mean.z)
-                mean = x[i];
-        spot.z += 0.05;
-    }
-    if (one_handed)
-        spot.y += tips[HIMC_LEFT].present ? fabs(sy) : -fabs(sy);
-    return himc_vec3_sub(spot, mean);
-}
-
 // what is there of the take's strikes, to be freed; NULL without memory
 static himc_take_strike *find_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                                       int *count)
@@ -172,13 +161,15 @@ static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
         track->frames = himc_take_frames(take);
         track->place = *place;
         track->stop = INFINITY;
-        track->offset = player && player->seated ? player->offset
-                                                 : find_offset(strikes, count, tips, track->frames,
-                                                               place, mallet_radius);
+        track->offset = player && player->seated
+                            ? player->offset
+                            : himc_strike_offset(take, tips, place, mallet_radius);
     }
     for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
-        if (tips[hand].present)
+        if (tips[hand].present) {
+            track->edge = himc_fit_edge(himc_noise(tips[hand].x, track->frames), track->rate);
             ok = build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
+        }
     ok = ok && (!player || himc_track_fit_postures(track, player));
     free(strikes);
     if (ok)
@@ -346,24 +337,50 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     return s;
 }
 
+// when a time of the take is played: by bisection where time itself starts or stops
+static double unwarp(const himc_track *track, double taken)
+{
+    double lo = taken - EASE, hi = taken + EASE, at[3];
+    himc_track_warp(track, taken, at);
+    if (at[0] == taken && at[1] == 1)
+        return taken;
+    for (int i = 0; i < 50; i++) {
+        double middle = 0.5 * (lo + hi);
+        himc_track_warp(track, middle, at);
+        if (at[0] < taken)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return hi;
+}
+
 bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
                         double *x, double *y)
 {
     const hand_track *h = &track->hand[hand];
-    int i = h->present ? himc_track_bridge_at(h->bridges, h->bridge_count, t) : 0;
+    double at[3];
+    himc_track_warp(track, t, at);
+    int i = h->present ? himc_track_bridge_at(h->bridges, h->bridge_count, at[0]) : 0;
     if (i < h->bridge_count && h->bridges[i].restart > h->bridges[i].from)
         i++; // already struck
     if (!h->present || i >= h->bridge_count)
         return false;
-    *contact_time = h->bridges[i].contact;
+    *contact_time = unwarp(track, h->bridges[i].contact);
     *x = h->bridges[i].place.x;
     *y = h->bridges[i].place.y;
     return true;
 }
 
-void himc_track_separated(himc_track *track, himc_hand hand, double t, const himc_target *measured)
+void himc_track_separated(himc_track *track, himc_hand hand, double now,
+                          const himc_target *measured)
 {
     hand_track *h = &track->hand[hand];
+    double at[3];
+    himc_track_warp(track, now, at);
+    if (at[1] < SLOWEST)
+        return;
+    double t = at[0];
     int i = himc_track_bridge_at(h->bridges, h->bridge_count, t);
     if (i == h->bridge_count || t < h->bridges[i].from) {
         if (i == 0 || h->bridges[i - 1].to < t - REJOIN)
@@ -374,9 +391,12 @@ void himc_track_separated(himc_track *track, himc_hand hand, double t, const him
     b->to = t + REJOIN;
     if (i + 1 < h->bridge_count)
         b->to = fmin(b->to, h->bridges[i + 1].from - 1e-3);
-    if (b->to < t + 1e-3)
+    b->to = fmin(b->to, (track->frames - 1) / track->rate);
+    if (b->to < t + TOO_LATE)
         return;
-    himc_target back = captured_at(track, h, b->to);
+    himc_target back = captured_at(track, h, b->to), from = *measured;
+    from.v = himc_vec3_scale(from.v, 1 / at[1]);
+    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
     b->restart = t;
-    b->path = himc_quintic_make(measured, &back, b->to - t);
+    b->path = himc_quintic_make(&from, &back, b->to - t);
 }

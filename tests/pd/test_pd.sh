@@ -16,7 +16,7 @@ play_pd() { # play_pd PATCH [OPTION...]: what Pd says goes to $work/log
     local patch=$1
     shift
     timeout 100 pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$build/externals/himc" \
-        -path "$root/patches/lib" "$@" -open "$patch" >"$work/log" 2>&1 </dev/null
+        -path "$root/patches/lib" -path "$root/patches/techniques" -path "$build/clips" "$@" -open "$patch" >"$work/log" 2>&1 </dev/null
 }
 
 report() { # report NAME WHY: passed if WHY is empty
@@ -109,6 +109,11 @@ report force_signal_sounds_alike_beside_a_performer \
 report samples_that_are_not_numbers_are_silence_and_said_once \
     "$([ "$(level spoilt)" = 0 ] || echo "$(level spoilt) dB")$(lines "membrane~: spoilt: inlet: a sample that is not a finite number is taken as 0")"
 
+play_pd channels.pd
+report channels_each_sound_as_their_pickup_alone \
+    "$([ "$(level difference1) $(level difference2) $(level difference3)" = "0 0 0" ] &&
+        awk -v l="$(level channel3)" 'BEGIN { exit !(l > 40) }' || cat "$work/log")"
+
 play_pd one-way.pd
 loudest=$(awk '$1 == "one-way:" && $2 > max { max = $2 } END { print max + 0 }' "$work/log")
 report force_by_cord_plays_another_drum \
@@ -117,6 +122,54 @@ report missing_drum_is_said_once_and_played_silently \
     "$(lines "himc~: no [membrane~ nobody]: playing on a silent one
 himc: strike")"
 
+# --- the other techniques: three blows at 0.7 m/s and three at 4, every 400 ms, the first at 100 ms
+
+numbers() { # numbers FILE: the samples, one a line
+    samples "$work/$1.wav" | od -An -v -w4 -tf4
+}
+peaks() { # peaks FILE: the loudest sample of each of the six blows, in thousandths
+    numbers "$1" | awk 'NR > 4800 { k = int((NR - 4801) / 19200); a = $1 < 0 ? -$1 : $1; if (a > p[k]) p[k] = a }
+        END { for (k = 0; k < 6; k++) printf "%d ", 1000 * p[k] }'
+}
+roughness() { # roughness FILE: its largest second difference, in millionths
+    numbers "$1" | awk '{ d = $1 - 2 * b + a; a = b; b = $1; d = d < 0 ? -d : d; if (NR > 2 && d > m) m = d }
+        END { printf "%d", 1e6 * m }'
+}
+first_sample() {
+    cmp <(samples "$work/$1.wav") /dev/zero | awk '{ gsub(",", ""); print int(($5 - 1) / 4) }'
+}
+for technique in modal clip signal; do
+    play_pd technique.pd -send "himc-test $work/$technique.wav $technique $technique $technique"
+    # a patch hears of a blow a block after its sample; a clip's first sample is silence
+    due=$([ $technique = modal ] && echo 4800 || echo 4864)
+    report technique_${technique}_sounds_at_the_blow_to_the_sample \
+        "$(s=$(first_sample $technique) && [ -n "$s" ] && [ "$s" -ge "$due" ] && [ "$s" -le $((due + 1)) ] || echo "sample $s, not $due")"
+    report technique_${technique}_sounds_at_every_blow_and_louder_the_harder \
+        "$(peaks $technique | awk '{ for (k = 1; k < 6; k += 2) if (!($k > 8 && $(k + 1) > 1.5 * $k && $(k + 1) < 800)) { print; exit } }')"
+done
+# at the velocity of a clip it is what the head itself would have sounded like
+report technique_clip_sounds_as_the_modal_one_does \
+    "$(paste <(numbers modal | tail -n +4801) <(numbers clip | tail -n +4865) | head -n 19000 |
+        awk '{ ab += $1 * $2; aa += $1 * $1; bb += $2 * $2 } END { r = ab / sqrt(aa * bb); if (!(r > 0.999)) print "correlation " r }')"
+play_pd technique.pd -send "himc-test $work/switched.wav clip signal modal"
+report technique_switched_while_it_sounds_makes_no_click \
+    "$(own=$(for t in modal clip signal; do roughness $t && echo; done | sort -n | tail -n 1)
+    now=$(roughness switched); [ "$now" -le "$own" ] && [ "$now" -gt 0 ] || echo "$now, of the techniques themselves at most $own")"
+report technique_switched_is_told_each_time \
+    "$([ "$(grep -c '^kettle: technique' "$work/log")" = 4 ] || grep '^kettle: technique' "$work/log")"
+report technique_switched_sounds_at_every_blow \
+    "$(peaks switched | awk '{ for (k = 1; k < 6; k += 2) if (!($k > 8 && $(k + 1) > 1.5 * $k)) { print; exit } }')"
+play_pd technique-himc.pd -send "himc-test $work/performed.wav"
+report technique_is_told_of_every_stroke_of_a_performer \
+    "$(told=$(awk '/^kettle: touch/ { printf "%.4f %.3f %.3f\n", $3, $4, $5 }' "$work/log")
+    struck=$(awk '/^himc: strike/ { printf "%.4f %.3f %.3f\n", $3, $6, $7 }' "$work/log")
+    [ "$(wc -l <<<"$struck")" = 5 ] && [ "$told" = "$struck" ] || echo "$told instead of $struck")"
+report technique_clip_in_a_score_sounds_a_performance \
+    "$(numbers performed | awk '{ a = $1 < 0 ? -$1 : $1; if (a > m) m = a } END { if (!(m > 0.05 && m < 1)) print "peak " m }')"
+report technique_of_patches_is_refused_where_there_are_none \
+    "$("$build/bin/himc" render technique.txt -o "$work/none.wav" >"$work/log" 2>&1 && echo "not refused"
+    lines "himc render: technique.txt:2: technique: clip, allowed modal here: signal and clip are patches, [technique~ NAME] in Pure Data")"
+
 # --- bad input
 
 play_pd objects.pd
@@ -124,7 +177,10 @@ report objects_with_nonsense_arguments_are_refused_with_a_line \
     "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
 membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 23]
 membrane~: argument 2: large, allowed: a diameter in inches
-membrane~: 3 arguments, allowed: NAME [INCHES]
+membrane~: 4 arguments, allowed: NAME [INCHES [CHANNELS]]
+membrane~: argument 3: loud, allowed: a number of channels
+membrane~: channels: 9, allowed 1 .. 8
+membrane~: channels: 1.5, allowed a whole number
 membrane~: drum: name a-name-that-is-much-longer-than-any-drum-has, allowed up to 31 characters
 himc~: argument 1: 3, allowed: a drum's name of up to 31 characters
 himc~: argument 2: one is named twice
@@ -154,7 +210,7 @@ report numbers_that_are_none_are_refused \
     "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"
 report refused_messages_change_nothing "$(lines "principal mode 150 Hz")"
 
-for patch in "$root"/pd-externals/*-help.pd "$root"/patches/[0-9]*.pd; do
+for patch in "$root"/pd-externals/*-help.pd "$root"/patches/[0-9]*.pd "$root"/patches/techniques/*-help.pd; do
     play_pd "$patch" -send "pd dsp 1" -send "pd quit"
     report "$(basename "$patch" .pd | tr -c 'a-z0-9\n' _)_opens_without_an_error" \
         "$(grep -m1 -e '^error' -e create -e 'no such' "$work/log")"

@@ -1,8 +1,8 @@
 /// sounds.c: what the drum alone can do, as four short OGG files: `sounds FOLDER`.
 ///
 /// scale: D3 to A3 on a 23 inch timpano; roll: 13 blows a second from pp to ff and back; glissando:
-/// a blow, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood. Stereo, heard
-/// from both sides.
+/// a blow, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood. The drum stands
+/// in air. Stereo, heard from both sides.
 #include "himc/himc.h"
 
 #include <math.h>
@@ -138,6 +138,9 @@ int main(int count, char **argument)
         p.drum = himc_drum_new("sounds", 23, RATE, &p.error);
         if (!p.drum || !p.sound)
             fail("no memory");
+        say(&p, "air 1");
+        say(&p, "decay 0.5 3e-7");
+        say(&p, "tune D3");
         say(&p, "pickups 2");
         say(&p, "channel 1 air 1.2 0.4 1");
         say(&p, "channel 2 air -1.2 0.4 1");

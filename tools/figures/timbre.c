@@ -1,5 +1,5 @@
-/// timbre.c: spectra of single blows, for timbre.gp: the same blow at three places, with four
-/// mallets, at three speeds.
+/// timbre.c: spectra of single blows on a 23 inch timpano at D3, for timbre.gp: the same blow at three
+/// places, with four mallets, at three speeds.
 ///
 /// Prints one block for each panel: frequency (Hz), then the spectrum of each sound (dB re 1 s of
 /// full scale) over its first second, by a Hann window's falling half, so that the attack counts.
@@ -38,7 +38,8 @@ static bool sound_of(const blow *b, double *sound, himc_error *error)
         return false;
     double radius = himc_membrane_head(himc_drum_membrane(drum))->radius;
     snprintf(text, sizeof text, "mallet %s", b->mallet);
-    bool good = say(drum, text, error) &&
+    bool good = say(drum, text, error) && say(drum, "air 1", error) &&
+                say(drum, "decay 0.5 3e-7", error) && say(drum, "tune D3", error) &&
                 himc_drum_strike_at(drum, 0, -b->place * radius, 0, b->velocity, error);
     for (int at = 0; good && at < LENGTH; at += 480) {
         himc_drum_advance(drum, 480, NULL, 0, NULL, NULL, NULL, NULL);

@@ -3,7 +3,7 @@ set terminal svg size 900,900 font "sans-serif,13"
 set output out
 set multiplot layout 3,1
 set grid
-set yrange [-110:-20]
+set yrange [-110:-30]
 set xrange [40:1600]
 set ylabel "level (dB)"
 set key top right

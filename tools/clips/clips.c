@@ -1,0 +1,97 @@
+/// clips.c: blows of our own timpano as sound files, for patches/techniques: `clips FOLDER`.
+///
+/// A 23 inch timpano in air at D3 is struck at three places by three velocities, a WAV file of 32-bit
+/// floats each, in the units of `pickup air`. They end in silence. FOLDER/clips.txt says what they
+/// are, a line for each: distance from the centre per radius, velocity (m/s), pitch (Hz), rate (Hz),
+/// file.
+#include "himc/himc.h"
+
+#include <math.h>
+#include <sndfile.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define RATE 48000
+#define LENGTH (7 * RATE / 2)
+#define ENDING (RATE / 2)
+#define BLOCK 480
+#define PITCH 146.832 // D3
+
+static const struct {
+    const char *name;
+    double place;
+} spots[] = {{"center", 0}, {"normal", 0.75}, {"rim", 0.92}};
+
+static const struct {
+    const char *name;
+    double velocity;
+} dynamics[] = {{"pp", 0.7}, {"mf", 2}, {"ff", 6}};
+
+static const char *const setting[] = {"air 1", "decay 0.5 3e-7", "tune D3"};
+
+static double sound[LENGTH];
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "clips: %s\n", what);
+    exit(1);
+}
+
+static himc_drum *timpano(void)
+{
+    himc_error error;
+    himc_command command;
+    himc_drum *drum = himc_drum_new("timpano", 23, RATE, &error);
+    bool good = drum != NULL;
+    for (size_t i = 0; good && i < sizeof setting / sizeof *setting; i++)
+        good = himc_command_parse_text(&command, HIMC_DRUM, setting[i], &error) &&
+               himc_drum_command(drum, &command, &error);
+    if (!good)
+        fail(error.text);
+    return drum;
+}
+
+static void play(double place, double velocity)
+{
+    himc_error error;
+    himc_drum *drum = timpano();
+    double x = -place * himc_drum_place(drum)->radius;
+    if (!himc_drum_strike_at(drum, 0, x, 0, velocity, &error))
+        fail(error.text);
+    for (int at = 0; at < LENGTH; at += BLOCK) {
+        himc_drum_advance(drum, BLOCK, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_read(drum, (uint64_t)at, BLOCK, sound + at, NULL);
+    }
+    for (int i = 0; i < ENDING; i++)
+        sound[LENGTH - ENDING + i] *= 0.5 + 0.5 * cos(HIMC_PI * (i + 1) / ENDING);
+    himc_drum_release(drum);
+}
+
+static void keep(const char *path)
+{
+    SF_INFO info = {.samplerate = RATE, .channels = 1, .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
+    SNDFILE *file = sf_open(path, SFM_WRITE, &info);
+    if (!file || sf_writef_double(file, sound, LENGTH) != LENGTH || sf_close(file))
+        fail(sf_strerror(NULL));
+}
+
+int main(int count, char **argument)
+{
+    char path[400], name[40];
+    if (count != 2)
+        fail("takes a folder");
+    snprintf(path, sizeof path, "%s/clips.txt", argument[1]);
+    FILE *list = fopen(path, "w");
+    if (!list)
+        fail("cannot write clips.txt");
+    for (int s = 0; s < 3; s++)
+        for (int d = 0; d < 3; d++) {
+            snprintf(name, sizeof name, "%s-%s.wav", spots[s].name, dynamics[d].name);
+            snprintf(path, sizeof path, "%s/%s", argument[1], name);
+            play(spots[s].place, dynamics[d].velocity);
+            keep(path);
+            fprintf(list, "%g %g %.3f %d %s;\n", spots[s].place, dynamics[d].velocity, PITCH, RATE,
+                    name);
+        }
+    return fclose(list) != 0;
+}
