@@ -18,14 +18,14 @@
 #define OWN 0.6              // and that does not: the squares sum to one
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.002     // deviations: of the aim (m)
+#define AIM_SPREAD 0.003     // deviations: of the aim (m)
 #define OUT_SPREAD 0.006     // of the elbow (rad)
 #define HAND_SPREAD 0.005    // of the hand's elevation (rad)
 #define SHOULDER_SPREAD 0.03 // of its share of the flexion
 #define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
 #define FLEXION_STEP 0.02    // (rad)
 #define RISE_SPREAD 0.025     // of the wrist's share of its flexion and the fingers'
-#define LEVEL_SPREAD 0.005   // of the stick's elevation at impact (rad)
+#define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
 #define WANDER 0.003         // of a joint between impacts (rad)

@@ -125,7 +125,7 @@ const mocap_gesture himc_mocap_gesture[HIMC_NUANCES] = {
                               .interval = 0.68,
                               .spread = {0.11, 0.14, 0.22}},
     [HIMC_STACCATO] = {.height = 0.328,
-                       .shoulder = 0.74,
+                       .shoulder = 0.66,
                        .wrist = 0.2,
                        .grip = 0.66,
                        .loop = 0.01,
