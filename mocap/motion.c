@@ -24,7 +24,7 @@
 #define SHOULDER_SPREAD 0.03 // of its share of the flexion
 #define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
 #define FLEXION_STEP 0.02    // (rad)
-#define RISE_SPREAD 0.025     // of the wrist's share of its flexion and the fingers'
+#define RISE_SPREAD 0.025    // of the wrist's share of its flexion and the fingers'
 #define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
@@ -380,49 +380,4 @@ himc_pose himc_mocap_pose(const himc_mocap *m, double t)
             pose.joint[himc_arm_joint((himc_hand)hand, k)] = joint[k];
     }
     return pose;
-}
-
-const char *himc_mocap_player_name(int player)
-{
-    return himc_mocap_player[player].name;
-}
-
-const himc_skeleton *himc_mocap_skeleton(const himc_mocap *m)
-{
-    return &m->skeleton;
-}
-
-himc_grip himc_mocap_grip(const himc_mocap *m)
-{
-    return m->player->french > 0.5 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
-}
-
-himc_vec3 himc_mocap_drum(const himc_mocap *m)
-{
-    return himc_vec3_make(m->player->edge + himc_mocap_spot(HIMC_SPOT_CENTER), 0, HIMC_MOCAP_HEAD);
-}
-
-double himc_mocap_length(const himc_mocap *m)
-{
-    return m->length;
-}
-
-int himc_mocap_frames(const himc_mocap *m)
-{
-    return 1 + (int)floor(m->length * HIMC_MOCAP_RATE);
-}
-
-int himc_mocap_touches(const himc_mocap *m)
-{
-    return m->config.strokes;
-}
-
-himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
-{
-    himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
-    double t = m->arm[hand].stroke[index / 2].landed;
-    himc_quat joint[HIMC_ARM_JOINTS];
-    himc_mocap_arm_at(m, hand, t, joint);
-    himc_quat trunk = himc_mocap_trunk(m, t);
-    return (himc_mocap_touch){hand, t, himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0)};
 }
