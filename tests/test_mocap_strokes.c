@@ -164,7 +164,7 @@ static int add_errors(const himc_habit *habit, const himc_mocap *m, double sum[H
             memcpy(tip[tap], s.tip, sizeof tip[tap]);
         }
         himc_pose captured = himc_mocap_pose(m, f / HIMC_MOCAP_RATE), guess = captured;
-        himc_habit_at(habit, tip, &guess);
+        himc_habit_at(habit, (const himc_vec3(*)[HIMC_HANDS])tip, &guess);
         for (int hand = 0; hand < HIMC_HANDS; hand++, count++)
             for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
                 int j = himc_arm_joint((himc_hand)hand, k);
@@ -199,6 +199,7 @@ static void learn(int unseen, int nuance, himc_habit *habit)
 
 static void test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree(void)
 {
+    double worst = 0;
     for (int unseen = 0; unseen < HIMC_MOCAP_PLAYERS; unseen++) {
         double sum[HIMC_ARM_JOINTS] = {0};
         int count = 0;
@@ -223,8 +224,9 @@ static void test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree
         printf("%s: shoulder %.2f, elbow %.2f, wrist %.2f, grip %.2f degrees RMS\n",
                himc_mocap_player_name(unseen), degrees[0], degrees[1], degrees[2], degrees[3]);
         for (int k = 0; k < 3; k++)
-            TEST_ASSERT_TRUE(degrees[k] <= 1);
+            worst = fmax(worst, degrees[k]);
     }
+    TEST_ASSERT_TRUE(worst <= 1);
 }
 
 static void test_the_readme_has_the_measured_table(void)
