@@ -26,6 +26,7 @@ static const himc_argument arguments[] = {
     {"FACTOR", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 20, "", NULL},
     {"KS", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "N m/rad", NULL},
     {"KD", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e5, "N m s/rad", NULL},
+    {"TORQUE", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 10000, "N m", NULL},
     {"SEGMENT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
     {"FX", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
     {"FY", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},

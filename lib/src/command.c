@@ -58,6 +58,10 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_GAIN, HIMC_PERFORMER, "gain", "reset | frequency FACTOR | JOINT KS KD",
      "sets stiffness and damping of a joint's servo, the natural frequency of all over the usual, or "
      "all as they were"},
+    {HIMC_COMMAND_LIMITS, HIMC_PERFORMER, "limits", "ellipsoid|euler|off",
+     "keeps the joints as far as the take's player turned them, or table 1's"},
+    {HIMC_COMMAND_STRENGTH, HIMC_PERFORMER, "strength", "human|off | JOINT TORQUE",
+     "sets the most that a joint's torque may be, or a man's for all, or any"},
     {HIMC_COMMAND_RATE, HIMC_PERFORMER, "rate", "physics HZ | task HZ",
      "sets the rate of simulation or control"},
     {HIMC_COMMAND_COUPLING, HIMC_PERFORMER, "coupling", "two-way|one-way",

@@ -150,6 +150,7 @@ static void send_state(himc_osc *osc, const osc_state *state, osc_packets *p)
                 {"played", s->played},
                 {"strikes", (double)state->strikes},
                 {"recoveries", (double)s->recoveries},
+                {"limit_hits", (double)s->limit_hits},
                 {"packets", (double)c.packets},
                 {"commands", (double)c.commands},
                 {"malformed", (double)c.malformed},

@@ -64,6 +64,8 @@ void himc_performance_drop_track(himc_performance *p)
     p->track_start = INFINITY;
     if (p->habit_of_take)
         himc_performance_set_habit(p, NULL);
+    p->has_learned = false;
+    himc_performance_renew_limits(p);
 }
 
 bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
