@@ -53,13 +53,13 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
 /// determine it.
 bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error);
 
-/// The habit learned from the whole motion database (make habit-table); its player, nobody, is to be
-/// filled in.
+/// The habit learned from the whole motion database (make habit-table); its player, nobody, is to
+/// be filled in.
 HIMC_RT void himc_habit_usual(himc_habit *habit);
 
 /// The arms' posture for tips at each tap; the rest of the pose is taken as given, but that its
-/// trunk sways with the tips. The tips are at their places, if those are not far from what was seen: of
-/// all such postures the likeliest.
+/// trunk sways with the tips. The tips are at their places, if those are not far from what was
+/// seen: of all such postures the likeliest.
 HIMC_RT void himc_habit_at(const himc_habit *habit,
                            const himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS], himc_pose *pose);
 /// Puts the habit into a natural posture in motion (himc_posture_moving): the arms are the habit's,
