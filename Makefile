@@ -29,6 +29,7 @@ VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 LIB_O     := $(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/*.c))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
+MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
@@ -36,7 +37,7 @@ BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] \
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
@@ -76,6 +77,10 @@ demo: deps ## install, build, play the improvisation headless; leaves its sound 
 	@$(MAKE) all
 	@tools/demo.sh
 
+mocap: $(BUILD)/bin/generate ## write the motion database, 45 sequences, into build/mocap
+	@mkdir -p $(BUILD)/mocap
+	$(BUILD)/bin/generate $(BUILD)/mocap
+
 view: deps ## build the viewer and show the improvisation in the browser
 	@tools/deps.sh tools/deps-viewer.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
@@ -112,6 +117,7 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
 check-bench: all $(BENCH)
+	@$(PROGRAM) bench
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
 ##@ Documentation
@@ -122,7 +128,7 @@ figures: deps ## the pictures and sounds in docs, as far as they are out of date
 air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
-	mv $(BUILD)/air_table.c lib/src/air_table.c
+	cmp -s $(BUILD)/air_table.c lib/src/air_table.c || mv $(BUILD)/air_table.c lib/src/air_table.c
 
 ##@ Style
 manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
@@ -140,7 +146,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+.PHONY: mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
         figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -187,7 +193,17 @@ $(UNITY_O): $(UNITY_DIR)/unity.c
 	$(call say,cc  )
 	$(Q)$(CC) -O2 $(SANITIZE) $(UNITY) -c $< -o $@
 
-$(PROGRAM): $(TOOL_O) $(LIBRARY)
+$(BUILD)/mocap-o/%.o: mocap/%.c
+	$(call say,cc  )
+	$(Q)$(COMPILE) -c $< -o $@
+
+$(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) -o $@
+
+$(BUILD)/tests/test_mocap: $(MOCAP_O)
+
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
@@ -217,4 +233,4 @@ $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 include tools/figures/figures.mk
 check-figures: $(FIGURES)
 
--include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
+-include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))

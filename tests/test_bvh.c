@@ -175,7 +175,7 @@ static void test_cmu_player_is_of_human_size_and_looks_along_x(void)
     himc_take *take = load_hop();
     himc_vec3 sum = {0, 0, 0};
     double height = 0;
-    int l = himc_take_find(take, "LeftShoulder"), r = himc_take_find(take, "RightShoulder");
+    int l = himc_take_find(take, "LeftHip"), r = himc_take_find(take, "RightHip");
     for (int frame = 0; frame < himc_take_frames(take); frame++) {
         sum = himc_vec3_add(
             sum, himc_vec3_sub(himc_take_point(take, frame, l), himc_take_point(take, frame, r)));

@@ -315,6 +315,39 @@ static void test_forward_dynamics_leaves_the_legs_alone(void)
         TEST_ASSERT_EQUAL_DOUBLE(0, distance(relative[j], himc_vec3_make(7, 8, 9)));
 }
 
+// torques less what the joints resist are those that make the accelerations, in the legs too
+static void test_resisting_joints_get_the_accelerations_their_remaining_torques_make(void)
+{
+    for (int n = 0; n < 1000; n++) {
+        himc_body_state s;
+        himc_articulation art;
+        himc_vec3 torque[HIMC_JOINTS], relative[HIMC_JOINTS], back[HIMC_JOINTS];
+        himc_vec3 resistance[HIMC_JOINTS], force[HIMC_HANDS] = {{0, 0, 0}, {0, 0, 0}};
+        himc_hand hand = (himc_hand)(n % 2);
+        random_state(&s, 10);
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            torque[j] = random_vector(1);
+            himc_vec3 d = random_vector(n % 3 ? 0.01 : 10);
+            resistance[j] = himc_vec3_make(fabs(d.x), fabs(d.y), fabs(d.z));
+        }
+        force[hand] = random_vector(n % 5 ? 0 : 20);
+        himc_articulate_resisting(&skeleton, &s, resistance, &art);
+        himc_forward_dynamics(&skeleton, &s, &art, torque, force, relative);
+        himc_inverse_dynamics(&skeleton, &s, relative, false, back);
+        // what the force at the tip does comes off on the way to the pelvis
+        for (int i = himc_stick_segment(hand); i > 0; i = skeleton.segment[i].parent)
+            back[i - 1] = himc_vec3_sub(
+                back[i - 1], himc_vec3_cross(himc_vec3_sub(s.tip[hand], s.origin[i]), force[hand]));
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            himc_vec3 a = himc_mat3_apply_transposed(&s.rotation[j + 1], relative[j]);
+            himc_vec3 d = resistance[j];
+            a = himc_mat3_apply(&s.rotation[j + 1],
+                                himc_vec3_make(d.x * a.x, d.y * a.y, d.z * a.z));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0, distance(himc_vec3_sub(torque[j], a), back[j]));
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -329,5 +362,6 @@ int main(void)
     RUN_TEST(test_pivoting_stick_of_45_g_weighs_27_g_at_its_tip);
     RUN_TEST(test_effective_mass_along_the_stick_is_much_larger);
     RUN_TEST(test_forward_dynamics_leaves_the_legs_alone);
+    RUN_TEST(test_resisting_joints_get_the_accelerations_their_remaining_torques_make);
     return UNITY_END();
 }

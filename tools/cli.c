@@ -2,7 +2,7 @@
 /// cannot disagree.
 ///
 /// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that
-/// names the call, what was wrong and what is allowed. All options take a value; given twice, the
+/// names the call, what was wrong and what is allowed. Options take a value, switches none; given twice, the
 /// last counts, as POSIX tools do.
 #include "cli.h"
 
@@ -23,8 +23,9 @@ static void fill_getopt(const cli_option *options, struct option *wide, char *le
     *letters++ = ':';
     int count = 0;
     for (; options[count].name; count++) {
-        wide[count] =
-            (struct option){options[count].name, required_argument, NULL, OPTION_BASE + count};
+        wide[count] = (struct option){options[count].name,
+                                      options[count].value ? required_argument : no_argument, NULL,
+                                      OPTION_BASE + count};
         if (options[count].letter) {
             *letters++ = options[count].letter;
             *letters++ = ':';
@@ -80,13 +81,16 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
         if (found == '?' || index < 0)
             return himc_error_set(error, "unknown option %s, allowed: %s", argv[optind - 1],
                                   allowed);
-        out->value[index] = optarg;
+        out->value[index] = optarg ? optarg : "";
     }
+    if (argc > optind && !call->operand[0])
+        return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
+                              call->name);
     if (argc - optind > 1)
         return himc_error_set(error, "one %s at a time: \"%s\" is one too many", call->operand,
                               argv[optind + 1]);
     out->operand = argv[optind];
-    if (!out->operand && call->operand[0] != '[')
+    if (!out->operand && call->operand[0] && call->operand[0] != '[')
         return himc_error_set(error, "no %s given (himc %s --help)", call->operand, call->name);
     return true;
 }
@@ -94,8 +98,8 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
 void cli_help(const cli_call *call)
 {
     bool any = call->options[0].name;
-    printf("usage: himc %s %s%s%s\n\n%s\n", call->name, call->operand, call->needs,
-           any ? " [OPTION...]" : "", call->does);
+    printf("usage: himc %s%s%s%s%s\n\n%s\n", call->name, call->operand[0] ? " " : "", call->operand,
+           call->needs, any ? " [OPTION...]" : "", call->does);
     if (call->more[0])
         printf("\n%s\n", call->more);
     if (any)
@@ -104,7 +108,8 @@ void cli_help(const cli_call *call)
         char left[64], letter[8] = "    ";
         if (option->letter)
             snprintf(letter, sizeof letter, "-%c, ", option->letter);
-        snprintf(left, sizeof left, "%s--%s %s", letter, option->name, option->value);
+        snprintf(left, sizeof left, "%s--%s %s", letter, option->name,
+                 option->value ? option->value : "");
         printf("  %-24s %s\n", left, option->does);
     }
 }

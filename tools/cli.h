@@ -12,13 +12,14 @@
 typedef struct cli_option {
     const char *name;  ///< "rate" is --rate
     char letter;       ///< 'o' is -o; 0 for none
-    const char *value; ///< what follows it, "HZ"
+    const char *value; ///< what follows it, "HZ"; NULL for a switch
     const char *does;
 } cli_option;
 
 #define CLI_OPTIONS 16
 
-/// What was given: one operand at most, and each option's value or NULL, in the table's order.
+/// What was given: one operand at most, and each option's value or NULL, in the table's order (a
+/// switch's is "").
 typedef struct cli_arguments {
     const char *operand;
     const char *value[CLI_OPTIONS];
@@ -28,7 +29,7 @@ typedef struct cli_arguments {
 /// One call of the program: `himc NAME ...`.
 typedef struct cli_call {
     const char *name;
-    const char *operand;       ///< "SOURCE", or "[SCORE]" when it may be left out
+    const char *operand;       ///< "SOURCE", "[SCORE]" when it may be left out, "" for none
     const char *needs;         ///< options that must be given, for the usage line: " -o OUT.wav"
     const char *does;          ///< one line
     const char *more;          ///< what else --help says; "" for nothing
@@ -36,7 +37,7 @@ typedef struct cli_call {
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
-extern const cli_call cli_render, cli_info, cli_modes, cli_serve;
+extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_serve, cli_bench;
 
 /// Reads the arguments after the call's name; false with one line that says what is wrong and what
 /// is allowed.

@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-static const cli_call *const calls[] = {&cli_render, &cli_info, &cli_modes, &cli_serve};
+static const cli_call *const calls[] = {&cli_render, &cli_evaluate, &cli_info,
+                                        &cli_modes,  &cli_serve,    &cli_bench};
 #define CALLS (sizeof calls / sizeof *calls)
 
 static void print_help(void)

@@ -1,6 +1,9 @@
 /// info.c: `himc info`: what is in a take or a score, in a few lines.
 #include "cli.h"
 
+#include "himc/drum.h"
+#include "himc/player.h"
+
 static void print_line(void *user, const char *line)
 {
     (void)user;
@@ -90,6 +93,24 @@ static const cli_option options[] = {
     {0},
 };
 
+static bool describe_player(himc_take *take, const himc_take_options *take_options,
+                            himc_error *error)
+{
+    himc_skeleton_config given = himc_skeleton_default();
+    himc_player *player = himc_player_new(take, take_options, &given, error);
+    if (!player)
+        return false;
+    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, 48000, error);
+    if (drum) {
+        himc_place place = *himc_drum_place(drum);
+        bool seated = himc_player_sit(player, take, take_options, &place);
+        himc_player_describe(player, seated ? &place : NULL, print_line, NULL);
+    }
+    himc_player_free(player);
+    himc_drum_release(drum);
+    return drum != NULL;
+}
+
 static bool describe_take(const cli_arguments *arguments, himc_error *error)
 {
     himc_take_options take_options;
@@ -100,8 +121,9 @@ static bool describe_take(const cli_arguments *arguments, himc_error *error)
     if (!take)
         return false;
     himc_take_describe(take, &take_options, print_line, NULL);
+    bool described = describe_player(take, &take_options, error);
     himc_take_free(take);
-    return true;
+    return described;
 }
 
 static int run(const cli_arguments *arguments)

@@ -18,6 +18,10 @@ HIMC_RT void himc_character_place(himc_character *character, const himc_body_sta
 /// Reads the kinematic layer back from the dynamic one.
 HIMC_RT void himc_character_observe(const himc_character *character, himc_body_state *state);
 
+/// A force on a segment's centre of mass (not the pelvis, which is held) during the next step alone
+/// (world frame, N); several add up.
+HIMC_RT void himc_character_push(himc_character *character, int segment, himc_vec3 force);
+
 /// One step of `h` seconds (1e-5 .. 0.01): `torque` of each joint on its child, the opposite on
 /// the parent (world frame, N m); `tip_force` on each drumstick tip (N). Gravity is the engine's.
 /// False, and nothing done, if a torque, a force or the body's state is not finite or faster than

@@ -6,6 +6,7 @@
 
 #include "himc/ik.h"
 #include "himc/invdyn.h"
+#include "himc/limits.h"
 #include "himc/posture.h"
 
 typedef enum himc_pipeline {
@@ -26,18 +27,36 @@ typedef struct himc_gain {
     himc_vec3 damping;   ///< (N m s/rad)
 } himc_gain;
 
+/// What limits and strength had to do since this was cleared, joint by joint.
+typedef struct himc_strain {
+    double measure[HIMC_JOINTS];  ///< himc_limit_measure at the last step
+    bool held[HIMC_JOINTS];       ///< at its bounds and not well within since
+    long hits[HIMC_JOINTS];       ///< times a joint came to its bounds
+    double farthest[HIMC_JOINTS]; ///< largest angle beyond (rad)
+    double torque[HIMC_JOINTS];   ///< largest asked for (N m)
+    long weak[HIMC_JOINTS];       ///< steps in which that was more than the strength
+    long steps;
+} himc_strain;
+
 /// Plain: change any field between steps.
 typedef struct himc_controller {
     himc_pipeline mode;
     himc_law law;
     himc_solver solver;
-    double damping;              ///< lambda of the inverse kinematics (m), default 0.01
-    double bandwidth;            ///< of computed torque, critically damped (Hz), default 20
+    double damping;                 ///< lambda of the inverse kinematics (m), default 0.01
+    double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in it, default 1 each
+    bool aimless; ///< the null space of the tips is for nothing, as published; default false
+    bool elbow;   ///< the elbow's place comes second, before the rest of the posture; default false
+    double bandwidth; ///< of computed torque, critically damped (Hz), default 20
+    double step;      ///< of the physics (s), over which servos are implicit; 0: explicit
     himc_gain gain[HIMC_JOINTS]; ///< of the PD laws
     bool gain_set
         [HIMC_JOINTS]; ///< by the user: computed torque uses it too, over the joint's inertia
     himc_vec3
-        inertia[HIMC_JOINTS]; ///< of what hangs on each joint, about the child's axes (kg m^2)
+        inertia[HIMC_JOINTS];     ///< of what hangs on each joint, about the child's axes (kg m^2)
+    const himc_limits *limits;    ///< borrowed; NULL (default) for none
+    double strength[HIMC_JOINTS]; ///< most that a joint's torque may be (N m); 0 (default): any
+    himc_strain *strain;          ///< borrowed, counted in at each step; may be NULL
 } himc_controller;
 
 /// What the body should do now.
@@ -49,8 +68,8 @@ typedef struct himc_reference {
 } himc_reference;
 
 /// Default gains: stiffness I w^2 and damping 2 I w, critically damped, I the inertia of all that
-/// hangs on the joint in the given posture about each axis (about a segment's own length its
-/// own), w three times 2 pi 8 Hz at the shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
+/// hangs on the joint in the given posture about each axis, w three times 2 pi 8 Hz at the
+/// shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
 HIMC_RT void himc_controller_init(himc_controller *controller, const himc_skeleton *skeleton,
                                   const himc_body_state *posture);
 
@@ -58,6 +77,11 @@ HIMC_RT void himc_controller_init(himc_controller *controller, const himc_skelet
 /// with the inertia.
 HIMC_RT void himc_controller_set_gain(himc_controller *controller, int joint, double stiffness,
                                       double damping);
+
+/// The strength of a healthy man's joints, in proportion to the body's mass (kg): isometric maxima
+/// of shoulder, elbow and wrist after Holzbaur et al. 2007 and Delp, Grierson & Buchanan 1996, of
+/// the neck after Fice, Siegmund & Blouin 2014.
+HIMC_RT void himc_controller_set_human_strength(himc_controller *controller, double mass);
 
 /// InverseKinematics and InverseDynamics of algorithm 2: the torques (world frame, N m) for this
 /// state and reference.

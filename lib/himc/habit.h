@@ -1,39 +1,60 @@
 /// habit.h: how a player's arms go with the sticks: the joints regressed on what the tips do, so
 /// that tips alone give back the elbow (learned from takes).
 ///
-/// log(mean^-1 q) of shoulder, elbow, wrist and grip is linear in [1, x, y, z, x', y', z'] of the
-/// arm's own tip, lengths in units of the arm's, so that one player's habit serves another.
+/// How shoulder, elbow, wrist and grip are turned from their means, seen from the trunk, is linear
+/// in where the arm's own tip is and where it will be in 30 and 60 ms, for in a stroke the upper
+/// joints go before the lower ones. Places are about their mean, seen from the trunk, in units of
+/// the arm's reach: so one player's habit serves another, and goes with a body that turns to
+/// another drum.
 #ifndef HIMC_HABIT_H
 #define HIMC_HABIT_H
 
 #include "himc/posture.h"
 
-#define HIMC_HABIT_TERMS 7
+#define HIMC_HABIT_TAPS 3     ///< times at which a tip is looked at: now and ahead ...
+#define HIMC_HABIT_STEP 0.030 ///< ... in such steps (s)
+#define HIMC_HABIT_TERMS (1 + 3 * HIMC_HABIT_TAPS)
+
+/// What a habit is about: the player's own.
+typedef struct himc_habit_player {
+    himc_pose mean;            ///< posture, the mean over what was seen
+    himc_vec3 tip[HIMC_HANDS]; ///< mean place of the tips, in the trunk's frame from the waist (m)
+    double reach[HIMC_HANDS];  ///< shoulder to tip, the arm stretched (m)
+    himc_vec3 waist;           ///< where the trunk turns (m)
+    himc_quat usual;           ///< the trunk's bearing (himc_posture_bearing) for those tips
+} himc_habit_player;
 
 typedef struct himc_habit {
-    himc_pose mean;            ///< posture the regression is about: the player's own
-    himc_vec3 tip[HIMC_HANDS]; ///< mean place of the tips (m)
-    double reach[HIMC_HANDS];  ///< shoulder to tip, the arm stretched (m)
+    himc_habit_player player;
     double weight[HIMC_HANDS][HIMC_ARM_JOINTS][3][HIMC_HABIT_TERMS]; ///< of the terms (rad)
 } himc_habit;
 
-/// One player's motion: postures and tips, `frames` of each (borrowed).
-typedef struct himc_habit_motion {
-    const himc_skeleton *skeleton;
-    const himc_pose *pose;
-    const himc_target (*tip)[HIMC_HANDS];
+/// A take of a player's whole body: postures and the tips they have (borrowed).
+typedef struct himc_habit_take {
+    const himc_skeleton *skeleton; ///< the same for all takes of a player
+    const himc_pose *pose;         ///< (frames)
     int frames;
-} himc_habit_motion;
+    double rate; ///< frames per second (Hz), 20 or more
+} himc_habit_take;
 
-/// Least squares over `count` motions, each about its own mean; the habit's own mean, tips and
-/// reach are those of the first. False with the reason if the motions do not determine it.
-bool himc_habit_learn(himc_habit *habit, const himc_habit_motion *motion, int count,
-                      himc_error *error);
-/// The same weights for another player, whose mean posture and tips these are.
-HIMC_RT void himc_habit_adopt(himc_habit *habit, const himc_skeleton *skeleton,
-                              const himc_pose *mean, const himc_vec3 tip[HIMC_HANDS]);
-/// Posture, its rate and acceleration for tips in motion; joints outside the arms as in the mean.
-HIMC_RT void himc_habit_moving(const himc_habit *habit, const himc_target tip[HIMC_HANDS],
+/// What `count` takes of a player say of the player; false with the reason.
+bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int count,
+                     himc_error *error);
+/// Least squares over `count` takes, those of a player after one another, each player about his own
+/// means; the habit is then the first player's, until another is put into its `player`.
+/// Directions in which no tip moves get no weight. False with the reason if the takes do not
+/// determine it.
+bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error);
+
+/// The arms' posture for tips at each tap; the rest of the pose is taken as given, its trunk is
+/// where the arms hang.
+HIMC_RT void himc_habit_at(const himc_habit *habit,
+                           const himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS], himc_pose *pose);
+/// Puts the habit into a natural posture in motion (himc_posture_moving): the arms are the habit's,
+/// the trunk bears itself as there but from the player's own mean. Rates and accelerations are
+/// central differences of the map.
+HIMC_RT void himc_habit_moving(const himc_habit *habit,
+                               const himc_target tip[HIMC_HABIT_TAPS][HIMC_HANDS],
                                himc_posture_motion *motion);
 
 #endif

@@ -25,6 +25,7 @@
 #include "himc/skeleton.h"
 #include "himc/pose.h"
 #include "himc/limits.h"
+#include "himc/reach.h"
 
 // what to play: written or captured
 #include "himc/command.h"
@@ -32,12 +33,12 @@
 #include "himc/take.h"
 #include "himc/recording.h"
 #include "himc/units.h"
-#include "himc/body.h"
 #include "himc/planner.h"
+#include "himc/posture.h"
+#include "himc/player.h"
 #include "himc/track.h"
 
 // how the body is made to do it: algorithm 2
-#include "himc/posture.h"
 #include "himc/habit.h"
 #include "himc/ik.h"
 #include "himc/invdyn.h"

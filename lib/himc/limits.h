@@ -16,9 +16,9 @@ typedef struct himc_limit {
     bool bound;       ///< false: turns freely
     himc_quat mean;   ///< of the captured rotations (Markley et al. 2007)
     himc_mat3 axes;   ///< columns: the ellipsoid's axes in the tangent space of the mean
-    himc_vec3 radius; ///< its semi-axes, as rotation vectors (rad), descending, at least 1e-3
+    himc_vec3 radius; ///< its semi-axes, as rotation vectors (rad); less than 1e-3 counts as that
     himc_vec3 lower;  ///< Euler angles, child = mean Rz Ry Rx (rad)
-    himc_vec3 upper;  ///< (rad)
+    himc_vec3 upper;  ///< (rad); an interval narrower than 2e-3 counts as that
 } himc_limit;
 
 typedef struct himc_limits {
@@ -27,17 +27,29 @@ typedef struct himc_limits {
 } himc_limits;
 
 /// Table 1 of the 2012 paper (neck, shoulders, elbows, wrists) around a mean posture; the joints
-/// the table does not name turn freely.
+/// the table does not name turn freely. Its eigen values are read as degrees of half the angle, its
+/// frames as the captures': y up, z forward, arms sideways at zero, the left one's.
 HIMC_RT himc_limits himc_limits_table_1(const himc_pose *mean);
 
 /// Algorithm 1 and the Euler statistics of each joint's rotations in `pose` (frames). Ellipsoid and
-/// box contain all of them, widened by `margin` (0 .. 1, of their size). False with the reason.
+/// box contain all of them, widened by `margin` (0 .. 1, of their size). A joint that nowhere turns
+/// more than 1e-3 rad from its mean was not captured: it turns freely. False with the reason.
 bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, double margin,
                        himc_error *error);
 
-/// How far a joint is within its bounds: at most 1 inside, 1 on them, 0 at the centre.
+/// The mean posture: of each joint the rotation nearest to all of its own (Markley et al. 2007).
+/// `frames` at least 1; rotations of unit length.
+himc_pose himc_limits_mean(const himc_pose *pose, int frames);
+
+/// How far a joint is within its bounds: at most 1 inside, 1 on them, 0 at the centre; 0 too when
+/// it turns freely.
 HIMC_RT double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotation);
-/// The nearest rotation within the bounds; the rotation itself when it is within.
+/// The nearest rotation within the bounds, in the tangent space of the mean (of the box, angle by
+/// angle); the rotation itself when it is within.
 HIMC_RT himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_quat rotation);
+
+/// Nearest point of the ellipsoid with these semi-axes (any order, at least 1e-3) to a point that
+/// is not within (Eberly 2013).
+HIMC_RT himc_vec3 himc_limit_closest_on_ellipsoid(himc_vec3 radius, himc_vec3 point);
 
 #endif

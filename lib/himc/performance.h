@@ -9,6 +9,7 @@
 
 #include "himc/controller.h"
 #include "himc/drum.h"
+#include "himc/habit.h"
 #include "himc/take.h"
 
 typedef struct himc_performance_config {
@@ -43,6 +44,27 @@ bool himc_performance_command(himc_performance *performance, const himc_command 
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
+
+#define HIMC_APPROACH \
+    1.0 ///< from wherever the sticks are to the beginning of a take, at `play` (s)
+
+/// What the `take` command does, with a take that is in memory (borrowed); `name` begins notes and
+/// errors.
+bool himc_performance_play_take(himc_performance *performance, himc_take *take, const char *name,
+                                himc_error *error);
+/// Added to the coordinates of the take being played to make ours (m).
+himc_vec3 himc_performance_take_offset(const himc_performance *performance);
+
+/// From now on the simulated segments weigh `factor` (HIMC_SEGMENTS, 0.2 .. 5; NULL for 1) times
+/// what control believes, inertia included: what an uncertain body does to control. The body is
+/// put anew where the targets have it.
+bool himc_performance_set_weights(himc_performance *performance, const double *factor,
+                                  himc_error *error);
+
+/// From now on, in mode `himc`, the null space of the tips is for a player's habit (copied) rather
+/// than for the natural posture; NULL for the latter again. The habit's player should be the
+/// performer's body.
+HIMC_RT void himc_performance_set_habit(himc_performance *performance, const himc_habit *habit);
 
 /// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a
 /// block, with the block's last sample of each coordinate: a stream of blocks of 64 samples comes

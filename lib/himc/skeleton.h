@@ -55,10 +55,14 @@ typedef struct himc_skeleton_config {
     double mallet_radius; ///< 0.005 .. 0.05 (m), default 0.0175
     double grip;          ///< from the butt to where it is held (m), default 0.10
     double seat;          ///< height of the hip joints, on a stool (m); 0 takes 0.42 of the height
+    double shoulders; ///< between the shoulder joints, 0.2 .. 0.6 (m); 0 takes it from the height
     double length[HIMC_SEGMENTS]; ///< measured lengths (m); 0 takes them from the height
 } himc_skeleton_config;
 
 himc_skeleton_config himc_skeleton_default(void);
+
+/// Height of the hip joints above the floor (m).
+double himc_skeleton_seat(const himc_skeleton_config *config);
 
 typedef struct himc_segment {
     int parent;        ///< -1 for the pelvis

@@ -4,7 +4,7 @@
 /// where the file has it.
 /// Up: HIMC_UP_* if given, else what the file says (C3D X_SCREEN, Y_SCREEN), else heads above hips
 /// in the data, else the format's habit (BVH and TRC y up, C3D z up). Up y becomes (x, -z, y).
-/// Heading: the body's left side to +y where shoulders or hips are named in pairs; else, by quarter
+/// Heading: the body's left side to +y where hips, else shoulders, are named in pairs; else, by quarter
 /// turns, the left tip left of the right one, or the tip in front of the shoulder; else as it is.
 /// himc_take_describe says which.
 /// A BVH's joints and end sites ("NAME_end") are points too, by forward kinematics; its skeleton
@@ -71,6 +71,10 @@ himc_vec3 himc_take_offset(const himc_take *take,
 /// rotations are products down the chain and point = parent's point + parent's world rotation of
 /// the offset (unless the file moves the joint itself).
 himc_quat himc_take_rotation(const himc_take *take, int frame, int point);
+
+/// Adds white noise of this standard deviation (m) to every coordinate of the points, as a tracker
+/// has; the same for the same seed. A skeleton's rotations stay as they are.
+void himc_take_add_noise(himc_take *take, double deviation, uint64_t seed);
 
 /// A hand's stick tip, gaps filled. `present` false if the take has none for that hand.
 typedef struct himc_take_tip {

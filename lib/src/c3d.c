@@ -231,6 +231,28 @@ static himc_vec3 read_axis(const c3d *r, const char *name)
                           axis == 'Z' || axis == 'z' ? sign : 0);
 }
 
+// the player's mass and height, where the file has them: Vicon writes them in kg and mm
+static void read_subject(c3d *r)
+{
+    static const char *const groups[] = {"SUBJECT", "SUBJECTS", "PROCESSING"};
+    static const char *const masses[] = {"MASS", "BODYMASS", "WEIGHT"};
+    double mass = 0, height = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3 && mass <= 0; k++)
+            mass = parameter(r, groups[i], masses[k], 0, 0);
+        if (height <= 0)
+            height = parameter(r, groups[i], "HEIGHT", 0, 0);
+    }
+    height *= height > 100 ? 0.001 : 1;
+    r->take->mass = mass >= 30 && mass <= 200 ? mass : 0;
+    r->take->height = height >= 1.19 && height <= 2.21 ? height : 0;
+    if ((mass > 0 && r->take->mass == 0) || (height > 0 && r->take->height == 0))
+        himc_take_note(r->take,
+                       "player: the file says %g kg and %g m, of which 30 .. 200 kg and 1.19 .. "
+                       "2.21 m are believed",
+                       mass, height);
+}
+
 static void add_event(c3d *r, double time, himc_span context, himc_span label)
 {
     himc_take *take = r->take;
@@ -290,6 +312,7 @@ static bool read_all(c3d *r)
     static const char *const processors[] = {"Intel", "DEC", "MIPS"};
     snprintf(r->take->format, sizeof r->take->format, "C3D (%s, %s)",
              processors[r->parameters.processor - C3D_INTEL], r->is_float ? "floats" : "integers");
+    read_subject(r);
     r->take->file_up = read_axis(r, "Y_SCREEN");
     r->take->file_right = read_axis(r, "X_SCREEN");
     name_points(r);

@@ -172,11 +172,18 @@ static bool can_step(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS
         himc_vec3 w = from_ode(dBodyGetAngularVel(c->body[i]));
         himc_vec3 x = from_ode(dBodyGetPosition(c->body[i]));
         himc_vec3 v = from_ode(dBodyGetLinearVel(c->body[i]));
-        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v);
+        himc_vec3 pushed = from_ode(dBodyGetForce(c->body[i]));
+        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v) + himc_vec3_dot(pushed, pushed);
         if (!(himc_vec3_dot(w, w) < FASTEST * FASTEST))
             return false;
     }
     return sum < MOST;
+}
+
+void himc_character_push(himc_character *c, int segment, himc_vec3 force)
+{
+    if (segment > 0 && segment < HIMC_SEGMENTS)
+        dBodyAddForce(c->body[segment], force.x, force.y, force.z);
 }
 
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],

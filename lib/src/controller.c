@@ -6,17 +6,33 @@
 /// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q',
 /// `feedforward` tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t
 /// - q') + w^2 dq through inverse dynamics. While a stick touches the head all three let go of
-/// the normal: the rebound is the physics'.
+/// the normal: the rebound is the physics'. Joint limits win over all of it (limit_torque.c).
+///
+/// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
+/// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
+/// step's end, as Tan, Liu & Turk's stable PD does (2011): with D = h kd + h^2 ks at each joint,
+///     (M + D) q'' = tau_known - C,   tau = tau_known - D q'',
+/// which holds at any gain and, as h goes to 0, is equation 2.
 #include "himc/controller.h"
+
+#include "limit_torque.h"
+#include "strength.h"
 
 #define PD_STIFFER 3.0    // the default gains' frequencies above the table's
 #define LARGEST_STEP 0.05 // of the tip, one step of inverse kinematics (m)
+#define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
+#define LEFT 0.40         // ... and so far does so wholly (m)
 
 typedef struct errors {
     himc_vec3 angle[HIMC_JOINTS];        // dq (rad)
     himc_vec3 rate[HIMC_JOINTS];         // q'_t - q' (rad/s)
     himc_vec3 acceleration[HIMC_JOINTS]; // q''_t (rad/s^2)
 } errors;
+
+static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
+{
+    return himc_vec3_madd(a, share, himc_vec3_sub(b, a));
+}
 
 static himc_vec3 relative_spin(const himc_skeleton *skeleton, const himc_body_state *s, int j)
 {
@@ -58,16 +74,42 @@ static void scatter_arm(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand, hi
         all[himc_arm_joint(hand, k)] = arm[k];
 }
 
-// the tip's demand through the Jacobian, the posture's in the null space; `demand` is linear in
-// all of it
-static void solve_demand(const himc_controller *c, const himc_arm_jacobian *jacobian,
-                         himc_hand hand, himc_vec3 demand, himc_vec3 *all)
+typedef struct arm_tasks {
+    const himc_controller *controller;
+    const himc_arm_jacobian *jacobian;
+    himc_mat3 inverse; // of J W J', as the solver has it
+    himc_elbow_task elbow;
+    himc_hand hand;
+} arm_tasks;
+
+static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
 {
+    const himc_controller *c = tasks->controller;
+    int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
+    himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
+    tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
+    if (c->elbow)
+        himc_elbow_task_at(tasks->jacobian, upper_arm, c->damping, &tasks->elbow);
+}
+
+// the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
+// for the elbow's place comes first; `demand` is linear in all of it
+static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
+{
+    const himc_controller *c = tasks->controller;
+    himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
-    gather_arm(all, hand, posture);
-    himc_ik_solve(jacobian, c->solver, c->damping, demand, solution);
-    himc_ik_add_null(jacobian, posture, solution);
-    scatter_arm(solution, hand, all);
+    gather_arm(all, tasks->hand, posture);
+    for (int k = 0; c->aimless && k < HIMC_ARM_JOINTS; k++)
+        posture[k] = himc_vec3_make(0, 0, 0);
+    if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
+        inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
+    himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
+    himc_ik_add_null(tasks->jacobian, posture, solution);
+    if (c->elbow)
+        himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,
+                          himc_vec3_cross(posture[0], tasks->elbow.lever), solution);
+    scatter_arm(solution, tasks->hand, all);
 }
 
 // tip acceleration that the arm's joints must make: what is wanted less what the state's spins and
@@ -83,17 +125,37 @@ static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_bod
     return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
 }
 
+// The Jacobian is the truth near the target only: pushed far away, an arm that follows it turns in
+// circles. So it goes home by its joints, to the posture whose tip is the target.
+static void go_home(const errors *joints, double away, himc_hand hand, errors *e)
+{
+    double share = fmin((away - LEAVES) / (LEFT - LEAVES), 1);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        e->angle[j] = mix(e->angle[j], joints->angle[j], share);
+        e->rate[j] = mix(e->rate[j], joints->rate[j], share);
+        e->acceleration[j] = mix(e->acceleration[j], joints->acceleration[j], share);
+    }
+}
+
 // equation 3: replaces the arm's joint errors by those that its tip asks for
 static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
                        const himc_body_state *s, const himc_target *target, himc_hand hand,
                        const himc_arm_jacobian *jacobian, errors *e)
 {
-    himc_vec3 missing = clamp_length(himc_vec3_sub(target->x, s->tip[hand]), LARGEST_STEP);
+    errors joints = *e;
+    himc_vec3 way = himc_vec3_sub(target->x, s->tip[hand]);
+    himc_vec3 missing = clamp_length(way, LARGEST_STEP);
     himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
     himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target->a);
-    solve_demand(c, jacobian, hand, missing, e->angle);
-    solve_demand(c, jacobian, hand, slower, e->rate);
-    solve_demand(c, jacobian, hand, a, e->acceleration);
+    arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
+    begin_tasks(&tasks, s, missing);
+    solve_demand(&tasks, missing, e->angle);
+    solve_demand(&tasks, slower, e->rate);
+    solve_demand(&tasks, a, e->acceleration);
+    double away = himc_vec3_length(way);
+    if (away > LEAVES)
+        go_home(&joints, away, hand, e);
 }
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
@@ -125,36 +187,106 @@ static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3
                            himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
 }
 
-// equation 2, with the target's velocity and gravity fed forward or not
-static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
-                          const himc_body_state *s, const errors *e, himc_vec3 torque[HIMC_JOINTS])
+// Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
+// place of the one it begins in: what is known of it. The rest, -(h kd + h^2 ks) q'', is the
+// joint's resistance.
+static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s, const errors *e,
+                             himc_vec3 spin, int j)
 {
-    bool printed = c->law == HIMC_LAW_PRINTED;
-    if (printed)
-        for (int j = 0; j < HIMC_JOINTS; j++)
-            torque[j] = himc_vec3_make(0, 0, 0);
-    else
-        himc_inverse_dynamics(skeleton, s, NULL, true, torque);
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        const himc_mat3 *r = &s->rotation[j + 1];
-        torque[j] = himc_vec3_add(torque[j], scale_axes(r, c->gain[j].stiffness, e->angle[j]));
-        torque[j] = himc_vec3_add(torque[j], scale_axes(r, c->gain[j].damping, e->rate[j]));
+    double h = c->step;
+    himc_vec3 angle = himc_vec3_madd(e->angle[j], h, e->rate[j]);
+    himc_vec3 rate = himc_vec3_scale(spin, -1);
+    if (c->law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
+        rate = himc_vec3_madd(e->rate[j], h, e->acceleration[j]);
+        angle = himc_vec3_madd(angle, h * h, e->acceleration[j]);
+    }
+    const himc_mat3 *r = &s->rotation[j + 1];
+    return himc_vec3_add(scale_axes(r, c->gain[j].stiffness, angle),
+                         scale_axes(r, c->gain[j].damping, rate));
+}
+
+// the forces at released tips that stop their acceleration along the normal, m a, where the mass is
+// that of joints with servos
+static void release_forces(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_reference *reference, const himc_articulation *art,
+                           const himc_vec3 *known, himc_vec3 force[HIMC_HANDS])
+{
+    himc_vec3 relative[HIMC_JOINTS];
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        himc_vec3 n = reference->normal[i], without = force[i];
+        double a[2];
+        for (int unit = 0; reference->released[i] && unit < 2; unit++) {
+            force[i] = himc_vec3_madd(without, unit, n);
+            himc_forward_dynamics(skeleton, s, art, known, force, relative);
+            a[unit] = himc_vec3_dot(n, himc_tip_acceleration(skeleton, s, hand, relative));
+        }
+        if (reference->released[i])
+            force[i] = himc_vec3_madd(without, -a[0] / (a[1] - a[0]), n);
     }
 }
 
+// a force at the tip as torques down the arm and the trunk
+static void add_tip_force(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
+                          himc_vec3 force, himc_vec3 torque[HIMC_JOINTS])
+{
+    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
+        torque[i - 1] = himc_vec3_add(
+            torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
+}
+
+// equation 2, with the target's velocity and gravity fed forward or not, implicitly over the step
+static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *s, const himc_reference *reference,
+                          const errors *e, himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_articulation art;
+    himc_vec3 resistance[HIMC_JOINTS], relative[HIMC_JOINTS], force[HIMC_HANDS] = {{0, 0, 0}};
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        torque[j] = himc_vec3_make(0, 0, 0);
+    if (c->law == HIMC_LAW_FEEDFORWARD)
+        himc_inverse_dynamics(skeleton, s, NULL, true, torque);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 known = servo_known(c, s, e, relative_spin(skeleton, s, j), j);
+        torque[j] = himc_vec3_add(torque[j], known);
+        resistance[j] = himc_vec3_madd(himc_vec3_scale(c->gain[j].damping, c->step),
+                                       c->step * c->step, c->gain[j].stiffness);
+    }
+    himc_limits_resist(c, skeleton, s, torque, resistance);
+    himc_articulate_resisting(skeleton, s, resistance, &art);
+    release_forces(skeleton, s, reference, &art, torque, force);
+    himc_forward_dynamics(skeleton, s, &art, torque, force, relative);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        torque[j] =
+            himc_vec3_sub(torque[j], scale_axes(&s->rotation[j + 1], resistance[j], relative[j]));
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (reference->released[hand])
+            add_tip_force(skeleton, s, (himc_hand)hand, force[hand], torque);
+}
+
+// stiffness and damping over inertia of one axis, as far as an implicit step lets them act
+static void implicit_rates(double ks, double kd, double step, double rate[2])
+{
+    double all = 1 + step * kd + step * step * ks;
+    rate[0] = ks / all;
+    rate[1] = (kd + step * ks) / all;
+}
+
 // w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
-// the inertia
+// the inertia; the bandwidth is always slow beside the step, gains need not be
 static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
                           const errors *e)
 {
-    double w = 2 * HIMC_PI * c->bandwidth;
+    double w = 2 * HIMC_PI * c->bandwidth, x[2], y[2], z[2];
     if (!c->gain_set[j])
         return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
     himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
     const himc_mat3 *r = &s->rotation[j + 1];
-    himc_vec3 a = scale_axes(r, himc_vec3_make(ks.x / i.x, ks.y / i.y, ks.z / i.z), e->angle[j]);
-    return himc_vec3_add(
-        a, scale_axes(r, himc_vec3_make(kd.x / i.x, kd.y / i.y, kd.z / i.z), e->rate[j]));
+    implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
+    implicit_rates(ks.y / i.y, kd.y / i.y, c->step, y);
+    implicit_rates(ks.z / i.z, kd.z / i.z, c->step, z);
+    return himc_vec3_add(scale_axes(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]),
+                         scale_axes(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
 }
 
 // what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
@@ -165,35 +297,6 @@ static void wanted_accelerations(const himc_controller *c, const himc_body_state
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
 }
 
-// the same for torques already made: the force at the tip that would stop its acceleration along
-// the normal, m_eff a, passed down the arm and the trunk
-static void release_torques(const himc_skeleton *skeleton, const himc_body_state *s,
-                            const himc_reference *reference, himc_vec3 torque[HIMC_JOINTS])
-{
-    himc_articulation art;
-    himc_vec3 relative[HIMC_JOINTS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        if (!reference->released[hand])
-            continue;
-        himc_vec3 n = reference->normal[hand];
-        himc_articulate(skeleton, s, &art);
-        himc_forward_dynamics(skeleton, s, &art, torque, NULL, relative);
-        double a = himc_vec3_dot(n, himc_tip_acceleration(skeleton, s, (himc_hand)hand, relative));
-        double mass = himc_effective_mass(skeleton, s, &art, (himc_hand)hand, n);
-        himc_vec3 force = himc_vec3_scale(n, -mass * a);
-        for (int i = himc_stick_segment((himc_hand)hand); i > 0; i = skeleton->segment[i].parent)
-            torque[i - 1] = himc_vec3_add(
-                torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
-    }
-}
-
-// the printed law damps the rate itself, not its error
-static void forget_target_rates(const himc_skeleton *skeleton, const himc_body_state *s, errors *e)
-{
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        e->rate[j] = himc_vec3_scale(relative_spin(skeleton, s, j), -1);
-}
-
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_reference *reference,
                              himc_vec3 torque[HIMC_JOINTS])
@@ -202,21 +305,20 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_arm_jacobian jacobian[HIMC_HANDS];
     joint_errors(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_arm_jacobian_at(s, (himc_hand)hand, &jacobian[hand]);
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
         if (c->mode == HIMC_PIPELINE_HIMC)
             tip_errors(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian[hand], &e);
     }
-    if (c->law == HIMC_LAW_PRINTED)
-        forget_target_rates(skeleton, s, &e);
     if (c->law == HIMC_LAW_COMPUTED_TORQUE) {
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
+        himc_limits_yield(c, skeleton, s, jacobian, wanted);
         himc_inverse_dynamics(skeleton, s, wanted, false, torque);
     } else {
-        servo_torques(c, skeleton, s, &e, torque);
-        release_torques(skeleton, s, reference, torque);
+        servo_torques(c, skeleton, s, reference, &e, torque);
     }
+    himc_strength_apply(c, torque);
 }
 
 // inertia about a joint of everything that hangs on it, about the child's axes
@@ -256,14 +358,15 @@ static double servo_frequency(int joint)
 void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *posture)
 {
-    *c = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE, .damping = 0.01, .bandwidth = 20};
+    *c = (himc_controller){
+        .law = HIMC_LAW_COMPUTED_TORQUE,
+        .damping = 0.01,
+        .weight = {1, 1, 1, 1},
+        .bandwidth = 20,
+        .step = 1e-4,
+    };
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        const himc_segment *segment = &skeleton->segment[j + 1];
         himc_vec3 i = hanging_inertia(skeleton, posture, j);
-        // about its own length a segment meets its own small inertia first: explicit servos must
-        // respect it
-        if (fabs(segment->axis.z) > 0.5)
-            i.z = fmin(i.z, segment->inertia.z);
         double w = 2 * HIMC_PI * servo_frequency(j);
         c->inertia[j] = i;
         c->gain[j].stiffness = himc_vec3_scale(i, w * w);

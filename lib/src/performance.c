@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define TORN 0.01     // a joint further apart holds nothing (m)
 #define FORESIGHT 1.2 // a stroke further ahead does not turn the trunk yet (s)
 
 himc_performance_config himc_performance_default(void)
@@ -70,6 +71,10 @@ static void set_course(himc_performance *p, double t)
         place[hand] = attention(p, (himc_hand)hand, t);
     p->course.from = bearing_at(p, t);
     p->course.goal = himc_posture_bearing(place, p->grip);
+    if (p->track && p->manner_known[HIMC_TRUNK - 1]) {
+        p->course.goal.value[HIMC_BEARING_TURN] = p->bearing.value[HIMC_BEARING_TURN];
+        p->course.goal.value[HIMC_BEARING_LEAN] = p->bearing.value[HIMC_BEARING_LEAN];
+    }
     p->course.time = t;
 }
 
@@ -79,7 +84,8 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
-    himc_task_tick_complete(tick, &p->posture);
+    himc_performance_posture(p, t, tick->tip, &tick->posture);
+    himc_performance_follow_habit(p, tick);
 }
 
 // Read task: the targets at the next tick, and at this one if the plan has changed since it was
@@ -106,22 +112,40 @@ static void place_body(himc_performance *p)
     himc_character_place(p->character, &p->state);
 }
 
+// the body as it weighs, not as it is believed to
+static himc_skeleton weigh(const himc_performance *p, const himc_skeleton *skeleton)
+{
+    himc_skeleton plant = *skeleton;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        plant.segment[i].mass *= p->weight[i];
+        plant.segment[i].inertia = himc_vec3_scale(plant.segment[i].inertia, p->weight[i]);
+    }
+    return plant;
+}
+
 bool himc_performance_build_body(himc_performance *p, himc_error *error)
 {
     himc_skeleton skeleton;
     if (!himc_skeleton_init(&skeleton, &p->body, error))
         return false;
-    himc_character *character = himc_character_new(&skeleton, error);
+    himc_skeleton plant = weigh(p, &skeleton);
+    himc_character *character = himc_character_new(&plant, error);
     if (!character)
         return false;
     himc_character_free(p->character);
     p->character = character;
     p->skeleton = skeleton;
+    p->plant = plant;
+    p->habit_since = p->has_habit ? step_time(p) : -INFINITY; // the body begins in the posture
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
+    for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
+        if (p->manner_known[j])
+            p->posture.rest.joint[j] = p->manner.joint[j];
     if (p->course.time == 0)
         p->course.from = p->course.goal = p->posture.bearing;
     fill_tick(p, &p->from, step_time(p));
     memcpy(p->reference.tip, p->from.tip, sizeof p->from.tip);
+    p->reference.posture = p->from.posture;
     place_body(p);
     himc_controller *c = &p->controller, old = *c;
     himc_controller_init(c, &skeleton, &p->state);
@@ -131,6 +155,9 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     if (old.bandwidth > 0) {
         c->damping = old.damping;
         c->bandwidth = old.bandwidth;
+        c->elbow = old.elbow;
+        c->aimless = old.aimless;
+        memcpy(c->weight, old.weight, sizeof c->weight);
     }
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (old.gain_set[j]) {
@@ -139,6 +166,16 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
         }
     p->replan = true;
     return true;
+}
+
+bool himc_performance_set_weights(himc_performance *p, const double *factor, himc_error *error)
+{
+    for (int i = 0; factor && i < HIMC_SEGMENTS; i++)
+        if (!himc_check_range("weight", factor[i], 0.2, 5, "", error))
+            return himc_error_prefix(error, "%s", himc_segment_name(i));
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        p->weight[i] = factor ? factor[i] : 1;
+    return himc_performance_build_body(p, error);
 }
 
 void himc_performance_notice_drums(himc_performance *p)
@@ -160,23 +197,42 @@ void himc_performance_notice_drums(himc_performance *p)
 static void recover(himc_performance *p)
 {
     if (p->recoveries++ == 0)
-        himc_performance_note(p, "the body flew apart and was put back: gains too high for %g Hz",
+        himc_performance_note(p, "the body flew apart at a physics rate of %g Hz and was put back",
                               p->physics_rate);
     place_body(p);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         p->touch[hand] = (touch){.answered = p->touch[hand].answered};
 }
 
+// the engine keeps joints together to a micrometre; where it could not, numbers are still finite
+// but there is no body any more
+static bool torn_apart(const himc_performance *p)
+{
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *segment = &p->skeleton.segment[i];
+        himc_vec3 r = himc_mat3_apply(&p->state.rotation[segment->parent], segment->origin);
+        himc_vec3 gap =
+            himc_vec3_sub(himc_vec3_add(p->state.origin[segment->parent], r), p->state.origin[i]);
+        if (!(himc_vec3_dot(gap, gap) < TORN * TORN))
+            return true;
+    }
+    return false;
+}
+
 // Inverse kinematics, inverse dynamics, forward dynamics; the contact is solved inside the same
 // step
-static void step_dynamics(himc_performance *p, int n, double h)
+static void step_dynamics(himc_performance *p, int n, double h, bool tick)
 {
     himc_vec3 tip_force[HIMC_HANDS];
     himc_character_observe(p->character, &p->state);
+    if (tick && torn_apart(p))
+        recover(p);
     himc_performance_after_contact(p, step_time(p));
+    p->controller.step = h;
     himc_controller_torques(&p->controller, &p->skeleton, &p->state, &p->reference, p->torque);
     himc_performance_contact(p, n, tip_force);
     himc_performance_measure_step(p);
+    himc_performance_push_body(p, step_time(p));
     if (!himc_character_step(p->character, p->torque, tip_force, h))
         recover(p);
 }
@@ -207,7 +263,7 @@ static void performance_step(himc_performance *p)
     if (p->controller.mode == HIMC_PIPELINE_IK)
         step_kinematics(p, n);
     else
-        step_dynamics(p, n, n / p->config.sample_rate);
+        step_dynamics(p, n, n / p->config.sample_rate, tick);
     if (tick)
         himc_performance_motion_row(p, t);
     himc_performance_watch(p, t);
@@ -281,6 +337,8 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
     }
     p->config = *config;
     p->body = himc_skeleton_default();
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        p->weight[i] = 1;
     p->controller.law = HIMC_LAW_COMPUTED_TORQUE;
     p->take_options = himc_take_default();
     p->track_start = p->end = INFINITY;

@@ -106,14 +106,16 @@ static bool do_mode(himc_performance *p, const himc_command *c, himc_error *erro
     if (p->controller.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
         himc_character_place(p->character, &p->state);
     p->controller.mode = mode;
+    p->replan = p->replan || p->has_habit;
     return true;
 }
 
 static bool do_solver(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    static const char *const words[] = {"dls", "pinv", "transpose"};
+    static const char *const words[HIMC_SOLVERS] = {"dls", "pinv", "transpose", "nakamura", "sdls"};
     (void)error;
-    p->controller.solver = (himc_solver)himc_performance_word(c->atom[0].symbol, words, 3);
+    p->controller.solver =
+        (himc_solver)himc_performance_word(c->atom[0].symbol, words, HIMC_SOLVERS);
     return true;
 }
 
@@ -121,6 +123,28 @@ static bool do_damping(himc_performance *p, const himc_command *c, himc_error *e
 {
     (void)error;
     p->controller.damping = c->atom[0].number;
+    return true;
+}
+
+static bool do_posture(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    p->controller.aimless = c->atom[0].number == 0;
+    return true;
+}
+
+static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    p->controller.elbow = c->atom[0].number != 0;
+    return true;
+}
+
+static bool do_weights(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        p->controller.weight[k] = c->atom[k].number;
     return true;
 }
 
@@ -258,6 +282,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     himc_planner_clear(p->planner);
     himc_planner_loop(p->planner, step_time(p), false);
     p->grip = HIMC_GRIP_GERMAN;
+    p->has_habit = false;
     himc_planner_set_grip(p->planner, p->grip);
     himc_planner_clear_units(p->planner);
     p->controller.mode = HIMC_PIPELINE_HIMC;
@@ -266,6 +291,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     p->config.physics_rate = himc_performance_default().physics_rate;
     p->config.task_rate = himc_performance_default().task_rate;
     p->one_way = p->playing = false;
+    memset(p->push, 0, sizeof p->push);
     p->square_sum = p->height_sum = p->peak_force = 0;
     p->square_count = p->height_count = p->recoveries = 0;
     p->strokes = p->played = p->hits = 0;
@@ -316,11 +342,15 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_MODE] = do_mode,
     [HIMC_COMMAND_SOLVER] = do_solver,
     [HIMC_COMMAND_DAMPING] = do_damping,
+    [HIMC_COMMAND_POSTURE] = do_posture,
+    [HIMC_COMMAND_ELBOW] = do_elbow,
+    [HIMC_COMMAND_WEIGHTS] = do_weights,
     [HIMC_COMMAND_LAW] = do_law,
     [HIMC_COMMAND_GAIN] = do_gain,
     [HIMC_COMMAND_RATE] = do_rate,
     [HIMC_COMMAND_COUPLING] = do_coupling,
     [HIMC_COMMAND_PLAYER] = do_player,
+    [HIMC_COMMAND_PUSH] = himc_performance_do_push,
     [HIMC_COMMAND_INFO] = do_info,
     [HIMC_COMMAND_RESET] = do_reset,
     [HIMC_COMMAND_MAKE_DRUM] = do_drum,
@@ -335,7 +365,8 @@ static bool waits(himc_command_id id)
     return id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_TARGET || id == HIMC_COMMAND_TEMPO ||
            id == HIMC_COMMAND_PLAY || id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK ||
            id == HIMC_COMMAND_MODE || id == HIMC_COMMAND_LAW || id == HIMC_COMMAND_SOLVER ||
-           id == HIMC_COMMAND_DAMPING || id == HIMC_COMMAND_COUPLING;
+           id == HIMC_COMMAND_DAMPING || id == HIMC_COMMAND_ELBOW || id == HIMC_COMMAND_WEIGHTS ||
+           id == HIMC_COMMAND_COUPLING || id == HIMC_COMMAND_PUSH;
 }
 
 // drums that a waiting command will want are made now, not in the audio callback

@@ -8,7 +8,6 @@
 
 #include <string.h>
 
-#define APPROACH 1.0        // from wherever the sticks are to the beginning of a take (s)
 #define DEEPEST_TARGET 0.01 // of a live target under the head (m)
 
 bool himc_performance_do_loop(himc_performance *p, const himc_command *c, himc_error *error)
@@ -75,13 +74,14 @@ bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_
 
 static void start_track(himc_performance *p, double t)
 {
-    double start = t + APPROACH;
+    double start = t + HIMC_APPROACH;
     himc_track_rewind(p->track);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (himc_track_present(p->track, (himc_hand)hand)) {
             himc_target now = p->reference.tip[hand];
-            himc_track_approach(p->track, (himc_hand)hand, &now, APPROACH);
+            himc_track_approach(p->track, (himc_hand)hand, &now, HIMC_APPROACH);
         }
+    himc_track_approach_posture(p->track, &p->reference.posture);
     p->track_start = start;
 }
 
@@ -165,60 +165,6 @@ bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_
         himc_performance_drop_track(p);
     p->replan = true;
     return ok;
-}
-
-// says how much of a take the player cannot follow; the arm then stretches towards it
-static void note_reach(himc_performance *p, const himc_track *track, const char *path)
-{
-    double length = himc_track_length(track), farthest = 0;
-    int far = 0, count = 0;
-    for (double t = 0; t < length; t += 0.01)
-        for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            if (!himc_track_present(track, (himc_hand)hand))
-                continue;
-            himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
-            himc_vec3 near = himc_posture_reachable(&p->posture, (himc_hand)hand, x);
-            double missing = himc_vec3_length(himc_vec3_sub(x, near));
-            count++;
-            far += missing > 1e-3;
-            farthest = fmax(farthest, missing);
-        }
-    if (far > 0)
-        himc_performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m",
-                              path, 100.0 * far / count, farthest);
-}
-
-bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    int drum;
-    const char *path = c->atom[0].symbol;
-    himc_take *take = himc_take_load(path, &p->take_options, error);
-    if (!take)
-        return false;
-    himc_track *track = NULL;
-    if (himc_performance_ensure_drum(p, "", &drum, error)) {
-        const himc_place *place = himc_drum_place(p->drum[drum].drum);
-        track = himc_track_new(take, &p->take_options, place, p->skeleton.mallet_radius, error);
-        if (!track && error && strncmp(error->text, path, strlen(path)) != 0)
-            himc_error_prefix(error, "%s", path);
-    }
-    himc_skeleton_config old = p->body;
-    int measured = track ? himc_body_measure(take, &p->body) : 0;
-    himc_take_free(take);
-    if (!track)
-        return false;
-    if (measured > 0 && !himc_performance_build_body(p, error)) {
-        p->body = old;
-        himc_track_free(track);
-        return himc_error_prefix(error, "%s", path);
-    }
-    if (measured > 0)
-        himc_performance_note(p, "%s: the player's body has %d lengths from it", path, measured);
-    note_reach(p, track, path);
-    himc_performance_drop_track(p);
-    p->track = track;
-    p->replan = true;
-    return true;
 }
 
 // a tip is sent no further into a head than this

@@ -177,7 +177,7 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
                                void *user)
 {
     static const char *const mode[] = {"himc", "id", "ik"},
-                             *const solver[] = {"dls", "pinv", "transpose"},
+                             *const solver[] = {"dls", "pinv", "transpose", "nakamura", "sdls"},
                              *const law[] = {"printed", "feedforward", "computed-torque"};
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);

@@ -1,10 +1,10 @@
-/// performance_state.h: what a performance holds, shared by the five files that are its rooms:
-/// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c and
-/// performance_play.c (what is asked), performance_report.c (what is told).
+/// performance_state.h: what a performance holds, shared by the eight files that are its rooms:
+/// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c,
+/// performance_play.c and performance_take.c (what is asked), performance_habit.c (how the arms go
+/// with it), performance_push.c (who pushes), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
-#include "himc/body.h"
 #include "himc/character.h"
 #include "himc/performance.h"
 #include "himc/recording.h"
@@ -59,8 +59,16 @@ struct himc_performance {
 
     // the body
     himc_skeleton_config body;
-    himc_skeleton skeleton;
+    himc_skeleton skeleton;       // as control believes it to be
+    himc_skeleton plant;          // as it is simulated: masses may differ
+    double weight[HIMC_SEGMENTS]; // of each segment, plant over belief
     himc_posture posture;
+    himc_pose manner;               // how the player of a take holds neck, head and legs ...
+    bool manner_known[HIMC_JOINTS]; // ... and which of them the take shows
+    himc_bearing bearing;           // the mean of the trunk in the take
+    himc_habit habit;               // what the null space is for instead of the posture, in `himc`
+    bool has_habit;
+    double habit_since; // when it was set or dropped (s)
     himc_grip grip;
     struct {
         himc_bearing from, goal;
@@ -72,6 +80,11 @@ struct himc_performance {
     himc_vec3 torque[HIMC_JOINTS];
     himc_reference reference;
     bool one_way;
+    struct {
+        himc_vec3 force; // (N)
+        double until;    // (s)
+    } push[HIMC_SEGMENTS];
+    double push_end; // of all pushes (s)
 
     // what to play
     himc_planner *planner;
@@ -137,6 +150,9 @@ void himc_performance_reset_clock(himc_performance *p);
 void himc_performance_notice_drums(himc_performance *p);
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
 
+// performance_habit.c
+void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *tick);
+
 // performance_touch.c
 stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, double t);
 void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HIMC_HANDS]);
@@ -158,8 +174,18 @@ bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *in
 performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_performance_do_hit,
     himc_performance_do_tempo, himc_performance_do_clear, himc_performance_do_play,
     himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_score,
-    himc_performance_do_take, himc_performance_do_target, himc_performance_do_units;
+    himc_performance_do_target, himc_performance_do_units;
 void himc_performance_drop_track(himc_performance *p);
+
+// performance_take.c
+performance_action himc_performance_do_take;
+/// What the joints are to do as the tips do `tip` at `t`: the take's postures, else natural ones.
+void himc_performance_posture(const himc_performance *p, double t,
+                              const himc_target tip[HIMC_HANDS], himc_posture_motion *motion);
+
+// performance_push.c
+performance_action himc_performance_do_push;
+void himc_performance_push_body(himc_performance *p, double t);
 
 // performance_report.c
 void himc_performance_emit(himc_performance *p, const himc_event *event);

@@ -82,7 +82,7 @@ static void give_up(himc_performance *p, himc_hand hand, double t, const stroke_
 }
 
 // in `ik` the stick's end in contact is the micro-contact's, and the arm follows it
-static void follow_stick(himc_performance *p, himc_hand hand)
+static void follow_stick(himc_performance *p, himc_hand hand, double t)
 {
     touch *c = &p->touch[hand];
     himc_target *tip = &p->reference.tip[hand];
@@ -92,7 +92,7 @@ static void follow_stick(himc_performance *p, himc_hand hand)
     tip->x = himc_vec3_madd(tip->x, c->stick.height - height, n);
     tip->v = himc_vec3_madd(tip->v, c->stick.velocity - himc_vec3_dot(n, tip->v), n);
     tip->a = himc_vec3_madd(tip->a, -himc_vec3_dot(n, tip->a), n);
-    himc_posture_moving(&p->posture, p->reference.tip, &p->reference.posture);
+    himc_performance_posture(p, t, p->reference.tip, &p->reference.posture);
 }
 
 void himc_performance_release(himc_performance *p, double t)
@@ -111,7 +111,7 @@ void himc_performance_release(himc_performance *p, double t)
         if (drum < p->drums)
             p->reference.normal[hand] = himc_place_normal(himc_drum_place(p->drum[drum].drum));
         if (c->touching && p->controller.mode == HIMC_PIPELINE_IK)
-            follow_stick(p, (himc_hand)hand);
+            follow_stick(p, (himc_hand)hand, t);
     }
 }
 
@@ -151,14 +151,14 @@ static void load_stick(himc_performance *p, himc_hand hand, himc_vec3 local,
     bool kinematic = p->controller.mode == HIMC_PIPELINE_IK;
     if (!c->stick.touching) // mallets are changed in the air
         c->stick.head = *himc_drum_mallet(drum);
-    c->stick.mass = himc_effective_mass(&p->skeleton, &p->state, art, hand, n);
+    c->stick.mass = himc_effective_mass(&p->plant, &p->state, art, hand, n);
     c->stick.one_way = p->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
     c->stick.acceleration = 0;
     if (!kinematic)
         c->stick.acceleration =
-            himc_vec3_dot(n, himc_tip_acceleration(&p->skeleton, &p->state, hand, relative));
+            himc_vec3_dot(n, himc_tip_acceleration(&p->plant, &p->state, hand, relative));
     if (kinematic && c->touching)
         return;
     c->stick.height = local.z + c->offset;
@@ -230,9 +230,9 @@ void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HI
         memset(p->force[hand], 0, (size_t)n * sizeof(double));
     }
     if (any) {
-        himc_articulate(&p->skeleton, &p->state, &art);
+        himc_articulate(&p->plant, &p->state, &art);
         if (p->controller.mode != HIMC_PIPELINE_IK)
-            himc_forward_dynamics(&p->skeleton, &p->state, &art, p->torque, NULL, relative);
+            himc_forward_dynamics(&p->plant, &p->state, &art, p->torque, NULL, relative);
     }
     for (int i = 0; i < p->drums; i++) {
         himc_stick *sticks[HIMC_HANDS];

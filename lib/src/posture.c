@@ -15,6 +15,8 @@
 /// after each motion of the tips: a player's trunk is slow.
 #include "himc/posture.h"
 
+#include "difference.h"
+
 #define STICK_RISE 2.6        // stick's elevation per metre of the tip's height (rad/m)
 #define STICK_MOST 1.25       // it never stands steeper (rad)
 #define HAND_RISE 1.3         // the hand's
@@ -28,7 +30,6 @@
 #define ELBOW_BEHIND 0.08     // where the stick's plane begins: behind the shoulder (m) ...
 #define ELBOW_BESIDE 0.05     // ... and outside it (m)
 #define REACH 0.985           // of the straight arm
-#define DIFFERENCE 1e-3       // step of the differences (s)
 #define TRUNK_LEAN 0.09       // (rad)
 #define NEAR_ENOUGH 0.60      // farther strokes make the trunk lean (m)
 #define LEAN_MORE 1.4         // by so much (rad/m)
@@ -226,22 +227,6 @@ double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[HIMC_HAN
     return fmax(left, right);
 }
 
-static himc_vec3 along_path(const himc_target *t, double dt)
-{
-    return himc_vec3_madd(himc_vec3_madd(t->x, dt, t->v), 0.5 * dt * dt, t->a);
-}
-
-// angular velocity and acceleration at the middle of three orientations, in the parent's frame
-static void differentiate(himc_quat before, himc_quat now, himc_quat after, himc_vec3 *rate,
-                          himc_vec3 *acceleration)
-{
-    himc_quat back = himc_quat_conj(now);
-    himc_vec3 to = himc_quat_log(himc_quat_mul(after, back)),
-              from = himc_quat_log(himc_quat_mul(before, back));
-    *rate = himc_vec3_scale(himc_vec3_sub(to, from), 0.5 / DIFFERENCE);
-    *acceleration = himc_vec3_scale(himc_vec3_add(to, from), 1 / (DIFFERENCE * DIFFERENCE));
-}
-
 void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                          himc_posture_motion *motion)
 {
@@ -249,15 +234,15 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
     for (int k = 0; k < 3; k++) {
         himc_vec3 x[HIMC_HANDS];
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            x[hand] = along_path(&tip[hand], (k - 1) * DIFFERENCE);
+            x[hand] = himc_target_after(&tip[hand], (k - 1) * DIFFERENCE).x;
         himc_posture now = *posture;
         now.bearing = bearing_after(&posture->bearing, (k - 1) * DIFFERENCE);
         himc_posture_at(&now, x, &pose[k]);
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
         motion->joint[j] = pose[1].joint[j];
-        differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j], &motion->rate[j],
-                      &motion->acceleration[j]);
+        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j], &motion->rate[j],
+                           &motion->acceleration[j]);
     }
 }
 

@@ -2,8 +2,8 @@
 ///
 /// A frame is the rotation of each joint in its parent's frame, in single precision: 1e-7 rad over
 /// an arm is a tenth of a micrometre. All memory is taken in advance, so that keeping a frame is
-/// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the
-/// two tips.
+/// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the two
+/// tips, then the ends of head and toes, without which a BVH would not have their rotations.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/recording.h"
 
@@ -14,7 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POINTS (HIMC_SEGMENTS + HIMC_HANDS)
+#define ENDS 3
+#define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
 
 typedef struct frame {
     float q[HIMC_JOINTS][4];
@@ -28,11 +29,38 @@ struct himc_recording {
     frame *frames; ///< owned (room)
 };
 
-static const char *const names[POINTS] = {
-    "Hips",        "Spine",        "Neck",          "Head",          "LeftArm",   "RightArm",
-    "LeftForeArm", "RightForeArm", "LeftHand",      "RightHand",     "LeftStick", "RightStick",
-    "LeftUpLeg",   "RightUpLeg",   "LeftLeg",       "RightLeg",      "LeftFoot",  "RightFoot",
-    "LeftToeBase", "RightToeBase", "LeftStick_end", "RightStick_end"};
+static const char *const names[POINTS] = {"Hips",
+                                          "Spine",
+                                          "Neck",
+                                          "Head",
+                                          "LeftArm",
+                                          "RightArm",
+                                          "LeftForeArm",
+                                          "RightForeArm",
+                                          "LeftHand",
+                                          "RightHand",
+                                          "LeftStick",
+                                          "RightStick",
+                                          "LeftUpLeg",
+                                          "RightUpLeg",
+                                          "LeftLeg",
+                                          "RightLeg",
+                                          "LeftFoot",
+                                          "RightFoot",
+                                          "LeftToeBase",
+                                          "RightToeBase",
+                                          "LeftStick_end",
+                                          "RightStick_end",
+                                          "Head_end",
+                                          "LeftToeBase_end",
+                                          "RightToeBase_end"};
+static const int ends[ENDS] = {HIMC_HEAD, HIMC_LEFT_TOES, HIMC_RIGHT_TOES};
+
+// the far end of a segment, in its frame
+static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
+{
+    return himc_vec3_scale(skeleton->segment[segment].axis, skeleton->segment[segment].length);
+}
 
 // opened as if to append: what is there stays until there is something to write
 static bool check_path(const char *path, himc_error *error)
@@ -106,10 +134,14 @@ const char *himc_recording_path(const himc_recording *r)
 static void fill_skeleton(himc_take *take, const himc_skeleton *skeleton)
 {
     for (int i = 0; i < POINTS; i++) {
-        bool tip = i >= HIMC_SEGMENTS;
+        int tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
         himc_take_set_name(take, i, names[i], strlen(names[i]));
-        take->parents[i] = tip ? HIMC_LEFT_STICK + i - HIMC_SEGMENTS : skeleton->segment[i].parent;
-        take->offsets[i] = tip ? skeleton->tip : skeleton->segment[i].origin;
+        take->parents[i] = end >= 0   ? ends[end]
+                           : tip >= 0 ? HIMC_LEFT_STICK + tip
+                                      : skeleton->segment[i].parent;
+        take->offsets[i] = end >= 0   ? far_end(skeleton, ends[end])
+                           : tip >= 0 ? skeleton->tip
+                                      : skeleton->segment[i].origin;
     }
     take->offsets[0] = himc_vec3_make(0, 0, 0);
 }
@@ -126,6 +158,10 @@ static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton
         rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
     memcpy(himc_take_at(take, index, 0), state.origin, sizeof state.origin);
     memcpy(himc_take_at(take, index, HIMC_SEGMENTS), state.tip, sizeof state.tip);
+    for (int i = 0; i < ENDS; i++)
+        *himc_take_at(take, index, HIMC_SEGMENTS + HIMC_HANDS + i) =
+            himc_vec3_add(state.origin[ends[i]],
+                          himc_mat3_apply(&state.rotation[ends[i]], far_end(skeleton, ends[i])));
 }
 
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)

@@ -110,6 +110,8 @@ static bool config_valid(const himc_skeleton_config *c, himc_error *error)
                  himc_check_range("mallet mass", c->mallet_mass, 0.005, 0.2, "kg", error) &&
                  himc_check_range("mallet radius", c->mallet_radius, 0.005, 0.05, "m", error) &&
                  himc_check_range("grip", c->grip, 0.02, 0.5 * c->stick_length, "m", error);
+    valid = valid && (c->shoulders == 0 ||
+                      himc_check_range("shoulders", c->shoulders, 0.2, 0.6, "m", error));
     valid = valid && (c->seat == 0 || himc_check_range("seat", c->seat, 0.3, 1.3, "m", error));
     for (int hand = 0; valid && hand < HIMC_HANDS; hand++)
         if (c->length[HIMC_LEFT_STICK + hand] != 0)
@@ -205,10 +207,17 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
     s->length = c->length[i] > 0 ? c->length[i] : r.length * scale;
     s->mass = c->mass * mass_share(i, c->anthropometry);
     s->origin = joint_origin(skeleton, &r, scale);
+    if (c->shoulders > 0 && r.parent == HIMC_TRUNK && r.origin[1] != 0)
+        s->origin.y = copysign(0.5 * c->shoulders, r.origin[1]);
     s->center = himc_vec3_scale(s->axis, r.center * s->length);
     double ml2 = s->mass * s->length * s->length;
     const double *g = r.gyration;
     s->inertia = himc_vec3_make(ml2 * g[0] * g[0], ml2 * g[1] * g[1], ml2 * g[2] * g[2]);
+}
+
+double himc_skeleton_seat(const himc_skeleton_config *config)
+{
+    return config->seat > 0 ? config->seat : SEAT * config->height;
 }
 
 bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *config,
@@ -226,7 +235,7 @@ bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *con
     merge_trunk(&skeleton->segment[HIMC_TRUNK]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         build_stick(&skeleton->segment[HIMC_LEFT_STICK + hand], skeleton->tip, config);
-    skeleton->root = himc_vec3_make(0, 0, config->seat > 0 ? config->seat : SEAT * config->height);
+    skeleton->root = himc_vec3_make(0, 0, himc_skeleton_seat(config));
     return true;
 }
 

@@ -25,6 +25,7 @@ struct himc_take {
     himc_take_event *events;
     int event_count;
 
+    double mass, height;  ///< of the player as the file says (kg, m), 0 if it does not
     double file_unit;     ///< (m), 0 if the file does not say
     himc_vec3 file_up;    ///< unit axis as the file says, 0 if it does not
     himc_vec3 file_right; ///< axis towards the right of the screen, or 0
@@ -76,6 +77,15 @@ void himc_take_plain_name(const char *name, char plain[TAKE_NAME]);
 /// HIMC_HANDS for no side, or -1 if anything is left over. `words` ends with NULL; `rest` gets the
 /// words without the side.
 int himc_take_side(const char *plain, const char *const *words, char rest[TAKE_NAME]);
+/// Frames [begin, end) in which a point is not seen.
+typedef struct himc_take_gap {
+    int begin, end;
+} himc_take_gap;
+
+/// A point's places (frames), gaps bridged. Returns how many frames were, or -1 at a gap longer than
+/// `longest` (s), or if the point is never seen; `gap` is that one then.
+int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
+                   himc_take_gap *gap);
 /// Index of a hand's tip by its name, or -1.
 int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_options *options);
 

@@ -2,11 +2,11 @@
 ///
 /// With the file's up axis u and its axis f that goes forward (to the right of the screen if the
 /// file says, else x, or y if x is up), the rows of the rotation are f, u x f, u: y up becomes (x,
-/// -z, y). A turn about z then brings the body's left side to +y: by any angle if shoulders, hips
-/// or the like are named in pairs, by quarter turns if only the tips tell (players do not strike
-/// exactly along their room's axes, but their hands are not exactly abreast either). A skeleton's
-/// joint frames get a rest rotation of their own, found from the bones in the zero pose, so that
-/// the zero pose looks along x whichever way the player faced on the day: with A for the points and
+/// -z, y). A turn about z then brings the body's left side to +y: by any angle if hips, else
+/// shoulders or the like, are named in pairs, by quarter turns if only the tips tell (players do
+/// not strike exactly along their room's axes, but their hands are not exactly abreast either). A
+/// skeleton's joint frames get a rest rotation of their own, found from the bones in the zero pose,
+/// so that the zero pose looks along x whichever way the player faced on the day: with A for the points and
 /// B for the zero pose, a root turns by A R B^T, other joints by B R B^T, and offsets become B o;
 /// forward kinematics then gives A times the points.
 #include "take_data.h"
@@ -18,6 +18,8 @@
 static const char *const side_words[] = {
     "shoulder", "sho", "collar", "clavicle", "clav", "acromion", "acr", "upper", "upleg", "leg",
     "thigh",    "hip", "joint",  "asis",     "asi",  "psis",     "psi", "arm",   NULL};
+static const char *const hip_words[] = {"hip",  "joint", "upleg", "upperleg", "thigh",
+                                        "asis", "asi",   "psis",  "psi",      NULL};
 static const char *const high_words[] = {"shoulder", "sho",      "acromion", "acr",
                                          "collar",   "clavicle", "clav",     "head",
                                          "neck",     "c7",       "t1",       NULL};
@@ -55,21 +57,28 @@ typedef struct pair {
     int left, right;
 } pair;
 
-// left and right of the same thing, at most `capacity`
-static int find_pairs(const himc_take *take, pair *pairs, int capacity)
+// left and right of the same thing of these words, at most `capacity`
+static int find_pairs_of(const himc_take *take, const char *const *words, pair *pairs, int capacity)
 {
     int count = 0;
     char left[TAKE_NAME], right[TAKE_NAME];
     for (int i = 0; i < take->points && count < capacity; i++) {
-        if (named(take, i, side_words, left) != HIMC_LEFT)
+        if (named(take, i, words, left) != HIMC_LEFT)
             continue;
         for (int j = 0; j < take->points; j++)
-            if (named(take, j, side_words, right) == HIMC_RIGHT && strcmp(left, right) == 0) {
+            if (named(take, j, words, right) == HIMC_RIGHT && strcmp(left, right) == 0) {
                 pairs[count++] = (pair){i, j};
                 break;
             }
     }
     return count;
+}
+
+// those of the hips, for a player's shoulders turn towards what is struck; else any
+static int find_pairs(const himc_take *take, pair *pairs, int capacity)
+{
+    int count = find_pairs_of(take, hip_words, pairs, capacity);
+    return count > 0 ? count : find_pairs_of(take, side_words, pairs, capacity);
 }
 
 // the axis heads lie above hips on, clear or nothing; the points' names go to the reason

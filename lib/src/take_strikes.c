@@ -9,7 +9,9 @@
 ///
 /// The track near the touch is blunted by the capture's filter, so what happens is read from
 /// before: a parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall,
-/// those before the deceleration reaches a tenth of A. In a sharp track (nearly all of D within two
+/// those before the deceleration reaches a tenth of A. A must stand out of what noise alone gives
+/// (its size from fourth differences, in which smooth motion cancels), taken over longer differences
+/// when the track is noisy. In a sharp track (nearly all of D within two
 /// frames) the touch is where the parabolas from before and after meet; in a blunted one, where the
 /// one from before passes the height of the lowest position. In a sharp track the speed is the
 /// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
@@ -21,11 +23,14 @@
 #define LEAST_SPEED 0.3 // slower touches are no strokes (m/s)
 #define REFRACTORY 0.05 // strikes of one hand are further apart (s)
 #define WINDOW 0.03     // (s)
+#define CERTAIN 5.0     // standard deviations of noise that a bend must exceed
+#define CALM 100.0      // noise's bend, that many times, up to which differences stay short (m/s^2)
 
 typedef struct track {
     const himc_vec3 *x;
     int frames;
     double rate;
+    double noise; // of z, one standard deviation (m)
 } track;
 
 // a + b u + c u^2, u in frames from `origin`
@@ -49,6 +54,23 @@ static int frames_of(const track *t, double seconds, int least)
 {
     int n = (int)lround(seconds * t->rate);
     return n < least ? least : n;
+}
+
+// standard deviation of bends over h frames by noise alone, times CERTAIN: of x_h - 2 x_0 + x_-h the
+// variance is 6 sigma^2
+static double noise_bend(const track *t, int h)
+{
+    double s = t->rate / h;
+    return CERTAIN * sqrt(6) * t->noise * s * s;
+}
+
+// frames of the differences in which strikes are looked for
+static int difference(const track *t)
+{
+    int h = frames_of(t, 0.006, 1), longest = frames_of(t, 0.012, 1);
+    while (h < longest && noise_bend(t, h) > CALM)
+        h++;
+    return h;
 }
 
 // least squares over samples origin, origin + step, ...; n >= 2, at the take's edges whatever there
@@ -132,7 +154,8 @@ static bool is_strike(const track *t, int i, int h, spike *s)
         up = fmax(up, speed(t, k, k + near));
     *s = (spike){i, bend(t, i, h), up - down};
     double width = fmax(0.024, 3 / t->rate);
-    return down < -LEAST_SPEED && up > 0.3 * down && s->rise < width * s->bend;
+    return down < -LEAST_SPEED && up > 0.3 * down && s->rise < width * s->bend &&
+           s->bend > noise_bend(t, h);
 }
 
 static double bend_or_zero(const track *t, int i, int h)
@@ -191,7 +214,7 @@ static himc_take_strike measure(const track *t, const spike *s, himc_hand hand)
 // strikes of one hand from frame *from on; false when there are no more
 static bool next_strike(const track *t, int *from, himc_hand hand, himc_take_strike *strike)
 {
-    int h = frames_of(t, 0.006, 1), apart = frames_of(t, REFRACTORY, 1);
+    int h = difference(t), apart = frames_of(t, REFRACTORY, 1);
     spike best = {-1, 0, 0}, s;
     int i = *from < h ? h : *from;
     for (; i + h < t->frames && (best.frame < 0 || i < best.frame + apart); i++)
@@ -201,29 +224,6 @@ static bool next_strike(const track *t, int *from, himc_hand hand, himc_take_str
     if (best.frame >= 0)
         *strike = measure(t, &best, hand);
     return best.frame >= 0;
-}
-
-int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                      himc_take_strike *strikes, int capacity)
-{
-    himc_take_strike next[HIMC_HANDS];
-    track tracks[HIMC_HANDS];
-    int from[HIMC_HANDS] = {0, 0}, count = 0;
-    bool waits[HIMC_HANDS];
-    for (int h = 0; h < HIMC_HANDS; h++) {
-        tracks[h] = (track){tips[h].x, himc_take_frames(take), himc_take_rate(take)};
-        waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
-    }
-    // two sorted lists are merged as they are found
-    while (waits[HIMC_LEFT] || waits[HIMC_RIGHT]) {
-        int h = !waits[HIMC_LEFT] ||
-                (waits[HIMC_RIGHT] && next[HIMC_RIGHT].time < next[HIMC_LEFT].time);
-        if (count < capacity)
-            strikes[count] = next[h];
-        count++;
-        waits[h] = next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
-    }
-    return count;
 }
 
 static int compare(const void *a, const void *b)
@@ -236,6 +236,43 @@ static double median(double *values, int count)
 {
     qsort(values, (size_t)count, sizeof *values, compare);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+}
+
+// median of |fourth differences|, whose variance is 70 sigma^2; 0 if there is no memory for it
+static double noise_of(const track *t)
+{
+    int count = t->frames - 4;
+    double *size = count > 0 ? malloc((size_t)count * sizeof *size) : NULL;
+    for (int i = 0; size && i < count; i++)
+        size[i] = fabs(t->x[i].z - 4 * t->x[i + 1].z + 6 * t->x[i + 2].z - 4 * t->x[i + 3].z +
+                       t->x[i + 4].z);
+    double noise = size ? median(size, count) / (0.6745 * sqrt(70)) : 0;
+    free(size);
+    return noise;
+}
+
+int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                      himc_take_strike *strikes, int capacity)
+{
+    himc_take_strike next[HIMC_HANDS];
+    track tracks[HIMC_HANDS];
+    int from[HIMC_HANDS] = {0, 0}, count = 0;
+    bool waits[HIMC_HANDS];
+    for (int h = 0; h < HIMC_HANDS; h++) {
+        tracks[h] = (track){tips[h].x, himc_take_frames(take), himc_take_rate(take), 0};
+        tracks[h].noise = tips[h].present ? noise_of(&tracks[h]) : 0;
+        waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
+    }
+    // two sorted lists are merged as they are found
+    while (waits[HIMC_LEFT] || waits[HIMC_RIGHT]) {
+        int h = !waits[HIMC_LEFT] ||
+                (waits[HIMC_RIGHT] && next[HIMC_RIGHT].time < next[HIMC_LEFT].time);
+        if (count < capacity)
+            strikes[count] = next[h];
+        count++;
+        waits[h] = next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
+    }
+    return count;
 }
 
 // the middle of one hand's strikes along one axis; false if it has none

@@ -13,13 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct gap {
-    int begin, end; // frames [begin, end)
-} gap;
-
-static gap next_gap(const himc_take *take, int point, int from)
+static himc_take_gap next_gap(const himc_take *take, int point, int from)
 {
-    gap g = {from, from};
+    himc_take_gap g = {from, from};
     while (g.begin < take->frames && himc_vec3_finite(*himc_take_at(take, g.begin, point)))
         g.begin++;
     for (g.end = g.begin;
@@ -57,7 +53,7 @@ static bool edge_slope(const himc_vec3 *x, int frames, int edge, int step, doubl
     return true;
 }
 
-static void bridge(himc_vec3 *x, int frames, gap g, double rate)
+static void bridge(himc_vec3 *x, int frames, himc_take_gap g, double rate)
 {
     int a = g.begin - 1, b = g.end;
     double h = b - a;
@@ -74,7 +70,7 @@ static void bridge(himc_vec3 *x, int frames, gap g, double rate)
     }
 }
 
-static void fill(himc_vec3 *x, int frames, gap g, double rate)
+static void fill(himc_vec3 *x, int frames, himc_take_gap g, double rate)
 {
     if (g.begin > 0 && g.end < frames) {
         bridge(x, frames, g, rate);
@@ -84,17 +80,32 @@ static void fill(himc_vec3 *x, int frames, gap g, double rate)
         x[i] = g.begin > 0 ? x[g.begin - 1] : x[g.end];
 }
 
-static bool check_gap(const himc_take *take, himc_hand hand, int point, gap g, double longest,
-                      himc_error *error)
+int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
+                   himc_take_gap *gap)
 {
-    double length = (g.end - g.begin) / take->rate;
+    int filled = 0;
+    for (int i = 0; i < take->frames; i++)
+        x[i] = *himc_take_at(take, i, point);
+    for (*gap = next_gap(take, point, 0); gap->begin < take->frames;
+         *gap = next_gap(take, point, gap->end)) {
+        int length = gap->end - gap->begin;
+        if (length / take->rate > longest || length == take->frames)
+            return -1;
+        fill(x, take->frames, *gap, take->rate);
+        filled += length;
+    }
+    return filled;
+}
+
+static bool refuse_gap(const himc_take *take, himc_hand hand, int point, himc_take_gap g,
+                       double longest, himc_error *error)
+{
     bool never = g.end - g.begin == take->frames;
-    if (length <= longest && !never)
-        return true;
     return himc_error_set(
         error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), allowed are gaps of %g s",
         take->file, himc_hand_name(hand), take->names[point], never ? "never seen" : "missing",
-        take->first_frame + g.begin, take->first_frame + g.end - 1, length, longest);
+        take->first_frame + g.begin, take->first_frame + g.end - 1, (g.end - g.begin) / take->rate,
+        longest);
 }
 
 static bool fill_tip(himc_take *take, himc_hand hand, int point, double longest, himc_take_tip *tip,
@@ -104,19 +115,12 @@ static bool fill_tip(himc_take *take, himc_hand hand, int point, double longest,
         take->tip[hand] = malloc((size_t)take->frames * sizeof *take->tip[hand]);
     if (!take->tip[hand])
         return himc_error_set(error, "%s: no memory for %d frames", take->file, take->frames);
-    himc_vec3 *x = take->tip[hand];
-    for (int i = 0; i < take->frames; i++)
-        x[i] = *himc_take_at(take, i, point);
-    tip->filled = 0;
-    for (gap g = next_gap(take, point, 0); g.begin < take->frames;
-         g = next_gap(take, point, g.end)) {
-        if (!check_gap(take, hand, point, g, longest, error))
-            return false;
-        fill(x, take->frames, g, take->rate);
-        tip->filled += g.end - g.begin;
-    }
+    himc_take_gap g;
+    tip->filled = himc_take_fill(take, point, longest, take->tip[hand], &g);
+    if (tip->filled < 0)
+        return refuse_gap(take, hand, point, g, longest, error);
     snprintf(tip->name, sizeof tip->name, "%s", take->names[point]);
-    tip->x = x;
+    tip->x = take->tip[hand];
     tip->present = true;
     return true;
 }

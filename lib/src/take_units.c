@@ -2,9 +2,9 @@
 /// size of people.
 ///
 /// A BVH never says. Its skeleton does: the longest way through the bones (toe to head, or hand to
-/// hand) of a grown player, sticks included, is 1.2 to 3.2 m, and the usual units (m, cm, mm, and
-/// CMU's 1/0.45 inch) are so far apart that at most one fits; a skeleton of arms alone may be 0.3
-/// m, but then only in m, cm or mm.
+/// hand) of a grown player, sticks included, is 1.2 to 3.2 m. The first unit that makes it so is
+/// taken, of m, cm, mm and CMU's 1/0.45 inch, which do not overlap, then, for bodies with legs, inches
+/// and feet; a skeleton without legs may be 0.3 m, but then only in m, cm or mm.
 ///
 /// Marker files do say, not always rightly: points that lie more than 8 m apart within one frame,
 /// or stay all in all within 2 cm, are read again in the one metric unit that makes them 0.2 .. 4 m
@@ -24,6 +24,8 @@ static const struct {
              {"cm", 0.01},
              {"mm", 0.001},
              {"CMU units of 0.056444 m", 0.0254 / 0.45},
+             {"inches", 0.0254},
+             {"feet", 0.3048},
              {"meters", 1},
              {"centimeters", 0.01},
              {"millimeters", 0.001},
@@ -32,12 +34,11 @@ static const struct {
              {"millimetres", 0.001},
              {"meter", 1},
              {"in", 0.0254},
-             {"inches", 0.0254},
              {"ft", 0.3048},
              {"um", 1e-6}};
 #define UNITS ((int)(sizeof units / sizeof units[0]))
 #define METRIC 3 // the first three: m, cm, mm
-#define GUESSED 4
+#define GUESSED 6
 
 double himc_take_unit(const char *name)
 {
@@ -142,21 +143,36 @@ static const char *unit_name(double metres, char text[32])
     return text;
 }
 
+static bool has_legs(const himc_take *take)
+{
+    static const char *const words[] = {"foot", "toe", "base", "end",   "ankle", "knee",
+                                        "leg",  "up",  "low",  "lower", NULL};
+    char plain[TAKE_NAME], rest[TAKE_NAME];
+    for (int i = 0; i < take->points; i++) {
+        himc_take_plain_name(take->names[i], plain);
+        int side = himc_take_side(plain, words, rest);
+        if (side >= 0 && strcmp(rest, "end") != 0 && strcmp(rest, "base") != 0)
+            return true;
+    }
+    return false;
+}
+
 static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 {
     double size = skeleton_size(take);
     if (size < 0)
         return himc_error_set(error, "%s: no memory", take->file);
-    *unit = guess_unit(size, 1.2, 3.2, GUESSED);
-    if (*unit == 0)
+    bool legs = has_legs(take);
+    *unit = guess_unit(size, 1.2, 3.2, legs ? GUESSED : GUESSED - 2);
+    if (*unit == 0 && !legs)
         *unit = guess_unit(size, 0.3, 3.2, METRIC);
     char text[32];
     if (*unit == 0)
         return himc_error_set(
             error,
-            "%s: skeleton: %.4g units through its bones is no player's size in m, cm, mm or CMU "
-            "units, allowed 0.3 .. 3.2 m",
-            take->file, size);
+            "%s: skeleton: %.4g units through its bones is no player's size in m, cm, mm, CMU "
+            "units, inches or feet, allowed %s .. 3.2 m",
+            take->file, size, legs ? "1.2" : "0.3");
     snprintf(take->units_text, sizeof take->units_text,
              "%s, guessed from %.4g units through the skeleton's bones", unit_name(*unit, text),
              size);

@@ -1,98 +1,21 @@
-/// task.c: quintic Hermite interpolation; one set of six basis values serves every channel.
-///
-/// With u = (t - t0) / T the six quintics that carry position, velocity and acceleration at each
-/// end, and their two derivatives, are computed once a step. Joints are interpolated as
-/// four-component quaternions q with q' = w q / 2 and q'' = (w' - |w|^2 / 2) q / 2 (w in the
-/// parent's frame, as a pure quaternion), then normalised; w and w' come back as 2 vec(q' q*) /
-/// |q|^2 and its derivative.
+/// task.c: every channel of the targets moves on a quintic from tick to tick, with one set of basis
+/// values for all (between.c). Legs are held as they are: only what is above the waist moves.
 #include "himc/task.h"
 
-typedef struct basis {
-    double value[3][6]; // of the position, its rate, its second derivative, for x0 v0 a0 x1 v1 a1
-} basis;
+#include "between.h"
 
-// the quintics with unit x0, v0 and a0 at u = 0 and their derivatives; those of the other end are
-// mirror images
-static void half_basis(double u, double h[3][3])
+static joint_state state_of(const himc_posture_motion *m, int j)
 {
-    double u2 = u * u, u3 = u2 * u, u4 = u3 * u, u5 = u4 * u;
-    h[0][0] = 1 - 10 * u3 + 15 * u4 - 6 * u5;
-    h[1][0] = -30 * u2 + 60 * u3 - 30 * u4;
-    h[2][0] = -60 * u + 180 * u2 - 120 * u3;
-    h[0][1] = u - 6 * u3 + 8 * u4 - 3 * u5;
-    h[1][1] = 1 - 18 * u2 + 32 * u3 - 15 * u4;
-    h[2][1] = -36 * u + 96 * u2 - 60 * u3;
-    h[0][2] = 0.5 * (u2 - 3 * u3 + 3 * u4 - u5);
-    h[1][2] = u - 4.5 * u2 + 6 * u3 - 2.5 * u4;
-    h[2][2] = 1 - 9 * u + 18 * u2 - 10 * u3;
+    return (joint_state){m->joint[j], m->rate[j], m->acceleration[j]};
 }
 
-static void make_basis(double u, double length, basis *b)
-{
-    double near[3][3], far[3][3], power[3] = {1, length, length * length};
-    half_basis(u, near);
-    half_basis(1 - u, far);
-    for (int d = 0; d < 3; d++)
-        for (int k = 0; k < 3; k++) {
-            double scale = power[k] / power[d];
-            b->value[d][k] = near[d][k] * scale;
-            b->value[d][3 + k] = ((d + k) % 2 ? -1 : 1) * far[d][k] * scale;
-        }
-}
-
-static himc_vec3 mix3(const double w[6], const himc_target *p, const himc_target *q)
-{
-    himc_vec3 v = himc_vec3_scale(p->x, w[0]);
-    v = himc_vec3_madd(himc_vec3_madd(v, w[1], p->v), w[2], p->a);
-    v = himc_vec3_madd(himc_vec3_madd(v, w[3], q->x), w[4], q->v);
-    return himc_vec3_madd(v, w[5], q->a);
-}
-
-typedef struct spin_state {
-    himc_quat q, rate, second;
-} spin_state;
-
-static himc_quat add4(himc_quat a, double s, himc_quat b)
-{
-    return (himc_quat){a.w + s * b.w, a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
-
-static himc_quat pure(himc_vec3 v)
-{
-    return (himc_quat){0, v.x, v.y, v.z};
-}
-
-static spin_state spin_of(himc_quat q, himc_vec3 w, himc_vec3 a)
-{
-    himc_quat second = himc_quat_mul(pure(a), q);
-    second = add4(second, -0.5 * himc_vec3_dot(w, w), q);
-    return (spin_state){q, himc_quat_scale(himc_quat_mul(pure(w), q), 0.5),
-                        himc_quat_scale(second, 0.5)};
-}
-
-static himc_quat mix4(const double w[6], const spin_state *p, const spin_state *q)
-{
-    himc_quat r = himc_quat_scale(p->q, w[0]);
-    r = add4(add4(r, w[1], p->rate), w[2], p->second);
-    r = add4(add4(r, w[3], q->q), w[4], q->rate);
-    return add4(r, w[5], q->second);
-}
-
-static void joint_between(const basis *b, const himc_posture_motion *from,
+static void joint_between(const between *b, const himc_posture_motion *from,
                           const himc_posture_motion *to, int j, himc_posture_motion *out)
 {
-    double sign = himc_quat_dot(from->joint[j], to->joint[j]) < 0 ? -1 : 1;
-    spin_state p = spin_of(from->joint[j], from->rate[j], from->acceleration[j]);
-    spin_state q = spin_of(himc_quat_scale(to->joint[j], sign), to->rate[j], to->acceleration[j]);
-    himc_quat x = mix4(b->value[0], &p, &q), v = mix4(b->value[1], &p, &q),
-              a = mix4(b->value[2], &p, &q);
-    double square = himc_quat_dot(x, x);
-    himc_quat back = himc_quat_scale(himc_quat_conj(x), 2 / square);
-    himc_vec3 w = himc_quat_vector(himc_quat_mul(v, back));
-    out->joint[j] = himc_quat_scale(x, 1 / sqrt(square));
-    out->rate[j] = w;
-    out->acceleration[j] = himc_vec3_madd(himc_quat_vector(himc_quat_mul(a, back)),
-                                          -2 * himc_quat_dot(x, v) / square, w);
+    joint_state p = state_of(from, j), q = state_of(to, j), s = himc_between_joints(b, &p, &q);
+    out->joint[j] = s.q;
+    out->rate[j] = s.rate;
+    out->acceleration[j] = s.acceleration;
 }
 
 void himc_task_tick_complete(himc_task_tick *tick, const himc_posture *posture)
@@ -103,20 +26,10 @@ void himc_task_tick_complete(himc_task_tick *tick, const himc_posture *posture)
 void himc_task_between(const himc_task_tick *from, const himc_task_tick *to, double time,
                        himc_reference *reference)
 {
-    basis b;
-    double length = to->time - from->time;
-    make_basis((time - from->time) / length, length, &b);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_target *tip = &reference->tip[hand];
-        tip->x = mix3(b.value[0], &from->tip[hand], &to->tip[hand]);
-        tip->v = mix3(b.value[1], &from->tip[hand], &to->tip[hand]);
-        tip->a = mix3(b.value[2], &from->tip[hand], &to->tip[hand]);
-    }
-    // neck, head and legs are held as they are: only trunk and arms move
-    reference->posture = to->posture;
-    joint_between(&b, &from->posture, &to->posture, HIMC_TRUNK - 1, &reference->posture);
+    between b = himc_between_make(time - from->time, to->time - from->time);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            joint_between(&b, &from->posture, &to->posture, himc_arm_joint((himc_hand)hand, k),
-                          &reference->posture);
+        reference->tip[hand] = himc_between_points(&b, &from->tip[hand], &to->tip[hand]);
+    reference->posture = to->posture;
+    for (int j = HIMC_TRUNK - 1; j < HIMC_LEFT_UPPER_LEG - 1; j++)
+        joint_between(&b, &from->posture, &to->posture, j, &reference->posture);
 }

@@ -1,108 +1,34 @@
-/// track.c: local cubic fits give each frame position, velocity and acceleration; quintics join
-/// the frames.
+/// track.c: local cubic fits (track_fit.c) give each frame position, velocity and acceleration;
+/// quintics join the frames.
 ///
-/// The fit at a frame uses the frames within +-WINDOW seconds on the same side of every strike
-/// (least squares, one-sided near a strike), so noise is smoothed before it is differentiated and
-/// no impact is smeared. A strike's frames from CUT before its lowest point to CUT after are
+/// A fit uses only frames on the same side of every strike. A strike's frames from CUT before its lowest point to CUT after are
 /// dropped. Approach: from the last good frame to the head's plane with an acceleration that
 /// fades to nothing there gives the time of contact. Then a bridge: a quintic from there to where
 /// the capture is rejoined; the bridge is what control sees while it is released, and is replaced
 /// at separation by one from the measured state.
-#include "himc/track.h"
-#include "himc/quintic.h"
+#include "track_state.h"
+
+#include "player_sit.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define WINDOW 0.025      // half width of the local fits (s)
-#define EDGE 5            // frames of the one-sided fit beside a strike, less one
 #define CUT 0.0125        // of the capture around a strike's lowest point (s)
+#define TOO_LATE 0.015    // with less of the take left, its bridge is left as it is (s)
 #define REJOIN 0.040      // from separation back to the capture (s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
-#define SETTLE 0.4        // from a stop to rest (s)
-#define EASE 0.1          // at both ends of the take time starts and stops so slowly (s)
+#define SLOWEST 0.2       // pace of a take's time from which on nothing is replanned
 #define HOVER 0.08        // of a tip at rest above the head (m)
+#define IN_THE_AIR 0.05   // a strike's tip is not so high above the head (m)
 #define LEAST_FRAMES 8
 #define MAX_STRIKES 4096
 
-typedef struct bridge {
-    double contact, from, to; // time of contact; the bridge replaces the capture in [from, to) (s)
-    himc_vec3 place;          // of the contact (m)
-    himc_quintic approach;    // from `from` to `contact`
-    himc_quintic path;        // from `contact`, or once struck from `restart`, to `to`
-    double restart;           // when the tip left the head (s); `from` until then
-} bridge;
-
-typedef struct hand_track {
-    bool present;
-    himc_target *frame;        // (frames)
-    bridge *bridges, *planned; // as they are played, as they were built
-    int bridge_count;
-    himc_quintic approach, settle; // before the first frame; after a stop
-    double approach_time;          // length of the approach (s), 0 if there is none
-} hand_track;
-
-struct himc_track {
-    double rate;
-    int frames;
-    himc_vec3 offset;
-    himc_place place;
-    double stop; // where the take is left (s); infinite if it is not
-    hand_track hand[HIMC_HANDS];
-};
-
-// least squares polynomial of `order` coefficients through the frames range[0] .. range[2] about
-// frame range[1]: the normal equations by Gauss elimination; fewer coefficients when there are
-// few frames
-static bool fit_polynomial(const himc_vec3 *x, const int range[3], int order, double dt,
-                           himc_target *out)
-{
-    int lo = range[0], k = range[1], hi = range[2];
-    double a[4][7] = {{0}};
-    for (int i = lo; i <= hi; i++) {
-        double u = (i - k), p[4] = {1, u, u * u, u * u * u}, v[3] = {x[i].x, x[i].y, x[i].z};
-        for (int r = 0; r < 4; r++) {
-            for (int c = 0; c < 4; c++)
-                a[r][c] += p[r] * p[c];
-            for (int c = 0; c < 3; c++)
-                a[r][4 + c] += p[r] * v[c];
-        }
-    }
-    int most = hi - lo >= 5 ? 4 : hi - lo >= 3 ? 3 : hi - lo >= 1 ? 2 : 1;
-    order = order < most ? order : most;
-    for (int r = 0; r < order; r++) {
-        if (fabs(a[r][r]) < 1e-12)
-            return false;
-        for (int s = 0; s < order; s++) {
-            double f = s == r ? 0 : a[s][r] / a[r][r];
-            for (int c = 0; c < 7; c++)
-                a[s][c] -= f * a[r][c];
-        }
-    }
-    double c[4][3] = {{0}};
-    for (int r = 0; r < order; r++)
-        for (int d = 0; d < 3; d++)
-            c[r][d] = a[r][4 + d] / a[r][r];
-    out->x = himc_vec3_make(c[0][0], c[0][1], c[0][2]);
-    out->v = himc_vec3_scale(himc_vec3_make(c[1][0], c[1][1], c[1][2]), 1 / dt);
-    out->a = himc_vec3_scale(himc_vec3_make(c[2][0], c[2][1], c[2][2]), 2 / (dt * dt));
-    return true;
-}
-
 // frames lo..hi: one stretch between strikes
-static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, int frames, double rate)
+static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
 {
-    int reach = (int)fmax(3, WINDOW * rate);
-    for (int k = lo; k <= hi; k++) {
-        int first = k - reach < lo ? lo : k - reach, last = k + reach > hi ? hi : k + reach;
-        int order = k == lo || k == hi ? 3 : 4; // a parabola is not thrown as far as a cubic
-        if (k == hi && hi < frames - 1 && k - EDGE > lo)
-            first = k - EDGE;
-        if (k == lo && lo > 0 && k + EDGE < hi)
-            last = k + EDGE;
-        if (!fit_polynomial(x, (int[]){first, k, last}, order, 1 / rate, &h->frame[k]))
-            h->frame[k] = (himc_target){.x = x[k]};
-    }
+    for (int k = lo; k <= hi; k++)
+        h->frame[k] =
+            himc_fit(x, himc_fit_window(k, lo, hi, track->frames, track->rate), 1 / track->rate);
 }
 
 // when the approach from frame state `s` reaches the head, its acceleration fading to nothing on
@@ -133,11 +59,10 @@ static himc_target captured_at(const himc_track *track, const hand_track *h, dou
     return himc_quintic_at(&q, (u - k) / track->rate);
 }
 
-static void make_bridge(himc_track *track, hand_track *h, bridge *b, int last, int next,
-                        double mallet_radius)
+static void make_bridge(himc_track *track, hand_track *h, bridge *b, double mallet_radius)
 {
-    himc_target before = h->frame[last];
-    double start = last / track->rate,
+    himc_target before = h->frame[b->last];
+    double start = b->last / track->rate,
            fall = fmax(fall_time(&track->place, &before, mallet_radius), 0);
     b->approach = (himc_quintic){{before.x, before.v, himc_vec3_scale(before.a, 0.5)}};
     if (fall > 0)
@@ -145,7 +70,7 @@ static void make_bridge(himc_track *track, hand_track *h, bridge *b, int last, i
     himc_target touch = himc_quintic_at(&b->approach, fall);
     b->from = b->restart = start;
     b->contact = start + fall;
-    b->to = fmax(next / track->rate, b->contact + 0.02);
+    b->to = fmax(b->next / track->rate, b->contact + 0.02);
     b->to = fmin(b->to, (track->frames - 1) / track->rate);
     himc_target after = captured_at(track, h, b->to);
     b->place = himc_place_from_world(&track->place, touch.x);
@@ -165,7 +90,33 @@ static himc_quintic come_to_rest(const himc_place *place, const himc_target *s)
     return himc_quintic_make(s, &rest, SETTLE);
 }
 
+// a stick pulled up sharply may look as if it had struck
+static bool is_in_the_air(const himc_track *track, const himc_take_strike *strike)
+{
+    himc_vec3 x = himc_vec3_add(strike->x, track->offset);
+    return himc_place_from_world(&track->place, x).z > IN_THE_AIR;
+}
+
 // cuts the strikes of one hand out of its capture and fits what is between
+static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
+                        const himc_take_strike *strikes, int count)
+{
+    hand_track *h = &track->hand[hand];
+    int start = 0, cut = (int)ceil(CUT * track->rate);
+    for (int i = 0; i < count; i++) {
+        int frame = strikes[i].frame;
+        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
+            is_in_the_air(track, &strikes[i]))
+            continue;
+        bridge *b = &h->planned[h->bridge_count++];
+        b->last = frame - cut;
+        b->next = frame + cut;
+        fit_stretch(h, x, start, b->last, track);
+        start = b->next;
+    }
+    fit_stretch(h, x, start, track->frames - 1, track);
+}
+
 static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captured,
                        const himc_take_strike *strikes, int count, double mallet_radius)
 {
@@ -174,57 +125,59 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     h->frame = calloc((size_t)track->frames, sizeof *h->frame);
     h->bridges = calloc((size_t)count + 1, sizeof *h->bridges);
     h->planned = calloc((size_t)count + 1, sizeof *h->planned);
-    bool ok = x && h->frame && h->bridges && h->planned;
-    for (int i = 0; ok && i < track->frames; i++)
-        x[i] = himc_vec3_add(captured[i], track->offset);
-    int start = 0, cut = (int)ceil(CUT * track->rate), last[MAX_STRIKES], next[MAX_STRIKES];
-    for (int i = 0; ok && i < count; i++) {
-        if (strikes[i].hand != hand || strikes[i].frame - cut < start + 2 ||
-            strikes[i].frame + cut > track->frames - 3)
-            continue;
-        last[h->bridge_count] = strikes[i].frame - cut;
-        next[h->bridge_count] = strikes[i].frame + cut;
-        fit_stretch(h, x, start, last[h->bridge_count], track->frames, track->rate);
-        start = next[h->bridge_count++];
-    }
-    if (ok)
-        fit_stretch(h, x, start, track->frames - 1, track->frames, track->rate);
-    for (int i = 0; ok && i < h->bridge_count; i++)
-        make_bridge(track, h, &h->planned[i], last[i], next[i], mallet_radius);
-    if (ok)
+    h->present = x && h->frame && h->bridges && h->planned;
+    if (h->present) {
+        for (int i = 0; i < track->frames; i++)
+            x[i] = himc_vec3_add(captured[i], track->offset);
+        cut_strikes(track, hand, x, strikes, count);
+        for (int i = 0; i < h->bridge_count; i++)
+            make_bridge(track, h, &h->planned[i], mallet_radius);
         memcpy(h->bridges, h->planned, (size_t)h->bridge_count * sizeof *h->bridges);
-    h->present = ok;
-    free(x);
-    return ok;
-}
-
-// moves the mean of the strikes' places onto the head's usual spot
-static himc_vec3 find_offset(const himc_take_strike *strikes, int count,
-                             const himc_take_tip tips[HIMC_HANDS], int frames,
-                             const himc_place *place, double mallet_radius)
-{
-    himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
-    double sx, sy;
-    himc_stroke_spot(&usual, place->radius, &sx, &sy);
-    himc_vec3 spot = himc_place_to_world(place, sx, 0), mean = {0, 0, 0};
-    spot = himc_vec3_madd(spot, mallet_radius, himc_place_normal(place));
-    himc_take_strike_place(strikes, count, &mean);
-    bool one_handed = !tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present;
-    if (count == 0) { // nothing struck: the lowest point above the spot
-        const himc_vec3 *x = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
-        mean = x[0];
-        for (int i = 1; i < frames; i++)
-            if (x[i].z < mean.z)
-                mean = x[i];
-        spot.z += 0.05;
     }
-    if (one_handed)
-        spot.y += tips[HIMC_LEFT].present ? fabs(sy) : -fabs(sy);
-    return himc_vec3_sub(spot, mean);
+    free(x);
+    return h->present;
 }
 
-himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
-                           const himc_place *place, double mallet_radius, himc_error *error)
+// what is there of the take's strikes, to be freed; NULL without memory
+static himc_take_strike *find_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                                      int *count)
+{
+    himc_take_strike *strikes = calloc(MAX_STRIKES, sizeof *strikes);
+    *count = strikes ? himc_take_strikes(take, tips, strikes, MAX_STRIKES) : 0;
+    *count = *count > MAX_STRIKES ? MAX_STRIKES : *count;
+    return strikes;
+}
+
+static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                         const himc_place *place, const himc_player *player, double mallet_radius)
+{
+    int count;
+    himc_track *track = calloc(1, sizeof *track);
+    himc_take_strike *strikes = find_strikes(take, tips, &count);
+    bool ok = track && strikes;
+    if (ok) {
+        track->rate = himc_take_rate(take);
+        track->frames = himc_take_frames(take);
+        track->place = *place;
+        track->stop = INFINITY;
+        track->offset = player && player->seated
+                            ? player->offset
+                            : himc_strike_offset(take, tips, place, mallet_radius);
+    }
+    for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
+        if (tips[hand].present)
+            ok = build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
+    ok = ok && (!player || himc_track_fit_postures(track, player));
+    free(strikes);
+    if (ok)
+        return track;
+    himc_track_free(track);
+    return NULL;
+}
+
+static himc_track *track_new(himc_take *take, const himc_take_options *options,
+                             const himc_place *place, const himc_player *player,
+                             double mallet_radius, himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))
@@ -234,29 +187,23 @@ himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
                        LEAST_FRAMES);
         return NULL;
     }
-    himc_track *track = calloc(1, sizeof *track);
-    himc_take_strike *strikes = calloc(MAX_STRIKES, sizeof *strikes);
-    bool ok = track && strikes;
-    if (ok) {
-        int count = himc_take_strikes(take, tips, strikes, MAX_STRIKES);
-        count = count > MAX_STRIKES ? MAX_STRIKES : count;
-        track->rate = himc_take_rate(take);
-        track->frames = himc_take_frames(take);
-        track->place = *place;
-        track->stop = INFINITY;
-        track->offset = find_offset(strikes, count, tips, track->frames, place, mallet_radius);
-        for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
-            if (tips[hand].present)
-                ok =
-                    build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
-    }
-    free(strikes);
-    if (!ok) {
-        himc_track_free(track);
+    himc_track *track = build(take, tips, place, player, mallet_radius);
+    if (!track)
         himc_error_set(error, "out of memory");
-        return NULL;
-    }
     return track;
+}
+
+himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
+                           const himc_place *place, double mallet_radius, himc_error *error)
+{
+    return track_new(take, options, place, NULL, mallet_radius, error);
+}
+
+himc_track *himc_track_new_played(himc_take *take, const himc_take_options *options,
+                                  const himc_place *place, const himc_player *player,
+                                  himc_error *error)
+{
+    return track_new(take, options, place, player, player->config.mallet_radius, error);
 }
 
 void himc_track_free(himc_track *track)
@@ -268,6 +215,8 @@ void himc_track_free(himc_track *track)
         free(track->hand[hand].bridges);
         free(track->hand[hand].planned);
     }
+    for (int j = 0; j < TRACK_JOINTS; j++)
+        free(track->joint[j]);
     free(track);
 }
 
@@ -319,13 +268,12 @@ int himc_track_strikes(const himc_track *track, himc_hand hand)
     return track->hand[hand].bridge_count;
 }
 
-// the first bridge that is not over at `t`, by bisection; bridge_count if there is none
-static int bridge_at(const hand_track *h, double t)
+int himc_track_bridge_at(const bridge *list, int count, double t)
 {
-    int lo = 0, hi = h->bridge_count;
+    int lo = 0, hi = count;
     while (lo < hi) {
         int mid = (lo + hi) / 2;
-        if (h->bridges[mid].to > t)
+        if (list[mid].to > t)
             hi = mid;
         else
             lo = mid + 1;
@@ -336,7 +284,7 @@ static int bridge_at(const hand_track *h, double t)
 // the take as it is played, strikes bridged
 static himc_target played_at(const himc_track *track, const hand_track *h, double t)
 {
-    int i = bridge_at(h, t);
+    int i = himc_track_bridge_at(h->bridges, h->bridge_count, t);
     if (i == h->bridge_count || t < h->bridges[i].from)
         return captured_at(track, h, t);
     const bridge *b = &h->bridges[i];
@@ -347,9 +295,7 @@ static himc_target played_at(const himc_track *track, const hand_track *h, doubl
     return himc_quintic_at(&b->path, t - b->contact);
 }
 
-// Takes begin and end in motion; time itself starts from a stand and comes to one, over EASE
-// around each end. `at` is the take's time when it is `t`, with its rate and second derivative.
-static void warp_time(const himc_track *track, double t, double at[3])
+void himc_track_warp(const himc_track *track, double t, double at[3])
 {
     double length = (track->frames - 1) / track->rate, half = 0.5 * EASE;
     himc_target from = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, to = {{half, 0, 0}, {1, 0, 0}, {0, 0, 0}};
@@ -381,32 +327,58 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
         return himc_quintic_at(&h->approach, fmax(t + 0.5 * EASE + h->approach_time, 0));
     if (t >= track->stop)
         return himc_quintic_at(&h->settle, fmin(t - track->stop, SETTLE));
-    warp_time(track, t, at);
+    himc_track_warp(track, t, at);
     himc_target s = played_at(track, h, at[0]);
     s.a = himc_vec3_madd(himc_vec3_scale(s.a, at[1] * at[1]), at[2], s.v);
     s.v = himc_vec3_scale(s.v, at[1]);
     return s;
 }
 
+// when a time of the take is played: by bisection where time itself starts or stops
+static double unwarp(const himc_track *track, double taken)
+{
+    double lo = taken - EASE, hi = taken + EASE, at[3];
+    himc_track_warp(track, taken, at);
+    if (at[0] == taken && at[1] == 1)
+        return taken;
+    for (int i = 0; i < 50; i++) {
+        double middle = 0.5 * (lo + hi);
+        himc_track_warp(track, middle, at);
+        if (at[0] < taken)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return hi;
+}
+
 bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
                         double *x, double *y)
 {
     const hand_track *h = &track->hand[hand];
-    int i = h->present ? bridge_at(h, t) : 0;
+    double at[3];
+    himc_track_warp(track, t, at);
+    int i = h->present ? himc_track_bridge_at(h->bridges, h->bridge_count, at[0]) : 0;
     if (i < h->bridge_count && h->bridges[i].restart > h->bridges[i].from)
         i++; // already struck
     if (!h->present || i >= h->bridge_count)
         return false;
-    *contact_time = h->bridges[i].contact;
+    *contact_time = unwarp(track, h->bridges[i].contact);
     *x = h->bridges[i].place.x;
     *y = h->bridges[i].place.y;
     return true;
 }
 
-void himc_track_separated(himc_track *track, himc_hand hand, double t, const himc_target *measured)
+void himc_track_separated(himc_track *track, himc_hand hand, double now,
+                          const himc_target *measured)
 {
     hand_track *h = &track->hand[hand];
-    int i = bridge_at(h, t);
+    double at[3];
+    himc_track_warp(track, now, at);
+    if (at[1] < SLOWEST)
+        return;
+    double t = at[0];
+    int i = himc_track_bridge_at(h->bridges, h->bridge_count, t);
     if (i == h->bridge_count || t < h->bridges[i].from) {
         if (i == 0 || h->bridges[i - 1].to < t - REJOIN)
             return;
@@ -416,9 +388,12 @@ void himc_track_separated(himc_track *track, himc_hand hand, double t, const him
     b->to = t + REJOIN;
     if (i + 1 < h->bridge_count)
         b->to = fmin(b->to, h->bridges[i + 1].from - 1e-3);
-    if (b->to < t + 1e-3)
+    b->to = fmin(b->to, (track->frames - 1) / track->rate);
+    if (b->to < t + TOO_LATE)
         return;
-    himc_target back = captured_at(track, h, b->to);
+    himc_target back = captured_at(track, h, b->to), from = *measured;
+    from.v = himc_vec3_scale(from.v, 1 / at[1]);
+    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
     b->restart = t;
-    b->path = himc_quintic_make(measured, &back, b->to - t);
+    b->path = himc_quintic_make(&from, &back, b->to - t);
 }

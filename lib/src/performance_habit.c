@@ -1,0 +1,60 @@
+/// performance_habit.c: a player's habit in place of the natural posture, eased in and out.
+///
+/// Between natural posture N and habit H lies exp(s d) N, d = log(H N^-1), with a share s that goes
+/// from 0 to 1 along a quintic: so the null space is never asked to jump. Its rates are taken as if
+/// d turned about one axis, which it does but for the arms' motion in that second.
+#include "performance_state.h"
+
+#define EASE 0.6 // from one to the other (s)
+
+// 0 before the habit is asked for, 1 when it has taken over; with its derivatives
+static himc_target share_at(const himc_performance *p, double t)
+{
+    himc_target from = {.x = {p->has_habit ? 0 : 1, 0, 0}}, to = {.x = {p->has_habit, 0, 0}};
+    if (t >= p->habit_since + EASE)
+        return to;
+    himc_quintic q = himc_quintic_make(&from, &to, EASE);
+    return himc_quintic_at(&q, fmax(t - p->habit_since, 0));
+}
+
+static void blend(const himc_posture_motion *natural, himc_target share, int j,
+                  himc_posture_motion *m)
+{
+    double s = share.x.x, ds = share.v.x, dds = share.a.x;
+    himc_vec3 d = himc_quat_log(himc_quat_mul(m->joint[j], himc_quat_conj(natural->joint[j])));
+    himc_vec3 faster = himc_vec3_sub(m->rate[j], natural->rate[j]);
+    himc_vec3 harder = himc_vec3_sub(m->acceleration[j], natural->acceleration[j]);
+    m->joint[j] = himc_quat_mul(himc_quat_exp(himc_vec3_scale(d, s)), natural->joint[j]);
+    m->rate[j] = himc_vec3_madd(himc_vec3_madd(natural->rate[j], s, faster), ds, d);
+    m->acceleration[j] =
+        himc_vec3_madd(himc_vec3_madd(natural->acceleration[j], s, harder), 2 * ds, faster);
+    m->acceleration[j] = himc_vec3_madd(m->acceleration[j], dds, d);
+}
+
+void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *tick)
+{
+    himc_target tip[HIMC_HABIT_TAPS][HIMC_HANDS], share = share_at(p, tick->time);
+    if (p->controller.mode != HIMC_PIPELINE_HIMC || share.x.x <= 0)
+        return;
+    for (int tap = 0; tap < HIMC_HABIT_TAPS; tap++)
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            tip[tap][hand] =
+                himc_performance_planned(p, (himc_hand)hand, tick->time + tap * HIMC_HABIT_STEP);
+    himc_posture_motion natural = tick->posture;
+    himc_habit_moving(&p->habit, (const himc_target(*)[HIMC_HANDS])tip, &tick->posture);
+    if (share.x.x < 1)
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            blend(&natural, share, j, &tick->posture);
+}
+
+void himc_performance_set_habit(himc_performance *p, const himc_habit *habit)
+{
+    double t = step_time(p);
+    if (habit)
+        p->habit = *habit;
+    if (p->has_habit == (habit != NULL))
+        return;
+    p->has_habit = habit != NULL;
+    p->habit_since = t;
+    p->replan = true;
+}

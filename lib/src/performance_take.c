@@ -1,0 +1,141 @@
+/// performance_take.c: the command `take`: a capture's player becomes the performer, and sits where
+/// the capture has it, before a drum that stands under the strikes.
+///
+/// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known, and
+/// the null space has the natural posture, with neck, head, legs and the trunk's mean as this
+/// player holds them.
+#include "performance_state.h"
+
+#include <string.h>
+
+// says how much of a take the player cannot follow; the arm then stretches towards it
+static void note_reach(himc_performance *p, const himc_track *track, const char *path)
+{
+    double length = himc_track_length(track), farthest = 0;
+    int far = 0, count = 0;
+    for (double t = 0; t < length; t += 0.01)
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            if (!himc_track_present(track, (himc_hand)hand))
+                continue;
+            himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
+            himc_vec3 near = himc_posture_reachable(&p->posture, (himc_hand)hand, x);
+            double missing = himc_vec3_length(himc_vec3_sub(x, near));
+            count++;
+            far += missing > 1e-3;
+            farthest = fmax(farthest, missing);
+        }
+    if (far > 0)
+        himc_performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m",
+                              path, 100.0 * far / count, farthest);
+}
+
+void himc_performance_posture(const himc_performance *p, double t,
+                              const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
+{
+    himc_posture_moving(&p->posture, tip, motion);
+    bool captured = p->controller.mode != HIMC_PIPELINE_HIMC && p->track &&
+                    isfinite(p->track_start) && himc_track_has_posture(p->track);
+    if (captured)
+        himc_track_posture(p->track, &p->skeleton, t - p->track_start, tip, motion);
+}
+
+// a drum that the take's strikes would miss is put under them
+static bool move_drum(himc_performance *p, int index, const himc_place *place, const char *path,
+                      himc_error *error)
+{
+    himc_drum *drum = p->drum[index].drum;
+    himc_vec3 to = place->center, from = himc_drum_place(drum)->center;
+    if (himc_vec3_length(himc_vec3_sub(to, from)) < 1e-6)
+        return true;
+    himc_command move = {.id = HIMC_COMMAND_PLACE, .count = 3};
+    double x[3] = {to.x, to.y, to.z};
+    for (int i = 0; i < 3; i++)
+        move.atom[i] = (himc_atom){.kind = HIMC_ATOM_NUMBER, .number = x[i]};
+    if (!himc_drum_command(drum, &move, error))
+        return false;
+    himc_performance_note(p, "%s: the %s is moved to %.3f %.3f %.3f, where the take strikes", path,
+                          himc_drum_name(drum), to.x, to.y, to.z);
+    return true;
+}
+
+// trunk, neck, head and legs as this player holds them
+static void adopt_manner(himc_performance *p, const himc_player *player)
+{
+    memcpy(p->manner_known, player->known, sizeof p->manner_known);
+    p->manner = player->mean;
+    himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
+    himc_vec3 up = himc_quat_rotate(q, himc_vec3_make(0, 0, 1)),
+              left = himc_quat_rotate(q, himc_vec3_make(0, 1, 0));
+    double turn = atan2(-left.x, left.y);
+    p->bearing.value[HIMC_BEARING_TURN] = turn;
+    p->bearing.value[HIMC_BEARING_LEAN] =
+        asin(fmin(fmax(cos(turn) * up.x + sin(turn) * up.y, -1), 1));
+}
+
+// the body of the take's player, if it shows one
+static bool adopt_player(himc_performance *p, const himc_player *player, const char *path,
+                         himc_error *error)
+{
+    if (player->lengths == 0) {
+        memset(p->manner_known, 0, sizeof p->manner_known);
+        return true;
+    }
+    himc_skeleton_config old = p->body;
+    p->body = player->config;
+    adopt_manner(p, player);
+    if (!himc_performance_build_body(p, error)) {
+        p->body = old;
+        memset(p->manner_known, 0, sizeof p->manner_known);
+        return false;
+    }
+    himc_performance_note(p, "%s: the player's body has %d lengths from it, %.2f m, %.0f kg", path,
+                          player->lengths, p->body.height, p->body.mass);
+    return true;
+}
+
+static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
+                      himc_error *error)
+{
+    int drum;
+    if (!himc_performance_ensure_drum(p, "", &drum, error))
+        return false;
+    himc_place place = *himc_drum_place(p->drum[drum].drum);
+    himc_player_sit(player, take, &p->take_options, &place);
+    himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
+    if (!track)
+        return false;
+    if (!move_drum(p, drum, &place, path, error) || !adopt_player(p, player, path, error)) {
+        himc_track_free(track);
+        return false;
+    }
+    himc_performance_notice_drums(p);
+    note_reach(p, track, path);
+    himc_performance_drop_track(p);
+    p->track = track;
+    p->replan = true;
+    return true;
+}
+
+bool himc_performance_play_take(himc_performance *p, himc_take *take, const char *name,
+                                himc_error *error)
+{
+    himc_player *player = himc_player_new(take, &p->take_options, &p->body, error);
+    bool played = player && play_take(p, take, player, name, error);
+    himc_player_free(player);
+    if (!played && error && strncmp(error->text, name, strlen(name)) != 0)
+        himc_error_prefix(error, "%s", name);
+    return played;
+}
+
+bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_take *take = himc_take_load(c->atom[0].symbol, &p->take_options, error);
+    bool played = take && himc_performance_play_take(p, take, c->atom[0].symbol, error);
+    himc_take_free(take);
+    return played;
+}
+
+himc_vec3 himc_performance_take_offset(const himc_performance *p)
+{
+    return p->track ? himc_track_offset(p->track) : himc_vec3_make(0, 0, 0);
+}

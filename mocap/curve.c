@@ -1,0 +1,134 @@
+/// curve.c: how one joint takes part in a stroke, over time; and chance.
+///
+/// A joint goes from 1, its angle at the apex, to 0, its angle at the impact. Falling in time T and
+/// arriving with the rate e it moves as 1 - (t/T)^n does, n = e T: the smooth quintic that arrives
+/// with the acceleration of that power, -e (n - 1) / T (for n below 3 less of it, none below 2).
+/// The rebound is the mirror image. What arrives faster than a fall of power 4.5 begins its fall
+/// later: so the distal joints, which are the faster ones, follow the proximal ones, as in every
+/// stroke and throw. Around the impact one quintic of length `turn` leads from the arrival to the
+/// rebound; it is shifted so that it passes 0 in its middle, the instant of the impact.
+#include "parts.h"
+
+#include "himc/quintic.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define STEEPEST 4.5 // power of the fastest fall
+
+bool himc_mocap_curve_init(mocap_curve *curve, int room)
+{
+    curve->count = 0;
+    curve->room = room;
+    curve->knot = calloc((size_t)room, sizeof *curve->knot);
+    return curve->knot != NULL;
+}
+
+void himc_mocap_curve_free(mocap_curve *curve)
+{
+    free(curve->knot);
+}
+
+void himc_mocap_curve_add(mocap_curve *curve, mocap_knot knot)
+{
+    if (curve->count < curve->room)
+        curve->knot[curve->count++] = knot;
+}
+
+static double between(const mocap_knot *a, const mocap_knot *b, double t)
+{
+    himc_target from = {{a->x, 0, 0}, {a->v, 0, 0}, {a->a, 0, 0}};
+    himc_target to = {{b->x, 0, 0}, {b->v, 0, 0}, {b->a, 0, 0}};
+    himc_quintic q = himc_quintic_make(&from, &to, b->t - a->t);
+    return himc_quintic_at(&q, t - a->t).x.x;
+}
+
+double himc_mocap_curve_at(const mocap_curve *curve, double t)
+{
+    int lo = 0, hi = curve->count - 1;
+    if (t <= curve->knot[0].t)
+        return curve->knot[0].x;
+    if (t >= curve->knot[hi].t)
+        return curve->knot[hi].x;
+    while (hi - lo > 1) {
+        int middle = (lo + hi) / 2;
+        if (curve->knot[middle].t <= t)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return between(&curve->knot[lo], &curve->knot[hi], t);
+}
+
+// a fall no steeper than allowed, and its acceleration on arrival
+static double soften(double rate, double *time)
+{
+    *time = fmin(*time, STEEPEST / fmax(rate, 0.1));
+    double n = rate * *time, more = fmin(fmax(n - 2, 0), 1);
+    return -more * rate * (n - 1) / *time;
+}
+
+void himc_mocap_curve_stroke(mocap_curve *curve, const mocap_share *s)
+{
+    double half = 0.5 * s->turn, fall = s->fall - half, lift = s->lift - half;
+    mocap_knot in = {-half, 0, -s->arrive, soften(s->arrive, &fall)};
+    mocap_knot out = {half, half * (s->rebound - s->arrive), s->rebound, 0};
+    out.a = soften(s->rebound, &lift);
+    double middle = between(&in, &out, 0);
+    in.x -= middle;
+    out.x -= middle;
+    in.t += s->touch;
+    out.t += s->touch;
+    himc_mocap_curve_add(curve, (mocap_knot){in.t - fall, 1, 0, 0});
+    himc_mocap_curve_add(curve, in);
+    himc_mocap_curve_add(curve, out);
+    himc_mocap_curve_add(curve, (mocap_knot){out.t + lift, s->top, 0, 0});
+}
+
+// Steele, Lea & Flood 2014: SplitMix
+static uint64_t next(mocap_dice *dice)
+{
+    uint64_t z = dice->state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+mocap_dice himc_mocap_dice(uint64_t seed, const int *which, int count)
+{
+    mocap_dice dice = {seed};
+    for (int i = 0; i < count; i++)
+        dice.state = next(&dice) + (uint64_t)which[i];
+    return dice;
+}
+
+double himc_mocap_uniform(mocap_dice *dice)
+{
+    return (double)(next(dice) >> 11) * 0x1p-53;
+}
+
+double himc_mocap_normal(mocap_dice *dice)
+{
+    double sum = 0;
+    for (int i = 0; i < 12; i++)
+        sum += himc_mocap_uniform(dice);
+    return fmin(fmax(sum - 6, -2), 2);
+}
+
+mocap_wander himc_mocap_wander(mocap_dice *dice)
+{
+    mocap_wander w;
+    for (int i = 0; i < MOCAP_SINES; i++) {
+        w.rate[i] = 2 * HIMC_PI * (0.08 + 0.5 * (i + himc_mocap_uniform(dice)) / MOCAP_SINES);
+        w.phase[i] = 2 * HIMC_PI * himc_mocap_uniform(dice);
+    }
+    return w;
+}
+
+double himc_mocap_wander_at(const mocap_wander *w, double t)
+{
+    double sum = 0;
+    for (int i = 0; i < MOCAP_SINES; i++)
+        sum += sin(w->rate[i] * t + w->phase[i]);
+    return sum * sqrt(2.0 / MOCAP_SINES);
+}

@@ -1,0 +1,441 @@
+/// motion.c: a sequence: strokes are drawn, their two postures found, and joints moved between.
+///
+/// Each stroke has a posture of its impact and one of its apex, y_i and y_a, rotation vectors
+/// about the arm's mean posture; joint k is at exp(y_i + s_k (y_a - y_i) + loop + wandering), where
+/// its share s_k of the stroke runs from 1 to 0 and back in its own time. From one stroke to the
+/// next both postures pass smoothly over, while the arm rises. Strokes vary in height, speed,
+/// timing, aim and posture by first-order autoregressive noise. Nothing but the joints is moved;
+/// where the tips are is forward kinematics. Invariant: at an impact all shares are 0 and nothing
+/// is added, so the tip is where the stroke was aimed, on the head.
+#include "motion.h"
+
+#include "himc/recording.h"
+
+#include <stdlib.h>
+
+#define FIRST 1.0            // impact (s)
+#define LAST 0.8             // after the last (s)
+#define MEMORY 0.4           // of the variation, from stroke to stroke
+#define POINT 0.15           // of the stick that is measured, behind the mallet (m)
+#define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
+#define AIM_SPREAD 0.002    // deviations: of the aim (m)
+#define OUT_SPREAD 0.006     // of the elbow (rad)
+#define HAND_SPREAD 0.005    // of the hand's elevation (rad)
+#define SHOULDER_SPREAD 0.04 // of its share of the flexion
+#define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
+#define FLEXION_STEP 0.02    // (rad)
+#define RISE_SPREAD 0.03     // of the wrist's share of its flexion and the fingers'
+#define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
+#define TIME_SPREAD 0.012    // of intervals (shares)
+#define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
+#define WANDER 0.004         // of a joint between impacts (rad)
+#define TRUNK_WANDER 0.003   // (rad)
+
+himc_mocap_config himc_mocap_default(void)
+{
+    return (himc_mocap_config){
+        .nuance = HIMC_LEGATO, .spot = HIMC_SPOT_NORMAL, .seed = 1, .strokes = 16};
+}
+
+static himc_quat bearing(double turn, double lean)
+{
+    return himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, turn)),
+                         himc_quat_exp(himc_vec3_make(0, lean, 0)));
+}
+
+static double mean_lean(const himc_mocap *m)
+{
+    double usual = himc_mocap_spot(HIMC_SPOT_NORMAL);
+    return m->player->lean + LEAN_MORE * (himc_mocap_spot(m->config.spot) - usual);
+}
+
+himc_quat himc_mocap_trunk(const himc_mocap *m, double t)
+{
+    double sway = m->player->sway, loose = TRUNK_WANDER * m->player->looseness;
+    double left = 0.5, right = 0.5;
+    if (m->arm[HIMC_LEFT].effort.count && m->arm[HIMC_RIGHT].effort.count) {
+        left = himc_mocap_curve_at(&m->arm[HIMC_LEFT].effort, t);
+        right = himc_mocap_curve_at(&m->arm[HIMC_RIGHT].effort, t);
+    }
+    return bearing(sway * (left - right) + loose * himc_mocap_wander_at(&m->turn, t),
+                   mean_lean(m) - 0.5 * sway * (left + right - 1) +
+                       0.5 * loose * himc_mocap_wander_at(&m->lean, t));
+}
+
+// variations of one hand's strokes
+typedef struct mood {
+    double height, down, up, x, y, out, hand, rise, level;
+} mood;
+
+static void change_mood(mood *now, mocap_dice *dice)
+{
+    double *number = (double *)now;
+    for (size_t i = 0; i < sizeof *now / sizeof *number; i++)
+        number[i] = MEMORY * number[i] + sqrt(1 - MEMORY * MEMORY) * himc_mocap_normal(dice);
+}
+
+static mocap_gesture vary_gesture(const himc_mocap *m, const mood *now)
+{
+    mocap_gesture g = himc_mocap_gesture[m->config.nuance];
+    const mocap_player *p = m->player;
+    double height = p->size * exp(p->looseness * g.spread[0] * now->height);
+    double down = exp(p->looseness * g.spread[1] * now->down);
+    double up = exp(p->looseness * g.spread[2] * now->up);
+    double fingers = p->fingers * g.wrist, rise = 1 + RISE_SPREAD * p->looseness * now->rise;
+    g.height *= height;
+    g.wrist = height * rise * (g.wrist - fingers);
+    g.grip = height * (2 - rise) * (g.grip + fingers);
+    g.shoulder *= p->shoulder * (1 + SHOULDER_SPREAD * p->looseness * now->hand);
+    g.down *= down;
+    g.impact *= down;
+    g.up *= up;
+    g.rebound *= up;
+    g.fall *= p->pace;
+    g.lift *= p->pace;
+    g.interval *= p->pace;
+    return g;
+}
+
+static void draw_stroke(const himc_mocap *m, himc_hand hand, const mood *now, mocap_stroke *s)
+{
+    const mocap_player *p = m->player;
+    double side = hand == HIMC_LEFT ? 1 : -1, loose = p->looseness;
+    s->gesture = vary_gesture(m, now);
+    s->aim = himc_vec3_make(p->edge + himc_mocap_spot(m->config.spot) + AIM_SPREAD * loose * now->x,
+                            side * p->apart + AIM_SPREAD * loose * now->y,
+                            HIMC_MOCAP_HEAD + m->skeleton.mallet_radius);
+    s->low = (mocap_key){.tip = s->aim,
+                         .stick = LEVEL_SPREAD * loose * now->level,
+                         .hand = p->palm + HAND_SPREAD * loose * now->hand,
+                         .out = p->out + OUT_SPREAD * loose * now->out,
+                         .french = p->french};
+}
+
+// what an elbow flexed by `elbow` (rad) and all that goes with it add to the posture of impact
+static void flex(const mocap_gesture *g, const himc_vec3 axis[], double elbow,
+                 himc_vec3 way[HIMC_ARM_JOINTS])
+{
+    double angle[HIMC_ARM_JOINTS] = {g->shoulder * elbow, elbow, g->wrist, g->grip};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        way[k] = himc_vec3_scale(axis[k], angle[k]);
+}
+
+// height of the point at the apex over that at impact, the elbow flexed by `elbow`
+static double rise_of(const himc_mocap *m, himc_hand hand, const himc_quat low[],
+                      const himc_vec3 way[])
+{
+    himc_quat trunk = bearing(0, mean_lean(m)), high[HIMC_ARM_JOINTS];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        high[k] = himc_quat_mul(low[k], himc_quat_exp(way[k]));
+    return himc_mocap_stick_point(&m->skeleton, trunk, hand, high, POINT).z -
+           himc_mocap_stick_point(&m->skeleton, trunk, hand, low, POINT).z;
+}
+
+// the elbow's flexion at which the point is as high as asked for, or as high as this arm gets
+static double find_flexion(const himc_mocap *m, himc_hand hand, const mocap_gesture *g,
+                           const himc_quat low[], const himc_vec3 axis[])
+{
+    himc_vec3 way[HIMC_ARM_JOINTS];
+    double best = 0, highest = -HUGE_VAL, from = 0, to = 0;
+    for (to = 0; to < MOST_FLEXION; from = to, to += FLEXION_STEP) {
+        flex(g, axis, to, way);
+        double height = rise_of(m, hand, low, way);
+        if (height >= g->height)
+            break;
+        best = height > highest ? to : best;
+        highest = fmax(highest, height);
+    }
+    if (to >= MOST_FLEXION)
+        return best;
+    while (to - from > 1e-9) {
+        double middle = 0.5 * (from + to);
+        flex(g, axis, middle, way);
+        if (rise_of(m, hand, low, way) < g->height)
+            from = middle;
+        else
+            to = middle;
+    }
+    return to;
+}
+
+static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, const himc_quat low[])
+{
+    himc_vec3 axis[HIMC_ARM_JOINTS], way[HIMC_ARM_JOINTS];
+    himc_mocap_flexion(bearing(0, mean_lean(m)), low, axis);
+    flex(&s->gesture, axis, find_flexion(m, hand, &s->gesture, low, axis), way);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        himc_quat high = himc_quat_mul(low[k], himc_quat_exp(way[k]));
+        double loop = k == 0 ? -s->gesture.loop : k == 1 ? s->gesture.loop : 0;
+        s->apex[k] = himc_quat_log(himc_quat_mul(himc_quat_conj(m->arm[hand].mean[k]), high));
+        s->loop[k] = himc_vec3_scale(axis[k], loop);
+    }
+}
+
+// the trunk carries the arm along: the place struck moves with it, except up and down
+static void carry_aim(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
+{
+    const himc_quat *mean = m->arm[hand].mean;
+    himc_vec3 there =
+        himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, mean, 0);
+    himc_vec3 usual = himc_mocap_stick_point(&m->skeleton, bearing(0, mean_lean(m)), hand, mean, 0);
+    s->aim.x += there.x - usual.x;
+    s->aim.y += there.y - usual.y;
+    s->low.tip = s->aim;
+}
+
+static bool find_postures(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
+{
+    himc_quat low[HIMC_ARM_JOINTS];
+    carry_aim(m, hand, s);
+    if (!himc_mocap_arm(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, &s->low, low))
+        return false;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        s->impact[k] = himc_quat_log(himc_quat_mul(himc_quat_conj(m->arm[hand].mean[k]), low[k]));
+    find_apex(m, hand, s, low);
+    return true;
+}
+
+// strokes of both hands in turn, the right one first
+static void draw_strokes(himc_mocap *m, mocap_dice *dice)
+{
+    mood now[HIMC_HANDS] = {0};
+    double t = FIRST;
+    for (int i = 0; i < m->config.strokes; i++) {
+        himc_hand hand = i % 2 ? HIMC_LEFT : HIMC_RIGHT;
+        mocap_stroke *s = &m->arm[hand].stroke[m->arm[hand].count++];
+        change_mood(&now[hand], dice);
+        draw_stroke(m, hand, &now[hand], s);
+        s->touch = t;
+        t += 0.5 * s->gesture.interval * (1 + TIME_SPREAD * himc_mocap_normal(dice));
+    }
+    m->length = t - 0.5 * himc_mocap_gesture[m->config.nuance].interval + LAST;
+}
+
+// the postures need the trunk, which moves with the strokes' times alone
+static void add_effort(mocap_arm *arm)
+{
+    for (int i = 0; i < arm->count; i++) {
+        const mocap_stroke *s = &arm->stroke[i];
+        himc_mocap_curve_add(&arm->effort, (mocap_knot){s->touch - s->gesture.fall, 1, 0, 0});
+        himc_mocap_curve_add(&arm->effort, (mocap_knot){s->touch, 0, 0, 0});
+        himc_mocap_curve_add(&arm->effort, (mocap_knot){s->touch + s->gesture.lift, 1, 0, 0});
+    }
+}
+
+static void wander_all(himc_mocap *m, mocap_dice *dice)
+{
+    m->turn = himc_mocap_wander(dice);
+    m->lean = himc_mocap_wander(dice);
+    m->nod = himc_mocap_wander(dice);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            for (int axis = 0; axis < 3; axis++)
+                m->arm[hand].wander[k][axis] = himc_mocap_wander(dice);
+}
+
+// the posture all others are said about: the impact of a stroke without variation
+static bool find_mean(himc_mocap *m, himc_hand hand)
+{
+    mood none = {0};
+    mocap_stroke usual;
+    draw_stroke(m, hand, &none, &usual);
+    return himc_mocap_arm(&m->skeleton, bearing(0, mean_lean(m)), hand, &usual.low,
+                          m->arm[hand].mean);
+}
+
+static bool make_motion(himc_mocap *m, himc_error *error)
+{
+    int which[3] = {m->config.player, (int)m->config.nuance, (int)m->config.spot};
+    mocap_dice dice = himc_mocap_dice(m->config.seed, which, 3);
+    wander_all(m, &dice);
+    draw_strokes(m, &dice);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        add_effort(&m->arm[hand]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        bool reached = find_mean(m, (himc_hand)hand);
+        for (int i = 0; reached && i < m->arm[hand].count; i++)
+            reached = find_postures(m, (himc_hand)hand, &m->arm[hand].stroke[i]);
+        if (!reached)
+            return himc_error_set(error, "%s, %s: the drum is out of reach", m->player->name,
+                                  himc_nuance_name(m->config.nuance));
+    }
+    himc_mocap_coordinate(m);
+    return true;
+}
+
+static bool make_room(himc_mocap *m)
+{
+    int room = m->config.strokes / 2 + 1;
+    bool ok = true;
+    for (int hand = 0; ok && hand < HIMC_HANDS; hand++) {
+        mocap_arm *arm = &m->arm[hand];
+        arm->stroke = calloc((size_t)room, sizeof *arm->stroke);
+        ok = arm->stroke && himc_mocap_curve_init(&arm->loop, 3 * room) &&
+             himc_mocap_curve_init(&arm->effort, 3 * room);
+        for (int k = 0; ok && k < HIMC_ARM_JOINTS; k++)
+            ok = himc_mocap_curve_init(&arm->share[k], 4 * room + 1);
+    }
+    return ok;
+}
+
+static bool check_config(const himc_mocap_config *c, himc_error *error)
+{
+    return himc_check_range("player", c->player, 0, HIMC_MOCAP_PLAYERS - 1, "", error) &&
+           himc_check_range("nuance", c->nuance, 0, HIMC_NUANCES - 1, "", error) &&
+           himc_check_range("spot", c->spot, 0, HIMC_SPOT_RIM, "", error) &&
+           himc_check_range("strokes", c->strokes, 2, 200, "", error);
+}
+
+himc_mocap *himc_mocap_new(const himc_mocap_config *config, himc_error *error)
+{
+    himc_skeleton_config body;
+    himc_posture posture;
+    if (!check_config(config, error))
+        return NULL;
+    himc_mocap *m = calloc(1, sizeof *m);
+    if (!m) {
+        himc_error_set(error, "no memory for a sequence");
+        return NULL;
+    }
+    m->config = *config;
+    m->player = &himc_mocap_player[config->player];
+    body = himc_mocap_body(config->player);
+    bool ok = himc_skeleton_init(&m->skeleton, &body, error);
+    if (ok && !make_room(m))
+        ok = himc_error_set(error, "no memory for %d strokes", config->strokes);
+    if (ok) {
+        himc_posture_init(&posture, &m->skeleton, HIMC_MOCAP_HEAD);
+        m->rest = posture.rest;
+        ok = make_motion(m, error);
+    }
+    if (ok)
+        return m;
+    himc_mocap_free(m);
+    return NULL;
+}
+
+void himc_mocap_free(himc_mocap *m)
+{
+    for (int hand = 0; m && hand < HIMC_HANDS; hand++) {
+        free(m->arm[hand].stroke);
+        himc_mocap_curve_free(&m->arm[hand].loop);
+        himc_mocap_curve_free(&m->arm[hand].effort);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            himc_mocap_curve_free(&m->arm[hand].share[k]);
+    }
+    free(m);
+}
+
+// the stroke before `t` and how far it has passed over to the next one
+static int stroke_at(const mocap_arm *arm, double t, double *passed)
+{
+    int i = 0;
+    while (i + 1 < arm->count && arm->stroke[i + 1].touch <= t)
+        i++;
+    *passed = 0;
+    if (i + 1 < arm->count && t > arm->stroke[i].touch) {
+        double from = arm->stroke[i].touch + BLEND;
+        double to = arm->stroke[i + 1].touch - arm->stroke[i + 1].gesture.fall;
+        double u = fmin(fmax((t - from) / (to - from), 0), 1);
+        *passed = u * u * u * (10 + u * (6 * u - 15));
+    }
+    return i;
+}
+
+void himc_mocap_arm_at(const himc_mocap *m, himc_hand hand, double t,
+                       himc_quat joint[HIMC_ARM_JOINTS])
+{
+    const mocap_arm *arm = &m->arm[hand];
+    double passed, loop = himc_mocap_curve_at(&arm->loop, t);
+    int i = stroke_at(arm, t, &passed);
+    const mocap_stroke *a = &arm->stroke[i], *b = &arm->stroke[i + (i + 1 < arm->count)];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        double s = himc_mocap_curve_at(&arm->share[k], t), w = WANDER * m->player->looseness * s;
+        himc_vec3 low =
+            himc_vec3_madd(himc_vec3_scale(a->impact[k], 1 - passed), passed, b->impact[k]);
+        himc_vec3 high =
+            himc_vec3_madd(himc_vec3_scale(a->apex[k], 1 - passed), passed, b->apex[k]);
+        himc_vec3 y = himc_vec3_madd(low, s, himc_vec3_sub(high, low));
+        const mocap_wander *n = arm->wander[k];
+        y = himc_vec3_madd(y, loop, a->loop[k]);
+        y = himc_vec3_add(y, himc_vec3_make(w * himc_mocap_wander_at(&n[0], t),
+                                            w * himc_mocap_wander_at(&n[1], t),
+                                            w * himc_mocap_wander_at(&n[2], t)));
+        joint[k] = himc_quat_mul(arm->mean[k], himc_quat_exp(y));
+    }
+}
+
+himc_pose himc_mocap_pose(const himc_mocap *m, double t)
+{
+    himc_pose pose = m->rest;
+    himc_quat joint[HIMC_ARM_JOINTS];
+    t = fmin(fmax(t, 0), m->length);
+    pose.joint[HIMC_TRUNK - 1] = himc_mocap_trunk(m, t);
+    himc_quat nod =
+        himc_quat_exp(himc_vec3_make(0, 2 * TRUNK_WANDER * himc_mocap_wander_at(&m->nod, t), 0));
+    pose.joint[HIMC_NECK - 1] = himc_quat_mul(pose.joint[HIMC_NECK - 1], nod);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_mocap_arm_at(m, (himc_hand)hand, t, joint);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            pose.joint[himc_arm_joint((himc_hand)hand, k)] = joint[k];
+    }
+    return pose;
+}
+
+const char *himc_mocap_player_name(int player)
+{
+    return himc_mocap_player[player].name;
+}
+
+const himc_skeleton *himc_mocap_skeleton(const himc_mocap *m)
+{
+    return &m->skeleton;
+}
+
+himc_grip himc_mocap_grip(const himc_mocap *m)
+{
+    return m->player->french > 0.5 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
+}
+
+himc_vec3 himc_mocap_drum(const himc_mocap *m)
+{
+    return himc_vec3_make(m->player->edge + himc_mocap_spot(HIMC_SPOT_CENTER), 0, HIMC_MOCAP_HEAD);
+}
+
+double himc_mocap_length(const himc_mocap *m)
+{
+    return m->length;
+}
+
+int himc_mocap_frames(const himc_mocap *m)
+{
+    return 1 + (int)floor(m->length * HIMC_MOCAP_RATE);
+}
+
+int himc_mocap_touches(const himc_mocap *m)
+{
+    return m->config.strokes;
+}
+
+himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
+{
+    himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
+    const mocap_stroke *s = &m->arm[hand].stroke[index / 2];
+    return (himc_mocap_touch){hand, s->touch, s->aim};
+}
+
+bool himc_mocap_write(const himc_mocap *m, const char *path, himc_error *error)
+{
+    int frames = himc_mocap_frames(m);
+    himc_recording *r = himc_recording_new(path, &m->skeleton, HIMC_MOCAP_RATE,
+                                           (frames + 1) / HIMC_MOCAP_RATE, error);
+    for (int i = 0; r && i < frames; i++) {
+        himc_pose pose = himc_mocap_pose(m, i / HIMC_MOCAP_RATE);
+        himc_body_state state;
+        himc_pose_to_state(&m->skeleton, &pose, NULL, &state);
+        himc_recording_add(r, &state);
+    }
+    bool ok = r && himc_recording_write(r, error);
+    himc_recording_free(r);
+    return ok;
+}

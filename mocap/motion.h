@@ -1,0 +1,48 @@
+/// motion.h: a sequence as it is kept: per hand the strokes and how the joints share them; private.
+#ifndef HIMC_MOCAP_MOTION_H
+#define HIMC_MOCAP_MOTION_H
+
+#include "parts.h"
+
+/// A stroke's two postures as rotation vectors about the hand's mean (rad).
+typedef struct mocap_stroke {
+    mocap_gesture gesture; ///< as this stroke is played
+    himc_vec3 aim;         ///< of the tip at impact (m)
+    double touch;          ///< (s)
+    mocap_key low;         ///< impact
+    himc_vec3 impact[HIMC_ARM_JOINTS], apex[HIMC_ARM_JOINTS];
+    himc_vec3 loop[HIMC_ARM_JOINTS]; ///< what the way up is off the way down, at its middle
+} mocap_stroke;
+
+typedef struct mocap_arm {
+    int count;
+    mocap_stroke *stroke;            ///< owned (count)
+    himc_quat mean[HIMC_ARM_JOINTS]; ///< the posture the rotation vectors are about
+    mocap_curve share[HIMC_ARM_JOINTS];
+    mocap_curve loop, effort;
+    mocap_wander wander[HIMC_ARM_JOINTS][3];
+} mocap_arm;
+
+struct himc_mocap {
+    himc_mocap_config config;
+    const mocap_player *player;
+    himc_skeleton skeleton;
+    himc_pose rest;
+    double length; ///< (s)
+    mocap_arm arm[HIMC_HANDS];
+    mocap_wander turn, lean, nod;
+};
+
+/// The trunk's orientation at `t`.
+HIMC_RT himc_quat himc_mocap_trunk(const himc_mocap *mocap, double t);
+/// An arm's joints at `t`.
+HIMC_RT void himc_mocap_arm_at(const himc_mocap *mocap, himc_hand hand, double t,
+                               himc_quat joint[HIMC_ARM_JOINTS]);
+/// Joints whose share of the stroke between impact and apex is given.
+HIMC_RT void himc_mocap_share_out(const mocap_arm *arm, const mocap_stroke *stroke,
+                                  const double share[HIMC_ARM_JOINTS],
+                                  himc_quat joint[HIMC_ARM_JOINTS]);
+/// Makes the curves of both arms from their strokes.
+void himc_mocap_coordinate(himc_mocap *mocap);
+
+#endif

@@ -1,0 +1,548 @@
+/// test_player.c: from a take back to the body that made it, whatever the file calls its joints,
+/// however its zero pose stands and wherever its room was.
+#include "take_players.h"
+
+#include "take_data.h"
+
+#include "unity.h"
+
+#define FRAMES 500
+
+static himc_error error;
+static himc_take *take;
+static himc_player *player;
+static himc_skeleton skeleton;
+static himc_skeleton_config given;
+
+void setUp(void)
+{
+    error.text[0] = 0;
+    take = NULL;
+    player = NULL;
+    given = himc_skeleton_default();
+}
+
+void tearDown(void)
+{
+    himc_player_free(player);
+    himc_take_free(take);
+}
+
+static void make_take(const himc_skeleton_config *config)
+{
+    TEST_ASSERT_TRUE_MESSAGE(himc_skeleton_init(&skeleton, config, &error), error.text);
+    take = beaten_take(&skeleton, 250, FRAMES / 250.0, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+}
+
+static void read_player(void)
+{
+    player = himc_player_new(take, NULL, &given, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(player, error.text);
+}
+
+// a tall player with long forearms
+static himc_skeleton_config another_player(void)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    config.height = 1.88;
+    config.mass = 82;
+    config.length[HIMC_LEFT_FOREARM] = config.length[HIMC_RIGHT_FOREARM] = 0.31;
+    config.stick_length = 0.40;
+    return config;
+}
+
+// the largest angle between the take's postures and the true ones, over the joints from .. to
+static double worst_angle(int from, int to)
+{
+    double worst = 0;
+    for (int i = 0; i < himc_take_frames(take); i++) {
+        himc_pose pose = beaten_pose(&skeleton, i / himc_take_rate(take));
+        for (int j = from; j < to; j++) {
+            himc_quat back = himc_quat_conj(pose.joint[j]);
+            himc_vec3 off = himc_quat_log(himc_quat_mul(back, player->pose[i].joint[j]));
+            worst = fmax(worst, himc_vec3_length(off));
+        }
+    }
+    return worst;
+}
+
+static double worst_tip(void)
+{
+    double worst = 0;
+    himc_skeleton own;
+    TEST_ASSERT_TRUE(himc_skeleton_init(&own, &player->config, &error));
+    for (int i = 0; i < himc_take_frames(take); i++) {
+        himc_body_state a, b;
+        himc_pose pose = beaten_pose(&skeleton, i / himc_take_rate(take));
+        himc_pose_to_state(&skeleton, &pose, NULL, &a);
+        himc_pose_to_state(&own, &player->pose[i], NULL, &b);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_vec3 tip = himc_vec3_sub(b.tip[hand], b.origin[0]);
+            himc_vec3 true_tip = himc_vec3_sub(a.tip[hand], a.origin[0]);
+            worst = fmax(worst, himc_vec3_length(himc_vec3_sub(tip, true_tip)));
+        }
+    }
+    return worst;
+}
+
+static int known_joints(void)
+{
+    int count = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        count += player->known[j];
+    return count;
+}
+
+static void test_measures_of_a_skeleton_take_are_the_bodys_own(void)
+{
+    himc_skeleton_config config = another_player();
+    make_take(&config);
+    read_player();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.88, player->config.height);
+    TEST_ASSERT_EQUAL_STRING("legs and trunk", player->height_from);
+    for (int i = HIMC_LEFT_UPPER_ARM; i < HIMC_LEFT_STICK; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.segment[i].length, player->config.length[i]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.40, player->config.stick_length);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0,
+                              himc_vec3_length(himc_vec3_sub(player->hips, skeleton.root)));
+}
+
+static void test_mass_not_said_keeps_the_body_mass_index(void)
+{
+    himc_skeleton_config config = another_player();
+    make_take(&config);
+    given.height = 1.6;
+    given.mass = 64; // 25 kg/m^2
+    read_player();
+    TEST_ASSERT_FALSE(player->mass_said);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 25 * 1.88 * 1.88, player->config.mass);
+}
+
+static void test_mass_and_height_that_the_file_says_are_taken(void)
+{
+    make_take(&given);
+    take->mass = 68;
+    take->height = 1.71;
+    read_player();
+    TEST_ASSERT_TRUE(player->mass_said);
+    TEST_ASSERT_EQUAL_DOUBLE(68, player->config.mass);
+    TEST_ASSERT_EQUAL_DOUBLE(1.71, player->config.height);
+}
+
+static void test_postures_of_a_skeleton_take_come_back_as_they_were(void)
+{
+    himc_skeleton_config config = another_player();
+    make_take(&config);
+    read_player();
+    TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, known_joints());
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6);
+    TEST_ASSERT_TRUE(worst_tip() < 1e-6);
+}
+
+static void test_postures_survive_a_bvh_file(void)
+{
+    make_take(&given);
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/player.bvh", &error), error.text);
+    himc_take_free(take);
+    take = himc_take_load("build/player.bvh", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    read_player();
+    TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, known_joints());
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-5);
+    TEST_ASSERT_TRUE(worst_tip() < 1e-5);
+}
+
+static void test_the_mean_posture_has_the_joints_between(void)
+{
+    make_take(&given);
+    read_player();
+    int elbow = himc_joint_find("right-elbow");
+    himc_vec3 sum = {0, 0, 0};
+    himc_quat back = himc_quat_conj(player->mean.joint[elbow]);
+    for (int i = 0; i < FRAMES; i++)
+        sum = himc_vec3_madd(sum, 1.0 / FRAMES,
+                             himc_quat_log(himc_quat_mul(back, player->pose[i].joint[elbow])));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(sum));
+}
+
+// the file's zero pose turned: segment i hangs along align[i] of what it hangs along here
+static void turn_zero_pose(const himc_quat align[HIMC_SEGMENTS])
+{
+    for (int i = 0; i < take->points; i++) {
+        int parent = take->parents[i];
+        himc_quat above = parent < 0 ? himc_quat_identity() : align[parent];
+        take->offsets[i] = himc_quat_rotate(above, take->offsets[i]);
+        for (int frame = 0; frame < take->frames && i < HIMC_SEGMENTS; frame++) {
+            himc_quat *q = &take->rotations[(size_t)frame * (size_t)take->points + (size_t)i];
+            *q = himc_quat_mul(himc_quat_mul(above, *q), himc_quat_conj(align[i]));
+        }
+    }
+}
+
+static void test_a_t_pose_with_palms_down_gives_the_same_postures(void)
+{
+    himc_quat align[HIMC_SEGMENTS];
+    make_take(&given);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        align[i] = himc_quat_identity();
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double side = hand == HIMC_LEFT ? 1 : -1;
+        himc_quat out = himc_quat_exp(himc_vec3_make(side * HIMC_PI / 2, 0, 0));
+        // hanging palms face back; sideways, thumbs forward, they face down
+        himc_quat roll = himc_quat_exp(himc_vec3_make(0, 0, side * HIMC_PI / 2));
+        align[HIMC_LEFT_UPPER_ARM + hand] = out;
+        for (int i = HIMC_LEFT_FOREARM; i <= HIMC_LEFT_STICK; i += 2)
+            align[i + hand] = himc_quat_mul(out, roll);
+    }
+    turn_zero_pose(align);
+    TEST_ASSERT_TRUE(take->offsets[HIMC_LEFT_HAND].y > 0.2); // arms are spread
+    TEST_ASSERT_TRUE(take->offsets[HIMC_RIGHT_HAND].y < -0.2);
+    read_player();
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6);
+}
+
+static void rename_points(const char *const (*names)[2], size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        int point = himc_take_find(take, names[i][0]);
+        TEST_ASSERT_TRUE(point >= 0);
+        himc_take_set_name(take, point, names[i][1], strlen(names[i][1]));
+    }
+}
+
+static void test_the_names_of_another_skeleton_are_understood(void)
+{
+    static const char *const names[][2] = {
+        {"LeftArm", "LeftShoulder"},    {"RightArm", "RightShoulder"}, {"LeftForeArm", "LeftElbow"},
+        {"RightForeArm", "RightElbow"}, {"LeftHand", "LeftWrist"},     {"RightHand", "RightWrist"},
+        {"LeftUpLeg", "LeftHip"},       {"RightUpLeg", "RightHip"},    {"LeftLeg", "LeftKnee"},
+        {"RightLeg", "RightKnee"},      {"LeftFoot", "LeftAnkle"},     {"RightFoot", "RightAnkle"},
+        {"Spine", "lowerback"},         {"LeftStick", "mallet_l"},     {"RightStick", "mallet_r"}};
+    make_take(&given);
+    rename_points(names, sizeof names / sizeof names[0]);
+    read_player();
+    TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, known_joints());
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6);
+}
+
+static void forget_skeleton(void)
+{
+    free(take->parents);
+    free(take->offsets);
+    free(take->rotations);
+    take->parents = NULL;
+    take->offsets = NULL;
+    take->rotations = NULL;
+}
+
+static void test_markers_in_the_joint_centres_give_arms_legs_and_trunk(void)
+{
+    himc_skeleton_config config = another_player();
+    make_take(&config);
+    forget_skeleton();
+    read_player();
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("waist")]);
+    TEST_ASSERT_FALSE(player->known[himc_joint_find("head")]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            TEST_ASSERT_TRUE(player->known[himc_arm_joint((himc_hand)hand, k)]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.88, player->config.height);
+    TEST_ASSERT_TRUE(worst_tip() < 1e-6);
+    TEST_ASSERT_TRUE(worst_angle(0, 1) < 1e-6); // the trunk
+    // the arms' turns about themselves come from planes: those of the natural posture, within this
+    TEST_ASSERT_TRUE(worst_angle(himc_arm_joint(HIMC_LEFT, 0), himc_arm_joint(HIMC_LEFT, 3) + 2) <
+                     0.25);
+}
+
+static void lose_frames(const char *name, int from, int to)
+{
+    int point = himc_take_find(take, name);
+    TEST_ASSERT_TRUE(point >= 0);
+    for (int i = from; i < to; i++)
+        *himc_take_at(take, i, point) = himc_vec3_gap();
+}
+
+static void test_a_short_gap_of_a_marker_is_bridged(void)
+{
+    make_take(&given);
+    forget_skeleton();
+    lose_frames("RightForeArm", 100, 110);
+    read_player();
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("right-elbow")]);
+    TEST_ASSERT_TRUE(worst_tip() < 2e-3);
+}
+
+static void test_a_long_gap_of_a_marker_leaves_its_joints_to_nature_and_says_so(void)
+{
+    make_take(&given);
+    forget_skeleton();
+    lose_frames("RightForeArm", 100, 200);
+    read_player();
+    TEST_ASSERT_FALSE(player->known[himc_joint_find("right-elbow")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("left-elbow")]);
+    TEST_ASSERT_EQUAL_INT(1, player->note_count);
+    TEST_ASSERT_EQUAL_STRING("right elbow: RightForeArm is missing in frames 100 .. 199, allowed "
+                             "are gaps of 0.2 s",
+                             player->notes[0]);
+}
+
+static void test_a_missing_joint_takes_only_its_own_with_it(void)
+{
+    static const char *const names[][2] = {{"LeftForeArm", "thing"}};
+    make_take(&given);
+    rename_points(names, 1);
+    read_player();
+    TEST_ASSERT_FALSE(player->known[himc_joint_find("left-shoulder")]);
+    TEST_ASSERT_FALSE(player->known[himc_joint_find("left-elbow")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("right-elbow")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("waist")]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, player->config.length[HIMC_RIGHT_UPPER_ARM],
+                              player->config.length[HIMC_LEFT_UPPER_ARM]);
+}
+
+static void test_a_player_of_seventeen_metres_is_refused_with_a_line(void)
+{
+    make_take(&given);
+    for (int i = 0; i < take->points; i++)
+        take->offsets[i] = himc_vec3_scale(take->offsets[i], 10);
+    for (size_t i = 0; i < (size_t)take->points * (size_t)take->frames; i++)
+        take->x[i] = himc_vec3_scale(take->x[i], 10);
+    player = himc_player_new(take, NULL, &given, &error);
+    TEST_ASSERT_NULL(player);
+    TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: left-upper-arm of 2.83 m, allowed 0.14 .. "
+                             "0.45 m: is the unit right?",
+                             error.text);
+}
+
+// a file of the take in another unit, by its text
+static himc_take *in_units(double unit)
+{
+    himc_take_options options = himc_take_default();
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/player.bvh", &error), error.text);
+    options.unit = 0.01 * unit; // the file has cm: read them as something else, and write again
+    himc_take *scaled = himc_take_load("build/player.bvh", &options, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(scaled, error.text);
+    bool saved = himc_take_save(scaled, "build/player.bvh", &error);
+    himc_take_free(scaled);
+    TEST_ASSERT_TRUE_MESSAGE(saved, error.text);
+    return himc_take_load("build/player.bvh", NULL, &error);
+}
+
+static void test_inches_and_feet_are_known_by_the_players_size(void)
+{
+    static const double units[] = {1 / 2.54, 1 / 30.48}; // of a cm
+    make_take(&given);
+    for (int i = 0; i < 2; i++) {
+        himc_take *other = in_units(units[i]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(other, error.text);
+        himc_player *same = himc_player_new(other, NULL, &given, &error);
+        TEST_ASSERT_NOT_NULL_MESSAGE(same, error.text);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.75, same->config.height);
+        himc_player_free(same);
+        himc_take_free(other);
+    }
+}
+
+static void test_a_skeleton_of_no_known_unit_is_refused_with_a_line(void)
+{
+    make_take(&given);
+    himc_take *other = in_units(0.06); // 17 cm
+    TEST_ASSERT_NULL(other);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "units through its bones is no player's size"),
+                                 error.text);
+    TEST_ASSERT_NULL(strchr(error.text, '\n'));
+}
+
+static void test_metres_ten_times_too_long_are_refused_with_a_line(void)
+{
+    make_take(&given);
+    himc_take *other = in_units(0.1);
+    TEST_ASSERT_NOT_NULL_MESSAGE(other, error.text); // it might be a child in CMU's units
+    TEST_ASSERT_NULL(himc_player_new(other, NULL, &given, &error));
+    himc_take_free(other);
+    TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: height: 0.987778 m, allowed 1.19 .. 2.21 m",
+                             error.text);
+}
+
+static void test_a_seated_player_keeps_the_place_it_has_in_our_world(void)
+{
+    himc_place drum = usual_drum;
+    make_take(&given);
+    read_player();
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(player->offset));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.root.z, player->config.seat);
+    TEST_ASSERT_EQUAL_MEMORY(&usual_drum, &drum, sizeof drum);
+}
+
+static void move_take(himc_vec3 by)
+{
+    for (size_t i = 0; i < (size_t)take->points * (size_t)take->frames; i++)
+        take->x[i] = himc_vec3_add(take->x[i], by);
+}
+
+static void test_a_player_far_off_is_brought_before_the_drum(void)
+{
+    himc_place drum = usual_drum;
+    make_take(&given);
+    move_take(himc_vec3_make(12, -5, 0.3));
+    read_player();
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -12, player->offset.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5, player->offset.y);
+    TEST_ASSERT_DOUBLE_WITHIN(0.012, -0.3, player->offset.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.012, skeleton.root.z, player->config.seat);
+    TEST_ASSERT_EQUAL_MEMORY(&usual_drum, &drum, sizeof drum);
+}
+
+static void test_a_drum_that_would_be_missed_is_moved_under_the_strikes(void)
+{
+    himc_place drum = usual_drum;
+    drum.center = himc_vec3_make(0.9, 0.6, 0.85);
+    make_take(&given);
+    read_player();
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    // struck at 0.5 m, the usual spot: three quarters of the radius before the centre
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.5 + 0.75 * drum.radius, drum.center.x);
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 0, drum.center.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.85, drum.center.z);
+}
+
+static void test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot(void)
+{
+    himc_place drum = usual_drum;
+    make_take(&given);
+    move_take(himc_vec3_make(-3, 7, 2));
+    forget_skeleton();
+    for (int i = 0; i < take->points; i++)
+        if (!strstr(take->names[i], "_end"))
+            snprintf(take->names[i], TAKE_NAME, "thing%d", i);
+    read_player();
+    TEST_ASSERT_FALSE(player->placed);
+    TEST_ASSERT_EQUAL_INT(0, player->lengths);
+    TEST_ASSERT_EQUAL_INT(0, known_joints());
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 3, player->offset.x);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, -7, player->offset.y);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, -2, player->offset.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, -3, player->hips.x);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 7, player->hips.y);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2 + 0.42 * 1.75, player->hips.z);
+}
+
+static void test_a_walking_player_is_told_from_a_swaying_one(void)
+{
+    make_take(&given);
+    for (int i = 0; i < take->frames; i++)
+        for (int k = 0; k < take->points; k++)
+            himc_take_at(take, i, k)->x += 0.002 * i;
+    read_player();
+    TEST_ASSERT_TRUE(player->walks);
+    TEST_ASSERT_EQUAL_INT(1, player->note_count);
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6); // about the hips, wherever they are
+}
+
+static void hear(void *user, const char *line)
+{
+    char *all = user;
+    TEST_ASSERT_TRUE(strlen(line) < 256);
+    strcat(strcat(all, line), "\n");
+}
+
+static void test_description_says_how_tall_how_heavy_and_where_the_head_goes(void)
+{
+    char all[4096] = "";
+    himc_place drum = usual_drum;
+    make_take(&given);
+    read_player();
+    himc_player_sit(player, take, NULL, &drum);
+    himc_player_describe(player, &drum, hear, all);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(all, "player: 1.750 m tall (by legs and trunk), 75.0 kg (by a body mass index of"),
+        all);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "seat: hip joints 0.735 m above the floor"), all);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "drumhead: centre 0.700 m before the player"), all);
+}
+
+static bool load_shared(const char *name)
+{
+    const char *path = shared_capture(name);
+    if (path) {
+        take = himc_take_load(path, NULL, &error);
+        TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+        read_player();
+    }
+    return path != NULL;
+}
+
+static void test_the_arm_of_the_real_stroke_has_its_published_lengths(void)
+{
+    if (!load_shared("drumstroke_pearl_240hz/stroke.trc"))
+        TEST_IGNORE_MESSAGE("no ../shared/mocap");
+    TEST_ASSERT_DOUBLE_WITHIN(0.008, 0.2554, player->config.length[HIMC_RIGHT_UPPER_ARM]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.008, 0.2924, player->config.length[HIMC_RIGHT_FOREARM]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.008, 0.1668, player->config.length[HIMC_RIGHT_HAND]);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        TEST_ASSERT_TRUE(player->known[himc_arm_joint(HIMC_RIGHT, k)]);
+        TEST_ASSERT_FALSE(player->known[himc_arm_joint(HIMC_LEFT, k)]);
+    }
+}
+
+static void test_a_cmu_skeleton_gives_a_player_of_human_size(void)
+{
+    if (!load_shared("cmu131_bvh_120hz/131_03.bvh"))
+        TEST_IGNORE_MESSAGE("no ../shared/mocap");
+    TEST_ASSERT_TRUE(player->config.height > 1.45 && player->config.height < 1.9);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("left-elbow")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("right-knee")]);
+    // knees and elbows bend one way: backwards and forwards
+    for (int i = 0; i < player->frames; i += 10) {
+        himc_vec3 knee = himc_quat_log(player->pose[i].joint[himc_joint_find("left-knee")]);
+        himc_vec3 elbow = himc_quat_log(player->pose[i].joint[himc_joint_find("left-elbow")]);
+        TEST_ASSERT_TRUE(knee.y > -0.3);
+        TEST_ASSERT_TRUE(elbow.y < 0.3);
+    }
+}
+
+static void test_an_arm_of_anatomical_markers_is_found(void)
+{
+    if (!load_shared("upperlimb_pyomeca_100hz/markers_analogs.c3d"))
+        TEST_IGNORE_MESSAGE("no ../shared/mocap");
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("right-shoulder")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("right-elbow")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("right-wrist")]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.04, 0.28, player->config.length[HIMC_RIGHT_UPPER_ARM]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.04, 0.25, player->config.length[HIMC_RIGHT_FOREARM]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_measures_of_a_skeleton_take_are_the_bodys_own);
+    RUN_TEST(test_mass_not_said_keeps_the_body_mass_index);
+    RUN_TEST(test_mass_and_height_that_the_file_says_are_taken);
+    RUN_TEST(test_postures_of_a_skeleton_take_come_back_as_they_were);
+    RUN_TEST(test_postures_survive_a_bvh_file);
+    RUN_TEST(test_the_mean_posture_has_the_joints_between);
+    RUN_TEST(test_a_t_pose_with_palms_down_gives_the_same_postures);
+    RUN_TEST(test_the_names_of_another_skeleton_are_understood);
+    RUN_TEST(test_markers_in_the_joint_centres_give_arms_legs_and_trunk);
+    RUN_TEST(test_a_short_gap_of_a_marker_is_bridged);
+    RUN_TEST(test_a_long_gap_of_a_marker_leaves_its_joints_to_nature_and_says_so);
+    RUN_TEST(test_a_missing_joint_takes_only_its_own_with_it);
+    RUN_TEST(test_a_player_of_seventeen_metres_is_refused_with_a_line);
+    RUN_TEST(test_inches_and_feet_are_known_by_the_players_size);
+    RUN_TEST(test_a_skeleton_of_no_known_unit_is_refused_with_a_line);
+    RUN_TEST(test_metres_ten_times_too_long_are_refused_with_a_line);
+    RUN_TEST(test_a_seated_player_keeps_the_place_it_has_in_our_world);
+    RUN_TEST(test_a_player_far_off_is_brought_before_the_drum);
+    RUN_TEST(test_a_drum_that_would_be_missed_is_moved_under_the_strikes);
+    RUN_TEST(test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot);
+    RUN_TEST(test_a_walking_player_is_told_from_a_swaying_one);
+    RUN_TEST(test_description_says_how_tall_how_heavy_and_where_the_head_goes);
+    RUN_TEST(test_the_arm_of_the_real_stroke_has_its_published_lengths);
+    RUN_TEST(test_a_cmu_skeleton_gives_a_player_of_human_size);
+    RUN_TEST(test_an_arm_of_anatomical_markers_is_found);
+    return UNITY_END();
+}

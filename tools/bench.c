@@ -1,0 +1,250 @@
+/// bench.c: `himc bench`: what one core does. A step of the whole performance (control, contact,
+/// one drum) beside one of the bare engine on the same body; how many modes of a head, and how many
+/// performers with their drums, a core plays in real time.
+///
+/// Processor time is measured, not the clock's, each figure as the median of five runs, so that
+/// what else the machine does counts for little.
+#define _POSIX_C_SOURCE 200809L
+#include "cli.h"
+#include "himc/himc.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define RUNS 5
+#define RATE 48000
+#define PHYSICS 10000
+#define BLOCK 64
+#define SECONDS 4  // of each performance
+#define MODES 1024 // of the head that is measured alone
+#define MODE_SAMPLES 24000
+#define PARTS 6
+
+enum { JSON };
+
+static const cli_option options[] = {
+    {"json", 0, NULL, "one JSON object instead of a table"},
+    {0},
+};
+
+/// Median of the runs.
+typedef struct figures {
+    double step, engine;      ///< (us)
+    double part[PARTS];       ///< (us)
+    double performers, modes; ///< in real time, one core
+} figures;
+
+static const char *const part_name[PARTS] = {
+    "targets between ticks",           "natural posture (at each tick)",
+    "inverse kinematics and dynamics", "articulated inertia (in contact)",
+    "reading the body back",           "the bare engine"};
+
+static double cpu_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *value)
+{
+    qsort(value, RUNS, sizeof *value, by_size);
+    return value[RUNS / 2];
+}
+
+static bool tell(himc_performance *p, const char *text, himc_error *error)
+{
+    himc_command c;
+    return himc_command_parse_text(&c, HIMC_PERFORMER, text, error) &&
+           himc_performance_command(p, &c, 0, error);
+}
+
+/// Four strokes a second, hands in turn.
+static himc_performance *make_performance(himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = RATE;
+    config.physics_rate = PHYSICS;
+    himc_performance *p = himc_performance_new(&config, error);
+    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
+    bool good =
+        p && drum && himc_performance_add_drum(p, drum, error) && tell(p, "tempo 120", error);
+    himc_drum_release(drum);
+    for (int i = 0; good && i < 4 * SECONDS; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "stroke %g %s legato mf", 1 + i / 2.0,
+                 i % 2 ? "left" : "right");
+        good = tell(p, text, error);
+    }
+    if (good && tell(p, "play", error))
+        return p;
+    himc_performance_free(p);
+    return NULL;
+}
+
+/// Processor time of the performance (s); negative with the reason.
+static double time_performance(himc_error *error)
+{
+    himc_performance *p = make_performance(error);
+    if (!p)
+        return -1;
+    double start = cpu_seconds();
+    for (int done = 0; done < SECONDS * RATE; done += BLOCK)
+        himc_performance_process(p, BLOCK, NULL);
+    double taken = cpu_seconds() - start;
+    himc_performance_free(p);
+    return taken;
+}
+
+/// What the parts of a step work on: a body in playing posture.
+typedef struct bench_body {
+    himc_skeleton skeleton;
+    himc_posture posture;
+    himc_task_tick from, to;
+    himc_body_state state;
+    himc_controller controller;
+    himc_reference reference;
+    himc_character *character;
+} bench_body;
+
+static bool make_body(bench_body *b, himc_error *error)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_pose pose;
+    *b = (bench_body){.to.time = 0.004};
+    if (!himc_skeleton_init(&b->skeleton, &config, error))
+        return false;
+    himc_posture_init(&b->posture, &b->skeleton, 0.8675);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        b->from.tip[hand].x = himc_vec3_make(0.48, hand == HIMC_LEFT ? 0.1 : -0.1, 1.0);
+    memcpy(b->to.tip, b->from.tip, sizeof b->to.tip);
+    himc_task_tick_complete(&b->from, &b->posture);
+    himc_task_tick_complete(&b->to, &b->posture);
+    memcpy(pose.joint, b->from.posture.joint, sizeof pose.joint);
+    himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
+    himc_controller_init(&b->controller, &b->skeleton, &b->state);
+    b->character = himc_character_new(&b->skeleton, error);
+    if (b->character)
+        himc_character_place(b->character, &b->state);
+    return b->character != NULL;
+}
+
+static void do_part(bench_body *b, int part, int i)
+{
+    static const himc_vec3 none[HIMC_HANDS];
+    himc_articulation articulation;
+    himc_vec3 torque[HIMC_JOINTS] = {{0, 0, 0}}, relative[HIMC_JOINTS];
+    if (part == 0)
+        himc_task_between(&b->from, &b->to, 0.001 + 1e-9 * i, &b->reference);
+    else if (part == 1)
+        himc_task_tick_complete(&b->to, &b->posture);
+    else if (part == 2)
+        himc_controller_torques(&b->controller, &b->skeleton, &b->state, &b->reference, torque);
+    else if (part == 3) {
+        himc_articulate(&b->skeleton, &b->state, &articulation);
+        himc_forward_dynamics(&b->skeleton, &b->state, &articulation, torque, NULL, relative);
+    } else if (part == 4)
+        himc_character_observe(b->character, &b->state);
+    else
+        himc_character_step(b->character, torque, none, 1.0 / PHYSICS);
+}
+
+static bool time_parts(double part[PARTS], himc_error *error)
+{
+    bench_body b;
+    if (!make_body(&b, error))
+        return false;
+    for (int k = 0; k < PARTS; k++) {
+        double start = cpu_seconds();
+        for (int i = 0; i < PHYSICS; i++)
+            do_part(&b, k, i);
+        part[k] = 1e6 * (cpu_seconds() - start) / PHYSICS;
+    }
+    himc_character_free(b.character);
+    return true;
+}
+
+/// Modes that a core keeps swinging in real time: of a head low enough for all to be below half the
+/// sample rate, and nearly without losses, since what has died away costs nothing.
+static double time_modes(himc_error *error)
+{
+    himc_head head = himc_head_default();
+    static double heard[BLOCK], seen[BLOCK];
+    head.modes = MODES;
+    head.decay_constant = 0.1;
+    head.decay_square = 0;
+    himc_membrane *membrane = himc_membrane_new(&head, RATE, error);
+    if (!membrane)
+        return -1;
+    himc_membrane_push(membrane, 0.11, 0.07, 100);
+    double start = cpu_seconds();
+    for (int i = 0; i < MODE_SAMPLES; i += BLOCK)
+        himc_membrane_run(membrane, BLOCK, heard, seen);
+    double taken = cpu_seconds() - start;
+    himc_membrane_free(membrane);
+    return MODES * ((double)MODE_SAMPLES / RATE) / taken;
+}
+
+static bool measure(figures *out, himc_error *error)
+{
+    double performers[RUNS], modes[RUNS], part[PARTS][RUNS], now[PARTS];
+    for (int i = 0; i < RUNS; i++) {
+        double taken = time_performance(error);
+        modes[i] = time_modes(error);
+        if (taken < 0 || modes[i] < 0 || !time_parts(now, error))
+            return false;
+        performers[i] = SECONDS / taken;
+        for (int k = 0; k < PARTS; k++)
+            part[k][i] = now[k];
+    }
+    out->performers = median(performers);
+    out->modes = median(modes);
+    out->step = 1e6 / (out->performers * PHYSICS);
+    for (int k = 0; k < PARTS; k++)
+        out->part[k] = median(part[k]);
+    out->engine = out->part[PARTS - 1];
+    return true;
+}
+
+static void print_table(const figures *f)
+{
+    printf("a step, all in all                 %8.2f us at %d Hz, with one drum at %d Hz\n",
+           f->step, PHYSICS, RATE);
+    for (int k = 0; k < PARTS; k++)
+        printf("  %-32s %8.2f us\n", part_name[k], f->part[k]);
+    printf("step over bare engine              %8.2f\n", f->step / f->engine);
+    printf("modes a core                       %8.0f\n", f->modes);
+    printf("performers a core                  %8.2f (times real time)\n", f->performers);
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    figures f;
+    if (!measure(&f, &error))
+        return cli_fail(&cli_bench, "%s", error.text);
+    if (arguments->value[JSON])
+        printf("{\"step_us\": %.3f, \"engine_step_us\": %.3f, \"step_ratio\": %.3f, "
+               "\"modes_per_core\": %.0f, \"performers_per_core\": %.3f}\n",
+               f.step, f.engine, f.step / f.engine, f.modes, f.performers);
+    else
+        print_table(&f);
+    return cli_finish(&cli_bench);
+}
+
+const cli_call cli_bench = {
+    "bench",
+    "",
+    "",
+    "measures the cost of a step, of modes and of performers on this machine",
+    "Processor time of one core, each figure the median of five runs.",
+    options,
+    run,
+};

@@ -1,0 +1,204 @@
+/// evaluate.c: `himc evaluate`: the published comparison of the controllers (Bouënard, Gibet &
+/// Wanderley 2012, section 3.3.2, figure 6b).
+///
+/// A row is a nuance under one controller and law; its trials are numbered, and a trial's
+/// disturbance comes from its number alone. So trials can be done in any order, on any core or
+/// machine, and a table of trials (--log) that has some of them already is gone on with: what is in
+/// it is not done again.
+#define _POSIX_C_SOURCE 200809L
+#include "cli.h"
+#include "evaluate_log.h"
+#include "pool.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS };
+
+static const cli_option options[] = {
+    {"trials", 0, "N", "trials for each nuance and controller, 1 .. 10000 (100)"},
+    {"range", 0, "A-B", "only these of them, to spread over machines"},
+    {"only", 0, "WORD,...", "only rows of this nuance, this controller, this law"},
+    {"csv", 0, "F.csv", "where the table goes (standard output)"},
+    {"log", 0, "F.csv", "keeps each trial as it ends; those already there are not done again"},
+    {"jobs", 0, "N", "trials at a time, 1 .. 256 (as many as there are cores)"},
+    {0},
+};
+
+/// What is asked for and what is done of it.
+typedef struct evaluation {
+    int first, last, jobs;
+    bool wanted[TRIAL_KINDS];
+    trial_table table;
+    evaluate_log log;
+    int *todo; ///< indices into the table
+    int todo_count, done;
+    double start; ///< (s)
+} evaluation;
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static bool read_range(const char *text, evaluation *e, himc_error *error)
+{
+    int used = 0;
+    if (!text)
+        return true;
+    if (sscanf(text, "%d-%d%n", &e->first, &e->last, &used) == 2 && !text[used] && e->first >= 1 &&
+        e->first <= e->last && e->last <= e->table.trials)
+        return true;
+    return himc_error_set(error, "--range: %s, allowed A-B within 1-%d", text, e->table.trials);
+}
+
+/// Keeps the rows that have this word; false if none ever has it.
+static bool keep_rows(evaluation *e, const char *word)
+{
+    bool known = false;
+    for (int kind = 0; kind < TRIAL_KINDS; kind++) {
+        trial_kind k = trial_kind_of(&e->table, trial_index(&e->table, kind, 1));
+        bool has = !strcmp(word, himc_nuance_name(k.nuance)) ||
+                   !strcmp(word, trial_controller_name(k.controller)) ||
+                   !strcmp(word, trial_law_name(&k));
+        known = known || has;
+        e->wanted[kind] = e->wanted[kind] && has;
+    }
+    return known;
+}
+
+static bool read_only(const char *text, evaluation *e, himc_error *error)
+{
+    char words[256], *rest = NULL;
+    for (int kind = 0; kind < TRIAL_KINDS; kind++)
+        e->wanted[kind] = true;
+    snprintf(words, sizeof words, "%s", text ? text : "");
+    for (char *word = strtok_r(words, ",", &rest); word; word = strtok_r(NULL, ",", &rest))
+        if (!keep_rows(e, word))
+            return himc_error_set(error,
+                                  "--only: %s, allowed: a nuance (legato ...), a controller (ik id "
+                                  "himc), a law (none printed feedforward computed-torque)",
+                                  word);
+    return true;
+}
+
+static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_error *error)
+{
+    const char *const *value = arguments->value;
+    int trials = 100;
+    e->jobs = pool_cores();
+    if (!cli_count("--trials", value[TRIALS], 1, TRIALS_MAX, "", &trials, error) ||
+        !cli_count("--jobs", value[JOBS], 1, 256, "", &e->jobs, error))
+        return false;
+    if (value[CSV] && value[LOG] && cli_same_file(value[CSV], value[LOG]))
+        return himc_error_set(error, "%s: named twice, allowed are different files", value[LOG]);
+    e->first = 1;
+    e->last = trials;
+    return trial_table_make(&e->table, trials, error) && read_range(value[RANGE], e, error) &&
+           read_only(value[ONLY], e, error);
+}
+
+/// Which of the trials asked for the log has not got. In order of trials, so that whoever stops it
+/// half-way has some of every row.
+static bool list_todo(evaluation *e, himc_error *error)
+{
+    int count = (e->last - e->first + 1) * TRIAL_KINDS;
+    e->todo = malloc((size_t)count * sizeof *e->todo);
+    if (!e->todo)
+        return himc_error_set(error, "out of memory");
+    for (int number = e->first; number <= e->last; number++)
+        for (int kind = 0; kind < TRIAL_KINDS; kind++) {
+            int index = trial_index(&e->table, kind, number);
+            if (e->wanted[kind] && !e->table.known[index])
+                e->todo[e->todo_count++] = index;
+        }
+    return true;
+}
+
+static void show_progress(const evaluation *e)
+{
+    char bar[31] = "";
+    if (!isatty(STDERR_FILENO))
+        return;
+    int full = 30 * e->done / e->todo_count;
+    for (int i = 0; i < 30; i++)
+        bar[i] = i < full ? '#' : '.';
+    double elapsed = now() - e->start, left = elapsed / e->done * (e->todo_count - e->done);
+    fprintf(stderr, "\r[%s] %d of %d trials, %.0f s left \033[K", bar, e->done, e->todo_count,
+            left);
+    if (e->done == e->todo_count)
+        fputs("\r\033[K", stderr);
+}
+
+static bool work(void *user, int item, void *result, himc_error *error)
+{
+    const evaluation *e = user;
+    trial_kind kind = trial_kind_of(&e->table, e->todo[item]);
+    return trial_run(&kind, trial_number_of(&e->table, e->todo[item]), result, error);
+}
+
+static bool done(void *user, int item, const void *result, himc_error *error)
+{
+    evaluation *e = user;
+    int index = e->todo[item];
+    memcpy(&e->table.result[index], result, sizeof(trial_result));
+    e->table.known[index] = true;
+    e->done++;
+    show_progress(e);
+    return evaluate_log_add(&e->log, &e->table, index, error);
+}
+
+static bool evaluate(evaluation *e, const char *log, himc_error *error)
+{
+    if (!evaluate_log_open(&e->log, log, &e->table, error) || !list_todo(e, error))
+        return false;
+    pool spread = {e->todo_count, e->jobs, sizeof(trial_result), work, done, e};
+    e->start = now();
+    return pool_run(&spread, error);
+}
+
+static bool write_table(const evaluation *e, const char *path, himc_error *error)
+{
+    cli_file file = {0};
+    if (!path) {
+        trial_table_print(&e->table, stdout);
+        return true;
+    }
+    if (cli_file_open(&file, path, error)) {
+        trial_table_print(&e->table, file.stream);
+        if (cli_file_close(&file, error) && cli_file_keep(&file, error))
+            return true;
+    }
+    cli_file_drop(&file);
+    return false;
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    evaluation e = {0};
+    bool good = read_arguments(arguments, &e, &error) &&
+                evaluate(&e, arguments->value[LOG], &error) &&
+                write_table(&e, arguments->value[CSV], &error);
+    evaluate_log_close(&e.log);
+    trial_table_free(&e.table);
+    free(e.todo);
+    return good ? cli_finish(&cli_evaluate) : cli_fail(&cli_evaluate, "%s", error.text);
+}
+
+const cli_call cli_evaluate = {
+    "evaluate",
+    "",
+    "",
+    "compares ik, id and himc over many trials, as published",
+    "Each row plays disturbed takes of the motion database: nuance,controller,law,trials,rms_mm,\n"
+    "rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratio. RMS is the distance of captured and\n"
+    "simulated sticks, impacts included, its SD that of the trials. docs/scaling.md spreads it.",
+    options,
+    run,
+};

@@ -1,0 +1,248 @@
+/// evaluate_log.c: one table of columns writes and reads a row, so the two agree. Numbers are
+/// written with enough digits to come back the same to 1e-9 of their size.
+#define _POSIX_C_SOURCE 200809L
+#include "evaluate_log.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct column {
+    const char *name;
+    size_t at;    ///< in a trial_result
+    double scale; ///< what is written is the field times this
+} column;
+
+#define AT(field) offsetof(trial_result, field)
+#define DEGREES (180 / HIMC_PI)
+
+static const column columns[] = {
+    {"rms_mm", AT(rms), 1e3},
+    {"outside_mm", AT(outside), 1e3},
+    {"amplitude_mm", AT(amplitude), 1e3},
+    {"elbow_range_ratio", AT(elbow), 1},
+    {"shoulder_deg", AT(shoulder_error), DEGREES},
+    {"elbow_deg", AT(elbow_error), DEGREES},
+    {"wrist_deg", AT(wrist_error), DEGREES},
+    {"strokes", AT(strokes), 1},
+    {"played", AT(played), 1},
+};
+
+#define COLUMNS ((int)(sizeof columns / sizeof *columns))
+#define KEY "nuance,controller,law,trial"
+#define FIELDS (4 + COLUMNS)
+
+static double *field(trial_result *result, size_t at)
+{
+    return (double *)(void *)((char *)result + at);
+}
+
+bool trial_table_make(trial_table *table, int trials, himc_error *error)
+{
+    size_t count = (size_t)trials * TRIAL_KINDS;
+    table->trials = trials;
+    table->result = calloc(count, sizeof *table->result);
+    table->known = calloc(count, sizeof *table->known);
+    return (table->result && table->known) || himc_error_set(error, "out of memory");
+}
+
+void trial_table_free(trial_table *table)
+{
+    free(table->result);
+    free(table->known);
+}
+
+int trial_index(const trial_table *table, int kind, int number)
+{
+    return kind * table->trials + number - 1;
+}
+
+int trial_number_of(const trial_table *table, int index)
+{
+    return index % table->trials + 1;
+}
+
+trial_kind trial_kind_of(const trial_table *table, int index)
+{
+    int kind = index / table->trials, control = kind % TRIAL_CONTROLS;
+    trial_kind out = {(himc_nuance)(kind / TRIAL_CONTROLS), HIMC_PIPELINE_IK,
+                      HIMC_LAW_COMPUTED_TORQUE};
+    if (control > 0) {
+        out.controller = control <= TRIAL_LAWS ? HIMC_PIPELINE_ID : HIMC_PIPELINE_HIMC;
+        out.law = (himc_law)((control - 1) % TRIAL_LAWS);
+    }
+    return out;
+}
+
+/// Mean and standard deviation over the trials there are.
+typedef struct spread {
+    int count;
+    double mean, deviation;
+} spread;
+
+static spread spread_of(const trial_table *table, int kind, size_t at)
+{
+    spread s = {0};
+    double squares = 0;
+    for (int number = 1; number <= table->trials; number++) {
+        int i = trial_index(table, kind, number);
+        if (!table->known[i])
+            continue;
+        double before = s.mean, value = *field(&table->result[i], at);
+        s.mean += (value - before) / ++s.count; // Welford 1962
+        squares += (value - before) * (value - s.mean);
+    }
+    s.deviation = s.count > 1 ? sqrt(squares / (s.count - 1)) : 0;
+    return s;
+}
+
+static void print_key(const trial_table *table, int index, FILE *stream)
+{
+    trial_kind kind = trial_kind_of(table, index);
+    fprintf(stream, "%s,%s,%s", himc_nuance_name(kind.nuance),
+            trial_controller_name(kind.controller), trial_law_name(&kind));
+}
+
+void trial_table_print(const trial_table *table, FILE *stream)
+{
+    fputs("nuance,controller,law,trials,rms_mm,rms_sd_mm,amplitude_mm,rms_percent,"
+          "elbow_range_ratio\n",
+          stream);
+    for (int kind = 0; kind < TRIAL_KINDS; kind++) {
+        spread rms = spread_of(table, kind, AT(rms));
+        double amplitude = spread_of(table, kind, AT(amplitude)).mean;
+        if (rms.count == 0)
+            continue;
+        print_key(table, trial_index(table, kind, 1), stream);
+        fprintf(stream, ",%d,%.5f,%.5f,%.3f,%.5f,%.4f\n", rms.count, 1e3 * rms.mean,
+                1e3 * rms.deviation, 1e3 * amplitude, 100 * rms.mean / amplitude,
+                spread_of(table, kind, AT(elbow)).mean);
+    }
+}
+
+static int find_kind(const trial_table *table, char *const key[3])
+{
+    for (int kind = 0; kind < TRIAL_KINDS; kind++) {
+        trial_kind k = trial_kind_of(table, trial_index(table, kind, 1));
+        if (!strcmp(key[0], himc_nuance_name(k.nuance)) &&
+            !strcmp(key[1], trial_controller_name(k.controller)) &&
+            !strcmp(key[2], trial_law_name(&k)))
+            return kind;
+    }
+    return -1;
+}
+
+// cuts a row at its commas; the number of fields
+static int split(char *row, char *fields[FIELDS])
+{
+    int count = 0;
+    for (char *at = row; at; count++) {
+        char *comma = strchr(at, ',');
+        if (count < FIELDS)
+            fields[count] = at;
+        if (comma)
+            *comma++ = '\0';
+        at = comma;
+    }
+    return count;
+}
+
+static bool read_number(const char *text, double *out)
+{
+    char *end;
+    *out = strtod(text, &end);
+    return end != text && !*end && isfinite(*out);
+}
+
+static bool read_row(trial_table *table, char *row, himc_error *error)
+{
+    char *fields[FIELDS];
+    double number, value;
+    if (!strncmp(row, KEY, strlen(KEY)))
+        return true;
+    int count = split(row, fields), kind = count == FIELDS ? find_kind(table, fields) : -1;
+    if (kind < 0)
+        return himc_error_set(error, "no row of trials, allowed: %s and %d numbers", KEY, COLUMNS);
+    if (!read_number(fields[3], &number) || number != floor(number) || number < 1)
+        return himc_error_set(error, "trial: %s, allowed 1 .. %d", fields[3], TRIALS_MAX);
+    if (number > table->trials)
+        return true;
+    int index = trial_index(table, kind, (int)number);
+    for (int i = 0; i < COLUMNS; i++) {
+        if (!read_number(fields[4 + i], &value))
+            return himc_error_set(error, "%s: %s is no number", columns[i].name, fields[4 + i]);
+        *field(&table->result[index], columns[i].at) = value / columns[i].scale;
+    }
+    return table->known[index] = true;
+}
+
+// all complete rows; `*end` is where the last one ends
+static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t *end,
+                      himc_error *error)
+{
+    char *row = NULL;
+    size_t room = 0;
+    ssize_t length;
+    bool good = true;
+    *end = 0;
+    for (int line = 1; good && (length = getline(&row, &room, stream)) > 0; line++) {
+        if (row[length - 1] != '\n')
+            break; // an interrupted write: that trial is done again
+        row[length - 1] = '\0';
+        *end += length;
+        good = read_row(table, row, error) || himc_error_prefix(error, "%s:%d", path, line);
+    }
+    free(row);
+    return good;
+}
+
+static bool begin(evaluate_log *log, himc_error *error)
+{
+    fputs(KEY, log->stream);
+    for (int i = 0; i < COLUMNS; i++)
+        fprintf(log->stream, ",%s", columns[i].name);
+    fputc('\n', log->stream);
+    return fflush(log->stream) == 0 ||
+           himc_error_set(error, "%s: cannot be written: %s", log->path, strerror(errno));
+}
+
+bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, himc_error *error)
+{
+    off_t end;
+    if (!path)
+        return true;
+    snprintf(log->path, sizeof log->path, "%s", path);
+    log->stream = fopen(path, "a+");
+    if (!log->stream)
+        return himc_error_set(error, "%s: cannot be opened: %s", path, strerror(errno));
+    rewind(log->stream);
+    if (!read_rows(log->stream, table, path, &end, error))
+        return false;
+    if (ftruncate(fileno(log->stream), end) || fseek(log->stream, 0, SEEK_END))
+        return himc_error_set(error, "%s: cannot be gone on with: %s", path, strerror(errno));
+    return end > 0 || begin(log, error);
+}
+
+bool evaluate_log_add(evaluate_log *log, const trial_table *table, int index, himc_error *error)
+{
+    trial_result result = table->result[index];
+    if (!log->stream)
+        return true;
+    print_key(table, index, log->stream);
+    fprintf(log->stream, ",%d", trial_number_of(table, index));
+    for (int i = 0; i < COLUMNS; i++)
+        fprintf(log->stream, ",%.9g", *field(&result, columns[i].at) * columns[i].scale);
+    fputc('\n', log->stream);
+    return fflush(log->stream) == 0 ||
+           himc_error_set(error, "%s: cannot be written: %s", log->path, strerror(errno));
+}
+
+void evaluate_log_close(evaluate_log *log)
+{
+    if (log->stream)
+        fclose(log->stream);
+    log->stream = NULL;
+}

@@ -1,0 +1,314 @@
+/// trial.c: a trial is a sequence of the motion database as a laboratory would have captured it (its
+/// markers with a tracker's noise), played by a body whose segments do not weigh quite what control
+/// believes. The body's measures, its mean posture and its joint limits come from that noisy
+/// take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the habit
+/// of the other two players in that nuance. What was simulated is compared with the motion itself, noiseless.
+///
+/// Under the `printed` law `himc` is as published: nothing in the null space but the limits.
+#define _DEFAULT_SOURCE // mkstemps
+#include "trial.h"
+
+#include "../mocap/parts.h"
+#include "himc/performance.h"
+#include "himc/player.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define NOISE 2e-4    // of each marker's coordinate (m)
+#define MISJUDGED 0.1 // standard deviation of a segment's weight
+#define LEAST_WEIGHT 0.5
+#define RATE 48000
+#define BLOCK 64
+#define SPOTS 3
+#define SETTLED 0.3 // after a take begins and before it ends, that are not compared (s)
+
+/// What is summed up while a trial plays.
+typedef struct tally {
+    const himc_mocap *mocap;
+    himc_vec3 offset; ///< from the take's coordinates to ours (m)
+    double begin;     ///< time of the take's first frame (s)
+    double squares;   ///< of the tips' distances (m^2)
+    double angle[3];  ///< squares: shoulder, elbow, wrist (rad^2)
+    long count;
+    double low[2][HIMC_HANDS], high[2][HIMC_HANDS]; ///< elbows: captured, simulated (m)
+} tally;
+
+const char *trial_controller_name(himc_pipeline controller)
+{
+    static const char *const name[] = {"himc", "id", "ik"};
+    return name[controller];
+}
+
+const char *trial_law_name(const trial_kind *kind)
+{
+    static const char *const name[] = {"printed", "feedforward", "computed-torque"};
+    return kind->controller == HIMC_PIPELINE_IK ? "none" : name[kind->law];
+}
+
+static himc_mocap_config sequence_of(const trial_kind *kind, int number)
+{
+    himc_mocap_config config = himc_mocap_default();
+    config.player = (number - 1) % HIMC_MOCAP_PLAYERS;
+    config.spot = (himc_spot)((number - 1) / HIMC_MOCAP_PLAYERS % SPOTS);
+    config.nuance = kind->nuance;
+    return config;
+}
+
+static uint64_t seed_of(const trial_kind *kind, int number)
+{
+    return (uint64_t)kind->nuance << 32 | (uint64_t)number;
+}
+
+/// A clean sequence: postures of all frames, `take` to be freed by drop_sequence.
+static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take,
+                          himc_mocap **mocap, himc_error *error)
+{
+    *mocap = himc_mocap_new(config, error);
+    if (!*mocap)
+        return false;
+    int frames = himc_mocap_frames(*mocap);
+    himc_pose *pose = malloc((size_t)frames * sizeof *pose);
+    *take = (himc_habit_take){himc_mocap_skeleton(*mocap), pose, frames, HIMC_MOCAP_RATE};
+    for (int frame = 0; pose && frame < frames; frame++)
+        pose[frame] = himc_mocap_pose(*mocap, frame / HIMC_MOCAP_RATE);
+    return pose || himc_error_set(error, "out of memory");
+}
+
+/// How the other players' arms go with their sticks in this nuance, all spots.
+static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_error *error)
+{
+    enum { TAKES = (HIMC_MOCAP_PLAYERS - 1) * SPOTS };
+    himc_habit_take take[TAKES] = {{0}};
+    himc_mocap *mocap[TAKES] = {NULL};
+    int unseen = config.player, count = 0;
+    bool good = true;
+    for (config.player = 0; config.player < HIMC_MOCAP_PLAYERS; config.player++)
+        for (int spot = 0; good && config.player != unseen && spot < SPOTS; spot++, count++) {
+            config.spot = (himc_spot)spot;
+            good = make_sequence(&config, &take[count], &mocap[count], error);
+        }
+    good = good && himc_habit_learn(habit, take, TAKES, error);
+    for (int i = 0; i < TAKES; i++) {
+        free((void *)(uintptr_t)take[i].pose);
+        himc_mocap_free(mocap[i]);
+    }
+    return good;
+}
+
+/// Learned once for each player left out and each nuance, in each process.
+static const himc_habit *habit_without(const himc_mocap_config *config, himc_error *error)
+{
+    static himc_habit habit[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
+    static bool known[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
+    himc_habit *h = &habit[config->player][config->nuance];
+    bool *k = &known[config->player][config->nuance];
+    if (!*k)
+        *k = learn_from_others(*config, h, error);
+    return *k ? h : NULL;
+}
+
+/// The sequence as captured: through a file, as a laboratory's would come.
+static himc_take *capture(const himc_mocap *mocap, uint64_t seed, himc_error *error)
+{
+    char path[] = "/tmp/himc-trial-XXXXXX.c3d";
+    int file = mkstemps(path, 4);
+    if (file < 0) {
+        himc_error_set(error, "%s: cannot be made: %s", path, strerror(errno));
+        return NULL;
+    }
+    close(file);
+    himc_take *take =
+        himc_mocap_write(mocap, path, error) ? himc_take_load(path, NULL, error) : NULL;
+    unlink(path);
+    if (take)
+        himc_take_add_noise(take, NOISE, seed);
+    return take;
+}
+
+static bool tell(himc_performance *p, himc_error *error, const char *text)
+{
+    himc_command c;
+    return himc_command_parse_text(&c, HIMC_PERFORMER, text, error) &&
+           himc_performance_command(p, &c, 0, error);
+}
+
+static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_config *config,
+                        himc_error *error)
+{
+    const himc_habit *learned = habit_without(config, error);
+    himc_skeleton_config given = himc_skeleton_default();
+    himc_player *seen = learned ? himc_player_new(take, NULL, &given, error) : NULL;
+    himc_skeleton skeleton;
+    bool good = seen && himc_skeleton_init(&skeleton, &seen->config, error);
+    if (good) {
+        himc_habit habit = *learned;
+        himc_habit_take one = {&skeleton, seen->pose, seen->frames, himc_take_rate(take)};
+        good = himc_habit_meet(&habit.player, &one, 1, error);
+        if (good)
+            himc_performance_set_habit(p, &habit);
+    }
+    himc_player_free(seen);
+    return good;
+}
+
+static bool weigh(himc_performance *p, uint64_t seed, himc_error *error)
+{
+    double weight[HIMC_SEGMENTS];
+    mocap_dice dice = himc_mocap_dice(seed, NULL, 0);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        weight[i] = fmax(1 + MISJUDGED * himc_mocap_normal(&dice), LEAST_WEIGHT);
+    return himc_performance_set_weights(p, weight, error);
+}
+
+static bool set_control(himc_performance *p, const trial_kind *kind, himc_error *error)
+{
+    char text[64];
+    bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
+    snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
+    if (!tell(p, error, text))
+        return false;
+    if (published && !tell(p, error, "posture 0"))
+        return false;
+    snprintf(text, sizeof text, "law %s", trial_law_name(kind));
+    return kind->controller == HIMC_PIPELINE_IK || tell(p, error, text);
+}
+
+static himc_performance *prepare(const trial_kind *kind, int number, himc_take *take,
+                                 himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = RATE;
+    himc_performance *p = himc_performance_new(&config, error);
+    himc_drum *drum = p ? himc_drum_new("kettle", 23, RATE, error) : NULL;
+    uint64_t seed = seed_of(kind, number);
+    himc_mocap_config sequence = sequence_of(kind, number);
+    bool good =
+        drum && himc_performance_add_drum(p, drum, error) &&
+        himc_performance_play_take(p, take, "take", error) && weigh(p, seed, error) &&
+        set_control(p, kind, error) &&
+        (kind->controller != HIMC_PIPELINE_HIMC || adopt_habit(p, take, &sequence, error)) &&
+        tell(p, error, "play");
+    himc_drum_release(drum);
+    if (good)
+        return p;
+    himc_performance_free(p);
+    return NULL;
+}
+
+static void stretch(tally *t, int which, himc_hand hand, double z)
+{
+    t->low[which][hand] = fmin(t->low[which][hand], z);
+    t->high[which][hand] = fmax(t->high[which][hand], z);
+}
+
+static void compare_hand(tally *t, const himc_motion_row *row, const himc_body_state *captured,
+                         himc_hand hand)
+{
+    himc_vec3 miss = himc_vec3_sub(row->tip[hand], himc_vec3_add(captured->tip[hand], t->offset));
+    int elbow = himc_arm_joint(hand, 1) + 1;
+    t->squares += himc_vec3_dot(miss, miss);
+    t->count++;
+    stretch(t, 0, hand, captured->origin[elbow].z);
+    stretch(t, 1, hand, row->elbow[hand].z);
+}
+
+static void compare_joints(tally *t, const himc_motion_row *row, const himc_pose *captured,
+                           himc_hand hand)
+{
+    for (int k = 0; k < 3; k++) {
+        int j = himc_arm_joint(hand, k);
+        himc_quat q = himc_quat_exp(row->joint[j]);
+        double angle =
+            himc_vec3_length(himc_quat_log(himc_quat_mul(himc_quat_conj(captured->joint[j]), q)));
+        t->angle[k] += angle * angle;
+    }
+}
+
+static void compare(void *user, const himc_motion_row *row)
+{
+    tally *t = user;
+    double time = row->time - t->begin;
+    if (time < SETTLED || time > himc_mocap_length(t->mocap) - SETTLED)
+        return;
+    himc_pose pose = himc_mocap_pose(t->mocap, time);
+    himc_body_state captured;
+    himc_pose_to_state(himc_mocap_skeleton(t->mocap), &pose, NULL, &captured);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        compare_hand(t, row, &captured, (himc_hand)hand);
+        compare_joints(t, row, &pose, (himc_hand)hand);
+    }
+}
+
+static void play(himc_performance *p)
+{
+    himc_event event = {.kind = HIMC_EVENT_BEAT};
+    while (event.kind != HIMC_EVENT_DONE) {
+        himc_performance_process(p, BLOCK, NULL);
+        while (event.kind != HIMC_EVENT_DONE && himc_performance_event(p, &event)) {
+        }
+    }
+}
+
+static double mean_height(const himc_mocap *mocap)
+{
+    himc_mocap_statistics statistics;
+    memset(&statistics, 0, sizeof statistics);
+    himc_mocap_measure(mocap, &statistics);
+    return himc_mocap_mean(&statistics, HIMC_MOCAP_TIP_HEIGHT);
+}
+
+static trial_result result_of(const tally *t, const himc_performance_stats *stats)
+{
+    double n = (double)t->count, captured = 0, simulated = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        captured += t->high[0][hand] - t->low[0][hand];
+        simulated += t->high[1][hand] - t->low[1][hand];
+    }
+    return (trial_result){.rms = sqrt(t->squares / n),
+                          .outside = stats->tip_rms,
+                          .amplitude = mean_height(t->mocap),
+                          .elbow = simulated / captured,
+                          .shoulder_error = sqrt(t->angle[0] / n),
+                          .elbow_error = sqrt(t->angle[1] / n),
+                          .wrist_error = sqrt(t->angle[2] / n),
+                          .strokes = himc_mocap_touches(t->mocap),
+                          .played = stats->played};
+}
+
+static bool run_sequence(const trial_kind *kind, int number, himc_mocap *mocap,
+                         trial_result *result, himc_error *error)
+{
+    himc_take *take = capture(mocap, seed_of(kind, number), error);
+    himc_performance *p = take ? prepare(kind, number, take, error) : NULL;
+    himc_take_free(take);
+    if (!p)
+        return false;
+    tally t = {.mocap = mocap, .begin = HIMC_APPROACH, .offset = himc_performance_take_offset(p)};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int which = 0; which < 2; which++) {
+            t.low[which][hand] = INFINITY;
+            t.high[which][hand] = -INFINITY;
+        }
+    himc_performance_on_motion(p, compare, &t);
+    play(p);
+    himc_performance_stats stats = himc_performance_measure(p);
+    himc_performance_free(p);
+    *result = result_of(&t, &stats);
+    return true;
+}
+
+bool trial_run(const trial_kind *kind, int number, trial_result *result, himc_error *error)
+{
+    himc_mocap_config config = sequence_of(kind, number);
+    himc_mocap *mocap = himc_mocap_new(&config, error);
+    bool good = mocap && run_sequence(kind, number, mocap, result, error);
+    himc_mocap_free(mocap);
+    return good ||
+           himc_error_prefix(error, "%s %s %s, trial %d", himc_nuance_name(kind->nuance),
+                             trial_controller_name(kind->controller), trial_law_name(kind), number);
+}
