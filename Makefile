@@ -233,4 +233,5 @@ $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 include tools/figures/figures.mk
 check-figures: $(FIGURES)
 
--include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
+-include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
+         $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))

@@ -277,10 +277,9 @@ static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
 {
     himc_osc_config config = himc_osc_default();
     config.port = port;
-    himc_osc *osc = himc_osc_new(&config, error);
+    himc_osc *osc = himc_osc_reopen(x->x_osc, &config, error);
     if (!osc)
         return false;
-    himc_osc_free(x->x_osc);
     x->x_osc = osc;
     himc_performance_on_tick(x->x_performance, himc_osc_tick, osc);
     clock_delay(x->x_network, LOOK);

@@ -232,7 +232,7 @@ static void comes_back(himc_law law, himc_pipeline mode, himc_limits_kind kind)
     pose.joint[wrist] = himc_quat_mul(pose.joint[wrist], himc_quat_exp(himc_vec3_make(0, 0, 0.5)));
     place(&pose, NULL);
     TEST_ASSERT_TRUE(measure_now() > 2);
-    for (int n = 0; n < 5000; n++) {
+    for (int n = 0; n < 3000; n++) {
         // nothing is asked of the joints; of the tip, to stay where it is
         if (mode == HIMC_PIPELINE_HIMC)
             forget_arms();
@@ -267,7 +267,7 @@ static void test_target_out_of_the_bounds_is_not_followed_beyond_them(void)
         aim(0);
         himc_pose start = pose_of(&reference.posture);
         place(&start, NULL);
-        for (int n = 0; n < 10000; n++) {
+        for (int n = 0; n < 4000; n++) {
             reference.tip[HIMC_LEFT] = (himc_target){.x = {0.3, 0.6, LEVEL + 0.4}};
             step();
         }
@@ -293,7 +293,7 @@ static void test_bounds_of_no_width_hold_every_joint_and_nothing_flies_apart(voi
         controller.limits = &limits;
         place(&pose, NULL);
         memset(&strain, 0, sizeof strain);
-        for (int n = 0; n < 5000; n++) {
+        for (int n = 0; n < 3000; n++) {
             aim(0.125 + n * STEP);
             step();
         }

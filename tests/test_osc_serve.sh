@@ -4,6 +4,7 @@
 himc=$HIMC_BUILD/bin/himc
 dir=$HIMC_BUILD/tests/osc_serve
 mkdir -p "$dir"
+ear=$((20000 + $$ % 20000)) # ours, should two of these run at once
 tests=0
 failures=0
 
@@ -19,7 +20,7 @@ check() {
     fi
 }
 
-"$himc" serve --port 0 >"$dir/out" 2>"$dir/err" &
+timeout 100 "$himc" serve --port 0 >"$dir/out" 2>"$dir/err" &
 server=$!
 for i in $(seq 50); do
     port=$(sed -n 's/^listening at 127.0.0.1 port //p' "$dir/out")
@@ -35,7 +36,7 @@ wait $server
 check test_serve_ends_cleanly_on_sigterm [ $? = 0 ]
 check test_serve_reports_in_json grep -q '^{"blocks": ' "$dir/out"
 
-cat >"$dir/osc.pd" <<'EOF'
+sed "s/39871/$ear/g" >"$dir/osc.pd" <<'EOF'
 #N canvas 0 0 400 300 12;
 #X obj 10 10 loadbang;
 #X obj 10 40 t b b b;
@@ -66,7 +67,7 @@ cat >"$dir/osc.pd" <<'EOF'
 #X connect 9 1 11 0;
 EOF
 if command -v pd >/dev/null; then
-    timeout 20 pd -nogui -nrt -stderr -noaudio -path "$HIMC_BUILD/externals/himc" -lib himc~ -lib membrane~ \
+    timeout -k 5 20 pd -nogui -nrt -stderr -noaudio -path "$HIMC_BUILD/externals/himc" -lib himc~ -lib membrane~ \
         "$dir/osc.pd" >"$dir/pd" 2>&1
     check test_himc_tilde_sends_strikes_that_vanilla_objects_read grep -q '^strike: [0-9.e-]* left kettle' "$dir/pd"
     check test_himc_tilde_sends_poses [ "$(grep -c '^body: left-stick' "$dir/pd")" -gt 20 ]

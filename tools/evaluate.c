@@ -139,7 +139,8 @@ static bool work(void *user, int item, void *result, himc_error *error)
 {
     const evaluation *e = user;
     trial_kind kind = trial_kind_of(&e->table, e->todo[item]);
-    return trial_run(&kind, trial_number_of(&e->table, e->todo[item]), result, error);
+    trial_config config = trial_default(&kind, trial_number_of(&e->table, e->todo[item]));
+    return trial_run(&config, result, error);
 }
 
 static bool done(void *user, int item, const void *result, himc_error *error)

@@ -25,7 +25,7 @@
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
-enum { OUT, RATE, BLOCK, STROKES, MOTION, MODE, LEFT_TIP, RIGHT_TIP, UP };
+enum { OUT, RATE, BLOCK, STROKES, MOTION, MODE, LIMITS, LEFT_TIP, RIGHT_TIP, UP };
 
 static const cli_option options[] = {
     {"output", 'o', "OUT.wav", "the sound, 32-bit float, one channel: the sum of all drums"},
@@ -34,6 +34,7 @@ static const cli_option options[] = {
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
     {"motion", 0, "F.csv", "a row every 4 ms: targets, sticks, joint angles, forces, elbows"},
     {"mode", 0, "M", "control by himc, id or ik (himc)"},
+    {"limits", 0, "L", "joint limits: ellipsoid, euler or off (off)"},
     {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else looked for by name)"},
     {"right-tip", 0, "NAME", "the same, right"},
     {"up", 0, "z|y", "a take's upward axis (else as the file says)"},
@@ -42,7 +43,7 @@ static const cli_option options[] = {
 
 /// What was asked for.
 typedef struct job {
-    const char *source, *mode;
+    const char *source, *mode, *limits;
     int rate, block;
     himc_take_options take;
 } job;
@@ -62,7 +63,11 @@ typedef struct rendering {
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
 {
     const char *const *value = arguments->value;
-    *out = (job){.source = arguments->operand, .mode = value[MODE], .rate = 48000, .block = 64};
+    *out = (job){.source = arguments->operand,
+                 .mode = value[MODE],
+                 .limits = value[LIMITS],
+                 .rate = 48000,
+                 .block = 64};
     const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION]};
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
@@ -121,6 +126,8 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
     if (!take && !inspect_score(wanted, &makes_drums, error))
         return false;
     if (!makes_drums && !add_default_drum(performance, wanted->rate, error))
+        return false;
+    if (wanted->limits && !tell(performance, "limits", wanted->limits, error))
         return false;
     return tell(performance, take ? "take" : "score", wanted->source, error) &&
            tell(performance, "play", NULL, error);

@@ -61,6 +61,8 @@ void render_motion_header(FILE *stream)
         fprintf(stream, ",%s_force_n", himc_hand_name((himc_hand)hand));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         name_vector(stream, himc_hand_name((himc_hand)hand), "_elbow", "m");
+    for (int joint = 0; joint < HIMC_JOINTS; joint++)
+        fprintf(stream, ",%s_limit", himc_joint_name(joint));
     fputc('\n', stream);
 }
 
@@ -78,6 +80,8 @@ void render_motion_row(void *stream, const himc_motion_row *row)
         fprintf(out, ",%.4f", row->force[hand]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         put_vector(out, row->elbow[hand]);
+    for (int joint = 0; joint < HIMC_JOINTS; joint++)
+        fprintf(out, ",%.4f", row->limit[joint]);
     fputc('\n', out);
 }
 

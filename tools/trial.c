@@ -4,7 +4,8 @@
 /// take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the habit
 /// of the other two players in that nuance. What was simulated is compared with the motion itself, noiseless.
 ///
-/// Under the `printed` law `himc` is as published: nothing in the null space but the limits.
+/// Under the `printed` law `himc` is as published: nothing in the null space but the limits; and
+/// the servos are as soft as a player's (the default ones are three times as fast).
 #define _DEFAULT_SOURCE // mkstemps
 #include "trial.h"
 
@@ -29,6 +30,7 @@
 
 /// What is summed up while a trial plays.
 typedef struct tally {
+    const trial_config *config;
     const himc_mocap *mocap;
     himc_vec3 offset; ///< from the take's coordinates to ours (m)
     double begin;     ///< time of the take's first frame (s)
@@ -50,18 +52,29 @@ const char *trial_law_name(const trial_kind *kind)
     return kind->controller == HIMC_PIPELINE_IK ? "none" : name[kind->law];
 }
 
-static himc_mocap_config sequence_of(const trial_kind *kind, int number)
+trial_config trial_default(const trial_kind *kind, int number)
 {
-    himc_mocap_config config = himc_mocap_default();
-    config.player = (number - 1) % HIMC_MOCAP_PLAYERS;
-    config.spot = (himc_spot)((number - 1) / HIMC_MOCAP_PLAYERS % SPOTS);
-    config.nuance = kind->nuance;
-    return config;
+    return (trial_config){.kind = *kind,
+                          .number = number,
+                          .noise = NOISE,
+                          .misjudged = MISJUDGED,
+                          .gain = 1,
+                          .pace = 1,
+                          .limits = true};
 }
 
-static uint64_t seed_of(const trial_kind *kind, int number)
+static himc_mocap_config sequence_of(const trial_config *config)
 {
-    return (uint64_t)kind->nuance << 32 | (uint64_t)number;
+    himc_mocap_config sequence = himc_mocap_default();
+    sequence.player = (config->number - 1) % HIMC_MOCAP_PLAYERS;
+    sequence.spot = (himc_spot)((config->number - 1) / HIMC_MOCAP_PLAYERS % SPOTS);
+    sequence.nuance = config->kind.nuance;
+    return sequence;
+}
+
+static uint64_t seed_of(const trial_config *config)
+{
+    return (uint64_t)config->kind.nuance << 32 | (uint64_t)config->number;
 }
 
 /// A clean sequence: postures of all frames, `take` to be freed by drop_sequence.
@@ -113,7 +126,7 @@ static const himc_habit *habit_without(const himc_mocap_config *config, himc_err
 }
 
 /// The sequence as captured: through a file, as a laboratory's would come.
-static himc_take *capture(const himc_mocap *mocap, uint64_t seed, himc_error *error)
+static himc_take *capture(const trial_config *config, const himc_mocap *mocap, himc_error *error)
 {
     char path[] = "/tmp/himc-trial-XXXXXX.c3d";
     int file = mkstemps(path, 4);
@@ -126,7 +139,7 @@ static himc_take *capture(const himc_mocap *mocap, uint64_t seed, himc_error *er
         himc_mocap_write(mocap, path, error) ? himc_take_load(path, NULL, error) : NULL;
     unlink(path);
     if (take)
-        himc_take_add_noise(take, NOISE, seed);
+        himc_take_add_noise(take, config->noise, seed_of(config));
     return take;
 }
 
@@ -156,42 +169,43 @@ static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_c
     return good;
 }
 
-static bool weigh(himc_performance *p, uint64_t seed, himc_error *error)
+static bool weigh(himc_performance *p, const trial_config *config, himc_error *error)
 {
     double weight[HIMC_SEGMENTS];
-    mocap_dice dice = himc_mocap_dice(seed, NULL, 0);
+    mocap_dice dice = himc_mocap_dice(seed_of(config), NULL, 0);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
-        weight[i] = fmax(1 + MISJUDGED * himc_mocap_normal(&dice), LEAST_WEIGHT);
+        weight[i] = fmax(1 + config->misjudged * himc_mocap_normal(&dice), LEAST_WEIGHT);
     return himc_performance_set_weights(p, weight, error);
 }
 
-static bool set_control(himc_performance *p, const trial_kind *kind, himc_error *error)
+static bool set_control(himc_performance *p, const trial_config *config, himc_error *error)
 {
+    const trial_kind *kind = &config->kind;
     char text[64];
     bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
     snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
-    if (!tell(p, error, text))
+    if (!tell(p, error, text) || (published && !tell(p, error, "posture 0")) ||
+        (config->limits && !tell(p, error, "limits ellipsoid")))
         return false;
-    if (published && !tell(p, error, "posture 0"))
+    snprintf(text, sizeof text, "gain frequency %.6f", config->gain);
+    if (config->gain != 1 && !tell(p, error, text))
         return false;
     snprintf(text, sizeof text, "law %s", trial_law_name(kind));
     return kind->controller == HIMC_PIPELINE_IK || tell(p, error, text);
 }
 
-static himc_performance *prepare(const trial_kind *kind, int number, himc_take *take,
-                                 himc_error *error)
+static himc_performance *prepare(const trial_config *config, himc_take *take, himc_error *error)
 {
-    himc_performance_config config = himc_performance_default();
-    config.sample_rate = RATE;
-    himc_performance *p = himc_performance_new(&config, error);
+    himc_performance_config rates = himc_performance_default();
+    rates.sample_rate = RATE;
+    himc_performance *p = himc_performance_new(&rates, error);
     himc_drum *drum = p ? himc_drum_new("kettle", 23, RATE, error) : NULL;
-    uint64_t seed = seed_of(kind, number);
-    himc_mocap_config sequence = sequence_of(kind, number);
+    himc_mocap_config sequence = sequence_of(config);
     bool good =
         drum && himc_performance_add_drum(p, drum, error) &&
-        himc_performance_play_take(p, take, "take", error) && weigh(p, seed, error) &&
-        set_control(p, kind, error) &&
-        (kind->controller != HIMC_PIPELINE_HIMC || adopt_habit(p, take, &sequence, error)) &&
+        himc_performance_play_take(p, take, "take", error) && weigh(p, config, error) &&
+        set_control(p, config, error) &&
+        (config->kind.controller != HIMC_PIPELINE_HIMC || adopt_habit(p, take, &sequence, error)) &&
         tell(p, error, "play");
     himc_drum_release(drum);
     if (good)
@@ -209,7 +223,7 @@ static void stretch(tally *t, int which, himc_hand hand, double z)
 static void compare_hand(tally *t, const himc_motion_row *row, const himc_body_state *captured,
                          himc_hand hand)
 {
-    himc_vec3 miss = himc_vec3_sub(row->tip[hand], himc_vec3_add(captured->tip[hand], t->offset));
+    himc_vec3 miss = himc_vec3_sub(row->tip[hand], captured->tip[hand]);
     int elbow = himc_arm_joint(hand, 1) + 1;
     t->squares += himc_vec3_dot(miss, miss);
     t->count++;
@@ -237,11 +251,16 @@ static void compare(void *user, const himc_motion_row *row)
         return;
     himc_pose pose = himc_mocap_pose(t->mocap, time);
     himc_body_state captured;
-    himc_pose_to_state(himc_mocap_skeleton(t->mocap), &pose, NULL, &captured);
+    himc_skeleton skeleton = *himc_mocap_skeleton(t->mocap);
+    skeleton.root = himc_vec3_add(skeleton.root, t->offset);
+    himc_pose_to_state(&skeleton, &pose, NULL, &captured);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         compare_hand(t, row, &captured, (himc_hand)hand);
         compare_joints(t, row, &pose, (himc_hand)hand);
     }
+    trial_frame frame = {time, &pose, &captured, row};
+    if (t->config->frame)
+        t->config->frame(t->config->user, &frame);
 }
 
 static void play(himc_performance *p)
@@ -280,15 +299,18 @@ static trial_result result_of(const tally *t, const himc_performance_stats *stat
                           .played = stats->played};
 }
 
-static bool run_sequence(const trial_kind *kind, int number, himc_mocap *mocap,
-                         trial_result *result, himc_error *error)
+static bool run_sequence(const trial_config *config, himc_mocap *mocap, trial_result *result,
+                         himc_error *error)
 {
-    himc_take *take = capture(mocap, seed_of(kind, number), error);
-    himc_performance *p = take ? prepare(kind, number, take, error) : NULL;
+    himc_take *take = capture(config, mocap, error);
+    himc_performance *p = take ? prepare(config, take, error) : NULL;
     himc_take_free(take);
     if (!p)
         return false;
-    tally t = {.mocap = mocap, .begin = HIMC_APPROACH, .offset = himc_performance_take_offset(p)};
+    tally t = {.config = config,
+               .mocap = mocap,
+               .begin = HIMC_APPROACH,
+               .offset = himc_performance_take_offset(p)};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int which = 0; which < 2; which++) {
             t.low[which][hand] = INFINITY;
@@ -302,13 +324,14 @@ static bool run_sequence(const trial_kind *kind, int number, himc_mocap *mocap,
     return true;
 }
 
-bool trial_run(const trial_kind *kind, int number, trial_result *result, himc_error *error)
+bool trial_run(const trial_config *config, trial_result *result, himc_error *error)
 {
-    himc_mocap_config config = sequence_of(kind, number);
-    himc_mocap *mocap = himc_mocap_new(&config, error);
-    bool good = mocap && run_sequence(kind, number, mocap, result, error);
+    himc_mocap_config sequence = sequence_of(config);
+    himc_mocap *mocap = himc_mocap_new(&sequence, error);
+    bool good = mocap && run_sequence(config, mocap, result, error);
     himc_mocap_free(mocap);
     return good ||
-           himc_error_prefix(error, "%s %s %s, trial %d", himc_nuance_name(kind->nuance),
-                             trial_controller_name(kind->controller), trial_law_name(kind), number);
+           himc_error_prefix(error, "%s %s %s, trial %d", himc_nuance_name(config->kind.nuance),
+                             trial_controller_name(config->kind.controller),
+                             trial_law_name(&config->kind), config->number);
 }

@@ -2,7 +2,7 @@
 #ifndef TRIAL_H
 #define TRIAL_H
 
-#include "himc/controller.h"
+#include "himc/performance.h"
 
 /// What is compared: one row of the published table.
 typedef struct trial_kind {
@@ -28,7 +28,31 @@ typedef struct trial_result {
 const char *trial_controller_name(himc_pipeline controller);
 const char *trial_law_name(const trial_kind *kind); ///< "none" for `ik`
 
-/// Runs trial `number` (from 1). The disturbance is that number's, the same for every controller.
-bool trial_run(const trial_kind *kind, int number, trial_result *result, himc_error *error);
+/// A frame of a trial: what was captured, in our coordinates, and what was simulated.
+typedef struct trial_frame {
+    double time; ///< from the take's first frame (s)
+    const himc_pose *captured_pose;
+    const himc_body_state *captured;
+    const himc_motion_row *simulated;
+} trial_frame;
+
+/// How a trial is played.
+typedef struct trial_config {
+    trial_kind kind;
+    int number;       ///< from 1: which player, spot and disturbance
+    double noise;     ///< of each marker's coordinate (m)
+    double misjudged; ///< standard deviation of the segments' weights over what control believes
+    double gain;      ///< frequencies of the servos over the default ones
+    double pace;      ///< of the sequence over its own
+    bool limits;      ///< joint limits learned from the take are kept
+    void (*frame)(void *user, const trial_frame *frame); ///< called at each one, or NULL
+    void *user;
+} trial_config;
+
+/// As the evaluation plays it.
+trial_config trial_default(const trial_kind *kind, int number);
+
+/// Runs a trial. The disturbance is its number's, the same for every controller.
+bool trial_run(const trial_config *config, trial_result *result, himc_error *error);
 
 #endif

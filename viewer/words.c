@@ -2,7 +2,7 @@
 ///
 ///     /himc/body      segment x y z qw qx qy qz       its joint (m), orientation
 ///     /himc/targets   hand x y z                      (m)
-///     /himc/strike    time hand drum x y velocity force duration nuance
+///     /himc/strike    time hand drum x y velocity force duration nuance ...
 ///     /himc/beat      beat
 ///     /himc/status    name value ...
 ///     /himc/pose      (an empty mark before the bodies is allowed)
@@ -12,7 +12,7 @@
 ///
 /// A performer may put a name into its addresses, /himc/NAME/body, to share a port with others.
 /// Numbers may be of any numeric OSC type but must be finite. Types are written n for a number, s
-/// for a word, * for anything.
+/// for a word, * for anything that may follow.
 #include "words.h"
 
 #include <math.h>
@@ -78,15 +78,13 @@ static void plain(char *out, size_t size, const char *from)
 // types as wanted, numbers finite
 static bool fits(const heard *h, const char *wanted)
 {
-    if (strcmp(wanted, "*") == 0)
-        return true;
-    if (h->count != (int)strlen(wanted))
-        return false;
-    for (int i = 0; i < h->count; i++)
-        if (wanted[i] == 's' ? !is_string(h->types[i])
-                             : !is_number(h->types[i]) || !isfinite(number(h, i)))
+    int i = 0;
+    for (; wanted[i] && wanted[i] != '*'; i++)
+        if (i >= h->count ||
+            (wanted[i] == 's' ? !is_string(h->types[i])
+                              : !is_number(h->types[i]) || !isfinite(number(h, i))))
             return false;
-    return true;
+    return wanted[i] == '*' || i == h->count;
 }
 
 static bool near(const heard *h, int first, int count)
@@ -245,7 +243,7 @@ static bool hear_place(heard *h)
 
 static const word words[] = {
     {"himc", "body", "snnnnnnn", hear_body},   {"himc", "pose", "*", hear_pose},
-    {"himc", "targets", "snnn", hear_targets}, {"himc", "strike", "nssnnnnns", hear_strike},
+    {"himc", "targets", "snnn", hear_targets}, {"himc", "strike", "nssnnnnns*", hear_strike},
     {"himc", "beat", "n", hear_beat},          {"himc", "status", "*", hear_status},
     {"membrane", "head", "*", hear_head},      {"membrane", "place", "nnnnn", hear_place},
 };

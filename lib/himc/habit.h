@@ -21,12 +21,16 @@ typedef struct himc_habit_player {
     himc_vec3 tip[HIMC_HANDS]; ///< mean place of the tips, in the trunk's frame from the waist (m)
     double reach[HIMC_HANDS];  ///< shoulder to tip, the arm stretched (m)
     himc_vec3 waist;           ///< where the trunk turns (m)
-    himc_quat usual;           ///< the trunk's bearing (himc_posture_bearing) for those tips
+    himc_vec3 joint[HIMC_HANDS][HIMC_ARM_JOINTS]; ///< of the arms, in the parent's frame (m)
+    himc_vec3 stick;                              ///< its tip, in its frame (m)
+    himc_quat usual; ///< the trunk's bearing (himc_posture_bearing) for where they strike
 } himc_habit_player;
 
 typedef struct himc_habit {
     himc_habit_player player;
     double weight[HIMC_HANDS][HIMC_ARM_JOINTS][3][HIMC_HABIT_TERMS]; ///< of the terms (rad)
+    /// Covariance of what the weights leave unsaid, shoulder's x to grip's z (rad^2).
+    double spread[HIMC_HANDS][3 * HIMC_ARM_JOINTS][3 * HIMC_ARM_JOINTS];
 } himc_habit;
 
 /// A take of a player's whole body: postures and the tips they have (borrowed).
@@ -47,7 +51,8 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
 bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error);
 
 /// The arms' posture for tips at each tap; the rest of the pose is taken as given, its trunk is
-/// where the arms hang.
+/// where the arms hang. The tips are at their places, if those are not far from what was seen: of
+/// all such postures the likeliest.
 HIMC_RT void himc_habit_at(const himc_habit *habit,
                            const himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS], himc_pose *pose);
 /// Puts the habit into a natural posture in motion (himc_posture_moving): the arms are the habit's,

@@ -36,6 +36,9 @@ typedef struct himc_osc himc_osc;
 /// Opens the socket and starts the thread; NULL with one line if the port is taken, the address
 /// not one of this machine, a host of `allow` unknown, `files` no folder.
 himc_osc *himc_osc_new(const himc_osc_config *config, himc_error *error);
+/// The same instead of `old`, which may be NULL: its subscriptions go on and it is freed. On error
+/// NULL, and `old` is as it was.
+himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error);
 void himc_osc_free(himc_osc *osc);
 /// The port it listens at, or 0.
 int himc_osc_port(const himc_osc *osc);
@@ -44,7 +47,8 @@ int himc_osc_port(const himc_osc *osc);
 /// it is told by himc_osc_line. False if too many wait.
 HIMC_RT bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *error);
 
-/// Carries out at most `most` commands that came by OSC; their errors go back to who sent them.
+/// Carries out at most `most` commands that came by OSC, and no more than take a tenth of the time;
+/// their errors go back to who sent them.
 /// Setup: a command may read a file.
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most);
 

@@ -123,6 +123,7 @@ typedef struct himc_motion_row {
     double force[HIMC_HANDS];     ///< largest since the last row (N)
     himc_vec3 joint[HIMC_JOINTS]; ///< rotation vector from the zero pose, parent's frame (rad)
     himc_vec3 elbow[HIMC_HANDS];  ///< position (m)
+    double limit[HIMC_JOINTS];    ///< himc_limit_measure: above 1 beyond the bounds; 0 without any
 } himc_motion_row;
 
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it.
@@ -154,6 +155,7 @@ typedef struct himc_performance_stats {
     double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)
     double longest_latency; ///< of all hits (s)
     long recoveries;        ///< times a non-finite state was met and the last good one restored
+    long limit_hits;        ///< times a joint came to its bounds
     long events_lost;       ///< because nobody took them
     double sample_rate, physics_rate, task_rate; ///< in force (Hz)
 } himc_performance_stats;

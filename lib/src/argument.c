@@ -23,8 +23,10 @@ static const himc_argument arguments[] = {
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
     {"JOINT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
+    {"FACTOR", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 20, "", NULL},
     {"KS", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "N m/rad", NULL},
     {"KD", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e5, "N m s/rad", NULL},
+    {"TORQUE", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 10000, "N m", NULL},
     {"SEGMENT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
     {"FX", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
     {"FY", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
@@ -155,7 +157,9 @@ bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
     double value = atom->number;
     if (argument->kind == HIMC_ARGUMENT_COUNT && value != floor(value))
         return false;
-    return isfinite(value) && value >= argument->low && value <= argument->high;
+    // as single precision knows the ends: Pd's 2.2 is a little more than 2.2
+    return isfinite(value) && (float)value >= (float)argument->low &&
+           (float)value <= (float)argument->high;
 }
 
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)

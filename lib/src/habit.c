@@ -7,6 +7,11 @@
 /// least squares over all frames of all players (LAPACK's dgelsd; singular values under 1e-3 of the
 /// largest are left out: the solution of least norm). Means of rotations are the eigenvector of
 /// the largest eigenvalue of sum q q' (Markley, Cheng, Crassidis and Oshman 2007).
+///
+/// A regression misses the tips themselves by some millimetres. With S the covariance of its
+/// residuals over the arm's joints and J the tip's Jacobian, the likeliest correction that brings
+/// the tip to its place is S J' (J S J')^-1 e: least squares again, weighted by how surely each joint
+/// is known.
 #include "himc/habit.h"
 
 #include "difference.h"
@@ -20,6 +25,10 @@
 #define ANGLES (3 * HIMC_ARM_JOINTS)
 #define TRUNK (HIMC_TRUNK - 1) // the joint
 #define NEGLIGIBLE 1e-3        // singular values under this share of the largest
+#define LOW 0.02               // places that near the lowest are strikes (m)
+#define LEAST_SPREAD 2e-3      // no joint is known better than this (rad)
+#define LARGEST_STEP 0.05      // of the tip, in one correction (m)
+#define CORRECTIONS 3          // quadratically converging
 #define LEAST_RANK 3           // of a problem that is determined: a tip that moves in two ways
 
 typedef struct problem {
@@ -94,21 +103,40 @@ static void meet_hand(himc_habit_player *player, const himc_habit_take *take, in
         }
     player->tip[hand] = himc_vec3_scale(sum, 1 / frames);
     player->reach[hand] = himc_vec3_length(skeleton->tip);
-    for (int k = 1; k < HIMC_ARM_JOINTS; k++)
-        player->reach[hand] +=
-            himc_vec3_length(skeleton->segment[himc_arm_joint(hand, k) + 1].origin);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        player->joint[hand][k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
+        if (k > 0)
+            player->reach[hand] += himc_vec3_length(player->joint[hand][k]);
+    }
 }
 
-// the trunk as himc_posture_bearing has it for tips where a player's are on average
-static himc_quat usual_bearing(const himc_skeleton *skeleton, const himc_habit_player *player)
+// where a hand strikes: the mean of the lowest places its tip comes to (m)
+static himc_vec3 lowest_places(const himc_habit_take *take, int count, himc_hand hand)
+{
+    double low = INFINITY, weight = 0;
+    himc_vec3 sum = {0, 0, 0};
+    for (int pass = 0; pass < 2; pass++)
+        for (int n = 0; n < count; n++)
+            for (int i = 0; i < take[n].frames; i++) {
+                himc_vec3 x = tip_of(take->skeleton, &take[n].pose[i], hand);
+                low = pass == 0 ? fmin(low, x.z) : low;
+                if (pass == 1 && x.z < low + LOW) {
+                    sum = himc_vec3_add(sum, x);
+                    weight++;
+                }
+            }
+    return himc_vec3_scale(sum, 1 / weight);
+}
+
+// the trunk as himc_posture_bearing has it for the places that a player strikes
+static himc_quat usual_bearing(const himc_habit_take *take, int count)
 {
     himc_posture posture;
     himc_pose pose;
     himc_vec3 place[HIMC_HANDS];
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        place[hand] = himc_vec3_add(player->waist,
-                                    himc_quat_rotate(player->mean.joint[TRUNK], player->tip[hand]));
-    himc_posture_init(&posture, skeleton, 0);
+        place[hand] = lowest_places(take, count, (himc_hand)hand);
+    himc_posture_init(&posture, take->skeleton, 0);
     posture.bearing = himc_posture_bearing(place, HIMC_GRIP_GERMAN);
     himc_posture_at(&posture, place, &pose);
     return pose.joint[TRUNK];
@@ -128,7 +156,8 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
     player->waist = himc_vec3_add(take->skeleton->root, take->skeleton->segment[HIMC_TRUNK].origin);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         meet_hand(player, take, count, (himc_hand)hand);
-    player->usual = usual_bearing(take->skeleton, player);
+    player->stick = take->skeleton->tip;
+    player->usual = usual_bearing(take, count);
     return true;
 }
 
@@ -207,6 +236,24 @@ static bool solve(himc_habit *habit, himc_hand hand, const problem *p, himc_erro
     return true;
 }
 
+// the covariance of what is left of the rows
+static void measure_spread(himc_habit *habit, himc_hand hand, const problem *p)
+{
+    memset(habit->spread[hand], 0, sizeof habit->spread[hand]);
+    for (int i = 0; i < p->rows; i++) {
+        const double *term = p->term + TERMS * (size_t)i;
+        double *left = p->angle + ANGLES * (size_t)i;
+        for (int c = 0; c < ANGLES; c++)
+            for (int t = 0; t < TERMS; t++)
+                left[c] -= habit->weight[hand][c / 3][c % 3][t] * term[t];
+        for (int c = 0; c < ANGLES; c++)
+            for (int d = 0; d < ANGLES; d++)
+                habit->spread[hand][c][d] += left[c] * left[d] / p->rows;
+    }
+    for (int c = 0; c < ANGLES; c++)
+        habit->spread[hand][c][c] += LEAST_SPREAD * LEAST_SPREAD;
+}
+
 // takes from `from` on that are one player's
 static int same_player(const himc_habit_take *take, int from, int count)
 {
@@ -220,6 +267,7 @@ static int same_player(const himc_habit_take *take, int from, int count)
 static bool gather(himc_habit *habit, problem p[HIMC_HANDS], const himc_habit_take *take, int count,
                    himc_error *error)
 {
+    p[HIMC_LEFT].rows = p[HIMC_RIGHT].rows = 0;
     for (int from = 0, n; from < count; from += n) {
         himc_habit_player player;
         n = same_player(take, from, count);
@@ -256,12 +304,91 @@ bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count,
     }
     bool ok = allocate(&p[HIMC_LEFT], rows, error) && allocate(&p[HIMC_RIGHT], rows, error) &&
               gather(habit, p, take, count, error);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
         ok = ok && solve(habit, (himc_hand)hand, &p[hand], error);
+    ok = ok && gather(habit, p, take, count, error); // the solution stands where the rows were
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        if (ok)
+            measure_spread(habit, (himc_hand)hand, &p[hand]);
         free(p[hand].term);
         free(p[hand].angle);
     }
     return ok;
+}
+
+typedef struct arm {
+    himc_quat frame[HIMC_ARM_JOINTS]; // of the segments, in the trunk
+    himc_vec3 lever[HIMC_ARM_JOINTS]; // to the tip (m)
+    himc_vec3 tip;                    // from the trunk's joint (m)
+} arm;
+
+static void place_arm(const himc_habit_player *player, himc_hand hand, const himc_pose *pose,
+                      arm *a)
+{
+    himc_quat q = himc_quat_identity();
+    himc_vec3 at = {0, 0, 0};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        at = himc_vec3_add(at, himc_quat_rotate(q, player->joint[hand][k]));
+        a->frame[k] = q = himc_quat_mul(q, pose->joint[himc_arm_joint(hand, k)]);
+        a->lever[k] = at;
+    }
+    a->tip = himc_vec3_add(at, himc_quat_rotate(q, player->stick));
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        a->lever[k] = himc_vec3_sub(a->tip, a->lever[k]);
+}
+
+// turn = S J' f
+static void spread_through(const double spread[ANGLES][ANGLES], const arm *a, himc_vec3 f,
+                           himc_vec3 turn[HIMC_ARM_JOINTS])
+{
+    double g[ANGLES], sum[ANGLES];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        himc_vec3 c = himc_vec3_cross(a->lever[k], f);
+        g[3 * k] = c.x, g[3 * k + 1] = c.y, g[3 * k + 2] = c.z;
+    }
+    for (int c = 0; c < ANGLES; c++) {
+        sum[c] = 0;
+        for (int d = 0; d < ANGLES; d++)
+            sum[c] += spread[c][d] * g[d];
+    }
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        turn[k] = himc_vec3_make(sum[3 * k], sum[3 * k + 1], sum[3 * k + 2]);
+}
+
+static himc_vec3 moved_by(const arm *a, const himc_vec3 turn[HIMC_ARM_JOINTS])
+{
+    himc_vec3 moved = {0, 0, 0};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        moved = himc_vec3_add(moved, himc_vec3_cross(turn[k], a->lever[k]));
+    return moved;
+}
+
+// one step of the likeliest correction towards the tip's place (from the trunk's joint, in its
+// frame)
+static void correct(const himc_habit *habit, himc_hand hand, himc_vec3 place, himc_pose *pose)
+{
+    arm a;
+    himc_mat3 gram;
+    himc_vec3 turn[HIMC_ARM_JOINTS];
+    place_arm(&habit->player, hand, pose, &a);
+    for (int c = 0; c < 3; c++) {
+        himc_vec3 f = {c == 0, c == 1, c == 2};
+        spread_through(habit->spread[hand], &a, f, turn);
+        himc_vec3 m = moved_by(&a, turn);
+        gram.m[0][c] = m.x, gram.m[1][c] = m.y, gram.m[2][c] = m.z;
+    }
+    for (int i = 0; i < 3; i++)
+        gram.m[i][i] += 1e-10;
+    himc_vec3 e = himc_vec3_sub(place, a.tip);
+    double far = himc_vec3_length(e);
+    e = himc_vec3_scale(e, far > LARGEST_STEP ? LARGEST_STEP / far : 1);
+    himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);
+    spread_through(habit->spread[hand], &a, himc_mat3_apply(&inverse, e), turn);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        himc_vec3 own = himc_quat_rotate(himc_quat_conj(a.frame[k]), turn[k]);
+        pose->joint[j] = himc_quat_mul(pose->joint[j], himc_quat_exp(own));
+    }
 }
 
 void himc_habit_at(const himc_habit *habit, const himc_vec3 tip[TAPS][HIMC_HANDS], himc_pose *pose)
@@ -281,6 +408,9 @@ void himc_habit_at(const himc_habit *habit, const himc_vec3 tip[TAPS][HIMC_HANDS
                 himc_quat_rotate(himc_quat_conj(frame[k]), himc_vec3_make(u[0], u[1], u[2]));
             pose->joint[j] = himc_quat_mul(habit->player.mean.joint[j], himc_quat_exp(own));
         }
+        himc_vec3 place = seen_from_trunk(habit->player.waist, pose->joint[TRUNK], tip[0][hand]);
+        for (int i = 0; i < CORRECTIONS; i++)
+            correct(habit, (himc_hand)hand, place, pose);
     }
 }
 

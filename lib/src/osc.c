@@ -117,6 +117,7 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
     osc->packets = (osc_bucket){8000, 8000, 8000, now};
     osc->commands = (osc_bucket){4000, 1000, 4000, now};
     osc->answers = (osc_bucket){50, 50, 50, now};
+    osc->work = (osc_bucket){0.05, 0.1, 0.05, now};
     if (!himc_osc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
         !himc_osc_ring_init(&osc->orders, sizeof(osc_order), ORDERS) ||
         !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))
@@ -144,13 +145,54 @@ himc_osc *himc_osc_new(const himc_osc_config *config, himc_error *error)
     return NULL;
 }
 
+static void stop_thread(himc_osc *osc)
+{
+    atomic_store_explicit(&osc->stop, true, memory_order_release);
+    if (osc->running)
+        pthread_join(osc->thread, NULL);
+    osc->running = false;
+}
+
+static void put_wish(himc_osc *osc, const osc_wish *wish)
+{
+    osc_record *r = himc_osc_ring_slot(&osc->records);
+    if (!r)
+        return;
+    r->kind = RECORD_WISH;
+    r->wish = *wish;
+    himc_osc_ring_push(&osc->records);
+}
+
+// what the old one has granted, and what it was still asked for; its thread stands still
+static void hand_over(himc_osc *old, himc_osc *osc)
+{
+    const osc_record *r;
+    for (const osc_subscriber *s = old->subscriber; s < old->subscriber + SUBSCRIBERS; s++)
+        if (s->used)
+            put_wish(osc,
+                     &(osc_wish){.what = s->what, .hz = s->hz, .granted = true, .from = s->to});
+    for (; (r = himc_osc_ring_peek(&old->records)); himc_osc_ring_pop(&old->records))
+        if (r->kind == RECORD_WISH)
+            put_wish(osc, &r->wish);
+    osc->strikes = old->strikes;
+}
+
+himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error)
+{
+    himc_osc *osc = himc_osc_new(config, error);
+    if (!osc || !old)
+        return osc;
+    stop_thread(old);
+    hand_over(old, osc);
+    himc_osc_free(old);
+    return osc;
+}
+
 void himc_osc_free(himc_osc *osc)
 {
     if (!osc)
         return;
-    atomic_store_explicit(&osc->stop, true, memory_order_release);
-    if (osc->running)
-        pthread_join(osc->thread, NULL);
+    stop_thread(osc);
     himc_osc_resolve_drop(osc);
     int fd[] = {osc->in, osc->out[0], osc->out[1]};
     for (int i = 0; i < 3; i++)

@@ -6,6 +6,7 @@
 #include "osc_state.h"
 
 #include <lo/lo.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -79,9 +80,12 @@ static double principal(const himc_osc *osc, const char *drum)
 
 static void send_strike(himc_osc *osc, const osc_record *r, osc_packets *p)
 {
-    const himc_strike *s = &r->strike;
-    himc_osc_pack(p, "/himc/strike", "fssfffffs", s->time, himc_hand_name(s->hand), s->drum, s->x,
-                  s->y, s->velocity, s->force, s->duration, s->nuance);
+    const himc_strike *s = &r->strike.strike;
+    // a float's time is exact to 1 ms for two hours only; whole and fraction are for half a year
+    double whole = floor(s->time);
+    himc_osc_pack(p, "/himc/strike", "fssfffffsiif", s->time, himc_hand_name(s->hand), s->drum,
+                  s->x, s->y, s->velocity, s->force, s->duration, s->nuance, (int)r->strike.number,
+                  (int)whole, s->time - whole);
     osc_packets vmc;
     himc_osc_pack_begin(&vmc, SMALL_PACKET, true, r->wall);
     himc_osc_vmc_strike(&vmc, s, principal(osc, s->drum));
@@ -144,7 +148,9 @@ static void send_state(himc_osc *osc, const osc_state *state, osc_packets *p)
                 {"seconds", s->seconds},
                 {"strokes", s->strokes},
                 {"played", s->played},
+                {"strikes", (double)state->strikes},
                 {"recoveries", (double)s->recoveries},
+                {"limit_hits", (double)s->limit_hits},
                 {"packets", (double)c.packets},
                 {"commands", (double)c.commands},
                 {"malformed", (double)c.malformed},

@@ -54,6 +54,7 @@ typedef struct osc_wish {
     double hz;
     bool remove;
     bool local;       // by the user of this machine
+    bool granted;     // and by the osc before this one, to `from`
     osc_address from; // else by this one
 } osc_wish;
 
@@ -76,9 +77,16 @@ typedef struct osc_drum {
     double hz;      // principal mode
 } osc_drum;
 
+// strikes are numbered, so that who receives them knows how many were lost on the way
+typedef struct osc_strike {
+    himc_strike strike;
+    long number; // from 1
+} osc_strike;
+
 typedef struct osc_state {
     himc_performance_stats stats;
     double load; // share of real time
+    long strikes;
 } osc_state;
 
 typedef struct osc_answer {
@@ -102,7 +110,7 @@ typedef struct osc_record {
     double wall; // the same on the wall clock (s since 1970)
     union {
         osc_pose pose;
-        himc_strike strike;
+        osc_strike strike;
         double beat;
         osc_head head;
         osc_drum drum;
@@ -171,6 +179,8 @@ struct himc_osc {
     // the host's side
     double offset, next_pose, next_head, next_state, last_publish, busy;
     bool aligned;
+    long strikes;    // so far
+    osc_bucket work; // seconds
     unsigned revision[HIMC_DRUMS];
 
     // the thread's side

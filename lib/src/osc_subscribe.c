@@ -64,7 +64,9 @@ static bool is_allowed(const himc_osc *osc, const osc_wish *wish, const osc_addr
 void himc_osc_wish(himc_osc *osc, const osc_wish *wish)
 {
     osc_address to;
-    if (himc_osc_address_parse(wish->host, wish->port, &to)) {
+    if (wish->granted) {
+        himc_osc_grant(osc, wish, &wish->from);
+    } else if (himc_osc_address_parse(wish->host, wish->port, &to)) {
         if (is_allowed(osc, wish, &to))
             himc_osc_grant(osc, wish, &to);
         else

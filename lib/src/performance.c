@@ -164,6 +164,8 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
             c->gain[j] = old.gain[j];
             c->gain_set[j] = true;
         }
+    himc_performance_keep_strength(p, &old);
+    himc_performance_renew_limits(p);
     p->replan = true;
     return true;
 }
@@ -189,6 +191,7 @@ void himc_performance_notice_drums(himc_performance *p)
         himc_planner_set_drum(p->planner, i, place);
         if (i == 0)
             p->posture.level = place->center.z + p->skeleton.mallet_radius;
+        himc_performance_renew_limits(p);
         p->replan = true;
     }
 }
@@ -242,8 +245,11 @@ static void step_kinematics(himc_performance *p, int n)
 {
     himc_pose pose;
     himc_vec3 unused[HIMC_HANDS];
+    himc_vec3 rate[HIMC_JOINTS];
     memcpy(pose.joint, p->reference.posture.joint, sizeof pose.joint);
-    himc_pose_to_state(&p->skeleton, &pose, p->reference.posture.rate, &p->state);
+    memcpy(rate, p->reference.posture.rate, sizeof rate);
+    himc_performance_limit_shown(p, &pose, rate);
+    himc_pose_to_state(&p->skeleton, &pose, rate, &p->state);
     himc_performance_after_contact(p, step_time(p));
     himc_performance_contact(p, n, unused);
     himc_performance_measure_step(p);

@@ -172,19 +172,28 @@ static bool reset_gains(himc_performance *p)
     return true;
 }
 
+// k_s goes with the square of the natural frequency, k_d with the frequency itself
+static bool scale_frequencies(himc_performance *p, double factor)
+{
+    reset_gains(p);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_gain *gain = &p->controller.gain[j];
+        gain->stiffness = himc_vec3_scale(gain->stiffness, factor * factor);
+        gain->damping = himc_vec3_scale(gain->damping, factor);
+        p->controller.gain_set[j] = true;
+    }
+    return true;
+}
+
 static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
 {
     if (c->count == 1)
         return reset_gains(p);
-    int joint = himc_joint_find(c->atom[0].symbol);
-    if (joint < 0) {
-        himc_error_set(error, "gain: JOINT: %s, allowed", c->atom[0].symbol);
-        size_t used = error ? strlen(error->text) : 0;
-        for (int j = 0; error && j < HIMC_JOINTS; j++)
-            used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
-                                     himc_joint_name(j));
+    if (c->count == 2)
+        return scale_frequencies(p, c->atom[1].number);
+    int joint;
+    if (!himc_performance_find_joint(c, "gain", &joint, error))
         return false;
-    }
     himc_controller_set_gain(&p->controller, joint, c->atom[1].number, c->atom[2].number);
     return true;
 }
@@ -273,6 +282,9 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
         return false;
     p->body = himc_skeleton_default();
     p->controller = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE}; // not the gains set since
+    p->limits.kind = HIMC_LIMITS_OFF;
+    p->human = false;
+    p->strain = (himc_strain){.steps = 0};
     if (!himc_performance_build_body(p, error)) {
         p->body = old;
         return false;
@@ -347,6 +359,8 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_WEIGHTS] = do_weights,
     [HIMC_COMMAND_LAW] = do_law,
     [HIMC_COMMAND_GAIN] = do_gain,
+    [HIMC_COMMAND_LIMITS] = himc_performance_do_limits,
+    [HIMC_COMMAND_STRENGTH] = himc_performance_do_strength,
     [HIMC_COMMAND_RATE] = do_rate,
     [HIMC_COMMAND_COUPLING] = do_coupling,
     [HIMC_COMMAND_PLAYER] = do_player,

@@ -62,6 +62,8 @@ void himc_performance_drop_track(himc_performance *p)
     himc_track_free(p->track);
     p->track = NULL;
     p->track_start = INFINITY;
+    p->has_learned = false;
+    himc_performance_renew_limits(p);
 }
 
 bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)

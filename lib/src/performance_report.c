@@ -79,6 +79,7 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
                                 .hit_latency = p->hit_latency,
                                 .longest_latency = p->longest_latency,
                                 .recoveries = p->recoveries,
+                                .limit_hits = himc_performance_limit_hits(p),
                                 .events_lost = p->events_lost,
                                 .sample_rate = p->config.sample_rate,
                                 .physics_rate = p->physics_rate,
@@ -151,8 +152,10 @@ void himc_performance_motion_row(himc_performance *p, double t)
         row.elbow[hand] = p->state.origin[HIMC_LEFT_FOREARM + hand];
         p->touch[hand].peak_row = 0;
     }
-    for (int j = 0; j < HIMC_JOINTS; j++)
+    for (int j = 0; j < HIMC_JOINTS; j++) {
         row.joint[j] = himc_quat_log(pose.joint[j]);
+        row.limit[j] = p->controller.limits ? p->strain.measure[j] : 0;
+    }
     if (p->on_motion)
         p->on_motion(p->motion_user, &row);
     if (p->recording && !himc_recording_add(p->recording, &p->state) && !p->recording_full) {
@@ -192,6 +195,7 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
     snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz", p->physics_rate,
              p->config.task_rate, p->config.sample_rate);
     line(user, text);
+    himc_performance_describe_limits(p, line, user);
     describe_drums(p, line, user);
     snprintf(text, sizeof text,
              "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",

@@ -1,12 +1,14 @@
-/// performance_state.h: what a performance holds, shared by the eight files that are its rooms:
+/// performance_state.h: what a performance holds, shared by the nine files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c,
 /// performance_play.c and performance_take.c (what is asked), performance_habit.c (how the arms go
-/// with it), performance_push.c (who pushes), performance_report.c (what is told).
+/// with it), performance_limits.c (how far joints turn and how strong they are),
+/// performance_push.c (who pushes), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
 #include "himc/character.h"
 #include "himc/performance.h"
+#include "himc/player.h"
 #include "himc/recording.h"
 #include "himc/task.h"
 #include "himc/track.h"
@@ -72,8 +74,12 @@ struct himc_performance {
     himc_grip grip;
     struct {
         himc_bearing from, goal;
-        double time; // of `from` (s)
-    } course;        // of trunk and grip
+        double time;             // of `from` (s)
+    } course;                    // of trunk and grip
+    himc_limits limits, learned; // in force, and those of the take's player
+    bool has_learned;
+    bool human; // strength
+    himc_strain strain;
     himc_controller controller;
     himc_character *character;
     himc_body_state state;
@@ -182,6 +188,22 @@ performance_action himc_performance_do_take;
 /// What the joints are to do as the tips do `tip` at `t`: the take's postures, else natural ones.
 void himc_performance_posture(const himc_performance *p, double t,
                               const himc_target tip[HIMC_HANDS], himc_posture_motion *motion);
+
+// performance_limits.c
+performance_action himc_performance_do_limits, himc_performance_do_strength;
+bool himc_performance_find_joint(const himc_command *command, const char *name, int *joint,
+                                 himc_error *error);
+/// Whose limits they are may have changed: the body, the drum's place, the take.
+void himc_performance_renew_limits(himc_performance *p);
+bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+                                   himc_error *error);
+void himc_performance_keep_strength(himc_performance *p, const himc_controller *old);
+/// Takes a posture that is only shown into the limits, and stops the joints that it moves.
+void himc_performance_limit_shown(himc_performance *p, himc_pose *pose,
+                                  himc_vec3 rate[HIMC_JOINTS]);
+long himc_performance_limit_hits(const himc_performance *p);
+void himc_performance_describe_limits(const himc_performance *p, void (*line)(void *, const char *),
+                                      void *user);
 
 // performance_push.c
 performance_action himc_performance_do_push;

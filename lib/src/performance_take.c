@@ -99,7 +99,10 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     int drum;
     if (!himc_performance_ensure_drum(p, "", &drum, error))
         return false;
+    himc_limits learned;
     himc_place place = *himc_drum_place(p->drum[drum].drum);
+    if (!himc_performance_learn_limits(player, &learned, error))
+        return false;
     himc_player_sit(player, take, &p->take_options, &place);
     himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
     if (!track)
@@ -112,6 +115,10 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     note_reach(p, track, path);
     himc_performance_drop_track(p);
     p->track = track;
+    p->has_learned = player->pose != NULL;
+    if (p->has_learned)
+        p->learned = learned;
+    himc_performance_renew_limits(p);
     p->replan = true;
     return true;
 }

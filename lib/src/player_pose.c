@@ -141,14 +141,17 @@ static void prepare_limb(reader *r, int i, int hand)
     f->plane = himc_vec3_scale(himc_vec3_unit(sum), STRAIGHT);
 }
 
-// level, to the left of where the stick points
+// level, to the left of where the tip is as seen from the elbow: a raised stick itself may point up
+// or back
 static himc_vec3 across_stroke(const reader *r, int hand, int frame)
 {
     himc_vec3 *const *x = r->points->x;
-    int to = POINT_TIP + hand;
-    to = x[to] ? to : x[POINT_GRIP + hand] ? POINT_GRIP + hand : POINT_WRIST + hand;
-    int from = x[POINT_WRIST + hand] && to != POINT_WRIST + hand ? POINT_WRIST : POINT_ELBOW;
-    himc_vec3 d = between_points(r, from + hand, to, frame);
+    int from = POINT_ELBOW + hand, to = POINT_TIP + hand;
+    while (from < POINT_GRIP + hand && !x[from])
+        from += 2;
+    while (to > POINT_WRIST + hand && !x[to])
+        to -= 2;
+    himc_vec3 d = between_points(r, from, to, frame);
     return himc_vec3_make(-d.y, d.x, 0);
 }
 

@@ -10,13 +10,14 @@
 /// The track near the touch is blunted by the capture's filter, so what happens is read from
 /// before: a parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall,
 /// those before the deceleration reaches a tenth of A. A must stand out of what noise alone gives
-/// (its size from fourth differences, in which smooth motion cancels), taken over longer differences
-/// when the track is noisy. In a sharp track (nearly all of D within two
+/// (noise.c), over longer differences where a track is noisy. In a sharp track (nearly all of D within two
 /// frames) the touch is where the parabolas from before and after meet; in a blunted one, where the
 /// one from before passes the height of the lowest position. In a sharp track the speed is the
 /// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
 /// beyond is not the filter's to tell.
 #include "himc/take.h"
+
+#include "noise.h"
 
 #include <stdlib.h>
 
@@ -30,7 +31,7 @@ typedef struct track {
     const himc_vec3 *x;
     int frames;
     double rate;
-    double noise; // of z, one standard deviation (m)
+    double noise; // one standard deviation (m)
 } track;
 
 // a + b u + c u^2, u in frames from `origin`
@@ -238,19 +239,6 @@ static double median(double *values, int count)
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-// median of |fourth differences|, whose variance is 70 sigma^2; 0 if there is no memory for it
-static double noise_of(const track *t)
-{
-    int count = t->frames - 4;
-    double *size = count > 0 ? malloc((size_t)count * sizeof *size) : NULL;
-    for (int i = 0; size && i < count; i++)
-        size[i] = fabs(t->x[i].z - 4 * t->x[i + 1].z + 6 * t->x[i + 2].z - 4 * t->x[i + 3].z +
-                       t->x[i + 4].z);
-    double noise = size ? median(size, count) / (0.6745 * sqrt(70)) : 0;
-    free(size);
-    return noise;
-}
-
 int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                       himc_take_strike *strikes, int capacity)
 {
@@ -260,7 +248,7 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
     bool waits[HIMC_HANDS];
     for (int h = 0; h < HIMC_HANDS; h++) {
         tracks[h] = (track){tips[h].x, himc_take_frames(take), himc_take_rate(take), 0};
-        tracks[h].noise = tips[h].present ? noise_of(&tracks[h]) : 0;
+        tracks[h].noise = tips[h].present ? himc_noise(tips[h].x, tracks[h].frames) : 0;
         waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
     }
     // two sorted lists are merged as they are found

@@ -8,6 +8,7 @@
 /// at separation by one from the measured state.
 #include "track_state.h"
 
+#include "noise.h"
 #include "player_sit.h"
 
 #include <stdlib.h>
@@ -26,9 +27,9 @@
 // frames lo..hi: one stretch between strikes
 static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
 {
+    fit_series series = {track->frames, track->edge, track->rate};
     for (int k = lo; k <= hi; k++)
-        h->frame[k] =
-            himc_fit(x, himc_fit_window(k, lo, hi, track->frames, track->rate), 1 / track->rate);
+        h->frame[k] = himc_fit(x, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
 }
 
 // when the approach from frame state `s` reaches the head, its acceleration fading to nothing on
@@ -165,8 +166,10 @@ static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                             : himc_strike_offset(take, tips, place, mallet_radius);
     }
     for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
-        if (tips[hand].present)
+        if (tips[hand].present) {
+            track->edge = himc_fit_edge(himc_noise(tips[hand].x, track->frames), track->rate);
             ok = build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
+        }
     ok = ok && (!player || himc_track_fit_postures(track, player));
     free(strikes);
     if (ok)

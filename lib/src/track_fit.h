@@ -4,13 +4,22 @@
 
 #include "himc/quintic.h"
 
-/// Frames that one fit uses, `k` the one it is for, and the coefficients it may have (1 .. 4).
+/// Frames that one fit uses, `k` the one it is for, the coefficients it may have (1 .. 4), and how
+/// far from k weights fall to nothing (frames; 0: all weigh the same).
 typedef struct fit_window {
-    int first, k, last, order;
+    int first, k, last, order, reach;
 } fit_window;
 
-/// The window of frame `k` of the stretch lo .. hi, of `frames` in all at `rate` (Hz).
-fit_window himc_fit_window(int k, int lo, int hi, int frames, double rate);
+/// What is fitted: `frames` at `rate` (Hz), and the frames that one-sided fits beside a strike take.
+typedef struct fit_series {
+    int frames, edge;
+    double rate;
+} fit_series;
+
+/// `edge` for points that shake by `noise` (m).
+int himc_fit_edge(double noise, double rate);
+/// The window of frame `k` of the stretch lo .. hi.
+fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series);
 /// Least squares polynomial through x[first] .. x[last] about frame k: position, velocity,
 /// acceleration there, `dt` (s) the frames' distance.
 himc_target himc_fit(const himc_vec3 *x, fit_window window, double dt);

@@ -35,7 +35,7 @@ static joint_state fit_joint(const himc_pose *pose, int j, fit_window w, double 
     himc_quat middle = pose[w.k].joint[j], back = himc_quat_conj(middle);
     for (int i = w.first; i <= w.last; i++)
         turned[i - w.first] = himc_quat_log(himc_quat_mul(pose[i].joint[j], back));
-    fit_window shifted = {0, w.k - w.first, w.last - w.first, w.order};
+    fit_window shifted = {0, w.k - w.first, w.last - w.first, w.order, w.reach};
     himc_target s = himc_fit(turned, shifted, dt);
     // the angular velocity is the rotation vector's rate but for half its turn, w = v + r x v / 2
     himc_vec3 half = himc_vec3_scale(s.x, 0.5);
@@ -48,12 +48,13 @@ static joint_state fit_joint(const himc_pose *pose, int j, fit_window w, double 
 static void fit_frames(himc_track *track, const himc_pose *pose, int j)
 {
     const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
+    fit_series series = {track->frames, track->edge, track->rate};
     int gaps = h ? h->bridge_count : 0, lo = 0;
     for (int i = 0; i <= gaps; i++) {
         int hi = i < gaps ? h->planned[i].last : track->frames - 1;
         for (int k = lo; k <= hi; k++)
-            track->joint[j][k] = fit_joint(
-                pose, j, himc_fit_window(k, lo, hi, track->frames, track->rate), 1 / track->rate);
+            track->joint[j][k] =
+                fit_joint(pose, j, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
         lo = i < gaps ? h->planned[i].next : 0;
     }
 }

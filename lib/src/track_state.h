@@ -33,6 +33,7 @@ typedef struct hand_track {
 
 struct himc_track {
     double rate;
+    int edge; ///< frames that fits beside a strike take, more for a noisy capture
     int frames;
     himc_vec3 offset;
     himc_place place;

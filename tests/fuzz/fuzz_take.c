@@ -6,11 +6,13 @@
 /// input gives the format. Without, this is a program that mutates seeds by itself, the same way
 /// every time for the same arguments:
 ///     fuzz_take [RUNS [SEED [FILE...]]]
-/// FILEs (at most 64 KiB of each) join the seeds that are built in: a BVH, a TRC and six flavours
-/// of C3D.
+/// FILEs (at most 64 KiB of each) join the seeds that are built in: a BVH, a TRC, six flavours of
+/// C3D, and a whole player in each format. What is read is also made a player and a track, whose
+/// postures must be finite.
 #define _POSIX_C_SOURCE 200809L
 #include "../c3d_files.h"
-#include "himc/take.h"
+#include "../take_players.h"
+#include "himc/track.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -74,6 +76,65 @@ static void check_tips(himc_take *take, const himc_take_options *options)
             require(himc_vec3_finite(tips[hand].x[i]), "a tip has no gaps");
 }
 
+static void check_quats(const himc_quat *q)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        require(fabs(himc_quat_dot(q[j], q[j]) - 1) < 1e-6, "a joint has a rotation");
+}
+
+static void check_track(himc_take *take, const himc_take_options *options,
+                        const himc_player *player, const himc_place *drum)
+{
+    himc_skeleton skeleton;
+    himc_error error = {""};
+    himc_track *track = himc_track_new_played(take, options, drum, player, &error);
+    require(track || (error.text[0] && !strchr(error.text, '\n')), "an error is one line");
+    require(himc_skeleton_init(&skeleton, &player->config, NULL), "a player's body can be built");
+    double length = track ? himc_track_length(track) : 0;
+    for (int i = 0; track && i < 40; i++) {
+        himc_target tip[HIMC_HANDS];
+        himc_posture_motion m;
+        double t = (i - 4) * length / 32;
+        memset(&m, 0, sizeof m);
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            m.joint[j] = himc_quat_identity();
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            tip[hand] = himc_track_target(track, (himc_hand)hand, t);
+            require(himc_vec3_finite(tip[hand].x) && himc_vec3_finite(tip[hand].a),
+                    "a target is finite");
+        }
+        himc_track_posture(track, &skeleton, t, tip, &m);
+        check_quats(m.joint);
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            require(himc_vec3_finite(m.rate[j]) && himc_vec3_finite(m.acceleration[j]),
+                    "a joint's motion is finite");
+    }
+    himc_track_free(track);
+}
+
+static void check_player(himc_take *take, const himc_take_options *options)
+{
+    himc_skeleton_config given = himc_skeleton_default();
+    himc_place drum = usual_drum;
+    himc_error error = {""};
+    himc_player *player = himc_player_new(take, options, &given, &error);
+    if (!player) {
+        require(error.text[0] && !strchr(error.text, '\n'), "an error is one line");
+        return;
+    }
+    check_quats(player->mean.joint);
+    for (int i = 0; player->pose && i < player->frames; i++)
+        check_quats(player->pose[i].joint);
+    bool seated = himc_player_sit(player, take, options, &drum);
+    require(!seated || (himc_vec3_finite(player->offset) && himc_vec3_finite(drum.center)),
+            "a player sits somewhere");
+    int lines = 0;
+    himc_player_describe(player, &drum, hear, &lines);
+    require(lines > 1, "a player is described");
+    check_track(take, options, player, &drum);
+    himc_player_free(player);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char *const names[] = {"fuzz.bvh", "fuzz.trc", "fuzz.c3d"};
@@ -95,6 +156,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_tips(take, &options);
     options.right_tip = himc_take_point_name(take, 0);
     check_tips(take, &options);
+    check_player(take, &options);
     int lines = 0;
     himc_take_describe(take, &options, hear, &lines);
     require(lines > 4, "a take is described");
@@ -189,6 +251,21 @@ static void add_file(const char *path)
     fclose(file);
 }
 
+// a player of flesh, in every format
+static void add_players(void)
+{
+    static const char *const files[] = {"build/fuzz.bvh", "build/fuzz.trc", "build/fuzz.c3d"};
+    himc_error error;
+    himc_skeleton skeleton;
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_skeleton_init(&skeleton, &config, NULL);
+    himc_take *take = beaten_take(&skeleton, 100, 0.6, &error);
+    for (int i = 0; i < 3; i++)
+        if (take && himc_take_save(take, files[i], &error))
+            add_file(files[i]);
+    himc_take_free(take);
+}
+
 // one change of a kind that files suffer: bits, bytes, numbers, pieces lost, doubled or from
 // elsewhere
 static size_t mutate(uint8_t *b, size_t size)
@@ -254,6 +331,7 @@ int main(int count, char **arguments)
     long runs = count > 1 ? atol(arguments[1]) : 20000;
     state = 0x9E3779B97F4A7C15u ^ (count > 2 ? strtoull(arguments[2], NULL, 10) : 1);
     add_built_in();
+    add_players();
     for (int i = 3; i < count; i++)
         add_file(arguments[i]);
     for (long i = 0; i < runs; i++)

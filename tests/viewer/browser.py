@@ -77,6 +77,17 @@ class Browser:
                 return answer
             time.sleep(0.1)
 
+    def downloads(self, folder):
+        """Where files that the page saves go."""
+        self.call(
+            "POST",
+            self.session + "/goog/cdp/execute",
+            {
+                "cmd": "Browser.setDownloadBehavior",
+                "params": {"behavior": "allow", "downloadPath": folder},
+            },
+        )
+
     def log(self):
         return [
             entry["message"]

@@ -1,10 +1,12 @@
 """The viewer end to end, in a real Chromium."""
 
 import os
+import shutil
 import socket
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 
 import report
@@ -16,8 +18,17 @@ VIEWER, MADE = os.path.join(BUILD, "bin/himc-viewer"), os.path.join(BUILD, "test
 MOTION, STROKES, EXPECTED = (
     os.path.join(MADE, f) for f in ("motion.csv", "strokes.csv", "expected.txt")
 )
-HTTP, OSC = 18473, 18474  # fixed, since the page must find a restarted bridge again
-browser = None
+# fixed, since the page must find a restarted bridge again; ours, should two of these run at once
+HTTP = 20000 + os.getpid() % 20000
+OSC, SERVE = HTTP + 1, HTTP + 2
+MARKS = 7  # layer of the marks of strikes
+browser = bridge = None
+
+
+def say(port, *packets):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        for packet in packets:
+            udp.sendto(packet, ("127.0.0.1", port))
 
 
 class Started:
@@ -29,7 +40,7 @@ class Started:
 
     def __exit__(self, *_):
         self.process.terminate()
-        self.process.wait(10)
+        self.process.wait(30)
 
 
 def viewer(*options):
@@ -44,7 +55,13 @@ def sender(*options):
 
 def open_page():
     browser.open(f"http://127.0.0.1:{HTTP}/")
-    assert browser.wait("return !!(window.viewer && viewer.stream.connections)", 40)
+    assert browser.wait("return !!(window.viewer && viewer.stream.connections)", 60)
+
+
+def draw(yes):
+    """Without a graphics card a picture takes 50 to 500 ms, and most tests need none: frames go on,
+    but the camera sees only the marks of strikes."""
+    browser.run("viewer.view.camera.layers.set(arguments[0])", 0 if yes else MARKS)
 
 
 def expected():
@@ -65,7 +82,7 @@ def joints_error():
     )
 
 
-def settle(limit=0.001, seconds=15):
+def settle(limit=0.001, seconds=30):
     end = time.time() + seconds
     while joints_error() > limit and time.time() < end:
         time.sleep(0.1)
@@ -74,29 +91,67 @@ def settle(limit=0.001, seconds=15):
     return f"{1000 * error:.4f} mm"
 
 
+def expect(start):
+    """Has the library say where the joints are at that time of the motion."""
+    with sender("--still", "--start", start, "--expect", EXPECTED, "--seconds", "0") as once:
+        once.process.wait(30)
+
+
+def gone():
+    assert browser.wait("return !viewer.joints()", 20), "the performer stays"
+
+
+# --- one bridge and one page for all of these
+
+
 def test_page_loads_without_errors():
-    with viewer():
-        open_page()
-        time.sleep(1)
-        trouble = [line for line in browser.log() if "play.csv" not in line]
-        assert not trouble, trouble
+    open_page()
+    browser.wait("return viewer.numbers.render > 0", 30)
+    trouble = [line for line in browser.log() if "play.csv" not in line]
+    assert not trouble, trouble
+
+
+def test_pictures_and_films_are_saved():
+    home = tempfile.mkdtemp(prefix="himc-saved-")
+    browser.downloads(home)
+    with sender("--start", "18"):
+        assert browser.wait("return viewer.joints()", 20)
+        browser.run("viewer.stage.quality = 0.3; dispatchEvent(new Event('resize'))")
+        browser.run("viewer.actions.picture(); viewer.actions.film()")
+        time.sleep(2)
+        browser.run("viewer.actions.film()")
+        end, sizes = time.time() + 20, {}
+        while time.time() < end and not (sizes.get("png") and sizes.get("webm")):
+            time.sleep(0.2)
+            sizes = {
+                name.split(".")[-1]: os.path.getsize(os.path.join(home, name))
+                for name in os.listdir(home)
+            }
+    heads = {}
+    for name in os.listdir(home):
+        with open(os.path.join(home, name), "rb") as file:
+            heads[name.split(".")[-1]] = file.read(64)
+    shutil.rmtree(home)
+    assert heads.get("png", b"").startswith(b"\x89PNG"), heads
+    assert heads.get("webm", b"").startswith(b"\x1a\x45\xdf\xa3"), heads
+    assert b"webm" in heads["webm"] and sizes["webm"] > 1000, sizes
+    return f"{sizes['webm'] // 1024} kB of film"
 
 
 def test_figure_stands_where_the_poses_say_within_1_mm():
-    with viewer():
-        open_page()
-        said = []
-        for start in ("3.6", "19.64"):
-            with sender("--still", "--start", start, "--expect", EXPECTED):
-                time.sleep(0.3)
-                said.append(settle())
-        return ", ".join(said)
+    draw(False)
+    said = []
+    for start in ("3.6", "19.64"):
+        expect(start)
+        with sender("--still", "--start", start):
+            said.append(settle())
+    return ", ".join(said)
 
 
 def test_figure_moves_and_strikes_leave_marks():
-    with viewer(), sender("--start", "18"):
-        open_page()
-        assert browser.wait("return viewer.joints()")
+    gone()
+    with sender("--start", "18"):
+        assert browser.wait("return viewer.joints()", 20)
         first = browser.run("return viewer.joints()")
         assert browser.wait("return viewer.marks.shown > 2 && viewer.marks.visible() > 0", 20)
         assert browser.wait(
@@ -104,136 +159,130 @@ def test_figure_moves_and_strikes_leave_marks():
             " Math.hypot(...p.map((v, k) => v - %s[i][k])) > 0.02)" % first,
             20,
         )
+        # the head moves with its modes
+        assert browser.wait("return [...viewer.drums.values()].some(d => d.excursion > 1e-5)", 20)
         strike = browser.run(
             "const {hand, force, drum} = viewer.panel.strikes[0]; return {hand, force, drum}"
         )
         assert strike["drum"] == "kettle0" and 1 < strike["force"] < 200
 
 
-def test_head_moves_with_the_modes():
-    with viewer(), sender("--start", "19"):
-        open_page()
-        assert browser.wait("return [...viewer.drums.values()].some(d => d.excursion > 1e-5)", 20)
-
-
 def test_performer_leaves_and_comes_back():
-    with viewer():
-        open_page()
-        with sender("--still"):
-            assert browser.wait("return viewer.joints()", 10)
-        assert browser.wait("return !viewer.joints()", 8)
-        with sender("--still"):
-            assert browser.wait(
-                "return [...viewer.performers.values()].some(p => p.group.visible)", 10
-            )
-
-
-def test_page_finds_a_restarted_bridge_again():
-    with viewer():
-        open_page()
-    assert browser.wait("return document.body.classList.contains('lost')", 10)
-    with viewer(), sender("--still", "--start", "3.6", "--expect", EXPECTED):
+    gone()
+    with sender("--still"):
         assert browser.wait(
-            "return viewer.stream.connections === 2 && !document.body.classList.contains('lost')",
-            15,
+            "return [...viewer.performers.values()].some(p => p.group.visible)", 20
         )
-        assert browser.wait("return [...viewer.performers.values()].some(p => p.group.visible)", 10)
-        return settle()
 
 
-def test_camera_and_controls_obey_osc_and_buttons():
-    with viewer():
-        open_page()
-        browser.run("document.querySelector('[data-camera=top]').click()")
-        assert browser.run("return viewer.view.name") == "top"
-        browser.run("document.querySelector('[data-show=trails]').click()")
-        assert (
-            browser.run(
-                "return document.querySelector('[data-show=trails]').getAttribute('aria-pressed')"
-            )
-            == "false"
-        )
+def test_camera_and_controls_obey_buttons_and_osc():
+    browser.run("document.querySelector('[data-camera=top]').click()")
+    assert browser.run("return viewer.view.name") == "top"
+    pressed = (
+        "return document.querySelector('[data-show=trails]').getAttribute('aria-pressed') === "
+    )
+    browser.run("document.querySelector('[data-show=trails]').click()")
+    assert browser.run(pressed + "'false'")
+    say(OSC, osc("/viewer/camera", "eye"), osc("/viewer/show", "trails", 1))
+    say(OSC, osc("/viewer/exaggeration", 80.0))
+    assert browser.wait("return viewer.view.name === 'eye'", 10)
+    assert browser.wait(pressed + "'true'", 10)
+    assert browser.wait("return document.body.textContent.includes('80')", 10)
+    say(OSC, osc("/viewer/camera", "stage"), osc("/viewer/exaggeration", 25.0))
+    assert browser.wait("return viewer.view.name === 'stage'", 10)
 
 
 def test_strike_is_drawn_within_50_ms():
-    with viewer(), sender("--start", "10"):
-        open_page()
-        # a machine without a graphics card takes 50 to 300 ms for the whole picture; what is timed
-        # is the way of a strike into a frame, so the marks alone are left to draw
-        assert browser.wait("return viewer.panel.strikes.length > 3", 20)
-        browser.run(
-            "viewer.stage.scene.traverse(o => {"
-            " if (o.material && o.material.isMeshStandardMaterial) o.layers.set(5); })"
-        )
-        time.sleep(2)
-        browser.run("viewer.panel.strikes.length = 0")
-        time.sleep(7)
-        # the sender's strikes carry the wall clock; all is one machine
-        late = browser.run(
-            "return viewer.panel.strikes.filter(s => s.drawn).map(s => s.drawn - 1000 * s.time)"
-        )
+    gone()
+    browser.run("viewer.panel.strikes.length = 0")
+    with sender("--start", "10"):
+        # only the marks are drawn: what is timed is the way of a strike into a frame's pixels;
+        # the sender's strikes carry the wall clock, and all is one machine
+        end, late = time.time() + 25, []
+        while len(late) < 16 and time.time() < end:
+            time.sleep(0.5)
+            late = browser.run(
+                "return viewer.panel.strikes.filter(s => s.drawn).map(s => s.drawn - 1000 * s.time)"
+            )
         frames = browser.run("return viewer.numbers.fps")
         heard = browser.run("return viewer.panel.strikes.map(s => s.now - 1000 * s.time)")
-        assert len(late) > 10, late
-        median, page = statistics.median(late), statistics.median(heard)
-        said = (
-            f"median {median:.1f} ms to drawn, {page:.1f} ms to the page, at {frames:.0f} frames/s"
-        )
-        assert median < 50, said
-        return said
+    assert len(late) >= 10, late
+    median, page = statistics.median(late), statistics.median(heard)
+    said = f"median {median:.1f} ms to drawn, {page:.1f} ms to the page, at {frames:.0f} frames/s"
+    assert median < 50, said
+    return said
 
 
 def test_eight_performers_take_less_than_4_ms_of_script_a_frame():
-    with viewer(), sender("--performers", "8", "--start", "10"):
-        open_page()
+    gone()
+    with sender("--performers", "8", "--start", "10"):
         assert browser.wait(
             "return [...viewer.performers.values()].filter(p => p.group.visible).length === 8", 30
         )
-        browser.run("viewer.stage.quality = 0.25; dispatchEvent(new Event('resize'))")
-        time.sleep(5)
-        script, render = browser.run("return [viewer.numbers.script, viewer.numbers.render]")
-        said = f"{script:.2f} ms update, {render:.1f} ms handing it to a software renderer"
-        assert script < 4, said
-        return said
-
-
-def test_playback_shows_a_motion_file_as_the_library_does():
-    with viewer("--play", MOTION):
-        open_page()
-        assert browser.wait("return !!viewer.motion", 30)
-        for start in ("12.5", "25.9"):
-            with sender("--still", "--start", start, "--expect", EXPECTED, "--seconds", "0"):
-                time.sleep(0.3)
-            browser.run(
-                "viewer.motion.playing = false; viewer.motion.seek(1000 * arguments[0])",
-                float(start),
-            )
-            said = settle()
-        strikes = browser.run("return viewer.motion.strikes.length")
-        with open(STROKES) as file:
-            assert strikes == len(file.readlines()) - 1, strikes
-        return said
+        browser.run("viewer.scripts.length = 0")
+        browser.wait("return viewer.scripts.length > 80", 20)
+        script = statistics.median(browser.run("return viewer.scripts"))
+    assert script < 4, f"{script:.2f} ms"
+    return f"{script:.2f} ms, the median of frames"
 
 
 def test_himc_serve_is_shown_with_drum_strikes_and_status():
+    gone()
     command = [os.path.join(BUILD, "bin/himc"), "serve", "patches/improvisation.txt"]
-    with viewer(), Started(*command, "--port", "18475"):
-        open_page()
-        time.sleep(1)
-        udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    with Started(*command, "--port", str(SERVE)) as serve:
+        serve.process.stdout.readline()
         for what in ("pose", "targets", "strikes", "head"):
-            message = osc("/himc/subscribe", "127.0.0.1", OSC, what)
-            udp.sendto(message, ("127.0.0.1", 18475))
-        udp.sendto(osc("/himc/play"), ("127.0.0.1", 18475))
+            say(SERVE, osc("/himc/subscribe", "127.0.0.1", OSC, what))
+        say(SERVE, osc("/himc/play"))
         assert browser.wait("return viewer.joints()", 15), "no performer"
         assert browser.wait("return viewer.panel.strikes.some(s => s.drum === 'kettle')", 20)
-        drum = "[...viewer.drums.values()][0]"
+        drum = "[...viewer.drums.values()].find(d => d.name === 'kettle')"
         assert browser.wait(f"return {drum}.excursion > 1e-6", 20), "the head is still"
         assert browser.wait("return [...viewer.panel.status.values()].some(s => /load/.test(s))", 5)
         assert browser.wait("return viewer.panel.beat !== null", 5), "no beat"
         bridge = browser.wait("return viewer.panel.bridge", 5)
         assert bridge["malformed"] == 0 and bridge["unknown"] == 0, bridge
-        return f"{browser.run('return viewer.performers.values().next().value.rate'):.1f} poses/s"
+        rate = "Math.max(...[...viewer.performers.values()].map(p => p.rate))"
+        return f"{browser.run(f'return {rate}'):.1f} poses/s"
+
+
+def test_page_finds_a_restarted_bridge_again():
+    global bridge
+    bridge.__exit__()
+    before = browser.run("return viewer.stream.connections")
+    assert browser.wait("return document.body.classList.contains('lost')", 10)
+    bridge = viewer()
+    expect("3.6")
+    with sender("--still", "--start", "3.6"):
+        assert browser.wait(
+            f"return viewer.stream.connections > {before}"
+            " && !document.body.classList.contains('lost')",
+            20,
+        )
+        return settle()
+
+
+# --- and a second bridge
+
+
+def test_playback_shows_a_motion_file_as_the_library_does():
+    global bridge
+    bridge.__exit__()
+    bridge = viewer("--play", MOTION)
+    open_page()
+    draw(False)
+    assert browser.wait("return !!viewer.motion", 30)
+    for start in ("12.5", "25.9"):
+        expect(start)
+        browser.run(
+            "viewer.motion.playing = false; viewer.motion.seek(1000 * arguments[0])",
+            float(start),
+        )
+        said = settle()
+    strikes = browser.run("return viewer.motion.strikes.length")
+    with open(STROKES) as file:
+        assert strikes == len(file.readlines()) - 1, strikes
+    return said
 
 
 def test_skeleton_of_the_page_is_the_librarys():
@@ -247,10 +296,12 @@ def test_skeleton_of_the_page_is_the_librarys():
 if __name__ == "__main__":
     browser = Browser(480, 480)
     try:
+        bridge = viewer()
         code = report.run(
             "tests/viewer/page.py",
             [f for name, f in list(globals().items()) if name.startswith("test_")],
         )
+        bridge.__exit__()
     finally:
         browser.close()
     sys.exit(code)

@@ -21,7 +21,8 @@ const performers = new Map(),
 const shown = { targets: true, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 60, script: 0, latency: null, render: 0 };
 const clock = () => performance.timeOrigin + performance.now(); // the bridge's too (ms)
-const latencies = [];
+const latencies = [],
+    scripts = [];
 let exaggeration = 25,
     motion = null,
     live = false,
@@ -176,6 +177,8 @@ function frame(_, now = clock(), draw = true) {
     if (latencies.length > 200) latencies.splice(0, 100);
     numbers.fps += 0.05 * (1000 / Math.max(1, dt) - numbers.fps);
     numbers.script += 0.05 * (drawn - begin - numbers.script);
+    scripts.push(drawn - begin);
+    if (scripts.length > 200) scripts.splice(0, 100);
     numbers.render += 0.05 * (end - drawn - numbers.render);
     numbers.latency =
         latencies.length && !motion
@@ -249,6 +252,7 @@ window.viewer = {
     joints,
     numbers,
     latencies,
+    scripts,
     marks,
     performers,
     drums,

@@ -1,0 +1,157 @@
+/// performance_limits.c: the commands `limits` and `strength`, and what is told of them.
+///
+/// Limits are those learned from the take that is loaded; else table 1 of the 2012 paper around the
+/// mean of the postures that strokes of all heights over the first drum have. They are off until
+/// asked for: the table is of a player and a drum of its own, and a piece need not keep to it.
+#include "performance_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define MARGIN 0.05         // beyond what a take shows
+#define HIGHEST_STROKE 0.35 // tips in the mean posture go from the head up to here (m)
+#define HEIGHTS 8
+
+// the mean of a stroke's postures, tips over where they are now
+static himc_pose natural_mean(const himc_performance *p)
+{
+    himc_pose pose[HEIGHTS];
+    for (int i = 0; i < HEIGHTS; i++) {
+        himc_vec3 tip[HIMC_HANDS];
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            tip[hand] = himc_performance_planned(p, (himc_hand)hand, step_time(p)).x;
+            tip[hand].z = p->posture.level + HIGHEST_STROKE * i / (HEIGHTS - 1);
+        }
+        himc_posture_at(&p->posture, tip, &pose[i]);
+    }
+    return himc_limits_mean(pose, HEIGHTS);
+}
+
+void himc_performance_renew_limits(himc_performance *p)
+{
+    himc_limits_kind kind = p->limits.kind;
+    p->controller.strain = &p->strain;
+    p->controller.limits = kind == HIMC_LIMITS_OFF ? NULL : &p->limits;
+    if (kind == HIMC_LIMITS_OFF)
+        return;
+    himc_pose mean = natural_mean(p);
+    p->limits = p->has_learned ? p->learned : himc_limits_table_1(&mean);
+    p->limits.kind = kind;
+}
+
+bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+                                   himc_error *error)
+{
+    return !player->pose || himc_limits_learn(learned, player->pose, player->frames, MARGIN, error);
+}
+
+bool himc_performance_do_limits(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    static const char *const words[] = {"off", "ellipsoid", "euler"};
+    (void)error;
+    p->limits.kind = (himc_limits_kind)himc_performance_word(c->atom[0].symbol, words, 3);
+    himc_performance_renew_limits(p);
+    return true;
+}
+
+bool himc_performance_find_joint(const himc_command *c, const char *command, int *joint,
+                                 himc_error *error)
+{
+    *joint = himc_joint_find(c->atom[0].symbol);
+    if (*joint >= 0)
+        return true;
+    himc_error_set(error, "%s: JOINT: %s, allowed", command, c->atom[0].symbol);
+    size_t used = error ? strlen(error->text) : 0;
+    for (int j = 0; error && j < HIMC_JOINTS; j++)
+        used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
+                                 himc_joint_name(j));
+    return false;
+}
+
+bool himc_performance_do_strength(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    int joint;
+    if (c->count > 1) {
+        if (!himc_performance_find_joint(c, "strength", &joint, error))
+            return false;
+        p->controller.strength[joint] = c->atom[1].number;
+        return true;
+    }
+    p->human = strcmp(c->atom[0].symbol, "human") == 0;
+    memset(p->controller.strength, 0, sizeof p->controller.strength);
+    if (p->human)
+        himc_controller_set_human_strength(&p->controller, p->body.mass);
+    return true;
+}
+
+void himc_performance_keep_strength(himc_performance *p, const himc_controller *old)
+{
+    memcpy(p->controller.strength, old->strength, sizeof old->strength);
+    if (p->human)
+        himc_controller_set_human_strength(&p->controller, p->body.mass);
+}
+
+void himc_performance_limit_shown(himc_performance *p, himc_pose *pose, himc_vec3 rate[HIMC_JOINTS])
+{
+    for (int j = 0; p->controller.limits && j < HIMC_JOINTS; j++) {
+        himc_quat near = himc_limit_closest(&p->limits, j, pose->joint[j]);
+        double measure = himc_limit_measure(&p->limits, j, pose->joint[j]);
+        himc_quat off = himc_quat_mul(himc_quat_conj(near), pose->joint[j]);
+        p->strain.measure[j] = measure;
+        if (measure <= 1) {
+            p->strain.held[j] = false;
+            continue;
+        }
+        p->strain.hits[j] += !p->strain.held[j];
+        p->strain.held[j] = true;
+        p->strain.farthest[j] = fmax(p->strain.farthest[j], himc_vec3_length(himc_quat_log(off)));
+        pose->joint[j] = near;
+        rate[j] = himc_vec3_make(0, 0, 0);
+    }
+}
+
+long himc_performance_limit_hits(const himc_performance *p)
+{
+    long hits = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        hits += p->strain.hits[j];
+    return hits;
+}
+
+static void describe_strength(const himc_performance *p, void (*line)(void *, const char *),
+                              void *user)
+{
+    char text[256];
+    const himc_strain *s = &p->strain;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        if (s->weak[j] == 0)
+            continue;
+        snprintf(text, sizeof text,
+                 "strength %s %g N m: too weak in %.3g %% of steps, %.1f N m asked",
+                 himc_joint_name(j), p->controller.strength[j],
+                 100.0 * (double)s->weak[j] / (double)s->steps, s->torque[j]);
+        line(user, text);
+    }
+}
+
+void himc_performance_describe_limits(const himc_performance *p, void (*line)(void *, const char *),
+                                      void *user)
+{
+    static const char *const kind[] = {"off", "ellipsoid", "euler"};
+    char text[256];
+    const himc_strain *s = &p->strain;
+    snprintf(text, sizeof text, "limits %s%s, hit %ld times, strength %s", kind[p->limits.kind],
+             p->limits.kind == HIMC_LIMITS_OFF ? ""
+             : p->has_learned                  ? " of the take"
+                                               : " of table 1",
+             himc_performance_limit_hits(p), p->human ? "human" : "as set");
+    line(user, text);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        if (s->hits[j] == 0)
+            continue;
+        snprintf(text, sizeof text, "limit %s: hit %ld times, up to %.2f degrees beyond",
+                 himc_joint_name(j), s->hits[j], s->farthest[j] * 180 / HIMC_PI);
+        line(user, text);
+    }
+    describe_strength(p, line, user);
+}

@@ -1,0 +1,149 @@
+/// test_performance_limits.c: the commands `limits` and `strength`, and what `info`, rows of motion and
+/// figures tell of them.
+#include "session.h"
+
+#include <unistd.h>
+
+static char told[64][512];
+static int lines;
+
+static void keep_line(void *user, const char *text)
+{
+    (void)user;
+    if (lines < 64)
+        snprintf(told[lines++], sizeof told[0], "%s", text);
+}
+
+// the first line of `info` that begins so; "" if there is none
+static const char *info(const himc_performance *p, const char *begin)
+{
+    lines = 0;
+    himc_performance_describe(p, keep_line, NULL);
+    for (int i = 0; i < lines; i++)
+        if (strncmp(told[i], begin, strlen(begin)) == 0)
+            return told[i];
+    return "";
+}
+
+static double highest;
+
+static void keep_limit(void *user, const himc_motion_row *row)
+{
+    (void)user;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        highest = fmax(highest, row->limit[j]);
+}
+
+// four strokes, hands in turn
+static himc_performance *piece(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 120");
+    for (int i = 0; i < 4; i++)
+        session_do(p, "stroke %d %s accent f", i + 1, i % 2 ? "left" : "right");
+    himc_performance_on_motion(p, keep_limit, NULL);
+    highest = 0;
+    return p;
+}
+
+static void play(himc_performance *p)
+{
+    session_do(p, "play");
+    session_play(p, 3, NULL);
+}
+
+static void test_limits_are_off_until_asked_for_and_after_reset(void)
+{
+    himc_performance *p = piece();
+    TEST_ASSERT_EQUAL_STRING("limits off, hit 0 times, strength as set", info(p, "limits"));
+    session_do(p, "limits euler");
+    session_do(p, "strength human");
+    TEST_ASSERT_EQUAL_STRING("limits euler of table 1, hit 0 times, strength human",
+                             info(p, "limits"));
+    session_do(p, "reset");
+    TEST_ASSERT_EQUAL_STRING("limits off, hit 0 times, strength as set", info(p, "limits"));
+    play(p);
+    TEST_ASSERT_EQUAL_DOUBLE(0, highest);
+    himc_performance_free(p);
+}
+
+static void test_limits_that_are_hit_show_in_info_in_rows_of_motion_and_in_figures(void)
+{
+    for (int mode = 0; mode < 3; mode++) {
+        himc_performance *p = piece();
+        session_do(p, "mode %s", mode == 0 ? "himc" : mode == 1 ? "id" : "ik");
+        session_do(p, "limits ellipsoid");
+        play(p);
+        himc_performance_stats s = himc_performance_measure(p);
+        TEST_ASSERT_TRUE(s.limit_hits > 1);
+        TEST_ASSERT_TRUE(highest > 0.95);
+        // the table's shoulder hardly flexes
+        TEST_ASSERT_NOT_EQUAL('\0', info(p, "limit left-shoulder: hit ")[0]);
+        TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+        himc_performance_free(p);
+    }
+}
+
+static void test_limits_of_a_take_hold_its_own_motion(void)
+{
+    char path[] = "/tmp/himc-limits-XXXXXX.bvh";
+    int file = mkstemps(path, 4);
+    TEST_ASSERT_TRUE(file >= 0);
+    close(file);
+    himc_performance *p = piece();
+    session_do(p, "record %s", path);
+    play(p);
+    session_do(p, "record stop");
+    himc_performance_free(p);
+    p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "limits ellipsoid");
+    session_do(p, "take %s", path);
+    unlink(path);
+    TEST_ASSERT_EQUAL_STRING("limits ellipsoid of the take, hit 0 times, strength as set",
+                             info(p, "limits"));
+    session_do(p, "mode id");
+    session_do(p, "play");
+    session_play(p, 4, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    TEST_ASSERT_TRUE(s.tip_rms < 0.002);
+    session_do(p, "clear");
+    himc_performance_free(p);
+}
+
+static void test_strength_of_a_joint_is_counted_where_it_does_not_suffice(void)
+{
+    himc_performance *p = piece();
+    session_do(p, "strength left-wrist 0.2");
+    play(p);
+    const char *told_of = info(p, "strength ");
+    TEST_ASSERT_EQUAL_INT(0, strncmp(told_of, "strength left-wrist 0.2 N m: too weak in ", 41));
+    session_do(p, "strength off");
+    TEST_ASSERT_FALSE(session_try(p, "strength left-ear 3"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "strength: JOINT: left-ear, allowed waist neck"));
+    himc_performance_free(p);
+}
+
+static void test_human_strength_plays_accents_and_goes_with_the_players_mass(void)
+{
+    himc_performance *p = piece();
+    session_do(p, "strength human");
+    session_do(p, "player 1.6 50");
+    play(p);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(4, s.played);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_limits_are_off_until_asked_for_and_after_reset);
+    RUN_TEST(test_limits_that_are_hit_show_in_info_in_rows_of_motion_and_in_figures);
+    RUN_TEST(test_limits_of_a_take_hold_its_own_motion);
+    RUN_TEST(test_strength_of_a_joint_is_counted_where_it_does_not_suffice);
+    RUN_TEST(test_human_strength_plays_accents_and_goes_with_the_players_mass);
+    return UNITY_END();
+}

@@ -1,0 +1,180 @@
+#!/usr/bin/env bash
+# A storm of packets, 100,000 a second of valid, malformed and random ones (storm.c), against `himc
+# serve` and against [himc~] in Pure Data: both go on, every packet is counted, memory stays flat. How
+# late blocks were is printed, beside a quiet run's. 3 s each; with HIMC_LONG 60 s, and once more
+# against builds with the address and undefined behaviour sanitizers.
+: "${HIMC_BUILD:=build}" "${CC:=gcc}"
+dir=$HIMC_BUILD/tests/storm
+port=$((20000 + $$ % 20000)) # and the one after it; ours, should two of these run at once
+seconds=3 rate=100000 real=-rt
+[ -n "$HIMC_LONG" ] && seconds=60
+mkdir -p "$dir"
+tests=0 failures=0
+pid= keeper=
+
+report() { # report NAME WHY SAID: passed if WHY is empty
+    tests=$((tests + 1))
+    [ -z "$2" ] || failures=$((failures + 1))
+    echo "tests/test_storm.sh:${BASH_LINENO[0]}:$1:${2:+FAIL: }${2:-PASS}${3:+ $3}"
+}
+
+trap '[ -z "$pid" ] || kill $pid 2>/dev/null' EXIT
+
+await() { # await FILE WORDS: until the file has them
+    for _ in $(seq 300); do
+        grep -q "$2" "$1" 2>/dev/null && return
+        sleep 0.1
+    done
+}
+
+memory() { # memory PID: kilobytes in use
+    sed -n 's/^VmRSS:[^0-9]*\([0-9]*\).*/\1/p' "/proc/$1/status"
+}
+
+number() { # number NAME: from the JSON in $dir/out
+    sed -n "s/.*\"$1\": \([-0-9.]*\).*/\1/p" "$dir/out"
+}
+
+storm() { # storm PORT: leaves packets sent in $sent, packets a second in $pace, growth (kB) in $grown
+    sleep 1
+    read -r first pace < <("$dir/storm" $1 1 $rate) # what is allocated once is allocated now
+    before=$(memory $pid)
+    read -r sent pace < <("$dir/storm" $1 $seconds $rate)
+    grown=$(($(memory $pid) - before))
+    sleep 1.5
+    sent=$((sent + first))
+}
+
+counted() { # counted PACKETS OVERRUN MALFORMED FOREIGN REFUSED FREQUENT COMMANDS
+    awk -v sent=$sent -v n="$*" 'BEGIN {
+        split(n, a, " ")
+        # Pd prints six digits
+        if (a[1] + a[2] < sent * (1 - 1e-6)) print sent " sent, " a[1] " taken and " a[2] " lost in the system"
+        for (i = 3; i <= 7; i++) if (!(a[i] > 0)) print "none of kind " i
+    }'
+}
+
+serve() { # serve SECONDS: 0 is a storm's length
+    timeout 900 "$bin/himc" serve patches/improvisation.txt --port $port >"$dir/out" 2>"$dir/err" &
+    keeper=$!
+    await "$dir/out" listening
+    pid=$(pgrep -P $keeper -x himc)
+    [ "$1" = 0 ] && storm $port || sleep "$1"
+    alive=$(kill -0 $pid 2>/dev/null || echo dead)
+    kill -TERM $pid
+    wait $keeper
+    code=$?
+    pid=
+}
+
+against_serve() { # against_serve NAME
+    serve 3
+    quiet="$(number late) of $(number blocks), the worst by $(number latest_ms) ms"
+    serve 0
+    report himc_serve_${1}goes_on_in_a_storm "$alive$([ $code = 0 ] || echo "exit status $code: $(tail -n 1 "$dir/err")")" "$pace packets/s"
+    report himc_serve_${1}counts_the_whole_storm "$(counted "$(number packets)" "$(number overrun)" "$(number malformed)" \
+        "$(number foreign)" "$(number refused)" "$(number frequent)" "$(number commands)")" "$(number overrun) of $sent lost in the system"
+    [ -n "$1" ] && return # a sanitizer's own memory grows
+    report himc_serve_keeps_its_memory "$([ "$grown" -lt 8192 ] || echo "$grown kB")" "$grown kB more"
+    report himc_serve_late_blocks "" "$(number late) of $(number blocks), the worst by $(number latest_ms) ms; quiet: $quiet"
+}
+
+cat >"$dir/storm.pd" <<EOF
+#N canvas 0 0 600 400 12;
+#X obj 10 10 loadbang;
+#X obj 10 40 t b b b b;
+#X msg 300 70 \\; pd dsp 1;
+#X msg 10 70 listen $port \\, subscribe 127.0.0.1 $((port + 1)) strikes \\, score improvisation.txt \\, play;
+#X obj 10 110 himc~ kettle;
+#X obj 300 110 membrane~ kettle;
+#X obj 10 160 netreceive -u -b $((port + 1));
+#X obj 10 190 oscparse;
+#X obj 10 220 list trim;
+#X obj 10 250 route himc;
+#X obj 10 280 route status;
+#X obj 10 310 print status;
+#X obj 300 160 bang~;
+#X obj 300 190 t b b b;
+#X obj 380 220 realtime;
+#X obj 300 250 timer;
+#X obj 300 280 -;
+#X obj 300 310 swap;
+#X obj 300 340 expr max(\$f1\\, \$f2);
+#X obj 420 340 f;
+#X obj 420 250 metro 500;
+#X obj 420 370 print late;
+#X obj 500 10 r storm-quiet;
+#X msg 500 40 0;
+#X connect 0 0 1 0;
+#X connect 1 0 3 0;
+#X connect 1 1 15 0;
+#X connect 1 2 14 0;
+#X connect 1 3 2 0;
+#X connect 1 0 20 0;
+#X connect 3 0 4 0;
+#X connect 6 0 7 0;
+#X connect 7 0 8 0;
+#X connect 8 0 9 0;
+#X connect 9 0 10 0;
+#X connect 10 0 11 0;
+#X connect 12 0 13 0;
+#X connect 13 1 14 1;
+#X connect 13 0 15 1;
+#X connect 14 0 16 1;
+#X connect 15 0 16 0;
+#X connect 16 0 17 0;
+#X connect 17 0 18 0;
+#X connect 18 0 18 1;
+#X connect 18 0 19 1;
+#X connect 20 0 19 0;
+#X connect 19 0 21 0;
+EOF
+# real time ahead of Pd's: minus (timer - realtime)
+sed -i 's/^#X obj 300 310 swap;/#X obj 300 310 * -1;/' "$dir/storm.pd"
+
+last_status() { # last_status NAME: of what Pd printed last
+    grep -a '^status:' "$dir/pd" | tail -n 1 | tr ' ' '\n' | grep -A1 -x "$1" | tail -n 1
+}
+
+in_pd() { # in_pd SECONDS: 0 is a storm's length
+    LD_PRELOAD=$preload ASAN_OPTIONS=detect_leaks=0 timeout 900 pd -nogui $real -stderr -noprefs -noaudio -nomidi \
+        -r 48000 -path "$externals" -path patches -open "$dir/storm.pd" >"$dir/pd" 2>&1 </dev/null &
+    keeper=$!
+    await "$dir/pd" '^status'
+    pid=$(pgrep -P $keeper -x pd)
+    [ "$1" = 0 ] && storm $port || sleep "$1"
+    alive=$(kill -0 $pid 2>/dev/null || echo dead)
+    kill -TERM $pid 2>/dev/null
+    wait $keeper 2>/dev/null
+    pid=
+}
+
+against_pd() { # against_pd NAME
+    in_pd 3
+    quiet=$(grep -a '^late' "$dir/pd" | tail -n 1)
+    in_pd 0
+    report himc_tilde_${1}goes_on_in_a_storm "$alive$(grep -a -m1 'ERROR: AddressSanitizer\|runtime error' "$dir/pd")" "$pace packets/s"
+    report himc_tilde_${1}counts_the_whole_storm "$(counted "$(last_status packets)" "$(last_status overrun)" "$(last_status malformed)" \
+        "$(last_status foreign)" "$(last_status refused)" "$(last_status frequent)" "$(last_status commands)")" \
+        "$(last_status overrun) of $sent lost in the system"
+    [ -n "$1" ] && return
+    report himc_tilde_keeps_its_memory "$([ "$grown" -lt 8192 ] || echo "$grown kB")" "$grown kB more"
+    report himc_tilde_late_blocks "" "the worst by $(grep -a '^late' "$dir/pd" | tail -n 1 | sed 's/late: //') ms; quiet: ${quiet#late: } ms"
+}
+
+"$CC" -std=c17 -O2 -Wall -Wextra tests/storm.c -llo -o "$dir/storm" || exit 1
+bin=$HIMC_BUILD/bin externals=$HIMC_BUILD/externals/himc preload=
+against_serve
+against_pd
+if [ -n "$HIMC_LONG" ]; then
+    asan=$dir/asan
+    make -s all BUILD="$asan" SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined" \
+        CFLAGS="-fsanitize=address,undefined -fno-sanitize-recover=undefined" LDFLAGS=-fsanitize=address,undefined >"$dir/asan.log" 2>&1
+    report sanitized_programs_are_built "$([ -x "$asan/bin/himc" ] || tail -n 1 "$dir/asan.log")"
+    bin=$asan/bin externals=$asan/externals/himc preload=$("$CC" -print-file-name=libasan.so)
+    against_serve sanitized_
+    against_pd sanitized_
+fi
+echo "-----------------------"
+echo "$tests Tests $failures Failures 0 Ignored"
+[ $failures = 0 ]
