@@ -136,7 +136,7 @@ figures: deps ## the pictures and sounds in docs, as far as they are out of date
 air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
-	mv $(BUILD)/air_table.c lib/src/air_table.c
+	cmp -s $(BUILD)/air_table.c lib/src/air_table.c || mv $(BUILD)/air_table.c lib/src/air_table.c
 
 habit-table: ## lib/src/habit_table.c anew: how arms move with their sticks, from the database
 	@$(MAKE) $(BUILD)/tools/habit/table
