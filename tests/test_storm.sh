@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # A storm of packets, 100,000 a second of valid, malformed and random ones (storm.c), against `himc
-# serve` and against [himc~] in Pure Data: both go on, every packet is counted, memory stays flat. How
-# late blocks were is printed, beside a quiet run's of the same length. 3 s each; with HIMC_LONG 60 s, and once more
-# against builds with the address and undefined behaviour sanitizers.
+# serve` and against [himc~] in Pure Data: both go on, every packet is counted, memory stays flat.
+# How late blocks were is printed, beside a quiet run's of the same length. 3 s each; with HIMC_LONG
+# 60 s, and once more against builds with the address and undefined behaviour sanitizers.
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 dir=$HIMC_BUILD/tests/storm
 port=$((20000 + $$ % 20000)) # and the one after it; ours, should two of these run at once

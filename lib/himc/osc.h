@@ -47,8 +47,8 @@ int himc_osc_port(const himc_osc *osc);
 /// it is told by himc_osc_line. False if too many wait.
 HIMC_RT bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *error);
 
-/// Carries out at most `most` commands that came by OSC, and no more than take a tenth of the time;
-/// their errors go back to who sent them.
+/// Carries out at most `most` commands that came by OSC, no more than take a tenth of the time and
+/// only one at a time that takes long; their errors go back to who sent them.
 /// Setup: a command may read a file.
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most);
 

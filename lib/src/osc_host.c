@@ -13,6 +13,7 @@
 
 #define FOLLOW 0.002 // of the distance, each block
 #define JUMP 0.1     // (s)
+#define SLICE 2e-4   // no further command in this block once they took so long (s)
 
 static osc_record *begin(himc_osc *osc, int kind, double time)
 {
@@ -209,8 +210,9 @@ static bool time_left(himc_osc *osc)
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 {
     const osc_order *order;
+    double spent = 0;
     for (int i = 0; i < most && (order = himc_osc_ring_peek(&osc->orders)); i++) {
-        if (!time_left(osc))
+        if (spent > SLICE || !time_left(osc))
             return;
         double begun = himc_osc_clock(CLOCK_MONOTONIC);
         asker from = {osc, &order->from, false};
@@ -223,7 +225,9 @@ void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
             answer(&from, error.text);
         }
         himc_osc_ring_pop(&osc->orders);
-        osc->work.level -= himc_osc_clock(CLOCK_MONOTONIC) - begun;
+        double took = himc_osc_clock(CLOCK_MONOTONIC) - begun;
+        osc->work.level -= took;
+        spent += took;
     }
 }
 
