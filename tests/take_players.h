@@ -48,8 +48,8 @@ static inline himc_pose beaten_pose(const himc_skeleton *skeleton, double t)
     return pose;
 }
 
-/// A take of it, in memory, in our world, as a file of that name would have it (.bvh a skeleton, .c3d
-/// markers); NULL with error.text.
+/// A take of it, in memory, in our world, as a file of that name would have it (.bvh a skeleton,
+/// .c3d markers); NULL with error.text.
 static inline himc_take *beaten_file(const char *path, const himc_skeleton *skeleton, double rate,
                                      double seconds, himc_error *error)
 {

@@ -1,11 +1,11 @@
-/// player.c: measures, and where to sit.
+/// player.c: measures, and where the player is.
 ///
-/// Lengths are medians over the frames of the distance of two joint centres, so that gaps and a few
-/// bad frames do not count. Arms and legs are measured side by side; what only one side shows holds
-/// for the other, since players are nearly symmetric and a capture of one hand is common. Height: de
-/// Leva's man of 1.741 m has legs, trunk and neck of known lengths; the player is as much taller as
-/// those the take shows are longer together (else the arms). Mass: what the file says, else the body
-/// mass index of the given body.
+/// Lengths are medians over the frames of the distance of two joint centres, so that gaps and a
+/// few bad frames do not count. Arms and legs are measured side by side; what only one side shows
+/// holds for the other, since players are nearly symmetric and a capture of one hand is common.
+/// Height: de Leva's man of 1.741 m has legs and trunk of known lengths; the player is as much
+/// taller as those the take shows are longer together (else the arms). Mass: what the file says,
+/// else the body mass index of the given body.
 #include "himc/player.h"
 
 #include "player_check.h"

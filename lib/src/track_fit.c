@@ -1,4 +1,4 @@
-/// track_fit.c: local cubic fits, x(u) = c0 + c1 u + c2 u^2 + c3 u^3 by least squares over the frames
+/// track_fit.c: local cubic fits, x(u) = c0 + c1 u + c2 u^2 + c3 u^3 by least squares over frames
 /// within +-WINDOW seconds on the same side of every strike (Savitzky and Golay 1964), so noise is
 /// smoothed before it is differentiated and no impact is smeared.
 #include "track_fit.h"
