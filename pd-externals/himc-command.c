@@ -23,7 +23,8 @@ static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t si
     return true;
 }
 
-/* Gives a command that names a file its full name: one that is there for reading, or beside the patch for writing. */
+/* Gives a command that names a file its full name: one that is there for reading, or beside the
+patch for writing. */
 static bool himc_tilde_file(t_himc *x, himc_command *command, himc_error *error)
 {
     char path[HIMC_PATH_SIZE];

@@ -1,5 +1,5 @@
-/* himc-drums.c: the drums of a [himc~]: found by name, taken and let go, and brought forward together
-with the performance, whoever of them comes first in a tick of Pd's. */
+/* himc-drums.c: the drums of a [himc~]: found by name, taken and let go, and brought forward
+together with the performance, whoever of them comes first in a tick of Pd's. */
 #define _POSIX_C_SOURCE 200809L
 #include "himc-tilde.h"
 

@@ -1,8 +1,9 @@
-/* [himc~ [-signals] DRUM ...]: the performer, a simulated percussionist who strikes [membrane~ DRUM].
+/* [himc~ [-signals] DRUM ...]: the performer, a simulated percussionist who strikes
+[membrane~ DRUM].
 
 inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
-inlets   with -signals: where the tip of the left stick shall be, x y z, and of the right (m, signals);
-         three inlets that are all 0 do not lead their stick
+inlets   with -signals: where the tip of the left stick shall be, x y z, and of the right (m,
+         signals); three inlets that are all 0 do not lead their stick
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          beat N   done   info ...
@@ -15,8 +16,8 @@ forces wait in a ring. Nothing is sent from perform: a clock does, at the start 
 
 static t_class *himc_tilde_class;
 
-/* The tips go where the signals are at the block's end. Inlets with nothing in them are 0 0 0, which
-is under the player's seat: such a stick is not led. */
+/* The tips go where the signals are at the block's end. Inlets with nothing in them are 0 0 0,
+which is under the player's seat: such a stick is not led. */
 static void himc_tilde_follow(t_himc *x)
 {
     int last = x->x_stream.s_length - 1;

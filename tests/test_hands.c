@@ -1,4 +1,5 @@
-/// test_hands.c: what one hand cannot play, the other one does, or it is given up, said and counted.
+/// test_hands.c: what one hand cannot play, the other one does, or it is given up, said and
+/// counted.
 #include "session.h"
 
 #include "himc/posture.h"

@@ -34,7 +34,8 @@ HIMC_RT void himc_stroke_spot(const himc_stroke *stroke, double radius, double *
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
     himc_vec3 rest[HIMC_HANDS]; ///< where a tip waits when there is nothing to play (m)
-    /// How far beyond that hand's reach a place is (m), 0 within it; HIMC_RT. NULL: all is in reach.
+    /// How far beyond that hand's reach a place is (m), 0 within it; HIMC_RT. NULL: all is in
+    /// reach.
     double (*beyond)(const void *body, himc_hand hand, himc_vec3 place);
     const void *body; ///< given to `beyond`; borrowed
 } himc_planner_config;

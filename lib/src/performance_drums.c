@@ -1,9 +1,10 @@
-/// performance_drums.c: the drums of a performance: found by name, made, replaced, and where they stand.
+/// performance_drums.c: the drums of a performance: found by name, made, replaced, and where they
+/// stand.
 ///
 /// Strokes name their drum by its slot, so a slot is never given up. A drum that nobody has placed
-/// stands on the arc around the player on which the first one stands, at the angle nearest to straight
-/// ahead at which its rim is clear of the others', to the right before to the left: not where another
-/// drum is, which no stick could tell apart.
+/// stands on the arc around the player on which the first one stands, at the angle nearest to
+/// straight ahead at which its rim is clear of the others', to the right before to the left: not
+/// where another drum is, which no stick could tell apart.
 #include "performance_state.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/// performance_play.c: the commands that say what to play: strokes and hits, transport, takes, units
-/// of motion, live targets. Scores have a file of their own, performance_score.c.
+/// performance_play.c: the commands that say what to play: strokes and hits, transport, units of
+/// motion, live targets. Scores and takes have files of their own.
 ///
 /// Files are read here and now; what comes of them is given to the planner or the track.
 #include "performance_state.h"

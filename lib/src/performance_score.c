@@ -1,9 +1,9 @@
 /// performance_score.c: `score FILE`: all of a score is taken, or nothing.
 ///
 /// The file is parsed as a whole (score.c); then it is rehearsed: its lines for drums are given to
-/// trial drums made like the real ones as they are now, its lines for the performer are looked at, its
-/// drums are counted. Only then is anything done. While a score plays, the next one's beats are put
-/// behind its own. Invariant: a score that is refused has changed nothing.
+/// trial drums made like the real ones as they are now, its lines for the performer are looked at,
+/// its drums are counted. Only then is anything done. While a score plays, the next one's beats are
+/// put behind its own. Invariant: a score that is refused has changed nothing.
 #include "performance_state.h"
 
 #include <stdio.h>

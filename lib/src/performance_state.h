@@ -2,8 +2,8 @@
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_drums.c (what is
 /// struck), performance_command.c, performance_play.c, performance_score.c and performance_take.c
 /// (what is asked), performance_habit.c (how the arms go with it), performance_limits.c (how far
-/// joints turn and how strong they are), performance_push.c (who pushes), performance_report.c (what
-/// is told).
+/// joints turn and how strong they are), performance_push.c (who pushes), performance_report.c
+/// (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 

@@ -1,5 +1,5 @@
-/// planner_hands.c: which hand plays, and when: hits find a gap, and a stroke that its own hand cannot
-/// reach or has no time for goes to the other one.
+/// planner_hands.c: which hand plays, and when: hits find a gap, and a stroke that its own hand
+/// cannot reach or has no time for goes to the other one.
 ///
 /// A hit is a stroke with a time instead of a beat; it waits in a short queue of its hand. A stroke
 /// lent to the other hand waits in the same queue and keeps its beat. Only a stroke of the score is
