@@ -136,7 +136,12 @@ figures: deps ## the pictures and sounds in docs, as far as they are out of date
 air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
-	mv $(BUILD)/air_table.c lib/src/air_table.c
+	cmp -s $(BUILD)/air_table.c lib/src/air_table.c || mv $(BUILD)/air_table.c lib/src/air_table.c
+
+habit-table: ## lib/src/habit_table.c anew: how arms move with their sticks, from the database
+	@$(MAKE) $(BUILD)/tools/habit/table
+	$(BUILD)/tools/habit/table >$(BUILD)/habit_table.c
+	mv $(BUILD)/habit_table.c lib/src/habit_table.c
 
 ##@ Style
 manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
@@ -154,7 +159,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+.PHONY: still habit-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
         figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -176,7 +181,7 @@ $(BUILD)/tools/%.o: tools/%.c
 # small programs that make tables, figures and clips
 $(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
+	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
 # the timpano's own blows, which the clip technique replays
 $(CLIPS): $(BUILD)/tools/clips/clips
@@ -209,7 +214,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
-$(BUILD)/tests/test_mocap: $(MOCAP_O)
+$(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit/table: $(MOCAP_O)
 
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
@@ -218,7 +223,7 @@ $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD
 $(UNIT) $(LONG): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
+	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIBRARY)
 	$(call say,link)

@@ -3,18 +3,22 @@
 /// With s_k the share of joint k, 0 at impact and 1 at the apex, the tip's height changes by
 /// dz/dt = sum_k dz/ds_k s_k'. Shoulder and elbow arrive with one rate, the grip with another, the
 /// wrist with their mean; these two follow from two speeds that are measured, the mallet's and
-/// that of a point behind it on the stick. So also the rebound. Invariant: the mallet is never
+/// that of a point behind it on the stick. So also the rebound. While the stick turns in its few
+/// milliseconds of contact the rest of the arm goes on, and the grip's rates allow for that.
+/// Invariant: the mallet is never
 /// lower than where it touches: each stroke's grip is shifted by what the arm's motion during the
 /// contact leaves over (a degree at most).
 #include "motion.h"
 
 #define POINT 0.15 // of the stick that is measured, behind the mallet (m)
 #define READY 0.45 // share of the first apex in which the hands wait
+#define GRIP 3     // the joint
 #define WAIT 0.12  // from where they leave (s)
 
-// time in which a joint turns from falling to rising: the stick within its contact, the heavier
-// parts slower (s)
-static const double turns[HIMC_ARM_JOINTS] = {0.060, 0.050, 0.022, 0.007};
+// times before and after the impact in which a joint turns from falling to rising: the stick
+// within its contact, the heavier parts slower and later (s)
+static const double turns[HIMC_ARM_JOINTS][2] = {
+    {0.025, 0.035}, {0.020, 0.030}, {0.008, 0.014}, {0.0035, 0.0035}};
 // share of the grip's rate in the joint's, the rest is the elbow's
 static const double distal[HIMC_ARM_JOINTS] = {0, 0, 0.15, 1};
 
@@ -70,42 +74,90 @@ static double joint_rate(const double rate[2], int k)
     return rate[0] + distal[k] * (rate[1] - rate[0]);
 }
 
+static void share_stroke(const himc_mocap *m, const mocap_stroke *s, const double slope[2][4],
+                         mocap_share share[HIMC_ARM_JOINTS])
+{
+    const mocap_gesture *g = &s->gesture;
+    double arrive[2], rebound[2];
+    solve_rates(slope[0], slope[1], (speeds){g->down, g->impact}, arrive);
+    solve_rates(slope[0], slope[1], (speeds){g->up, g->rebound}, rebound);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        double lead = m->player->lead[k];
+        share[k] = (mocap_share){.touch = s->touch,
+                                 .arrive = joint_rate(arrive, k),
+                                 .rebound = joint_rate(rebound, k),
+                                 .turn = {turns[k][0], turns[k][1]},
+                                 .fall = g->fall + lead,
+                                 .lift = g->lift - lead,
+                                 .top = 1};
+    }
+}
+
+// where the grip is, and how fast, when the mallet is at height z with speed v at `t` from the
+// touch, the rest of the arm being where it is
+static mocap_knot grip_at(const mocap_arm *arm, const double mallet[], const mocap_share share[],
+                          double t, double speed)
+{
+    double now = share[GRIP].touch + t, z = fabs(t * speed), v = speed;
+    for (int k = 0; k < GRIP; k++) {
+        z -= mallet[k] * himc_mocap_curve_at(&arm->share[k], now);
+        v -= mallet[k] * himc_mocap_turn_rate(&share[k], t);
+    }
+    return (mocap_knot){now, z / mallet[GRIP], v / mallet[GRIP], 0};
+}
+
+// the mallet goes straight to the head and back from it: while the arm turns, the fingers make up
+// for it
+static void add_grip(mocap_arm *arm, const mocap_gesture *g, const double mallet[],
+                     const mocap_share share[])
+{
+    const mocap_share *own = &share[GRIP];
+    mocap_curve *curve = &arm->share[GRIP];
+    mocap_knot knot[4];
+    for (int i = 0; i < 4; i++) {
+        double t = i < 2 ? -turns[i == 0 ? 0 : GRIP][0] : turns[i == 2 ? GRIP : 0][1];
+        knot[i] = grip_at(arm, mallet, share, t, i < 2 ? -g->impact : g->rebound);
+    }
+    double fall = own->fall - turns[0][0], lift = own->lift - turns[0][1];
+    knot[0].a = himc_mocap_soften(own->arrive, &fall);
+    knot[3].a = himc_mocap_soften(own->rebound, &lift);
+    himc_mocap_curve_add(curve, (mocap_knot){knot[0].t - fall, 1, 0, 0});
+    for (int i = 0; i < 4; i++)
+        himc_mocap_curve_add(curve, knot[i]);
+    himc_mocap_curve_add(curve, (mocap_knot){knot[3].t + lift, own->top, 0, 0});
+}
+
 static void add_stroke(himc_mocap *m, himc_hand hand, int i)
 {
     mocap_arm *arm = &m->arm[hand];
     const mocap_stroke *s = &arm->stroke[i];
-    const mocap_gesture *g = &s->gesture;
-    double point[HIMC_ARM_JOINTS], mallet[HIMC_ARM_JOINTS], arrive[2], rebound[2];
-    slopes(m, hand, s, POINT, point);
-    slopes(m, hand, s, 0, mallet);
-    solve_rates(point, mallet, (speeds){g->down, g->impact}, arrive);
-    solve_rates(point, mallet, (speeds){g->up, g->rebound}, rebound);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        double lead = m->player->lead[k];
-        mocap_share share = {.touch = s->touch,
-                             .arrive = joint_rate(arrive, k),
-                             .rebound = joint_rate(rebound, k),
-                             .turn = turns[k],
-                             .fall = g->fall + lead,
-                             .lift = g->lift - lead,
-                             .top = i + 1 < arm->count ? 1 : READY};
-        himc_mocap_curve_stroke(&arm->share[k], &share);
-    }
+    double slope[2][HIMC_ARM_JOINTS];
+    mocap_share share[HIMC_ARM_JOINTS];
+    slopes(m, hand, s, POINT, slope[0]);
+    slopes(m, hand, s, 0, slope[1]);
+    share_stroke(m, s, slope, share);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        share[k].top = i + 1 < arm->count ? 1 : READY;
+    for (int k = 0; k < GRIP; k++)
+        himc_mocap_curve_stroke(&arm->share[k], &share[k]);
+    add_grip(arm, &s->gesture, slope[1], share);
     himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch, 0, 0, 0});
-    himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch + 0.5 * g->lift, 1, 0, 0});
-    himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch + g->lift, 0, 0, 0});
+    himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch + 0.5 * s->gesture.lift, 1, 0, 0});
+    himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch + s->gesture.lift, 0, 0, 0});
 }
 
-// how far the mallet goes below the place of its touch (m)
-static double sinking(const himc_mocap *m, himc_hand hand, const mocap_stroke *s)
+// how far the mallet goes below its place (m), and when
+static double sinking(const himc_mocap *m, himc_hand hand, const mocap_stroke *s, double *when)
 {
     himc_quat joint[HIMC_ARM_JOINTS];
     double lowest = HUGE_VAL;
     for (int i = -50; i <= 50; i++) {
         double t = s->touch + 2e-4 * i;
         himc_mocap_arm_at(m, hand, t, joint);
-        lowest = fmin(
-            lowest, himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, t), hand, joint, 0).z);
+        himc_quat trunk = himc_mocap_trunk(m, t);
+        double z = himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0).z;
+        *when = z < lowest ? t : *when;
+        lowest = fmin(lowest, z);
     }
     return s->aim.z - lowest;
 }
@@ -114,14 +166,15 @@ static double sinking(const himc_mocap *m, himc_hand hand, const mocap_stroke *s
 static void level_touches(himc_mocap *m, himc_hand hand)
 {
     mocap_arm *arm = &m->arm[hand];
-    mocap_curve *grip = &arm->share[HIMC_ARM_JOINTS - 1];
     for (int i = 0; i < arm->count; i++) {
+        mocap_stroke *s = &arm->stroke[i];
+        mocap_knot *grip = &arm->share[GRIP].knot[1 + MOCAP_GRIP_KNOTS * i];
         double slope[HIMC_ARM_JOINTS];
-        slopes(m, hand, &arm->stroke[i], 0, slope);
+        slopes(m, hand, s, 0, slope);
         for (int round = 0; round < 4; round++) {
-            double more = sinking(m, hand, &arm->stroke[i]) / slope[HIMC_ARM_JOINTS - 1];
-            grip->knot[1 + 4 * i + 1].x += more;
-            grip->knot[1 + 4 * i + 2].x += more;
+            double more = sinking(m, hand, s, &s->landed) / slope[GRIP];
+            for (int k = 1; k < MOCAP_GRIP_KNOTS - 1; k++)
+                grip[k].x += more;
         }
     }
 }

@@ -5,8 +5,8 @@
 /// with the acceleration of that power, -e (n - 1) / T (for n below 3 less of it, none below 2).
 /// The rebound is the mirror image. What arrives faster than a fall of power 4.5 begins its fall
 /// later: so the distal joints, which are the faster ones, follow the proximal ones, as in every
-/// stroke and throw. Around the impact one quintic of length `turn` leads from the arrival to the
-/// rebound; it is shifted so that it passes 0 in its middle, the instant of the impact.
+/// stroke and throw. Around the impact one quintic leads from the arrival to the rebound, as long as `turn`
+/// says; it is shifted so that it passes 0 at the impact.
 #include "parts.h"
 
 #include "himc/quintic.h"
@@ -60,23 +60,28 @@ double himc_mocap_curve_at(const mocap_curve *curve, double t)
     return between(&curve->knot[lo], &curve->knot[hi], t);
 }
 
-// a fall no steeper than allowed, and its acceleration on arrival
-static double soften(double rate, double *time)
+double himc_mocap_soften(double rate, double *time)
 {
     *time = fmin(*time, STEEPEST / fmax(rate, 0.1));
     double n = rate * *time, more = fmin(fmax(n - 2, 0), 1);
     return -more * rate * (n - 1) / *time;
 }
 
+double himc_mocap_turn_rate(const mocap_share *s, double t)
+{
+    double u = fmin(fmax((t + s->turn[0]) / (s->turn[0] + s->turn[1]), 0), 1);
+    return -s->arrive + (s->arrive + s->rebound) * u * u * (3 - 2 * u);
+}
+
 void himc_mocap_curve_stroke(mocap_curve *curve, const mocap_share *s)
 {
-    double half = 0.5 * s->turn, fall = s->fall - half, lift = s->lift - half;
-    mocap_knot in = {-half, 0, -s->arrive, soften(s->arrive, &fall)};
-    mocap_knot out = {half, half * (s->rebound - s->arrive), s->rebound, 0};
-    out.a = soften(s->rebound, &lift);
-    double middle = between(&in, &out, 0);
-    in.x -= middle;
-    out.x -= middle;
+    double fall = s->fall - s->turn[0], lift = s->lift - s->turn[1];
+    double way = 0.5 * (s->turn[0] + s->turn[1]) * (s->rebound - s->arrive);
+    mocap_knot in = {-s->turn[0], 0, -s->arrive, himc_mocap_soften(s->arrive, &fall)};
+    mocap_knot out = {s->turn[1], way, s->rebound, himc_mocap_soften(s->rebound, &lift)};
+    double passed = between(&in, &out, 0);
+    in.x -= passed;
+    out.x -= passed;
     in.t += s->touch;
     out.t += s->touch;
     himc_mocap_curve_add(curve, (mocap_knot){in.t - fall, 1, 0, 0});

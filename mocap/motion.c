@@ -9,26 +9,26 @@
 /// is added, so the tip is where the stroke was aimed, on the head.
 #include "motion.h"
 
-#include "himc/recording.h"
-
 #include <stdlib.h>
 
 #define FIRST 1.0            // impact (s)
 #define LAST 0.8             // after the last (s)
 #define MEMORY 0.4           // of the variation, from stroke to stroke
+#define ALIKE 0.8            // of a speed's variation, that goes with the height's
+#define OWN 0.6              // and that does not: the squares sum to one
 #define POINT 0.15           // of the stick that is measured, behind the mallet (m)
 #define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.002    // deviations: of the aim (m)
+#define AIM_SPREAD 0.003     // deviations: of the aim (m)
 #define OUT_SPREAD 0.006     // of the elbow (rad)
 #define HAND_SPREAD 0.005    // of the hand's elevation (rad)
-#define SHOULDER_SPREAD 0.04 // of its share of the flexion
+#define SHOULDER_SPREAD 0.03 // of its share of the flexion
 #define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
 #define FLEXION_STEP 0.02    // (rad)
-#define RISE_SPREAD 0.03     // of the wrist's share of its flexion and the fingers'
+#define RISE_SPREAD 0.025    // of the wrist's share of its flexion and the fingers'
 #define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
-#define WANDER 0.004         // of a joint between impacts (rad)
+#define WANDER 0.003         // of a joint between impacts (rad)
 #define TRUNK_WANDER 0.003   // (rad)
 
 himc_mocap_config himc_mocap_default(void)
@@ -79,8 +79,8 @@ static mocap_gesture vary_gesture(const himc_mocap *m, const mood *now)
     mocap_gesture g = himc_mocap_gesture[m->config.nuance];
     const mocap_player *p = m->player;
     double height = p->size * exp(p->looseness * g.spread[0] * now->height);
-    double down = exp(p->looseness * g.spread[1] * now->down);
-    double up = exp(p->looseness * g.spread[2] * now->up);
+    double down = exp(p->looseness * g.spread[1] * (ALIKE * now->height + OWN * now->down));
+    double up = exp(p->looseness * g.spread[2] * (ALIKE * now->height + OWN * now->up));
     double fingers = p->fingers * g.wrist, rise = 1 + RISE_SPREAD * p->looseness * now->rise;
     g.height *= height;
     g.wrist = height * rise * (g.wrist - fingers);
@@ -273,7 +273,7 @@ static bool make_room(himc_mocap *m)
         ok = arm->stroke && himc_mocap_curve_init(&arm->loop, 3 * room) &&
              himc_mocap_curve_init(&arm->effort, 3 * room);
         for (int k = 0; ok && k < HIMC_ARM_JOINTS; k++)
-            ok = himc_mocap_curve_init(&arm->share[k], 4 * room + 1);
+            ok = himc_mocap_curve_init(&arm->share[k], MOCAP_GRIP_KNOTS * room + 1);
     }
     return ok;
 }
@@ -380,62 +380,4 @@ himc_pose himc_mocap_pose(const himc_mocap *m, double t)
             pose.joint[himc_arm_joint((himc_hand)hand, k)] = joint[k];
     }
     return pose;
-}
-
-const char *himc_mocap_player_name(int player)
-{
-    return himc_mocap_player[player].name;
-}
-
-const himc_skeleton *himc_mocap_skeleton(const himc_mocap *m)
-{
-    return &m->skeleton;
-}
-
-himc_grip himc_mocap_grip(const himc_mocap *m)
-{
-    return m->player->french > 0.5 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
-}
-
-himc_vec3 himc_mocap_drum(const himc_mocap *m)
-{
-    return himc_vec3_make(m->player->edge + himc_mocap_spot(HIMC_SPOT_CENTER), 0, HIMC_MOCAP_HEAD);
-}
-
-double himc_mocap_length(const himc_mocap *m)
-{
-    return m->length;
-}
-
-int himc_mocap_frames(const himc_mocap *m)
-{
-    return 1 + (int)floor(m->length * HIMC_MOCAP_RATE);
-}
-
-int himc_mocap_touches(const himc_mocap *m)
-{
-    return m->config.strokes;
-}
-
-himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
-{
-    himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
-    const mocap_stroke *s = &m->arm[hand].stroke[index / 2];
-    return (himc_mocap_touch){hand, s->touch, s->aim};
-}
-
-bool himc_mocap_write(const himc_mocap *m, const char *path, himc_error *error)
-{
-    int frames = himc_mocap_frames(m);
-    himc_recording *r = himc_recording_new(path, &m->skeleton, HIMC_MOCAP_RATE,
-                                           (frames + 1) / HIMC_MOCAP_RATE, error);
-    for (int i = 0; r && i < frames; i++) {
-        himc_pose pose = himc_mocap_pose(m, i / HIMC_MOCAP_RATE);
-        himc_body_state state;
-        himc_pose_to_state(&m->skeleton, &pose, NULL, &state);
-        himc_recording_add(r, &state);
-    }
-    bool ok = r && himc_recording_write(r, error);
-    himc_recording_free(r);
-    return ok;
 }

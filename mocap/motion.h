@@ -4,11 +4,14 @@
 
 #include "parts.h"
 
+#define MOCAP_GRIP_KNOTS 6 ///< of the grip's
+
 /// A stroke's two postures as rotation vectors about the hand's mean (rad).
 typedef struct mocap_stroke {
     mocap_gesture gesture; ///< as this stroke is played
     himc_vec3 aim;         ///< of the tip at impact (m)
-    double touch;          ///< (s)
+    double touch;          ///< when it is aimed to be there (s)
+    double landed;         ///< when the mallet is lowest (s)
     mocap_key low;         ///< impact
     himc_vec3 impact[HIMC_ARM_JOINTS], apex[HIMC_ARM_JOINTS];
     himc_vec3 loop[HIMC_ARM_JOINTS]; ///< what the way up is off the way down, at its middle

@@ -82,13 +82,19 @@ HIMC_RT double himc_mocap_curve_at(const mocap_curve *curve, double t);
 typedef struct mocap_share {
     double touch;           ///< time of the impact (s)
     double arrive, rebound; ///< rates there, before (downward) and after (upward) (1/s)
-    double turn;            ///< time in which one becomes the other (s)
-    double fall, lift;      ///< times from and to the apex (s)
-    double top;             ///< where the lift ends, 1 unless it is the last
+    double turn[2];    ///< times before and after the impact in which one becomes the other (s)
+    double fall, lift; ///< times from and to the apex (s)
+    double top;        ///< where the lift ends, 1 unless it is the last
 } mocap_share;
 
 /// Appends a stroke: from the apex, to the impact, to the next apex.
 void himc_mocap_curve_stroke(mocap_curve *curve, const mocap_share *share);
+
+/// Shortens the time of a fall so that it is no steeper than falls may be; its acceleration on
+/// arrival with `rate` (1/s).
+double himc_mocap_soften(double rate, double *time);
+/// Its rate at `t` seconds from the impact, within the turn (1/s).
+double himc_mocap_turn_rate(const mocap_share *share, double t);
 
 /// Numbers that look random and are the same for the same seed.
 typedef struct mocap_dice {

@@ -1,6 +1,9 @@
-/* [himc~ DRUM ...]: the performer, a simulated percussionist who strikes [membrane~ DRUM].
+/* [himc~ [-signals] DRUM ...]: the performer, a simulated percussionist who strikes
+[membrane~ DRUM].
 
 inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
+inlets   with -signals: where the tip of the left stick shall be, x y z, and of the right (m,
+         signals); three inlets that are all 0 do not lead their stick
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          beat N   done   info ...
@@ -9,78 +12,32 @@ Glue only: commands go to a himc_performance with the sample on which they arriv
 brings it forward and puts out what the sticks felt. A [membrane~] that comes earlier in the tick
 asks for its sound first and so brings the performance forward itself (himc_tilde_advance); so the
 forces wait in a ring. Nothing is sent from perform: a clock does, at the start of the next tick. */
-#define _POSIX_C_SOURCE 200809L
-#include "drum-link.h"
-
-#include <time.h>
-
-#define FORCE_RING HIMC_DRUM_RING
-#define LOOK 2.0          /* how often the network's commands are taken (ms) */
-#define COMMANDS_A_LOOK 8 /* and how many, so that no block is late for them */
+#include "himc-tilde.h"
 
 static t_class *himc_tilde_class;
 
-typedef struct t_himc_drum {
-    const char *d_name;
-    himc_drum *d_drum; /* borrowed from the performance; NULL before the first look-up */
-    bool d_silent;     /* made here, for want of a [membrane~] */
-    bool d_told;       /* and the user knows */
-} t_himc_drum;
-
-typedef struct t_himc {
-    t_object x_obj;
-    t_canvas *x_canvas;
-    t_clock *x_clock;
-    t_outlet *x_messages;
-
-    himc_performance *x_performance;
-    t_player x_player;
-    double x_rate; /* of the performance (Hz) */
-    int x_count;
-    t_himc_drum x_drum[HIMC_DRUMS];
-
-    t_stream x_stream;
-    t_sample *x_out[HIMC_HANDS];
-    double x_force[HIMC_HANDS][FORCE_RING];
-
-    himc_osc *x_osc;    /* NULL until somebody subscribes or listens */
-    t_clock *x_network; /* looks for what came from there */
-
-    bool x_waiting; /* x_event is to be sent */
-    himc_event x_event;
-} t_himc;
-
-static double himc_tilde_seconds(void)
+/* The tips go where the signals are at the block's end. Inlets with nothing in them are 0 0 0,
+which is under the player's seat: such a stick is not led. */
+static void himc_tilde_follow(t_himc *x)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Brings the performance to sample `time`, for x's own perform or that of one of its drums. */
-static void himc_tilde_advance(void *player, uint64_t time)
-{
-    t_himc *x = ((t_player *)player)->p_himc;
-    for (uint64_t now; (now = himc_performance_time(x->x_performance)) < time;) {
-        uint64_t at = now % FORCE_RING;
-        uint64_t n = time - now < FORCE_RING - at ? time - now : FORCE_RING - at;
-        double *force[HIMC_HANDS] = {x->x_force[HIMC_LEFT] + at, x->x_force[HIMC_RIGHT] + at};
-        double start = x->x_osc ? himc_tilde_seconds() : 0;
-        himc_performance_process(x->x_performance, (int)n, force);
-        if (x->x_osc)
-            himc_osc_publish(x->x_osc, x->x_performance, himc_tilde_seconds() - start);
+    int last = x->x_stream.s_length - 1;
+    for (int hand = 0; x->x_signals && hand < HIMC_HANDS; hand++) {
+        t_sample **in = x->x_in + 3 * hand;
+        himc_vec3 tip = {in[0][last], in[1][last], in[2][last]};
+        if (!himc_vec3_finite(tip))
+            x->x_spoilt = true;
+        else if (tip.x != 0 || tip.y != 0 || tip.z != 0)
+            himc_performance_target(x->x_performance, (himc_hand)hand, tip);
     }
-    x->x_player.p_time = himc_performance_time(x->x_performance);
-    if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
-        x->x_waiting = true;
+    if (x->x_spoilt && !x->x_told)
         clock_delay(x->x_clock, 0);
-    }
 }
 
 static t_int *himc_tilde_perform(t_int *w)
 {
     t_himc *x = (t_himc *)w[1];
     t_stream *s = &x->x_stream;
+    himc_tilde_follow(x);
     stream_begin(s, himc_performance_time(x->x_performance));
     himc_tilde_advance(&x->x_player, s->s_count + (uint64_t)s->s_length);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -91,71 +48,10 @@ static t_int *himc_tilde_perform(t_int *w)
     return w + 2;
 }
 
-static void himc_tilde_let_go(t_himc *x, const t_himc_drum *d)
-{
-    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == &x->x_player)
-        himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
-}
-
-/* Puts `drum` where another of its name was. */
-static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_error *error)
-{
-    if (!himc_performance_add_drum(x->x_performance, drum, error))
-        return false;
-    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, &x->x_player});
-    d->d_drum = drum;
-    return true;
-}
-
-/* The drum of [membrane~ NAME] at the performance's rate, or NULL and why not. */
-static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error)
-{
-    t_drum_link *link = drum_link_find(name);
-    if (!link) {
-        himc_error_set(error, "no [membrane~ %s]", name);
-        return NULL;
-    }
-    void *performer = himc_drum_get_driver(link->l_drum).performer;
-    if (performer && performer != &x->x_player) {
-        himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);
-        return NULL;
-    }
-    if (link->l_rate != x->x_rate && !himc_drum_set_rate(link->l_drum, x->x_rate, error))
-        return NULL;
-    link->l_rate = x->x_rate;
-    return link->l_drum;
-}
-
-/* Finds each drum by name, as [delread~] does; changes nothing where nothing has changed. */
-static void himc_tilde_resolve(t_himc *x, bool tell)
-{
-    for (t_himc_drum *d = x->x_drum; d < x->x_drum + x->x_count; d++) {
-        himc_error error = {""};
-        himc_drum *drum = himc_tilde_find(x, d->d_name, &error);
-        if (drum && drum != d->d_drum) {
-            himc_tilde_let_go(x, d);
-            if (himc_tilde_take(x, d, drum, &error))
-                d->d_silent = d->d_told = false;
-            else
-                drum = NULL;
-        }
-        if (!drum && !d->d_silent) {
-            himc_error ignored;
-            himc_drum *silent = himc_drum_new(d->d_name, 23, x->x_rate, &ignored);
-            himc_tilde_let_go(x, d);
-            d->d_silent = silent && himc_tilde_take(x, d, silent, &ignored);
-            himc_drum_release(silent);
-        }
-        if (!drum && tell && !d->d_told) {
-            pd_error(x, "himc~: %s: playing on a silent one", error.text);
-            d->d_told = true;
-        }
-    }
-}
-
 static void himc_tilde_dsp(t_himc *x, t_signal **sp)
 {
     himc_error error;
+    t_signal **out = sp + (x->x_signals ? COORDINATES : 0);
     if (sp[0]->s_n > FORCE_RING) {
         pd_error(x, "himc~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, FORCE_RING);
     } else if (sp[0]->s_sr != x->x_rate &&
@@ -163,17 +59,20 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         pd_error(x, "himc~: %s", error.text);
     } else {
         x->x_rate = sp[0]->s_sr;
+        for (int i = 0; x->x_signals && i < COORDINATES; i++)
+            x->x_in[i] = sp[i]->s_vec;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            x->x_out[hand] = sp[hand]->s_vec;
+            x->x_out[hand] = out[hand]->s_vec;
         stream_restart(&x->x_stream, sp[0]);
         himc_tilde_resolve(x, true);
+        x->x_spoilt = x->x_told = false;
         himc_performance_realign(x->x_performance);
         x->x_player.p_time = 0;
         dsp_add(himc_tilde_perform, 1, x);
         return;
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        dsp_add_zero(sp[hand]->s_vec, sp[hand]->s_n);
+        dsp_add_zero(out[hand]->s_vec, out[hand]->s_n);
 }
 
 static void himc_tilde_send(t_himc *x, const himc_event *event)
@@ -205,123 +104,16 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
 
 static void himc_tilde_tick(t_himc *x)
 {
+    if (x->x_spoilt && !x->x_told) {
+        x->x_told = true;
+        pd_error(x, "himc~: a target signal that is not a finite number leads nowhere");
+    }
     while (x->x_waiting) {
         /* what is sent may come back as a command, so the state is written first */
         himc_event event = x->x_event;
         x->x_waiting = himc_performance_event(x->x_performance, &x->x_event);
         himc_tilde_send(x, &event);
     }
-}
-
-/* Pd's own way to a file: absolute, beside the patch, or along its search path. */
-static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size,
-                              himc_error *error)
-{
-    char folder[MAXPDSTRING], *base;
-    int file = canvas_open(x->x_canvas, name, "", folder, &base, MAXPDSTRING, 0);
-    if (file < 0)
-        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path",
-                              name);
-    sys_close(file);
-    if ((size_t)snprintf(path, size, "%s/%s", folder, base) >= size)
-        return himc_error_set(error, "%s: its full name is longer than %zu characters", name,
-                              size - 1);
-    return true;
-}
-
-/* Gives a command that names a file its full name: one that is there for reading, or beside the patch for writing. */
-static bool himc_tilde_file(t_himc *x, himc_command *command, himc_error *error)
-{
-    char path[HIMC_PATH_SIZE];
-    himc_atom atom[HIMC_COMMAND_ATOMS];
-    himc_command found;
-    bool record =
-        command->id == HIMC_COMMAND_RECORD && strcmp(command->atom[0].symbol, "stop") != 0;
-    bool units = command->id == HIMC_COMMAND_UNITS && command->count > 1;
-    bool read = units || command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
-    if (!record && !read)
-        return true;
-    if (read && !himc_tilde_locate(x, command->atom[0].symbol, path, sizeof path, error))
-        return false;
-    if (record)
-        canvas_makefilename(x->x_canvas, command->atom[0].symbol, path, sizeof path);
-    memcpy(atom, command->atom, sizeof atom);
-    atom[0].symbol = path;
-    const char *name = record                              ? "record"
-                       : units                             ? "units"
-                       : command->id == HIMC_COMMAND_SCORE ? "score"
-                                                           : "take";
-    if (!himc_command_parse(&found, HIMC_PERFORMER, name, atom, command->count, error))
-        return false;
-    himc_command_copy(command, &found);
-    return true;
-}
-
-static void himc_tilde_line(void *object, const char *line)
-{
-    outlet_words(((t_himc *)object)->x_messages, "info", line);
-}
-
-/* What came over OSC, in Pd's own time, also while DSP is off. */
-static void himc_tilde_network(t_himc *x)
-{
-    char line[HIMC_OSC_LINE];
-    himc_osc_receive(x->x_osc, x->x_performance, COMMANDS_A_LOOK);
-    while (himc_osc_line(x->x_osc, line))
-        pd_error(x, "himc~: %s", line);
-    if (x->x_osc)
-        clock_delay(x->x_network, LOOK);
-}
-
-static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
-{
-    himc_osc_config config = himc_osc_default();
-    config.port = port;
-    himc_osc *osc = himc_osc_reopen(x->x_osc, &config, error);
-    if (!osc)
-        return false;
-    x->x_osc = osc;
-    himc_performance_on_tick(x->x_performance, himc_osc_tick, osc);
-    clock_delay(x->x_network, LOOK);
-    return true;
-}
-
-/* `listen PORT` begins anew; `subscribe` and `unsubscribe` need no port of our own. */
-static bool himc_tilde_osc(t_himc *x, const himc_command *command, himc_error *error)
-{
-    if (command->id == HIMC_COMMAND_LISTEN) {
-        int port = (int)command->atom[0].number;
-        return himc_tilde_open(x, port > 0 ? port : -1, error);
-    }
-    return (x->x_osc || himc_tilde_open(x, -1, error)) &&
-           himc_osc_command(x->x_osc, command, error);
-}
-
-static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
-{
-    himc_command command;
-    if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
-        return false;
-    if (command.id == HIMC_COMMAND_INFO) {
-        himc_performance_describe(x->x_performance, himc_tilde_line, x);
-        return true;
-    }
-    if (command.id == HIMC_COMMAND_SUBSCRIBE || command.id == HIMC_COMMAND_UNSUBSCRIBE ||
-        command.id == HIMC_COMMAND_LISTEN)
-        return himc_tilde_osc(x, &command, error);
-    if (!himc_tilde_file(x, &command, error))
-        return himc_error_prefix(error, "%s", s->s_name);
-    /* a command may come before DSP is on, and its drums should be there */
-    himc_tilde_resolve(x, false);
-    int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
-    return himc_performance_command(x->x_performance, &command, delay, error);
-}
-
-static void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)
-{
-    himc_error error;
-    if (!himc_tilde_command(x, s, argc, argv, &error))
-        pd_error(x, "himc~: %s", error.text);
 }
 
 /* Checks the names of the drums; nothing has been made yet. */
@@ -332,6 +124,9 @@ static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error
     for (int i = 0; i < argc; i++) {
         char text[80];
         atom_string(argv + i, text, sizeof text);
+        if (argv[i].a_type == A_SYMBOL && text[0] == '-')
+            return himc_error_set(error, "%s: unknown flag, allowed -signals, before the drums",
+                                  text);
         if (argv[i].a_type != A_SYMBOL || strlen(text) >= HIMC_NAME_SIZE)
             return himc_error_set(error,
                                   "argument %d: %s, allowed: a drum's name of up to %d characters",
@@ -350,6 +145,8 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     himc_performance_config config = himc_performance_default();
     config.sample_rate = sys_getsr();
     himc_performance *performance = NULL;
+    bool signals = argc > 0 && argv->a_type == A_SYMBOL && argv->a_w.w_symbol == gensym("-signals");
+    argc -= signals, argv += signals;
     if (himc_tilde_arguments(argc, argv, &error))
         performance = himc_performance_new(&config, &error);
     if (!performance) {
@@ -366,6 +163,9 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_count = argc;
     for (int i = 0; i < argc; i++)
         x->x_drum[i].d_name = argv[i].a_w.w_symbol->s_name;
+    x->x_signals = signals;
+    for (int i = 0; signals && i < COORDINATES; i++)
+        inlet_new(&x->x_obj, &x->x_obj.ob_pd, &s_signal, &s_signal);
     outlet_new(&x->x_obj, &s_signal);
     outlet_new(&x->x_obj, &s_signal);
     x->x_messages = outlet_new(&x->x_obj, NULL);
@@ -374,8 +174,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
 
 static void himc_tilde_free(t_himc *x)
 {
-    for (int i = 0; i < x->x_count; i++)
-        himc_tilde_let_go(x, x->x_drum + i);
+    himc_tilde_leave(x);
     himc_osc_free(x->x_osc);
     himc_performance_free(x->x_performance);
     clock_free(x->x_network);

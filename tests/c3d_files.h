@@ -18,6 +18,7 @@ typedef struct maker {
     bool long_frames; // the count goes to TRIAL and the header says 65535
     int events;       // 0, or 2 in the group EVENT
     int header_events;
+    double mass, height; // of the player (kg, mm), in the group PROCESSING if not 0
     unsigned char *bytes;
     size_t size;
 } maker;
@@ -154,6 +155,11 @@ static inline void put_parameters(const maker *m, unsigned char *at)
     at = put_text(m, at, 1, "Y_SCREEN", m->y_screen);
     if (m->events)
         at = put_events(m, at);
+    if (m->mass > 0) {
+        at = put_group(m, at, 4, "PROCESSING");
+        at = put_real(m, at, 4, "Bodymass", m->mass);
+        at = put_real(m, at, 4, "Height", m->height);
+    }
     if (m->long_frames) {
         at = put_group(m, at, 3, "TRIAL");
         at = put_field(m, at, "ACTUAL_START_FIELD", m->first);

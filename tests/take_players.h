@@ -48,12 +48,12 @@ static inline himc_pose beaten_pose(const himc_skeleton *skeleton, double t)
     return pose;
 }
 
-/// A take of it, in memory, in our world; NULL with error.text.
-static inline himc_take *beaten_take(const himc_skeleton *skeleton, double rate, double seconds,
-                                     himc_error *error)
+/// A take of it, in memory, in our world, as a file of that name would have it (.bvh a skeleton,
+/// .c3d markers); NULL with error.text.
+static inline himc_take *beaten_file(const char *path, const himc_skeleton *skeleton, double rate,
+                                     double seconds, himc_error *error)
 {
-    himc_recording *recording =
-        himc_recording_new("build/player.bvh", skeleton, rate, seconds + 1, error);
+    himc_recording *recording = himc_recording_new(path, skeleton, rate, seconds + 1, error);
     if (!recording)
         return NULL;
     for (int i = 0; i < (int)(seconds * rate); i++) {
@@ -65,6 +65,12 @@ static inline himc_take *beaten_take(const himc_skeleton *skeleton, double rate,
     himc_take *take = himc_recording_take(recording, error);
     himc_recording_free(recording);
     return take;
+}
+
+static inline himc_take *beaten_take(const himc_skeleton *skeleton, double rate, double seconds,
+                                     himc_error *error)
+{
+    return beaten_file("build/player.bvh", skeleton, rate, seconds, error);
 }
 
 #endif

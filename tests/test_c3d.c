@@ -1,6 +1,7 @@
 /// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte
 /// from the format's description, and a real one beside the same trial exported as text.
 #include "c3d_files.h"
+#include "take_data.h"
 #include "take_files.h"
 #include "unity.h"
 
@@ -240,6 +241,26 @@ static void test_rates_of_1_hz_are_refused_and_2_khz_is_read(void)
     himc_take_free(take);
 }
 
+static void test_mass_and_height_of_the_player_are_read_where_they_are_believable(void)
+{
+    maker m = maker_default(C3D_DEC, true);
+    m.mass = 68.5;
+    m.height = 1710;
+    himc_take *take = read_maker(m);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 68.5, take->mass);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.71, take->height);
+    TEST_ASSERT_EQUAL_INT(0, take->note_count);
+    himc_take_free(take);
+    m.mass = 6850;
+    take = read_maker(m);
+    TEST_ASSERT_EQUAL_DOUBLE(0, take->mass);
+    TEST_ASSERT_EQUAL_INT(1, take->note_count);
+    TEST_ASSERT_EQUAL_STRING("player: the file says 6850 kg and 1.71 m, of which 30 .. 200 kg and "
+                             "1.19 .. 2.21 m are believed",
+                             take->notes[0]);
+    himc_take_free(take);
+}
+
 static void test_units_in_metres_and_unknown_units(void)
 {
     maker m = maker_default(C3D_INTEL, true);
@@ -394,6 +415,7 @@ int main(void)
     RUN_TEST(test_screen_axes_say_which_way_is_up);
     RUN_TEST(test_broken_headers_are_refused_with_the_reason);
     RUN_TEST(test_rates_of_1_hz_are_refused_and_2_khz_is_read);
+    RUN_TEST(test_mass_and_height_of_the_player_are_read_where_they_are_believable);
     RUN_TEST(test_units_in_metres_and_unknown_units);
     RUN_TEST(test_non_finite_coordinates_are_gaps);
     RUN_TEST(test_every_prefix_and_every_byte_changed_is_survived);

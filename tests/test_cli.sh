@@ -109,7 +109,10 @@ refuses test_block_zero_is_refused "--block: 0 samples, allowed 1 .. 8192 sample
 refuses test_broken_block_is_refused '"1.5" is not a whole number' \
     render piece.txt -o x.wav --block 1.5
 refuses test_unknown_mode_is_refused "allowed himc id ik" render piece.txt -o x.wav --mode magic
+refuses test_unknown_limits_are_refused "allowed ellipsoid euler off" render piece.txt -o x.wav --limits sky
 refuses test_unknown_axis_is_refused '"x", allowed y or z' render cut.trc -o x.wav --up x
+refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, allowed with a take" \
+    render piece.txt -o x.wav --left-tip LSTK
 refuses test_missing_score_is_refused "none.txt: No such file" render none.txt -o x.wav
 refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
 refuses test_folder_is_refused "directory" render . -o x.wav
@@ -163,6 +166,7 @@ check test_motion_header_starts_with_targets_and_tips [ "$header" = \
     "time_s,$(for what in left_target right_target left_tip right_tip; do
         printf '%s_x_m,%s_y_m,%s_z_m,' $what $what $what
     done)waist_x_rad" ]
+check test_motion_has_a_limit_column_for_each_joint [ "$(head -n 1 motion.csv | tr ',' '\n' | grep -c '_limit$')" = 19 ]
 check test_motion_has_57_angles [ "$(head -n 1 motion.csv | tr ',' '\n' | grep -c '_rad$')" = 57 ]
 check test_motion_has_no_hole [ "$(awk -F, '
     NR == 1 { n = NF }

@@ -5,7 +5,6 @@
 #include "players.h"
 #include "unity.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define DEGREE (HIMC_PI / 180)
@@ -55,22 +54,105 @@ static void test_a_player_never_seen_is_met_within_a_degree(void)
 {
     for (int unseen = 0; unseen < PLAYERS; unseen++) {
         himc_habit habit = without(unseen);
-        double square[HIMC_ARM_JOINTS] = {0};
+        double square[HIMC_ARM_JOINTS] = {0}, low[2] = {9, 9}, high[2] = {-9, -9};
         for (int i = 0; i < seen[unseen].frames; i++) {
-            himc_pose pose = seen[unseen].pose[i];
+            himc_pose pose[2] = {seen[unseen].pose[i], seen[unseen].pose[i]};
             himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
             tips_ahead(&who[unseen], 1 + i / PLAYER_RATE, tip);
-            himc_habit_at(&habit, (const himc_vec3(*)[HIMC_HANDS])tip, &pose);
+            himc_habit_at(&habit, (const himc_vec3(*)[HIMC_HANDS])tip, &pose[1]);
             for (int hand = 0; hand < HIMC_HANDS; hand++)
                 for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
                     int j = himc_arm_joint((himc_hand)hand, k);
-                    double off = angle_between(pose.joint[j], seen[unseen].pose[i].joint[j]);
+                    double off = angle_between(pose[0].joint[j], pose[1].joint[j]);
                     square[k] += off * off / (2 * seen[unseen].frames);
                 }
+            for (int m = 0; m < 2; m++) {
+                himc_body_state s;
+                himc_pose_to_state(&who[unseen].skeleton, &pose[m], NULL, &s);
+                low[m] = fmin(low[m], s.origin[HIMC_LEFT_FOREARM].z);
+                high[m] = fmax(high[m], s.origin[HIMC_LEFT_FOREARM].z);
+            }
         }
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            fprintf(stderr, " %d %d: %.3f deg\n", unseen, k, sqrt(square[k]) / DEGREE);
+            TEST_ASSERT_TRUE(sqrt(square[k]) < DEGREE);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, 1, (high[1] - low[1]) / (high[0] - low[0]));
     }
+}
+
+static void test_tips_are_where_they_are_asked_to_be(void)
+{
+    himc_habit habit = without(1);
+    for (int i = 0; i < 500; i++) {
+        himc_pose pose = seen[1].pose[i];
+        himc_body_state s;
+        himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
+        tips_ahead(&who[1], 1 + i / PLAYER_RATE, tip);
+        himc_habit_at(&habit, (const himc_vec3(*)[HIMC_HANDS])tip, &pose);
+        himc_pose_to_state(&who[1].skeleton, &pose, NULL, &s);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0,
+                                      himc_vec3_length(himc_vec3_sub(s.tip[hand], tip[0][hand])));
+    }
+}
+
+// the map's differences along the motion are its rates
+static void test_rates_are_those_of_the_posture(void)
+{
+    himc_habit habit = without(0);
+    himc_posture posture;
+    himc_posture_motion m[3];
+    double h = 1e-4;
+    himc_posture_init(&posture, &who[0].skeleton, PLAYER_LEVEL);
+    for (int n = 0; n < 3; n++) {
+        himc_target tip[HIMC_HABIT_TAPS][HIMC_HANDS];
+        for (int tap = 0; tap < HIMC_HABIT_TAPS; tap++)
+            for (int hand = 0; hand < HIMC_HANDS; hand++) {
+                double t = 0.5 + (n - 1) * h + 0.03 * tap, y = hand == HIMC_LEFT ? 0.1 : -0.1;
+                himc_target *to = &tip[tap][hand];
+                to->x = himc_vec3_make(0.45 - 0.05 * sin(12 * t), y, 1.0 + 0.1 * sin(12 * t));
+                to->v = himc_vec3_make(-0.6 * cos(12 * t), 0, 1.2 * cos(12 * t));
+                to->a = himc_vec3_make(7.2 * sin(12 * t), 0, -14.4 * sin(12 * t));
+            }
+        himc_posture_moving(&posture, tip[0], &m[n]);
+        himc_habit_moving(&habit, (const himc_target(*)[HIMC_HANDS])tip, &m[n]);
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            himc_vec3 turned =
+                himc_quat_log(himc_quat_mul(m[2].joint[j], himc_quat_conj(m[0].joint[j])));
+            himc_vec3 rate = himc_vec3_scale(turned, 0.5 / h);
+            himc_vec3 a = himc_vec3_scale(himc_vec3_sub(m[2].rate[j], m[0].rate[j]), 0.5 / h);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-3, 0, himc_vec3_length(himc_vec3_sub(rate, m[1].rate[j])));
+            TEST_ASSERT_DOUBLE_WITHIN(0.1, 0,
+                                      himc_vec3_length(himc_vec3_sub(a, m[1].acceleration[j])));
+        }
+}
+
+static void test_what_determines_nothing_is_refused_with_the_reason(void)
+{
+    himc_habit habit;
+    himc_error error;
+    himc_habit_take take = seen[0];
+    TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 0, &error));
+    TEST_ASSERT_EQUAL_STRING("habit: no take to learn from, allowed 1 or more", error.text);
+    take.frames = 30;
+    TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
+    TEST_ASSERT_EQUAL_STRING("habit: a take of 30 frames, allowed 36 or more", error.text);
+    take = seen[0];
+    take.rate = 1;
+    TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
+    TEST_ASSERT_EQUAL_STRING("habit: rate of a take: 1 Hz, allowed 20 .. 10000 Hz", error.text);
+    himc_pose still[200];
+    for (int i = 0; i < 200; i++)
+        still[i] = seen[0].pose[0];
+    take = (himc_habit_take){&who[0].skeleton, still, 200, PLAYER_RATE};
+    TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
+    TEST_ASSERT_EQUAL_STRING("habit: the left tip hardly moves: nothing to learn from it",
+                             error.text);
+    still[7].joint[3].x = NAN;
+    TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
+    TEST_ASSERT_EQUAL_STRING("habit: left-shoulder in frame 7: not a rotation", error.text);
 }
 
 int main(void)
@@ -81,5 +163,10 @@ int main(void)
     }
     UNITY_BEGIN();
     RUN_TEST(test_a_player_never_seen_is_met_within_a_degree);
+    RUN_TEST(test_tips_are_where_they_are_asked_to_be);
+    RUN_TEST(test_rates_are_those_of_the_posture);
+    RUN_TEST(test_what_determines_nothing_is_refused_with_the_reason);
+    for (int i = 0; i < PLAYERS; i++)
+        free((void *)(uintptr_t)seen[i].pose);
     return UNITY_END();
 }

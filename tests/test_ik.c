@@ -78,15 +78,16 @@ static void dense(const himc_arm_jacobian *j, double a[3][COLUMNS])
     }
 }
 
-// (J'J + lambda^2) x = J'e by Gauss elimination with pivots: 12 x 12, the other way round than the
+// (J'J + lambda^2 W^-1) x = J'e by Gauss elimination with pivots: 12 x 12, the other way round than the
 // module
-static void dense_damped(double a[3][COLUMNS], double lambda, const double e[3], double x[COLUMNS])
+static void dense_damped(double a[3][COLUMNS], const double weight[HIMC_ARM_JOINTS], double lambda,
+                         const double e[3], double x[COLUMNS])
 {
     double m[COLUMNS][COLUMNS + 1];
     for (int r = 0; r < COLUMNS; r++) {
         for (int c = 0; c < COLUMNS; c++)
             m[r][c] = a[0][r] * a[0][c] + a[1][r] * a[1][c] + a[2][r] * a[2][c] +
-                      (r == c) * lambda * lambda;
+                      (r == c) * lambda * lambda / weight[r / 3];
         m[r][COLUMNS] = a[0][r] * e[0] + a[1][r] * e[1] + a[2][r] * e[2];
     }
     for (int p = 0; p < COLUMNS; p++) {
@@ -131,15 +132,17 @@ static void test_gram_is_j_times_j_transposed(void)
 static void test_damped_least_squares_is_the_dense_solution(void)
 {
     static const double damping[] = {0.01, 0.1, 0.5};
+    static const double weights[][HIMC_ARM_JOINTS] = {{1, 1, 1, 1}, {0.2, 0.5, 1, 3}};
     for (int n = 0; n < POSES; n++) {
+        const double *weight = weights[n % 2];
         himc_body_state s;
         himc_arm_jacobian j;
         himc_vec3 e = random_vector(0.05), got[HIMC_ARM_JOINTS];
         double a[3][COLUMNS], x[COLUMNS], error[3] = {e.x, e.y, e.z}, lambda = damping[n % 3];
         random_state(&s);
-        himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
+        himc_arm_jacobian_weighted(&s, (himc_hand)(n / 2 % 2), weight, &j);
         dense(&j, a);
-        dense_damped(a, lambda, error, x);
+        dense_damped(a, weight, lambda, error, x);
         himc_ik_solve(&j, HIMC_SOLVER_DLS, lambda, e, got);
         for (int c = 0; c < COLUMNS;
              c++) // 1e-6: the module's floor of 1e-9 m^2 under lambda^2 = 1e-4
@@ -202,7 +205,7 @@ static void test_every_solver_stays_bounded_at_a_straight_arm(void)
 {
     static const double bend[] = {0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2};
     for (int i = 0; i < 6; i++)
-        for (int solver = HIMC_SOLVER_DLS; solver <= HIMC_SOLVER_TRANSPOSE; solver++) {
+        for (int solver = HIMC_SOLVER_DLS; solver < HIMC_SOLVERS; solver++) {
             himc_arm_jacobian j;
             himc_vec3 got[HIMC_ARM_JOINTS];
             straight(&j, bend[i]);
@@ -232,10 +235,71 @@ static void test_transpose_step_is_the_best_along_its_direction(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_vec3_length(got[0]));
 }
 
+static void test_nakamura_damps_near_singular_postures_alone(void)
+{
+    himc_arm_jacobian j;
+    himc_vec3 got[HIMC_ARM_JOINTS], e = {0.01, 0.02, 0.04};
+    straight(&j, 1.2);
+    himc_ik_solve(&j, HIMC_SOLVER_NAKAMURA, 0.1, e, got);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, distance(e, himc_ik_forward(&j, got)));
+    straight(&j, 0);
+    himc_vec3 damped[HIMC_ARM_JOINTS];
+    himc_ik_solve(&j, HIMC_SOLVER_NAKAMURA, 0.1, e, got);
+    himc_ik_solve(&j, HIMC_SOLVER_DLS, 0.1, e, damped);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) // at a manipulability of 0, the whole damping
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, distance(got[k], damped[k]));
+}
+
+static void test_selective_damping_is_the_pseudo_inverse_for_small_errors_only(void)
+{
+    for (int n = 0; n < POSES; n++) {
+        himc_body_state s;
+        himc_arm_jacobian j;
+        himc_vec3 got[HIMC_ARM_JOINTS], small = random_vector(1e-4), large = random_vector(3);
+        random_state(&s);
+        himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
+        himc_ik_solve(&j, HIMC_SOLVER_SDLS, 0, small, got);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0, distance(small, himc_ik_forward(&j, got)));
+        himc_ik_solve(&j, HIMC_SOLVER_SDLS, 0, large, got);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            for (int c = 0; c < 3; c++)
+                TEST_ASSERT_TRUE(fabs(component(got[k], c)) < 0.25 * HIMC_PI + 1e-3);
+        himc_vec3 left = himc_vec3_sub(large, himc_ik_forward(&j, got));
+        TEST_ASSERT_TRUE(himc_vec3_length(left) < himc_vec3_length(large));
+    }
+}
+
+// priorities: the tip goes where it is asked to, the elbow as near as the tip lets it, and what is
+// left of the posture changes neither
+static void test_elbow_comes_after_the_tip_and_before_the_posture(void)
+{
+    for (int n = 0; n < POSES; n++) {
+        himc_body_state s;
+        himc_arm_jacobian j;
+        himc_elbow_task task;
+        himc_hand hand = (himc_hand)(n % 2);
+        himc_vec3 x[HIMC_ARM_JOINTS], posture[HIMC_ARM_JOINTS], e = random_vector(0.05);
+        random_state(&s);
+        int shoulder = himc_arm_joint(hand, 0) + 1, elbow = himc_arm_joint(hand, 1) + 1;
+        himc_vec3 lever = himc_vec3_sub(s.origin[elbow], s.origin[shoulder]);
+        himc_vec3 demand = himc_vec3_cross(random_vector(0.05), lever);
+        himc_arm_jacobian_at(&s, hand, &j);
+        himc_elbow_task_at(&j, lever, 1e-4, &task);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            posture[k] = random_vector(0.1);
+        himc_ik_solve(&j, HIMC_SOLVER_PINV, 0, e, x);
+        himc_ik_add_null(&j, posture, x);
+        himc_ik_add_elbow(&j, &task, demand, x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, distance(e, himc_ik_forward(&j, x)));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0, distance(demand, himc_vec3_cross(x[0], lever)));
+    }
+}
+
 // N J# = 0: what a pseudo-inverse makes has no part in the null space, and the null space does not
 // move the tip
 static void test_null_space_leaves_the_tip_alone_and_projects_once(void)
 {
+    static const double weights[][HIMC_ARM_JOINTS] = {{1, 1, 1, 1}, {0.2, 0.5, 1, 3}};
     for (int n = 0; n < POSES; n++) {
         himc_body_state s;
         himc_arm_jacobian j;
@@ -245,7 +309,7 @@ static void test_null_space_leaves_the_tip_alone_and_projects_once(void)
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             wish[k] = random_vector(1);
         random_state(&s);
-        himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
+        himc_arm_jacobian_weighted(&s, (himc_hand)(n % 2), weights[n % 3 == 0], &j);
         himc_ik_add_null(&j, wish, got);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(himc_ik_forward(&j, got)));
         himc_ik_add_null(&j, got, twice);
@@ -301,6 +365,9 @@ int main(void)
     RUN_TEST(test_pseudo_inverse_leaves_out_the_direction_of_a_straight_arm);
     RUN_TEST(test_every_solver_stays_bounded_at_a_straight_arm);
     RUN_TEST(test_transpose_step_is_the_best_along_its_direction);
+    RUN_TEST(test_nakamura_damps_near_singular_postures_alone);
+    RUN_TEST(test_selective_damping_is_the_pseudo_inverse_for_small_errors_only);
+    RUN_TEST(test_elbow_comes_after_the_tip_and_before_the_posture);
     RUN_TEST(test_null_space_leaves_the_tip_alone_and_projects_once);
     RUN_TEST(test_release_leaves_what_may_remain_and_changes_nothing_across);
     RUN_TEST(test_release_along_a_straight_arm_stays_bounded);

@@ -1,11 +1,13 @@
 /// test_invdyn.c: inverse and forward dynamics are mirrors; both against statics by hand and
 /// differences of motion.
+#include "himc/character.h"
 #include "himc/invdyn.h"
 #include "himc/posture.h"
 
 #include "bodies.h"
 #include "unity.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -348,6 +350,59 @@ static void test_resisting_joints_get_the_accelerations_their_remaining_torques_
     }
 }
 
+// Two hands drumming at 2 Hz: the torques that inverse dynamics gives for the motion, applied without
+// any feedback for 10 ms from everywhere along it, carry the body along it.
+static void test_torques_of_a_motion_return_it_in_the_physics_open_loop(void)
+{
+    const himc_vec3 none[HIMC_HANDS] = {{0, 0, 0}};
+    const double h = 1e-4;
+    himc_posture posture;
+    himc_character *character = himc_character_new(&skeleton, NULL);
+    himc_posture_init(&posture, &skeleton, 0.8675);
+    double worst = 0;
+    for (int n = 0; n < 5000; n++) {
+        himc_target tip[HIMC_HANDS];
+        himc_posture_motion motion;
+        himc_body_state is, wanted;
+        himc_vec3 relative[HIMC_JOINTS], torque[HIMC_JOINTS];
+        himc_pose pose;
+        // torques are for the middle of the step
+        for (int part = 0; part < 2; part++) {
+            double w = 4 * HIMC_PI, t = (n + 0.5 * part) * h;
+            for (int hand = 0; hand < HIMC_HANDS; hand++) {
+                double p = w * t + hand * HIMC_PI, r = 0.19;
+                tip[hand].x = himc_vec3_make(0.48 + 0.02 * sin(p), 0.05 - 0.1 * hand,
+                                             0.8675 + r * (1 - cos(p)));
+                tip[hand].v = himc_vec3_make(0.02 * w * cos(p), 0, r * w * sin(p));
+                tip[hand].a = himc_vec3_make(-0.02 * w * w * sin(p), 0, r * w * w * cos(p));
+            }
+            himc_posture_moving(&posture, tip, &motion);
+            memcpy(pose.joint, motion.joint, sizeof pose.joint);
+            himc_pose_to_state(&skeleton, &pose, motion.rate, &wanted);
+            if (part > 0)
+                continue;
+            if (n % 100 == 0)
+                himc_character_place(character, &wanted);
+            himc_character_observe(character, &is);
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                worst = fmax(worst, distance(is.tip[hand], wanted.tip[hand]));
+        }
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            int p = skeleton.segment[j + 1].parent;
+            himc_vec3 rate = himc_mat3_apply(&wanted.rotation[p], motion.rate[j]);
+            relative[j] =
+                himc_vec3_add(himc_mat3_apply(&wanted.rotation[p], motion.acceleration[j]),
+                              himc_vec3_cross(wanted.spin[p], rate));
+        }
+        himc_inverse_dynamics(&skeleton, &wanted, relative, false, torque);
+        TEST_ASSERT_TRUE(himc_character_step(character, torque, none, h));
+    }
+    himc_character_free(character);
+    char what[64];
+    snprintf(what, sizeof what, "%.6f m", worst);
+    TEST_ASSERT_TRUE_MESSAGE(worst < 0.0005, what);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -363,5 +418,6 @@ int main(void)
     RUN_TEST(test_effective_mass_along_the_stick_is_much_larger);
     RUN_TEST(test_forward_dynamics_leaves_the_legs_alone);
     RUN_TEST(test_resisting_joints_get_the_accelerations_their_remaining_torques_make);
+    RUN_TEST(test_torques_of_a_motion_return_it_in_the_physics_open_loop);
     return UNITY_END();
 }

@@ -1,5 +1,5 @@
-/// test_limit_torque.c: joints sent beyond their bounds come back under every law and mode, whatever the
-/// bounds; and the strength of muscles.
+/// test_limit_torque.c: joints sent beyond their bounds come back under every law and mode, whatever
+/// the bounds; and the strength of muscles.
 #include "himc/character.h"
 #include "himc/controller.h"
 
@@ -310,10 +310,8 @@ static double energy(void)
         himc_vec3 c = himc_mat3_apply(&state.rotation[i], g->center), v = {0, 0, 0};
         himc_vec3 own = himc_mat3_apply_transposed(&state.rotation[i], state.spin[i]);
         for (int k = i; k > 0; k = skeleton.segment[k].parent) {
-            himc_vec3 end = himc_vec3_add(state.origin[i], c);
-            himc_vec3 link = himc_vec3_sub(k == i ? end : state.origin[i], state.origin[k]);
+            himc_vec3 link = himc_vec3_sub(himc_vec3_add(state.origin[i], c), state.origin[k]);
             himc_vec3 spin = himc_vec3_sub(state.spin[k], state.spin[skeleton.segment[k].parent]);
-            link = himc_vec3_sub(end, state.origin[k]);
             v = himc_vec3_add(v, himc_vec3_cross(spin, link));
         }
         sum += g->mass * (0.5 * himc_vec3_dot(v, v) + HIMC_GRAVITY * (state.origin[i].z + c.z)) +

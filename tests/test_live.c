@@ -148,6 +148,35 @@ static void test_four_timpani_are_reached_by_turning(void)
     himc_performance_free(p);
 }
 
+static void test_drums_that_nobody_placed_stand_beside_each_other_in_reach(void)
+{
+    static const int inches[] = {32, 29, 26};
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "tempo 60");
+    for (int i = 0; i < 3; i++) {
+        session_do(p, "drum d%d %d", i, inches[i]);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            session_do(p, "stroke %g %s legato mf normal d%d", 2 + 2 * i + 0.7 * hand,
+                       himc_hand_name((himc_hand)hand), i);
+    }
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < i; k++) {
+            const himc_place *a = himc_drum_place(himc_performance_drum(p, i));
+            const himc_place *b = himc_drum_place(himc_performance_drum(p, k));
+            TEST_ASSERT_TRUE(hypot(a->center.x - b->center.x, a->center.y - b->center.y) >
+                             a->radius + b->radius);
+        }
+    session_do(p, "play");
+    session_play(p, 9, &h);
+    TEST_ASSERT_EQUAL_INT(2, h.notes); // where the second and the third stand
+    TEST_ASSERT_EQUAL_INT(6, himc_performance_measure(p).played);
+    for (int i = 0; i < 6; i++)
+        TEST_ASSERT_EQUAL_INT('0' + i / 2, h.strike[i].drum[1]);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 static void test_no_timpano_is_out_of_reach_of_either_hand(void)
 {
     himc_performance *p = with_timpani();
@@ -372,6 +401,7 @@ int main(void)
     RUN_TEST(test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_end_at_rest);
     RUN_TEST(test_one_hand_is_live_while_the_other_plays_its_score);
     RUN_TEST(test_four_timpani_are_reached_by_turning);
+    RUN_TEST(test_drums_that_nobody_placed_stand_beside_each_other_in_reach);
     RUN_TEST(test_no_timpano_is_out_of_reach_of_either_hand);
     RUN_TEST(test_two_players_do_not_disturb_each_other);
     RUN_TEST(test_french_grip_plays_with_the_fingers_german_with_the_wrist);

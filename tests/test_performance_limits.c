@@ -1,8 +1,6 @@
-/// test_performance_limits.c: the commands `limits` and `strength`, and what `info`, rows of motion and
-/// figures tell of them.
+/// test_performance_limits.c: the commands `limits` and `strength`, and what `info`, rows of motion
+/// and figures tell of them.
 #include "session.h"
-
-#include <unistd.h>
 
 static char told[64][512];
 static int lines;

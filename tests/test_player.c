@@ -255,6 +255,57 @@ static void test_markers_in_the_joint_centres_give_arms_legs_and_trunk(void)
                      0.25);
 }
 
+static void test_markers_beside_the_joints_give_every_rotation(void)
+{
+    himc_skeleton_config config = another_player();
+    TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
+    take = beaten_file("build/player.c3d", &skeleton, 250, FRAMES / 250.0, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/player.c3d", &error), error.text);
+    himc_take_free(take);
+    take = himc_take_load("build/player.c3d", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_FALSE(himc_take_has_skeleton(take));
+    read_player();
+    TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, known_joints());
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-4); // single precision over 5 cm
+    TEST_ASSERT_TRUE(worst_tip() < 1e-5);
+}
+
+static void exchange_names(const char *one, const char *other)
+{
+    int a = himc_take_find(take, one), b = himc_take_find(take, other);
+    TEST_ASSERT_TRUE(a >= 0 && b >= 0);
+    himc_take_set_name(take, a, other, strlen(other));
+    himc_take_set_name(take, b, one, strlen(one));
+}
+
+static void test_markers_whose_names_are_permuted_are_no_bones(void)
+{
+    make_take(&given);
+    forget_skeleton();
+    exchange_names("RightForeArm", "LeftStick_end");
+    read_player();
+    TEST_ASSERT_FALSE(player->known[himc_joint_find("right-shoulder")]);
+    TEST_ASSERT_FALSE(player->known[himc_joint_find("right-elbow")]);
+    TEST_ASSERT_TRUE(player->known[himc_joint_find("left-elbow")]);
+    TEST_ASSERT_TRUE(player->note_count >= 1);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(player->notes[0], "are the points' names right?"),
+                                 player->notes[0]);
+}
+
+static void test_left_and_right_exchanged_are_refused_with_a_line(void)
+{
+    make_take(&given);
+    exchange_names("LeftArm", "RightArm");
+    exchange_names("LeftForeArm", "RightForeArm");
+    exchange_names("LeftHand", "RightHand");
+    TEST_ASSERT_NULL(himc_player_new(take, NULL, &given, &error));
+    TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: the left shoulder is over the right hip, "
+                             "allowed over the left one: are left and right exchanged?",
+                             error.text);
+}
+
 static void lose_frames(const char *name, int from, int to)
 {
     int point = himc_take_find(take, name);
@@ -528,6 +579,9 @@ int main(void)
     RUN_TEST(test_a_t_pose_with_palms_down_gives_the_same_postures);
     RUN_TEST(test_the_names_of_another_skeleton_are_understood);
     RUN_TEST(test_markers_in_the_joint_centres_give_arms_legs_and_trunk);
+    RUN_TEST(test_markers_beside_the_joints_give_every_rotation);
+    RUN_TEST(test_markers_whose_names_are_permuted_are_no_bones);
+    RUN_TEST(test_left_and_right_exchanged_are_refused_with_a_line);
     RUN_TEST(test_a_short_gap_of_a_marker_is_bridged);
     RUN_TEST(test_a_long_gap_of_a_marker_leaves_its_joints_to_nature_and_says_so);
     RUN_TEST(test_a_missing_joint_takes_only_its_own_with_it);

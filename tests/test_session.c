@@ -137,7 +137,7 @@ static void test_tempo_bends_a_loop_without_losing_a_stroke(void)
     himc_performance_free(p);
 }
 
-static void load(himc_performance *p, const char *text)
+static bool load_text(himc_performance *p, const char *text)
 {
     char path[] = "/tmp/himc-session-XXXXXX";
     int file = mkstemp(path);
@@ -145,7 +145,12 @@ static void load(himc_performance *p, const char *text)
     close(file);
     bool ok = session_try(p, "score %s", path);
     unlink(path);
-    TEST_ASSERT_TRUE_MESSAGE(ok, error.text);
+    return ok;
+}
+
+static void load(himc_performance *p, const char *text)
+{
+    TEST_ASSERT_TRUE_MESSAGE(load_text(p, text), error.text);
 }
 
 static void test_scores_that_are_queued_follow_each_other_at_their_own_tempi(void)
@@ -164,6 +169,71 @@ static void test_scores_that_are_queued_follow_each_other_at_their_own_tempi(voi
     for (int i = 0; i < 7; i++)
         TEST_ASSERT_DOUBLE_WITHIN(0.002, times[i], h.strike[i].time);
     TEST_ASSERT_EQUAL_INT(1, h.dones);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// what a performance says of itself, drums included
+static void keep_line(void *user, const char *line)
+{
+    strncat(user, line, 4000 - strlen(user));
+}
+
+static void test_score_with_a_fault_anywhere_changes_nothing(void)
+{
+    static const char *const faults[][2] = {
+        {"gain nose 1 1;", ":5: gain: JOINT: nose, allowed waist"},
+        {"listen 9000;", ":5: listen: allowed as a message"},
+        {"units /no/such/take.bvh legato;", ":5: /no/such/take.bvh"},
+        {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
+        {"kettle shape /no/such/grid.txt;", ":5: /no/such/grid.txt"},
+        {"record /no/such/folder/x.bvh;", ":5: record: /no/such/folder/x.bvh"},
+        {"stroke 1 left legato loud;", ":5: stroke: DYNAMIC: loud"},
+        {"kettle modes 0;", ":5: kettle: modes: COUNT: 0"}};
+    himc_performance *p = with_kettle();
+    char before[4096] = "", after[4096], text[400];
+    session_do(p, "stroke 1 left legato mf");
+    himc_performance_describe(p, keep_line, before);
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        snprintf(text, sizeof text,
+                 "grip french; drum second 29;\nkettle tune 150; player 1.9 90;\n"
+                 "stroke 0 left legato mf; stroke 2 left legato mf;\nsecond mallet wood;\n%s\n",
+                 faults[i][0]);
+        TEST_ASSERT_FALSE_MESSAGE(load_text(p, text), faults[i][0]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, faults[i][1]), error.text);
+        after[0] = 0;
+        himc_performance_describe(p, keep_line, after);
+        TEST_ASSERT_EQUAL_STRING(before, after);
+    }
+    heard h = {0};
+    session_do(p, "play");
+    session_play(p, 4, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.strikes); // the one stroke there was
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_score_with_too_many_drums_changes_nothing(void)
+{
+    himc_performance *p = with_kettle();
+    char text[1200] = "";
+    for (int i = 0; i < HIMC_DRUMS; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text),
+                 "stroke %d left legato mf normal drum%d;\n", i, i);
+    TEST_ASSERT_FALSE(load_text(p, text));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "16 drums at most"), error.text);
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
+    himc_performance_free(p);
+}
+
+static void test_playing_nothing_is_said(void)
+{
+    himc_performance *p = with_kettle();
+    heard h = {0};
+    session_do(p, "play");
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.notes);
+    TEST_ASSERT_EQUAL_STRING("play: nothing to play: no strokes, no take", h.note);
     heard_free(&h);
     himc_performance_free(p);
 }
@@ -273,6 +343,9 @@ int main(void)
     RUN_TEST(test_loop_begins_again_on_its_whole_beat_and_ends_when_told);
     RUN_TEST(test_tempo_bends_a_loop_without_losing_a_stroke);
     RUN_TEST(test_scores_that_are_queued_follow_each_other_at_their_own_tempi);
+    RUN_TEST(test_score_with_a_fault_anywhere_changes_nothing);
+    RUN_TEST(test_score_with_too_many_drums_changes_nothing);
+    RUN_TEST(test_playing_nothing_is_said);
     RUN_TEST(test_seek_goes_on_from_another_beat);
     RUN_TEST(test_accent_is_prepared_higher_than_legato_in_every_context);
     RUN_TEST(test_acceleration_has_no_jumps_at_any_join_even_when_the_tempo_changes);

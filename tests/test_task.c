@@ -243,7 +243,7 @@ static void run_all_rt(himc_character *character, himc_task_tick tick[2])
     himc_task_tick_complete(&tick[0], &posture);
     himc_task_between(&tick[0], &tick[1], 0.001, &reference);
     himc_character_place(character, &state);
-    for (int solver = HIMC_SOLVER_DLS; solver <= HIMC_SOLVER_TRANSPOSE; solver++)
+    for (int solver = HIMC_SOLVER_DLS; solver < HIMC_SOLVERS; solver++)
         for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++)
             for (int n = 0; n < 20; n++) {
                 controller.solver = (himc_solver)solver;

@@ -1,5 +1,5 @@
-/// test_touch.c: sticks of a performer on heads: the point that meets the head is the body's own tip,
-/// as heavy, as fast, and where it was left; and the blows that a drum tells of.
+/// test_touch.c: sticks of a performer on heads: the point that meets the head is the body's own
+/// tip, as heavy, as fast, and where it was left; and the blows that a drum tells of.
 #define _GNU_SOURCE
 #include "himc/himc.h"
 #include "performance_state.h"
@@ -77,7 +77,8 @@ static void test_touch_point_moves_as_the_bodys_tip_does(void)
         double h = step();
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             const touch *c = &performance->touch[hand];
-            // the state is from the beginning of this step, the stick before from the end of the last
+            // the state is from the beginning of this step, the stick before from the end of the
+            // last
             double tip = along_normal(performance->state.tip_velocity[hand], c);
             if (before[hand].stick.force > 1) {
                 apart = fmax(apart, fabs(before[hand].stick.velocity - tip));

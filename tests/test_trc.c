@@ -161,6 +161,17 @@ static void test_headers_that_disagree_with_the_rows_are_refused(void)
     refuses(2, 2, "ell", ROW_1 ROW_2, "a.trc:3: Units is \"ell\", allowed mm, cm, m, in or ft");
 }
 
+static void test_a_rate_of_1_hz_is_refused(void)
+{
+    error.text[0] = 0;
+    himc_take *take =
+        read_text("PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n1\t1\t1\tmm\n"
+                  "Frame#\tTime\tA\t\t\n\tX1\tY1\tZ1\n1\t0\t1\t2\t3\n",
+                  "a.trc", NULL, &error);
+    TEST_ASSERT_NULL(take);
+    TEST_ASSERT_EQUAL_STRING("a.trc: rate: 1 Hz, allowed 20 .. 10000 Hz", error.text);
+}
+
 static void test_bad_cells_are_refused_with_line_and_marker(void)
 {
     refuses(1, 2, "mm", "1\t0\t1\t2\tx\t1\t2\t3\n",
@@ -253,6 +264,7 @@ int main(void)
     RUN_TEST(test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not);
     RUN_TEST(test_numbers_are_read_as_strtod_reads_them);
     RUN_TEST(test_headers_that_disagree_with_the_rows_are_refused);
+    RUN_TEST(test_a_rate_of_1_hz_is_refused);
     RUN_TEST(test_bad_cells_are_refused_with_line_and_marker);
     RUN_TEST(test_every_prefix_of_a_file_is_refused_or_read);
     RUN_TEST(test_real_stroke_is_read_as_its_source_describes_it);

@@ -177,6 +177,15 @@ bool cli_take_options(const char *left_tip, const char *right_tip, const char *u
     return true;
 }
 
+bool cli_take_options_fit(const char *path, const char *left_tip, const char *right_tip,
+                          const char *up, himc_error *error)
+{
+    const char *option = left_tip ? "--left-tip" : right_tip ? "--right-tip" : up ? "--up" : NULL;
+    return !option || cli_is_take(path) ||
+           himc_error_set(error, "%s: %s is a score, allowed with a take: .bvh .c3d .trc", option,
+                          path);
+}
+
 bool cli_is_take(const char *path)
 {
     const char *dot = strrchr(path, '.');

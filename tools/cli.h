@@ -91,6 +91,9 @@ double cli_drum_inches(const himc_score_line *line);
 bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
                       himc_take_options *out, himc_error *error);
 
+/// False if options for takes are given with a score.
+bool cli_take_options_fit(const char *path, const char *left_tip, const char *right_tip,
+                          const char *up, himc_error *error);
 /// True if the name ends as a motion capture's does: .bvh .c3d .trc, in any case.
 bool cli_is_take(const char *path);
 

@@ -129,8 +129,10 @@ static bool describe_take(const cli_arguments *arguments, himc_error *error)
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
-    bool good = cli_is_take(arguments->operand) ? describe_take(arguments, &error)
-                                                : describe_score(arguments->operand, &error);
+    const char *const *value = arguments->value, *path = arguments->operand;
+    bool good =
+        cli_take_options_fit(path, value[LEFT_TIP], value[RIGHT_TIP], value[UP], &error) &&
+        (cli_is_take(path) ? describe_take(arguments, &error) : describe_score(path, &error));
     return good ? cli_finish(&cli_info) : cli_fail(&cli_info, "%s", error.text);
 }
 
@@ -139,7 +141,8 @@ const cli_call cli_info = {
     "FILE",
     "",
     "says what is in a score, or in a take (.bvh .c3d .trc)",
-    "Of a take: rate, length, points, gaps, the strikes found in it, where the drumhead is placed.",
+    "Of a take: rate, length, points, gaps, the strikes found in it, the player,\n"
+    "where drumhead and seat are placed.",
     options,
     run,
 };

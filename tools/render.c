@@ -78,6 +78,7 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                                       files[k]);
     return cli_count("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
            cli_count("--block", value[BLOCK], 1, BLOCK_MAX, "samples", &out->block, error) &&
+           cli_take_options_fit(out->source, value[LEFT_TIP], value[RIGHT_TIP], value[UP], error) &&
            cli_take_options(value[LEFT_TIP], value[RIGHT_TIP], value[UP], &out->take, error);
 }
 

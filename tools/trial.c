@@ -34,8 +34,10 @@ typedef struct tally {
     const himc_mocap *mocap;
     himc_vec3 offset; ///< from the take's coordinates to ours (m)
     double begin;     ///< time of the take's first frame (s)
-    double squares;   ///< of the tips' distances (m^2)
-    double angle[3];  ///< squares: shoulder, elbow, wrist (rad^2)
+    double squares;   ///< of the tips' distances from where they were captured (m^2)
+    double outside;   ///< of their distances from the targets, where no force was (m^2)
+    long outside_count;
+    double angle[3]; ///< squares: shoulder, elbow, wrist (rad^2)
     long count;
     double low[2][HIMC_HANDS], high[2][HIMC_HANDS]; ///< elbows: captured, simulated (m)
 } tally;
@@ -156,7 +158,10 @@ static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_c
     const himc_habit *learned = habit_without(config, error);
     himc_skeleton_config given = himc_skeleton_default();
     himc_player *seen = learned ? himc_player_new(take, NULL, &given, error) : NULL;
+    himc_place place = *himc_drum_place(himc_performance_drum(p, 0));
     himc_skeleton skeleton;
+    if (seen)
+        himc_player_sit(seen, take, NULL, &place);
     bool good = seen && himc_skeleton_init(&skeleton, &seen->config, error);
     if (good) {
         himc_habit habit = *learned;
@@ -227,6 +232,11 @@ static void compare_hand(tally *t, const himc_motion_row *row, const himc_body_s
     int elbow = himc_arm_joint(hand, 1) + 1;
     t->squares += himc_vec3_dot(miss, miss);
     t->count++;
+    if (row->force[hand] == 0) {
+        himc_vec3 away = himc_vec3_sub(row->tip[hand], row->target[hand]);
+        t->outside += himc_vec3_dot(away, away);
+        t->outside_count++;
+    }
     stretch(t, 0, hand, captured->origin[elbow].z);
     stretch(t, 1, hand, row->elbow[hand].z);
 }
@@ -289,7 +299,7 @@ static trial_result result_of(const tally *t, const himc_performance_stats *stat
         simulated += t->high[1][hand] - t->low[1][hand];
     }
     return (trial_result){.rms = sqrt(t->squares / n),
-                          .outside = stats->tip_rms,
+                          .outside = sqrt(t->outside / (double)t->outside_count),
                           .amplitude = mean_height(t->mocap),
                           .elbow = simulated / captured,
                           .shoulder_error = sqrt(t->angle[0] / n),

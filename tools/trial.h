@@ -15,7 +15,7 @@ typedef struct trial_kind {
 /// frames, both hands, from the first stroke's preparation to the last one's end.
 typedef struct trial_result {
     double rms;       ///< impacts included (m)
-    double outside;   ///< the same outside contact (m)
+    double outside;   ///< to their targets, outside contact (m)
     double amplitude; ///< mean height of the captured strokes, apex to impact (m)
     double elbow;     ///< range of the elbow's height, simulated over captured
     double shoulder_error, elbow_error, wrist_error; ///< RMS angle to the captured joints (rad)

@@ -31,7 +31,8 @@ HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, 
                            double rate);
 /// From the next himc_bank_set on, a sample can also be stepped through in so many parts.
 HIMC_RT void himc_bank_divide(himc_bank *bank, int parts);
-/// What a step is in all functions below that step, push or answer: gear 0 a whole sample, 1 a part.
+/// What a step is in all functions below that step, push or answer: gear 0 a whole sample, 1 a
+/// part.
 #define HIMC_BANK_GEARS 2
 HIMC_RT void himc_bank_shift(himc_bank *bank, int gear);
 /// Those that swing (not silent).

@@ -22,6 +22,10 @@ void himc_drum_release(himc_drum *drum);
 
 const char *himc_drum_name(const himc_drum *drum);
 HIMC_RT const himc_place *himc_drum_place(const himc_drum *drum);
+/// Whether `place` has said where it stands.
+HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
+/// Puts a drum there until `place` says where.
+HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
 HIMC_RT himc_membrane *himc_drum_membrane(himc_drum *drum);
 /// The mallet that strikes it: `mallet soft|medium|hard|wood|K ALPHA MASS`.
 HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);

@@ -14,6 +14,7 @@
 #define HIMC_HABIT_TAPS 3     ///< times at which a tip is looked at: now and ahead ...
 #define HIMC_HABIT_STEP 0.030 ///< ... in such steps (s)
 #define HIMC_HABIT_TERMS (1 + 3 * HIMC_HABIT_TAPS)
+#define HIMC_HABIT_TRUNK_TERMS (1 + 2 * 3 * HIMC_HABIT_TAPS)
 
 /// What a habit is about: the player's own.
 typedef struct himc_habit_player {
@@ -29,6 +30,7 @@ typedef struct himc_habit_player {
 typedef struct himc_habit {
     himc_habit_player player;
     double weight[HIMC_HANDS][HIMC_ARM_JOINTS][3][HIMC_HABIT_TERMS]; ///< of the terms (rad)
+    double trunk[3][HIMC_HABIT_TRUNK_TERMS]; ///< of its sway with both tips (rad)
     /// Covariance of what the weights leave unsaid, shoulder's x to grip's z (rad^2).
     double spread[HIMC_HANDS][3 * HIMC_ARM_JOINTS][3 * HIMC_ARM_JOINTS];
 } himc_habit;
@@ -46,13 +48,18 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
                      himc_error *error);
 /// Least squares over `count` takes, those of a player after one another, each player about his own
 /// means; the habit is then the first player's, until another is put into its `player`.
-/// Directions in which no tip moves get no weight. False with the reason if the takes do not
+/// Directions in which no tip moves get no weight; an arm whose tip does not move is taken to do
+/// as the other in a mirror. False with the reason if the takes do not
 /// determine it.
 bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error);
 
-/// The arms' posture for tips at each tap; the rest of the pose is taken as given, its trunk is
-/// where the arms hang. The tips are at their places, if those are not far from what was seen: of
-/// all such postures the likeliest.
+/// The habit learned from the whole motion database (make habit-table); its player, nobody, is to
+/// be filled in.
+HIMC_RT void himc_habit_usual(himc_habit *habit);
+
+/// The arms' posture for tips at each tap; the rest of the pose is taken as given, but that its
+/// trunk sways with the tips. The tips are at their places, if those are not far from what was
+/// seen: of all such postures the likeliest.
 HIMC_RT void himc_habit_at(const himc_habit *habit,
                            const himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS], himc_pose *pose);
 /// Puts the habit into a natural posture in motion (himc_posture_moving): the arms are the habit's,

@@ -37,6 +37,10 @@ HIMC_RT himc_limits himc_limits_table_1(const himc_pose *mean);
 bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, double margin,
                        himc_error *error);
 
+/// Widens all bounds that are narrower than `least` (rad, 0 .. 0.5) on either side of the mean to
+/// that: a body that is controlled is never quite in a captured posture.
+HIMC_RT void himc_limits_loosen(himc_limits *limits, double least);
+
 /// The mean posture: of each joint the rotation nearest to all of its own (Markley et al. 2007).
 /// `frames` at least 1; rotations of unit length.
 himc_pose himc_limits_mean(const himc_pose *pose, int frames);

@@ -108,7 +108,7 @@ typedef struct himc_event {
     himc_event_kind kind;
     himc_strike strike;
     double beat;
-    char text[192];
+    char text[sizeof((himc_error *)0)->text]; ///< of a note
 } himc_event;
 
 /// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and

@@ -2,8 +2,8 @@
 ///
 /// Each hand's trajectory is made of quintics in space joined with equal position, velocity and
 /// acceleration (C2). The planner knows nothing of bodies or sound: it is told where the drums
-/// stand and, at separation, how the tip really moves. What a player would not do is made smaller,
-/// later or given up, and a note says so.
+/// stand, how far a hand reaches and, at separation, how the tip really moves. What a player would
+/// not do is made smaller or later, left to the other hand or given up, and a note says so.
 #ifndef HIMC_PLANNER_H
 #define HIMC_PLANNER_H
 
@@ -34,6 +34,10 @@ HIMC_RT void himc_stroke_spot(const himc_stroke *stroke, double radius, double *
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
     himc_vec3 rest[HIMC_HANDS]; ///< where a tip waits when there is nothing to play (m)
+    /// How far beyond that hand's reach a place is (m), 0 within it; HIMC_RT. NULL: all is in
+    /// reach.
+    double (*beyond)(const void *body, himc_hand hand, himc_vec3 place);
+    const void *body; ///< given to `beyond`; borrowed
 } himc_planner_config;
 
 himc_planner_config himc_planner_default(void);
@@ -133,6 +137,10 @@ HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// Time after which nothing is left to play (s): the last stroke and its coming to rest. Infinite
 /// while stopped.
 HIMC_RT double himc_planner_end(const himc_planner *planner);
+/// Strokes of the score given up since the last call.
+HIMC_RT int himc_planner_given_up(himc_planner *planner);
+/// A note of how many strokes since the last `play` were not played as written, if more than one.
+HIMC_RT void himc_planner_sum_up(himc_planner *planner);
 /// Takes the oldest note; false if there is none. At most 32 are kept; what is lost is counted in
 /// the last.
 HIMC_RT bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note);

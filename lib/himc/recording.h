@@ -1,7 +1,9 @@
 /// recording.h: what the simulated body does, kept and written as a take.
 ///
-/// A recording has the body's joints and both sticks' tips ("LeftStick_end", "RightStick_end")
-/// under the names that motion capture software uses, so that it plays here and reads elsewhere.
+/// A recording has the body's joints, both sticks' tips ("LeftStick_end", "RightStick_end") and the
+/// ends of head and toes under the names that motion capture software uses, so that it plays here
+/// and reads elsewhere. In a file of markers (.c3d, .trc) each segment also has one 0.05 m beside
+/// its joint, along the segment's y ("LeftArm_side"), so that rotations can be had from it.
 #ifndef HIMC_RECORDING_H
 #define HIMC_RECORDING_H
 

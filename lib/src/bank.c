@@ -6,8 +6,9 @@
 /// A force f constant over the sample adds b1 f to q and b2 f to q' (zero-order hold), b1 = (1 -
 /// a11)/(m w^2) with a11 = C + d S/w_d, and b2 = S/(m w_d); in p, s: w_d b1 f and (b2 + d b1) f.
 ///
-/// p and s do not depend on h, so steps of two lengths, a sample and a part of one, follow each other
-/// freely: the bank has a set of coefficients, a gear, for each (bank_run.c swings by the present one).
+/// p and s do not depend on h, so steps of two lengths, a sample and a part of one, follow each
+/// other freely: the bank has a set of coefficients, a gear, for each (bank_run.c swings by the
+/// present one).
 #include "bank_state.h"
 
 #include <math.h>

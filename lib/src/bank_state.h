@@ -1,4 +1,5 @@
-/// bank_state.h: what a bank is made of; shared by bank.c (what it is) and bank_run.c (how it swings).
+/// bank_state.h: what a bank is made of; shared by bank.c (what it is) and bank_run.c (how it
+/// swings).
 #ifndef HIMC_BANK_STATE_H
 #define HIMC_BANK_STATE_H
 

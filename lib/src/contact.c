@@ -15,9 +15,9 @@
 /// body under constant force gains just force times displacement, and the forces' work on head and
 /// sticks together is -F r. No step size restricts it.
 ///
-/// Wood meets the head in a spike of a few samples, of which steps of 1/48000 s make 3 % less. So as
-/// long as a stiff mallet is near, a sample is made of parts of 5 microseconds (the head's modes are
-/// exact in any step), and the force told is their mean.
+/// Wood meets the head in a spike of a few samples, of which steps of 1/48000 s make 3 % less. So
+/// as long as a stiff mallet is near, a sample is made of parts of 5 microseconds (the head's modes
+/// are exact in any step), and the force told is their mean.
 ///
 /// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the
 /// force of the motion F_m and the path of the stick. The head is then driven along that path by

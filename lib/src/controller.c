@@ -19,7 +19,7 @@
 #include "strength.h"
 
 #define PD_STIFFER 3.0    // the default gains' frequencies above the table's
-#define LARGEST_STEP 0.05 // of the tip, one step of inverse kinematics (m)
+#define LARGEST_STEP 0.20 // of the tip, one step of inverse kinematics (m)
 #define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
 #define LEFT 0.40         // ... and so far does so wholly (m)
 

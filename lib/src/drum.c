@@ -73,6 +73,17 @@ const char *himc_drum_name(const himc_drum *drum)
     return drum->name;
 }
 
+bool himc_drum_is_placed(const himc_drum *drum)
+{
+    return drum->placed;
+}
+
+void himc_drum_stand(himc_drum *drum, himc_vec3 center)
+{
+    drum->place.center = center;
+    drum->revision++;
+}
+
 const himc_place *himc_drum_place(const himc_drum *drum)
 {
     return &drum->place;

@@ -170,6 +170,7 @@ static bool set_place(himc_drum *drum, const himc_command *c, himc_error *error)
         return false;
     drum->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
     drum->place.tilt = tilt;
+    drum->placed = true;
     drum->revision++;
     return true;
 }

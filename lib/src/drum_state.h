@@ -34,6 +34,7 @@ struct himc_drum {
     himc_mallet_head mallet;
     char mallet_name[16]; ///< "medium", or "own" when given by numbers
     himc_place place;
+    bool placed; ///< by `place`
     unsigned revision;
     himc_drum_driver driver;
     double rate;

@@ -1,10 +1,10 @@
 /// drum_touch.c: blows told as they begin, so that others than the head may sound them.
 ///
-/// The 2009 papers let a blow be heard by any of three techniques: this modal one, signals, or clips
-/// of recorded sound. The others need to know of a blow when it begins, not when it is over and its
-/// force known; so what is told is where, how fast, and at what pitch the head is tuned. Contact,
-/// head and body are the same whatever sounds; the head's own sound fades in 10 ms and is there
-/// again, as far as it still rings, when its turn comes.
+/// The 2009 papers let a blow be heard by any of three techniques: this modal one, signals, or
+/// clips of recorded sound. The others need to know of a blow when it begins, not when it is over
+/// and its force known; so what is told is where, how fast, and at what pitch the head is tuned.
+/// Contact, head and body are the same whatever sounds; the head's own sound fades in 10 ms and is
+/// there again, as far as it still rings, when its turn comes.
 #include "drum_state.h"
 
 #include <math.h>

@@ -178,6 +178,12 @@ static bool playable(const chunk *c, const himc_goal *goal)
     return 1.4 * move_time(distance_to(c, goal), HARDEST_MOVE) <= T;
 }
 
+bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
+{
+    chunk c = frame(plan, goal->spot, goal->normal);
+    return playable(&c, goal);
+}
+
 /// A strong rebound with little time left is not fought: the stroke goes as high as the rebound
 /// takes it.
 static void go_with(const chunk *c, double t, himc_gesture *g)

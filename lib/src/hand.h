@@ -49,6 +49,9 @@ HIMC_RT bool himc_hand_room(const himc_hand_plan *plan);
 HIMC_RT double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal);
 HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal);
 
+/// Whether anyone could be there in time.
+HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
+
 /// Appends all up to the end of that stroke's contact. False, and nothing appended, if it cannot be
 /// played.
 HIMC_RT bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal);

@@ -60,8 +60,10 @@ void himc_chunk_rebound(chunk *c, double top, double next)
     double high = g->rebound * g->height;
     if (!c->plan->struck)
         high = h; // a rise that was broken off: only halt it
+    // no higher than the next stroke needs it, unless there is time to bounce freely and sink
+    double spare = fmin(fmax((top - c->lift_end - SINK_TIME) / SINK_TIME, 0), 1);
     if (high > next)
-        high = next;
+        high = next + spare * (high - next);
     high = fmax(high, h + v * 0.09 / 2.2);
     double pull = c->plan->struck ? g->pull : 2.0;
     double T = fmin(fmax(pull * (high - h) / v, 0.08), 0.3);

@@ -266,6 +266,16 @@ static void widen(himc_limit *l, double margin)
     l->radius = at_least(himc_vec3_scale(l->radius, 1 + margin), THINNEST);
 }
 
+void himc_limits_loosen(himc_limits *limits, double least)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_limit *l = &limits->joint[j];
+        l->radius = at_least(l->radius, least);
+        l->upper = at_least(l->upper, least);
+        l->lower = himc_vec3_scale(at_least(himc_vec3_scale(l->lower, -1), least), -1);
+    }
+}
+
 static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int joint,
                         himc_vec3 *tangent)
 {

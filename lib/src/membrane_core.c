@@ -1,7 +1,8 @@
-/// membrane_core.c: a membrane's modes, bank and ears as they follow from its head, rate and pickups.
+/// membrane_core.c: a membrane's modes, bank and ears as they follow from its head, rate and
+/// pickups.
 ///
-/// The arrays whose length is the number of modes are one block of memory, so that another number is
-/// another core, made aside and exchanged. Whatever of head, rate or pickups changes, retuning
+/// The arrays whose length is the number of modes are one block of memory, so that another number
+/// is another core, made aside and exchanged. Whatever of head, rate or pickups changes, retuning
 /// computes oscillators and taps anew from the same tables; the bank keeps energy and phase.
 #include "membrane_state.h"
 
@@ -188,9 +189,10 @@ void himc_membrane_retune(himc_membrane *m)
         himc_membrane_find_tension(m);
 }
 
-// On a slacker head the same energy of bending is a deeper bend, and the film's stretching goes with
-// its fourth power. What would be more than `before` (J) in all is taken back: every mode is bent
-// less, by the root of x, the positive solution of bending x + stretching x^2 = what there is to spend.
+// On a slacker head the same energy of bending is a deeper bend, and the film's stretching goes
+// with its fourth power. What would be more than `before` (J) in all is taken back: every mode is
+// bent less, by the root of x, the positive solution of bending x + stretching x^2 = what there is
+// to spend.
 void himc_membrane_keep_energy(himc_membrane *m, double before)
 {
     himc_bank *bank = m->core.bank;

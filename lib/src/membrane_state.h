@@ -1,5 +1,5 @@
-/// membrane_state.h: what a membrane is made of; shared by membrane_core.c (how that follows from its
-/// head), membrane.c (what it is and how it changes) and membrane_step.c (how it moves).
+/// membrane_state.h: what a membrane is made of; shared by membrane_core.c (how that follows from
+/// its head), membrane.c (what it is and how it changes) and membrane_step.c (how it moves).
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H
 

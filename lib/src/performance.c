@@ -71,7 +71,7 @@ static void set_course(himc_performance *p, double t)
         place[hand] = attention(p, (himc_hand)hand, t);
     p->course.from = bearing_at(p, t);
     p->course.goal = himc_posture_bearing(place, p->grip);
-    if (p->track && p->manner_known[HIMC_TRUNK - 1]) {
+    if (p->track && p->manner_known[HIMC_TRUNK - 1] && !p->has_habit) {
         p->course.goal.value[HIMC_BEARING_TURN] = p->bearing.value[HIMC_BEARING_TURN];
         p->course.goal.value[HIMC_BEARING_LEAN] = p->bearing.value[HIMC_BEARING_LEAN];
     }
@@ -325,6 +325,13 @@ bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_err
     return true;
 }
 
+// how far a place is from where that tip can be
+static double beyond_reach(const void *performance, himc_hand hand, himc_vec3 place)
+{
+    const himc_performance *p = performance;
+    return himc_vec3_length(himc_vec3_sub(place, himc_posture_reachable(&p->posture, hand, place)));
+}
+
 static bool config_valid(const himc_performance_config *c, himc_error *error)
 {
     return himc_check_range("sample rate", c->sample_rate, 8000, 192000, "Hz", error) &&
@@ -351,6 +358,8 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
     p->last_beat = -1;
     himc_planner_config planning = himc_planner_default();
     planning.mallet_radius = p->body.mallet_radius;
+    planning.beyond = beyond_reach;
+    planning.body = p;
     p->planner = himc_planner_new(&planning, error);
     p->posture.level = planning.rest[HIMC_RIGHT].z - 0.12;
     himc_performance_forget_touch(p);

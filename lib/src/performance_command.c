@@ -11,83 +11,6 @@
 #define LONGEST_DELAY 8192       // samples
 #define LONGEST_RECORDING 1200.0 // (s)
 
-static int find_drum(const himc_performance *p, const char *name)
-{
-    for (int i = 0; i < p->drums; i++)
-        if (strcmp(himc_drum_name(p->drum[i].drum), name) == 0)
-            return i;
-    return -1;
-}
-
-static bool put_drum(himc_performance *p, himc_drum *drum, bool silent, int *index,
-                     himc_error *error)
-{
-    int i = find_drum(p, himc_drum_name(drum));
-    if (i < 0 && p->drums == HIMC_DRUMS)
-        return himc_error_set(error, "drum %s: a performer plays on %d drums at most",
-                              himc_drum_name(drum), HIMC_DRUMS);
-    if (i < 0)
-        i = p->drums++;
-    else
-        himc_drum_release(p->drum[i].drum);
-    p->drum[i] = (slot){.drum = drum, .silent = silent, .revision = himc_drum_revision(drum) - 1};
-    himc_performance_notice_drums(p);
-    *index = i;
-    return true;
-}
-
-static bool make_drum(himc_performance *p, const char *name, double inches, bool silent, int *index,
-                      himc_error *error)
-{
-    himc_drum *drum = himc_drum_new(name, inches, p->config.sample_rate, error);
-    if (!drum)
-        return false;
-    if (put_drum(p, drum, silent, index, error))
-        return true;
-    himc_drum_release(drum);
-    return false;
-}
-
-bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
-                                  himc_error *error)
-{
-    *index = name[0] ? find_drum(p, name) : 0;
-    if (*index >= 0 && *index < p->drums)
-        return true;
-    if (!make_drum(p, name[0] ? name : "drum", 23, true, index, error))
-        return false;
-    himc_performance_note(p, "no drum %s: playing on a silent one",
-                          himc_drum_name(p->drum[*index].drum));
-    return true;
-}
-
-bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error *error)
-{
-    int index;
-    if (put_drum(p, himc_drum_retain(drum), false, &index, error))
-        return true;
-    himc_drum_release(drum);
-    return false;
-}
-
-// strokes name their drum by its slot, so a drum that leaves is replaced by a silent one of its
-// name
-void himc_performance_remove_drum(himc_performance *p, const char *name)
-{
-    int i = find_drum(p, name), index;
-    char kept[HIMC_NAME_SIZE];
-    if (i < 0)
-        return;
-    snprintf(kept, sizeof kept, "%s", name);
-    if (!make_drum(p, kept, 23, true, &index, NULL))
-        himc_performance_note(p, "drum %s: out of memory for a silent one", kept);
-}
-
-himc_drum *himc_performance_drum(himc_performance *p, int index)
-{
-    return index >= 0 && index < p->drums ? p->drum[index].drum : NULL;
-}
-
 // which of the words, which the parser has checked
 int himc_performance_word(const char *word, const char *const *words, int count)
 {
@@ -312,15 +235,6 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     return true;
 }
 
-static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    int index;
-    if (!p->make_drums || find_drum(p, c->atom[0].symbol) >= 0)
-        return true; // in Pd each [membrane~ NAME] is one
-    return make_drum(p, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : 23, false, &index,
-                     error);
-}
-
 static bool do_info(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)p, (void)c, (void)error; // answered by whoever asked, with himc_performance_describe
@@ -367,7 +281,7 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_PUSH] = himc_performance_do_push,
     [HIMC_COMMAND_INFO] = do_info,
     [HIMC_COMMAND_RESET] = do_reset,
-    [HIMC_COMMAND_MAKE_DRUM] = do_drum,
+    [HIMC_COMMAND_MAKE_DRUM] = himc_performance_do_drum,
     [HIMC_COMMAND_SUBSCRIBE] = do_network,
     [HIMC_COMMAND_UNSUBSCRIBE] = do_network,
     [HIMC_COMMAND_LISTEN] = do_network,

@@ -41,20 +41,39 @@ void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *ti
             tip[tap][hand] =
                 himc_performance_planned(p, (himc_hand)hand, tick->time + tap * HIMC_HABIT_STEP);
     himc_posture_motion natural = tick->posture;
+    if (p->track && p->manner_known[HIMC_TRUNK - 1]) { // it bears itself as the player already
+        himc_quat *trunk = &tick->posture.joint[HIMC_TRUNK - 1];
+        himc_quat back = himc_quat_conj(p->habit.player.mean.joint[HIMC_TRUNK - 1]);
+        *trunk = himc_quat_mul(p->habit.player.usual, himc_quat_mul(back, *trunk));
+    }
     himc_habit_moving(&p->habit, (const himc_target(*)[HIMC_HANDS])tip, &tick->posture);
     if (share.x.x < 1)
         for (int j = 0; j < HIMC_JOINTS; j++)
             blend(&natural, share, j, &tick->posture);
 }
 
+void himc_performance_fit_habit(himc_performance *p)
+{
+    himc_pose pose;
+    himc_posture held = p->posture;
+    const himc_vec3 tip[HIMC_HANDS] = {p->from.tip[HIMC_LEFT].x, p->from.tip[HIMC_RIGHT].x};
+    if (!p->has_habit || !p->track || !p->manner_known[HIMC_TRUNK - 1])
+        return;
+    held.bearing = p->bearing;
+    himc_posture_at(&held, tip, &pose);
+    p->habit.player.usual = pose.joint[HIMC_TRUNK - 1];
+}
+
 void himc_performance_set_habit(himc_performance *p, const himc_habit *habit)
 {
     double t = step_time(p);
+    p->habit_of_take = false;
     if (habit)
         p->habit = *habit;
-    if (p->has_habit == (habit != NULL))
-        return;
-    p->has_habit = habit != NULL;
-    p->habit_since = t;
-    p->replan = true;
+    if (p->has_habit != (habit != NULL)) {
+        p->has_habit = habit != NULL;
+        p->habit_since = t;
+        p->replan = true;
+    }
+    himc_performance_fit_habit(p);
 }

@@ -8,7 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MARGIN 0.05         // beyond what a take shows
+#define MARGIN 0.05         // beyond what a take shows ...
+#define LEAST 0.05          // ... and this far whatever it shows (rad)
 #define HIGHEST_STROKE 0.35 // tips in the mean posture go from the head up to here (m)
 #define HEIGHTS 8
 
@@ -42,7 +43,12 @@ void himc_performance_renew_limits(himc_performance *p)
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error)
 {
-    return !player->pose || himc_limits_learn(learned, player->pose, player->frames, MARGIN, error);
+    if (!player->pose)
+        return true;
+    if (!himc_limits_learn(learned, player->pose, player->frames, MARGIN, error))
+        return false;
+    himc_limits_loosen(learned, LEAST);
+    return true;
 }
 
 bool himc_performance_do_limits(himc_performance *p, const himc_command *c, himc_error *error)

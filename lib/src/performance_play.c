@@ -1,9 +1,7 @@
-/// performance_play.c: the commands that say what to play: strokes and hits, transport, scores,
-/// takes, units of motion, live targets.
+/// performance_play.c: the commands that say what to play: strokes and hits, transport, units of
+/// motion, live targets. Scores and takes have files of their own.
 ///
-/// Files are read here and now; what comes of them is given to the planner or the track. A score
-/// is checked as a whole before any of it is played, and while one plays the next one's beats are
-/// put behind its own.
+/// Files are read here and now; what comes of them is given to the planner or the track.
 #include "performance_state.h"
 
 #include <string.h>
@@ -18,7 +16,7 @@ bool himc_performance_do_loop(himc_performance *p, const himc_command *c, himc_e
     return true;
 }
 
-static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
     return himc_performance_ensure_drum(p, stroke->drum, &drum, error) &&
@@ -28,7 +26,7 @@ static bool add_stroke(himc_performance *p, const himc_stroke *stroke, himc_erro
 bool himc_performance_do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
 {
     p->replan = true;
-    return add_stroke(p, &c->stroke, error);
+    return himc_performance_add_stroke(p, &c->stroke, error);
 }
 
 bool himc_performance_do_hit(himc_performance *p, const himc_command *c, himc_error *error)
@@ -36,6 +34,7 @@ bool himc_performance_do_hit(himc_performance *p, const himc_command *c, himc_er
     int drum;
     if (!himc_performance_ensure_drum(p, c->stroke.drum, &drum, error))
         return false;
+    himc_performance_tell_places(p);
     double now = step_time(p), at = himc_planner_hit(p->planner, now, &c->stroke, drum);
     if (isfinite(at)) {
         p->hit_latency = at - now;
@@ -64,6 +63,8 @@ void himc_performance_drop_track(himc_performance *p)
     p->track_start = INFINITY;
     p->has_learned = false;
     himc_performance_renew_limits(p);
+    if (p->habit_of_take)
+        himc_performance_set_habit(p, NULL);
 }
 
 bool himc_performance_do_clear(himc_performance *p, const himc_command *c, himc_error *error)
@@ -93,6 +94,9 @@ bool himc_performance_do_play(himc_performance *p, const himc_command *c, himc_e
     (void)c;
     if (!himc_performance_ensure_drum(p, "", &index, error))
         return false;
+    himc_performance_tell_places(p);
+    if (!p->track && himc_planner_length(p->planner) <= 0)
+        himc_performance_note(p, "play: nothing to play: no strokes, no take");
     p->piece_start = step_time(p);
     if (p->track)
         start_track(p, p->piece_start);
@@ -120,53 +124,6 @@ bool himc_performance_do_seek(himc_performance *p, const himc_command *c, himc_e
     himc_planner_seek(p->planner, step_time(p), c->atom[0].number);
     p->replan = true;
     return true;
-}
-
-// a line of a score that is not a stroke: for the performer or one of its drums
-static bool run_line(himc_performance *p, const himc_score_line *line, himc_error *error)
-{
-    int index;
-    if (!line->drum[0])
-        return himc_performance_command(p, &line->command, 0, error);
-    return himc_performance_ensure_drum(p, line->drum, &index, error) &&
-           himc_drum_command(p->drum[index].drum, &line->command, error);
-}
-
-static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
-                            himc_error *error)
-{
-    for (int i = 0; i < score->line_count; i++)
-        if (!run_line(p, &score->lines[i], error))
-            return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
-    himc_performance_notice_drums(p);
-    // while one is played the next one waits for its end
-    bool queued = p->playing && !p->track;
-    if (!queued)
-        himc_planner_clear(p->planner);
-    double from = queued ? himc_planner_next_start(p->planner, step_time(p)) : 0;
-    if (!himc_planner_append_tempi(p->planner, score->tempi, score->tempo_count, from, error))
-        return himc_error_prefix(error, "%s", path);
-    for (int i = 0; i < score->stroke_count; i++) {
-        himc_stroke stroke = score->strokes[i];
-        stroke.beat += from;
-        if (!add_stroke(p, &stroke, error))
-            return himc_error_prefix(error, "%s", path);
-    }
-    return true;
-}
-
-bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    const char *path = c->atom[0].symbol;
-    himc_score *score = himc_score_load(path, error);
-    if (!score)
-        return false;
-    bool ok = fill_from_score(p, score, path, error);
-    himc_score_free(score);
-    if (ok)
-        himc_performance_drop_track(p);
-    p->replan = true;
-    return ok;
 }
 
 // a tip is sent no further into a head than this

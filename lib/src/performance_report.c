@@ -101,11 +101,17 @@ static void watch_beats(himc_performance *p, double t)
     p->last_beat = whole;
 }
 
-void himc_performance_watch(himc_performance *p, double t)
+static void say_notes(himc_performance *p)
 {
     himc_planner_note note;
     while (himc_planner_note_next(p->planner, &note))
         himc_performance_note(p, "%s", note.text);
+}
+
+void himc_performance_watch(himc_performance *p, double t)
+{
+    p->strokes += himc_planner_given_up(p->planner);
+    say_notes(p);
     watch_beats(p, t);
     double end =
         p->track ? p->track_start + himc_track_length(p->track) : himc_planner_end(p->planner);
@@ -113,6 +119,8 @@ void himc_performance_watch(himc_performance *p, double t)
     if (p->playing && t >= end && !touching) {
         himc_event event = {.kind = HIMC_EVENT_DONE};
         p->playing = false;
+        himc_planner_sum_up(p->planner);
+        say_notes(p);
         himc_performance_emit(p, &event);
     }
 }

@@ -1,8 +1,9 @@
-/// performance_state.h: what a performance holds, shared by the nine files that are its rooms:
-/// performance.c (the step), performance_touch.c (sticks on heads), performance_command.c,
-/// performance_play.c and performance_take.c (what is asked), performance_habit.c (how the arms go
-/// with it), performance_limits.c (how far joints turn and how strong they are),
-/// performance_push.c (who pushes), performance_report.c (what is told).
+/// performance_state.h: what a performance holds, shared by the files that are its rooms:
+/// performance.c (the step), performance_touch.c (sticks on heads), performance_drums.c (what is
+/// struck), performance_command.c, performance_play.c, performance_score.c and performance_take.c
+/// (what is asked), performance_habit.c (how the arms go with it), performance_limits.c (how far
+/// joints turn and how strong they are), performance_push.c (who pushes), performance_report.c
+/// (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -23,6 +24,7 @@
 typedef struct slot {
     himc_drum *drum;
     bool silent;
+    bool beside; // it stands where there was room, and the user does not know yet
     unsigned revision;
 } slot;
 
@@ -70,6 +72,7 @@ struct himc_performance {
     himc_bearing bearing;           // the mean of the trunk in the take
     himc_habit habit;               // what the null space is for instead of the posture, in `himc`
     bool has_habit;
+    bool habit_of_take; // it goes with the take
     double habit_since; // when it was set or dropped (s)
     himc_grip grip;
     struct {
@@ -157,6 +160,9 @@ void himc_performance_notice_drums(himc_performance *p);
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
 
 // performance_habit.c
+/// A take's player bears himself as the take has it, not as the strokes ask: from there the habit's
+/// trunk departs.
+void himc_performance_fit_habit(himc_performance *p);
 void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *tick);
 
 // performance_touch.c
@@ -173,14 +179,22 @@ typedef bool performance_action(himc_performance *p, const himc_command *command
 /// Which of the words it is; the parser has checked that it is one.
 int himc_performance_word(const char *word, const char *const *words, int count);
 void himc_performance_run_due_commands(himc_performance *p);
+
+// performance_score.c
+performance_action himc_performance_do_score;
+
+// performance_drums.c
+performance_action himc_performance_do_drum;
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
                                   himc_error *error);
+void himc_performance_tell_places(himc_performance *p);
 
 // performance_play.c
+bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
 performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_performance_do_hit,
     himc_performance_do_tempo, himc_performance_do_clear, himc_performance_do_play,
-    himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_score,
-    himc_performance_do_target, himc_performance_do_units;
+    himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_target,
+    himc_performance_do_units;
 void himc_performance_drop_track(himc_performance *p);
 
 // performance_take.c
@@ -191,7 +205,7 @@ void himc_performance_posture(const himc_performance *p, double t,
 
 // performance_limits.c
 performance_action himc_performance_do_limits, himc_performance_do_strength;
-bool himc_performance_find_joint(const himc_command *command, const char *name, int *joint,
+bool himc_performance_find_joint(const himc_command *c, const char *command, int *joint,
                                  himc_error *error);
 /// Whose limits they are may have changed: the body, the drum's place, the take.
 void himc_performance_renew_limits(himc_performance *p);

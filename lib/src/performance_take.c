@@ -3,9 +3,10 @@
 ///
 /// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known, and
 /// the null space has the natural posture, with neck, head, legs and the trunk's mean as this
-/// player holds them.
+/// player holds them; of a take that shows both arms, their means with the usual habit about them.
 #include "performance_state.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // says how much of a take the player cannot follow; the arm then stretches towards it
@@ -63,6 +64,8 @@ static void adopt_manner(himc_performance *p, const himc_player *player)
 {
     memcpy(p->manner_known, player->known, sizeof p->manner_known);
     p->manner = player->mean;
+    // one seated by the shoulders has them where they were seen with this trunk only
+    p->manner_known[HIMC_TRUNK - 1] = player->known[HIMC_TRUNK - 1] || player->placed;
     himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
     himc_vec3 up = himc_quat_rotate(q, himc_vec3_make(0, 0, 1)),
               left = himc_quat_rotate(q, himc_vec3_make(0, 1, 0));
@@ -93,6 +96,51 @@ static bool adopt_player(himc_performance *p, const himc_player *player, const c
     return true;
 }
 
+// says how many strikes of a take are on none of the drum it is played on
+static void note_outside(himc_performance *p, himc_take *take, const himc_track *track,
+                         const himc_drum *drum, const char *path)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_error ignored;
+    const himc_place *place = himc_drum_place(drum);
+    if (!himc_take_tips(take, &p->take_options, tips, &ignored))
+        return;
+    int count = himc_take_strikes(take, tips, NULL, 0), outside = 0;
+    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
+    count = strikes ? himc_take_strikes(take, tips, strikes, count) : 0;
+    for (int i = 0; i < count; i++) {
+        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(track));
+        himc_vec3 local = himc_place_from_world(place, at);
+        outside += hypot(local.x, local.y) > place->radius;
+    }
+    free(strikes);
+    if (outside > 0)
+        himc_performance_note(p, "%s: %d of %d strikes are beside drum %s: a take is played on one",
+                              path, outside, count, himc_drum_name(drum));
+}
+
+// of both arms, hands and sticks included
+static bool shows_arms(const himc_player *player)
+{
+    bool all = player->pose && !player->walks && player->known[HIMC_TRUNK - 1];
+    for (int i = 0; i < HIMC_HANDS * HIMC_ARM_JOINTS; i++)
+        all = all && player->known[himc_arm_joint((himc_hand)(i % 2), i / 2)];
+    return all;
+}
+
+// the usual habit about this player's means, unless another has been set
+static void adopt_habit(himc_performance *p, const himc_player *player, const himc_take *take)
+{
+    himc_habit habit;
+    himc_habit_take seen = {&p->skeleton, player->pose, player->frames, himc_take_rate(take)};
+    if (p->has_habit && !p->habit_of_take)
+        return;
+    himc_habit_usual(&habit);
+    bool met = shows_arms(player) && himc_habit_meet(&habit.player, &seen, 1, NULL);
+    himc_performance_set_habit(p, met ? &habit : NULL);
+    p->habit_of_take = met;
+}
+
 static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
                       himc_error *error)
 {
@@ -113,12 +161,15 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     }
     himc_performance_notice_drums(p);
     note_reach(p, track, path);
+    note_outside(p, take, track, p->drum[drum].drum, path);
     himc_performance_drop_track(p);
     p->track = track;
     p->has_learned = player->pose != NULL;
     if (p->has_learned)
         p->learned = learned;
     himc_performance_renew_limits(p);
+    adopt_habit(p, player, take);
+    himc_performance_fit_habit(p);
     p->replan = true;
     return true;
 }

@@ -149,10 +149,13 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
     double turn = h->round * himc_planner_turn(planner);
     if (at < h->next && himc_planner_time_of(planner, h->list[at].stroke.beat) + turn > h->plan.end)
         h->next = at;
-    else if (at < h->next && !planner->loop)
+    else if (at < h->next && !planner->loop) {
+        planner->given_up++;
+        planner->left++;
         himc_planner_say(planner, PLANNER_GIVEN_UP,
                          "stroke at beat %g %s: given up, that beat is past",
                          h->list[at].stroke.beat, himc_hand_name(hand));
+    }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
@@ -165,7 +168,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     if (planner->playing)
         himc_planner_rebase(planner, planner->now);
     memmove(h->list + at + 1, h->list + at, (size_t)(h->count - at) * sizeof *h->list);
-    h->list[at] = (planner_stroke){*stroke, drum};
+    h->list[at] = (planner_stroke){*stroke, drum, 0};
     h->count++;
     fit_in(planner, stroke->hand, at);
     return true;
@@ -252,14 +255,17 @@ void himc_planner_clear(himc_planner *planner)
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     planner->beat = 0;
-    planner->said = 0;
+    himc_planner_forget_said(planner);
 }
 
-void himc_planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
+void himc_planner_forget_said(himc_planner *planner)
 {
-    if (planner->said & (1u << kind))
-        return;
-    planner->said |= 1u << kind;
+    memset(planner->said, 0, sizeof planner->said);
+    planner->smaller = planner->lent = planner->left = 0;
+}
+
+static void put_note(himc_planner *planner, const char *format, va_list args)
+{
     if (planner->note_count == PLANNER_NOTES) {
         himc_planner_note *last =
             &planner->note[(planner->note_first + PLANNER_NOTES - 1) % PLANNER_NOTES];
@@ -268,10 +274,42 @@ void himc_planner_say(himc_planner *planner, planner_kind kind, const char *form
         return;
     }
     int at = (planner->note_first + planner->note_count++) % PLANNER_NOTES;
+    vsnprintf(planner->note[at].text, sizeof planner->note[at].text, format, args);
+}
+
+void himc_planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
+{
+    if (planner->said[kind]++ > 0)
+        return;
     va_list args;
     va_start(args, format);
-    vsnprintf(planner->note[at].text, sizeof planner->note[at].text, format, args);
+    put_note(planner, format, args);
     va_end(args);
+}
+
+int himc_planner_given_up(himc_planner *planner)
+{
+    int count = planner->given_up;
+    planner->given_up = 0;
+    return count;
+}
+
+static void note(himc_planner *planner, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void note(himc_planner *planner, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    put_note(planner, format, args);
+    va_end(args);
+}
+
+void himc_planner_sum_up(himc_planner *planner)
+{
+    if (planner->smaller + planner->lent + planner->left > 1)
+        note(planner, "in all %d strokes smaller, %d by the other hand, %d given up",
+             planner->smaller, planner->lent, planner->left);
 }
 
 bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note)

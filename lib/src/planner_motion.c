@@ -11,7 +11,6 @@
 #define EARLY 0.03     // a touch may come this much before its time (s)
 #define AFTERGLOW 0.05 // and is the current one until this much after (s)
 #define REBOUND 0.12   // a rise within this time of a touch is its rebound (s)
-#define HIT_GAP 0.12   // between a hit and its neighbours (s)
 #define SMALL 0.6      // a stroke smaller than this share of its height is worth a word
 #define MOST_TRIES 32
 
@@ -69,6 +68,15 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     return goal;
 }
 
+/// A lent stroke keeps its beat, a hit its time.
+static double hit_time(const himc_planner *planner, const planner_touch *hit)
+{
+    if (!hit->lent)
+        return hit->goal.time;
+    double begun = hit->round == 0 ? 0 : hit->round * himc_planner_turn(planner);
+    return begun + himc_planner_time_of(planner, hit->stroke.beat);
+}
+
 /// The first stroke, of the score or a hit, that is not planned yet.
 static bool next_touch(himc_planner *planner, himc_hand hand, planner_touch *touch)
 {
@@ -76,9 +84,10 @@ static bool next_touch(himc_planner *planner, himc_hand hand, planner_touch *tou
     int index = 0, round = 0;
     double t = HUGE_VAL;
     const planner_stroke *s = himc_planner_next(planner, h, 0, &index, &round, &t);
-    if (h->hits > 0 && h->hit[0].goal.time < t) {
+    if (h->hits > 0 && hit_time(planner, &h->hit[0]) < t) {
         *touch = h->hit[0];
-        touch->goal = himc_planner_goal(planner, &touch->stroke, touch->drum, touch->goal.time);
+        touch->goal =
+            himc_planner_goal(planner, &touch->stroke, touch->drum, hit_time(planner, touch));
         return true;
     }
     if (!s)
@@ -105,38 +114,51 @@ static double last_time(const planner_hand *h)
     return h->touches > 0 ? h->touch[h->touches - 1].goal.time : -HUGE_VAL;
 }
 
-static void say_given_up(himc_planner *planner, const planner_touch *touch)
-{
-    const char *hand = himc_hand_name(touch->stroke.hand);
-    if (touch->index < 0)
-        himc_planner_say(planner, PLANNER_GIVEN_UP, "hit %s: given up, no time to prepare it",
-                         hand);
-    else
-        himc_planner_say(planner, PLANNER_GIVEN_UP,
-                         "stroke at beat %g %s: given up, no time to prepare it",
-                         touch->stroke.beat, hand);
-}
-
-static void say_smaller(himc_planner *planner, const planner_touch *touch, double since)
+/// Whether the stroke, just planned, is much smaller than written.
+static bool is_small(himc_planner *planner, const planner_touch *touch, double since)
 {
     double high = planner->hand[touch->stroke.hand].plan.last.gesture.height;
-    if (touch->index >= 0 && since < 1 && high < SMALL * touch->goal.gesture.height)
-        himc_planner_say(planner, PLANNER_SMALLER,
-                         "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
-                         touch->stroke.beat, himc_hand_name(touch->stroke.hand), since, high);
+    if (touch->index < 0 || since >= 1 || high >= SMALL * touch->goal.gesture.height)
+        return false;
+    himc_planner_say(planner, PLANNER_SMALLER,
+                     "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
+                     touch->stroke.beat, himc_hand_name(touch->stroke.hand), since, high);
+    return true;
+}
+
+static bool is_settled(const himc_planner *planner, const planner_touch *touch)
+{
+    const planner_hand *h = &planner->hand[touch->stroke.hand];
+    return touch->index >= 0 &&
+           h->list[touch->index].settled == himc_planner_turn_name(planner, touch->round);
+}
+
+/// A stroke that cannot follow the one just planned goes to the other hand while that has time.
+static void look_ahead(himc_planner *planner, himc_hand hand)
+{
+    const planner_hand *h = &planner->hand[hand];
+    planner_touch next;
+    if (!next_touch(planner, hand, &next) || next.index < 0 || is_settled(planner, &next) ||
+        himc_planner_too_far(planner, &next))
+        return;
+    if (!himc_hand_can_strike(&h->plan, &next.goal))
+        himc_planner_no_time(planner, &next);
 }
 
 static void plan_touch(himc_planner *planner, planner_hand *h, planner_touch *touch)
 {
     double since = touch->goal.time - last_time(h);
     consume(h, touch);
+    if (is_settled(planner, touch) || himc_planner_too_far(planner, touch))
+        return;
     if (h->touches == PLANNER_TOUCHES || !himc_hand_strike(&h->plan, &touch->goal)) {
-        say_given_up(planner, touch);
+        himc_planner_no_time(planner, touch);
         return;
     }
-    say_smaller(planner, touch, since);
+    touch->small = is_small(planner, touch, since);
     h->touch[h->touches] = *touch;
     h->touch[h->touches++].goal = h->plan.last;
+    look_ahead(planner, touch->stroke.hand);
 }
 
 void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)
@@ -233,58 +255,12 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);
     if (h->touches > 0) {
         planner_touch *last = &h->touch[h->touches - 1];
+        planner->smaller += last->small && !last->parted;
         last->parted = true;
         h->plan.last = last->goal;
         h->plan.struck = t - last->goal.time < REBOUND;
     }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-}
-
-/// Moves a hit's time behind any stroke that is too near; false if there is no gap.
-static bool find_gap(const himc_planner *planner, const planner_hand *h, double *t)
-{
-    for (int tries = 0; tries < MOST_TRIES; tries++) {
-        double clash = -HUGE_VAL;
-        for (int i = 0; i < h->hits; i++)
-            if (fabs(h->hit[i].goal.time - *t) < HIT_GAP)
-                clash = fmax(clash, h->hit[i].goal.time);
-        for (int i = 0; i < MOST_TRIES; i++) {
-            int index, round;
-            double scored;
-            if (!himc_planner_next(planner, h, i, &index, &round, &scored) || scored > *t + HIT_GAP)
-                break;
-            if (scored > *t - HIT_GAP)
-                clash = fmax(clash, scored);
-        }
-        if (clash == -HUGE_VAL)
-            return true;
-        *t = clash + 1.01 * HIT_GAP;
-    }
-    return false;
-}
-
-double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke, int drum)
-{
-    planner_hand *h = &planner->hand[stroke->hand];
-    if (drum < 0 || drum >= HIMC_DRUMS || !isfinite(t))
-        return HUGE_VAL;
-    himc_planner_cut(planner, stroke->hand, t);
-    planner_touch hit = {.stroke = *stroke, .drum = drum, .index = -1};
-    hit.goal = himc_planner_goal(planner, stroke, drum, t);
-    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal);
-    if (h->hits == PLANNER_HITS || !find_gap(planner, h, &touch)) {
-        himc_planner_say(planner, PLANNER_CROWDED, "hit %s: given up, others are waiting",
-                         himc_hand_name(stroke->hand));
-        touch = HUGE_VAL;
-    } else {
-        hit.goal.time = touch;
-        int i = h->hits++;
-        for (; i > 0 && h->hit[i - 1].goal.time > touch; i--)
-            h->hit[i] = h->hit[i - 1];
-        h->hit[i] = hit;
-    }
-    himc_planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
-    return touch;
 }
 
 /// Until when a touch is the current one, given the next.

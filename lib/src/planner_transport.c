@@ -72,11 +72,14 @@ double himc_planner_beat_at(const himc_planner *planner, double t)
 void himc_planner_rebase(himc_planner *planner, double t)
 {
     int round = round_at(planner, t);
+    planner->beginning += round != 0;
     planner->origin += round * himc_planner_turn(planner);
     planner->rounds -= round;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_hand *h = &planner->hand[hand];
         h->round -= round;
+        for (int i = 0; i < h->hits; i++)
+            h->hit[i].round -= round;
         for (int i = 0; i < h->touches; i++)
             h->touch[i].round -= round;
     }
@@ -147,6 +150,7 @@ static double lateness(himc_planner *planner)
 static void start(himc_planner *planner, double t)
 {
     planner->playing = true;
+    planner->beginning++;
     planner->rounds = 0;
     planner->origin = t - himc_score_seconds(planner->tempi, planner->tempo_count, planner->beat);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -166,7 +170,7 @@ void himc_planner_play(himc_planner *planner, double t)
         return;
     if (planner->playing || planner->beat > last_beat(planner))
         planner->beat = 0;
-    planner->said = 0;
+    himc_planner_forget_said(planner);
     cut_both(planner, t);
     start(planner, t);
 }

@@ -1,13 +1,14 @@
-/// player.c: measures, and where to sit.
+/// player.c: measures, and where the player is.
 ///
-/// Lengths are medians over the frames of the distance of two joint centres, so that gaps and a few
-/// bad frames do not count. Arms and legs are measured side by side; what only one side shows holds
-/// for the other, since players are nearly symmetric and a capture of one hand is common. Height: de
-/// Leva's man of 1.741 m has legs, trunk and neck of known lengths; the player is as much taller as
-/// those the take shows are longer together (else the arms). Mass: what the file says, else the body
-/// mass index of the given body.
+/// Lengths are medians over the frames of the distance of two joint centres, so that gaps and a
+/// few bad frames do not count. Arms and legs are measured side by side; what only one side shows
+/// holds for the other, since players are nearly symmetric and a capture of one hand is common.
+/// Height: de Leva's man of 1.741 m has legs and trunk of known lengths; the player is as much
+/// taller as those the take shows are longer together (else the arms). Mass: what the file says,
+/// else the body mass index of the given body.
 #include "himc/player.h"
 
+#include "player_check.h"
 #include "player_pose.h"
 #include "take_data.h"
 
@@ -15,72 +16,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REFERENCE_HEIGHT 1.741  // de Leva 1996 (m)
-#define REFERENCE_PELVIS 0.1457 // hips to waist (m)
-#define REFERENCE_TORSO 0.5319  // hips to neck (m)
-#define LEAST 0.5               // of the reference: shorter and longer segments are not believed
-#define MOST 1.6
-#define WALK 0.15 // of the hips, RMS (m)
+#define REFERENCE_HEIGHT 1.741 // de Leva 1996 (m)
+#define WALK 0.15              // of the hips, RMS (m)
 
-typedef struct measure {
-    int segment; // of the left side
-    player_point from, to;
-    double usual;    // (m), at the reference height
-    bool tells_size; // of the body: sticks and hands do not
-} measure;
-
-static const measure limbs[] = {
-    {HIMC_LEFT_UPPER_ARM, POINT_SHOULDER, POINT_ELBOW, 0.2817, true},
-    {HIMC_LEFT_FOREARM, POINT_ELBOW, POINT_WRIST, 0.2689, true},
-    {HIMC_LEFT_HAND, POINT_WRIST, POINT_GRIP, 0.12, false},
-    {HIMC_LEFT_STICK, POINT_GRIP, POINT_TIP, 0.24, false},
-    {HIMC_LEFT_UPPER_LEG, POINT_HIP, POINT_KNEE, 0.4222, true},
-    {HIMC_LEFT_LOWER_LEG, POINT_KNEE, POINT_ANKLE, 0.434, true},
-};
-static const measure spine[] = {
-    {HIMC_PELVIS, POINT_HIPS, POINT_WAIST, REFERENCE_PELVIS, true},
-    {HIMC_TRUNK, POINT_WAIST, POINT_NECK, 0.3862, true},
-    {HIMC_NECK, POINT_NECK, POINT_HEAD, 0.0696, false},
-};
-#define COUNT(table) (sizeof(table) / sizeof(table)[0])
-
-static double plausible(double length, double usual)
-{
-    return length >= LEAST * usual && length <= MOST * usual ? length : 0;
-}
-
-// most of the limbs of no human size: a file in a unit nobody has told of
-static bool check_size(const player_points *p, himc_error *error)
-{
-    int good = 0, bad = 0;
-    const measure *first = NULL;
-    double length = 0;
-    for (size_t i = 0; i < COUNT(limbs); i++)
-        for (int hand = 0; hand < HIMC_HANDS && limbs[i].tells_size; hand++) {
-            double l = himc_player_distance(p, (int)limbs[i].from + hand, (int)limbs[i].to + hand);
-            bool fits = plausible(l, limbs[i].usual) > 0;
-            good += fits;
-            bad += l > 0 && !fits;
-            if (l > 0 && !fits && !first) {
-                first = &limbs[i];
-                length = l;
-            }
-        }
-    if (bad <= good)
-        return true;
-    return himc_error_set(error,
-                          "%s: player: %s of %.3g m, allowed %.2f .. %.2f m: is the unit right?",
-                          p->take->file, himc_segment_name(first->segment), length,
-                          LEAST * first->usual, MOST * first->usual);
-}
-
-static void measure_limb(const player_points *p, const measure *m, himc_player *player)
+static void measure_limb(const player_points *p, const player_measure *m, himc_player *player)
 {
     double length[HIMC_HANDS];
     himc_skeleton_config *c = &player->config;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        length[hand] =
-            plausible(himc_player_distance(p, (int)m->from + hand, (int)m->to + hand), m->usual);
+        length[hand] = himc_player_plausible(
+            himc_player_distance(p, (int)m->from + hand, (int)m->to + hand, 0.5), m->usual);
         player->lengths += length[hand] > 0;
     }
     double both =
@@ -93,20 +38,22 @@ static void measure_limb(const player_points *p, const measure *m, himc_player *
 
 static void measure_lengths(const player_points *p, himc_player *player)
 {
-    for (size_t i = 0; i < COUNT(limbs); i++)
-        measure_limb(p, &limbs[i], player);
-    for (size_t i = 0; i < COUNT(spine); i++) {
-        double l = plausible(himc_player_distance(p, spine[i].from, spine[i].to), spine[i].usual);
+    for (size_t i = 0; i < PLAYER_LIMBS; i++)
+        measure_limb(p, &himc_player_limbs[i], player);
+    for (size_t i = 0; i < PLAYER_SPINE; i++) {
+        double l = himc_player_plausible(
+            himc_player_distance(p, himc_player_spine[i].from, himc_player_spine[i].to, 0.5),
+            himc_player_spine[i].usual);
         player->lengths += l > 0;
         if (l > 0)
-            player->config.length[spine[i].segment] = l;
+            player->config.length[himc_player_spine[i].segment] = l;
     }
-    double breadth = himc_player_distance(p, POINT_SHOULDER, POINT_SHOULDER + 1);
-    player->config.shoulders = plausible(breadth, 0.37);
+    double breadth = himc_player_distance(p, POINT_SHOULDER, POINT_SHOULDER + 1, 0.5);
+    player->config.shoulders = breadth >= 0.2 ? himc_player_plausible(breadth, 0.37) : 0;
 }
 
 // how much longer than the reference the named parts are together; 0 if none is known
-static double ratio_of(const himc_player *player, const measure *parts, size_t count)
+static double ratio_of(const himc_player *player, const player_measure *parts, size_t count)
 {
     double sum = 0, usual = 0;
     for (size_t i = 0; i < count; i++) {
@@ -122,9 +69,10 @@ static double ratio_of(const himc_player *player, const measure *parts, size_t c
 static bool find_height(const player_points *p, himc_player *player, himc_error *error)
 {
     himc_skeleton_config *c = &player->config;
-    measure parts[4] = {limbs[4], limbs[5], spine[0], spine[1]};
+    player_measure parts[4] = {himc_player_limbs[4], himc_player_limbs[5], himc_player_spine[0],
+                               himc_player_spine[1]};
     double legs = ratio_of(player, parts, 2), torso = ratio_of(player, parts + 2, 2);
-    double arms = ratio_of(player, limbs, 2), all = ratio_of(player, parts, 4);
+    double arms = ratio_of(player, himc_player_limbs, 2), all = ratio_of(player, parts, 4);
     const char *from = legs > 0 && torso > 0 ? "legs and trunk"
                        : legs > 0            ? "legs"
                        : torso > 0           ? "trunk"
@@ -229,7 +177,7 @@ static bool read_player(himc_player *player, player_points *p, himc_error *error
     himc_skeleton skeleton;
     if (!center_hips(p))
         return himc_error_set(error, "%s: no memory", p->take->file);
-    if (!check_size(p, error))
+    if (!himc_player_check(p, player, error))
         return false;
     measure_lengths(p, player);
     if (!find_height(p, player, error) || !himc_skeleton_init(&skeleton, &player->config, error))

@@ -18,7 +18,7 @@
 #define MARKERS 4
 
 typedef struct row {
-    player_point point;
+    int point; // a player_point
     bool sided;
     const char *name[MARKERS];
     const char *beside; // another name that the take must have for this one to mean the centre
@@ -87,41 +87,38 @@ static const row rows[] = {
     {POINT_ANKLE, true, {"ANK"}, NULL, 0},
     {POINT_TOE, true, {"ToeBase"}, NULL, 0},
     {POINT_TOE, true, {"Toe"}, NULL, 0},
-    {POINT_TOE, true, {"Foot_end"}, NULL, 0},
     {POINT_TOE, true, {"Toes"}, NULL, 0},
+    {POINT_TOE, true, {"Foot_end"}, NULL, 0},
+    {POINT_TOE_END, true, {"ToeBase_end"}, NULL, 0},
+    {POINT_HEAD_END, false, {"Head_end"}, NULL, 0},
+    {POINT_HEAD_END, false, {"HeadTop"}, NULL, 0},
+    {POINT_BESIDE + HIMC_NECK, false, {"Neck_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_HEAD, false, {"Head_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_UPPER_ARM, true, {"Arm_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_FOREARM, true, {"ForeArm_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_HAND, true, {"Hand_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_STICK, true, {"Stick_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_UPPER_LEG, true, {"UpLeg_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_LOWER_LEG, true, {"Leg_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_FOOT, true, {"Foot_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_TOES, true, {"ToeBase_side"}, NULL, 0},
 };
 #define ROWS (sizeof rows / sizeof rows[0])
 
-static const char *const joint_words[POINT_COUNT] = {"hips",
-                                                     "waist",
-                                                     "neck",
-                                                     "head",
-                                                     "left shoulder",
-                                                     "right shoulder",
-                                                     "left elbow",
-                                                     "right elbow",
-                                                     "left wrist",
-                                                     "right wrist",
-                                                     "left grip",
-                                                     "right grip",
-                                                     "left tip",
-                                                     "right tip",
-                                                     "left hip",
-                                                     "right hip",
-                                                     "left knee",
-                                                     "right knee",
-                                                     "left ankle",
-                                                     "right ankle",
-                                                     "left toes",
-                                                     "right toes",
-                                                     "left upper arm's side",
-                                                     "right upper arm's side",
-                                                     "left forearm's side",
-                                                     "right forearm's side",
-                                                     "left hand's side",
-                                                     "right hand's side",
-                                                     "left stick's side",
-                                                     "right stick's side"};
+static const char *const words[POINT_BESIDE] = {
+    "hips",           "waist",          "neck",           "head",
+    "left shoulder",  "right shoulder", "left elbow",     "right elbow",
+    "left wrist",     "right wrist",    "left grip",      "right grip",
+    "left tip",       "right tip",      "left hip",       "right hip",
+    "left knee",      "right knee",     "left ankle",     "right ankle",
+    "left toes",      "right toes",     "left toes' end", "right toes' end",
+    "top of the head"};
+
+static const char *word_of(int point)
+{
+    const char *segment = point >= POINT_BESIDE ? himc_segment_name(point - POINT_BESIDE) : "";
+    return point >= POINT_BESIDE ? segment : words[point];
+}
 
 void himc_player_note(himc_player *player, const char *format, ...)
 {
@@ -177,7 +174,7 @@ static bool add_centre(player_points *p, int which, const int *point, int count,
         if (himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) < 0) {
             himc_player_note(player,
                              "%s: %s is missing in frames %d .. %d, allowed are gaps of %g s",
-                             joint_words[which], himc_take_point_name(p->take, point[i]),
+                             word_of(which), himc_take_point_name(p->take, point[i]),
                              himc_take_first_frame(p->take) + gap.begin,
                              himc_take_first_frame(p->take) + gap.end - 1, options->longest_gap);
             shown = false;
@@ -203,7 +200,7 @@ static bool find_centre(player_points *p, int which, int hand, const himc_take_o
     for (size_t i = 0; i < ROWS; i++) {
         int point[MARKERS];
         const row *r = &rows[i];
-        if (which != (int)r->point && !(r->sided && which == (int)r->point + 1))
+        if (which != r->point && !(r->sided && which == r->point + 1))
             continue;
         int count = find_row(p->take, r, hand, point);
         if (count > 0)
@@ -243,7 +240,8 @@ bool himc_player_points_find(player_points *p, himc_take *take, const himc_take_
         return false;
     int lone = present[HIMC_LEFT] && !present[HIMC_RIGHT] ? HIMC_LEFT : HIMC_RIGHT;
     for (int i = 0; i < POINT_COUNT; i++) {
-        bool paired = i >= POINT_SHOULDER;
+        bool paired =
+            i >= POINT_BESIDE + HIMC_LEFT_UPPER_ARM || (i >= POINT_SHOULDER && i < POINT_HEAD_END);
         int hand = paired ? (i - POINT_SHOULDER) % 2 : HIMC_HANDS;
         if (i / 2 == POINT_TIP / 2)
             continue;
@@ -267,7 +265,7 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double himc_player_distance(const player_points *p, int from, int to)
+double himc_player_distance(const player_points *p, int from, int to, double quantile)
 {
     const himc_vec3 *a = p->x[from], *b = p->x[to];
     double *distance = a && b ? malloc((size_t)p->frames * sizeof *distance) : NULL;
@@ -276,7 +274,7 @@ double himc_player_distance(const player_points *p, int from, int to)
     for (int i = 0; i < p->frames; i++)
         distance[i] = himc_vec3_length(himc_vec3_sub(b[i], a[i]));
     qsort(distance, (size_t)p->frames, sizeof *distance, by_size);
-    double median = distance[p->frames / 2];
+    double length = distance[(int)(quantile * p->frames)];
     free(distance);
-    return median;
+    return length;
 }

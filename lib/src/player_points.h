@@ -19,11 +19,10 @@ typedef enum player_point {
     POINT_KNEE = POINT_HIP + 2,
     POINT_ANKLE = POINT_KNEE + 2,
     POINT_TOE = POINT_ANKLE + 2,
-    POINT_BESIDE = POINT_TOE + 2, ///< markers that stand out of the flexion axis: upper arm, ...
-    POINT_BESIDE_FOREARM = POINT_BESIDE + 2,
-    POINT_BESIDE_HAND = POINT_BESIDE_FOREARM + 2,
-    POINT_BESIDE_STICK = POINT_BESIDE_HAND + 2,
-    POINT_COUNT = POINT_BESIDE_STICK + 2
+    POINT_TOE_END = POINT_TOE + 2,
+    POINT_HEAD_END = POINT_TOE_END + 2,
+    POINT_BESIDE = POINT_HEAD_END + 2, ///< beside a segment's joint, along its y: + the segment
+    POINT_COUNT = POINT_BESIDE + HIMC_SEGMENTS
 } player_point;
 
 typedef struct player_points {
@@ -37,8 +36,9 @@ typedef struct player_points {
 bool himc_player_points_find(player_points *points, himc_take *take,
                              const himc_take_options *options, himc_player *player);
 void himc_player_points_free(player_points *points);
-/// Median distance of two centres over the frames (m), 0 if one is not shown.
-double himc_player_distance(const player_points *points, int from, int to);
+/// Quantile (0 .. 0.99, 0.5 the median) of two centres' distance over the frames (m), 0 if one is
+/// not shown.
+double himc_player_distance(const player_points *points, int from, int to, double quantile);
 void himc_player_note(himc_player *player, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

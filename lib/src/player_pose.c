@@ -43,6 +43,7 @@ typedef struct limb_frame {
 
 typedef struct reader {
     const player_points *points;
+    const himc_skeleton *skeleton;
     himc_player *player;
     himc_quat *node; // world rotations of the file's joints, or NULL
     limb_frame frame[LIMBS][HIMC_HANDS];
@@ -165,8 +166,8 @@ static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
         himc_vec3 now = himc_quat_rotate(q, himc_vec3_make(0, 0, -1));
         return himc_quat_unit(himc_quat_mul(swing(now, along), q));
     }
-    int beside = i < HIMC_ARM_JOINTS ? POINT_BESIDE + 2 * i + hand : -1;
-    if (beside >= 0 && r->points->x[beside])
+    int beside = POINT_BESIDE + l->segment + hand;
+    if (r->points->x[beside])
         return frame_along(along, between_points(r, (int)l->from + hand, beside, frame));
     if (l->is_hand)
         return frame_along(along, across_stroke(r, hand, frame));
@@ -212,19 +213,59 @@ static bool has_child(const himc_take *take, int node)
     return false;
 }
 
-// neck, head and feet have only the skeleton's word for it
-static int plain_node(const reader *r, int segment)
+// neck, head and feet: a skeleton's word for it, or a line and a marker beside the joint
+static const struct {
+    int segment;
+    int from, to; // player_points
+} others[] = {{HIMC_NECK, POINT_NECK, POINT_HEAD},
+              {HIMC_HEAD, POINT_HEAD, POINT_HEAD_END},
+              {HIMC_LEFT_FOOT, POINT_ANKLE, POINT_TOE},
+              {HIMC_RIGHT_FOOT, POINT_ANKLE + 1, POINT_TOE + 1},
+              {HIMC_LEFT_TOES, POINT_TOE, POINT_TOE_END},
+              {HIMC_RIGHT_TOES, POINT_TOE + 1, POINT_TOE_END + 1}};
+
+// own direction `own`, across y, to `along`; y as near to `side` as may be
+static himc_quat frame_of(himc_vec3 own, himc_vec3 along, himc_vec3 side)
 {
-    static const player_point points[] = {POINT_NECK, POINT_HEAD};
-    int which = -1;
-    if (segment == HIMC_NECK || segment == HIMC_HEAD)
-        which = (int)points[segment - HIMC_NECK];
-    else if (segment == HIMC_LEFT_FOOT || segment == HIMC_RIGHT_FOOT)
-        which = POINT_ANKLE + segment - HIMC_LEFT_FOOT;
-    else if (segment == HIMC_LEFT_TOES || segment == HIMC_RIGHT_TOES)
-        which = POINT_TOE + segment - HIMC_LEFT_TOES;
-    int node = r->node && which >= 0 ? r->points->node[which] : -1;
-    return node >= 0 && has_child(r->points->take, node) ? node : -1;
+    himc_vec3 y = himc_vec3_madd(side, -himc_vec3_dot(side, along), along), left = {0, 1, 0};
+    if (himc_vec3_length(y) < 1e-6)
+        return swing(own, along);
+    y = himc_vec3_unit(y);
+    himc_mat3 world = himc_mat3_from_axes(along, y, himc_vec3_cross(along, y));
+    himc_mat3 body = himc_mat3_from_axes(own, left, himc_vec3_cross(own, left));
+    return himc_quat_mul(himc_quat_from_mat3(world), himc_quat_conj(himc_quat_from_mat3(body)));
+}
+
+// the direction from a segment's joint to the next, in its frame
+static himc_vec3 own_direction(const himc_skeleton *skeleton, int segment)
+{
+    if (segment == HIMC_LEFT_FOOT || segment == HIMC_RIGHT_FOOT) {
+        himc_vec3 toes = skeleton->segment[segment + 2].origin;
+        toes.y = 0;
+        return himc_vec3_unit(toes);
+    }
+    return skeleton->segment[segment].axis;
+}
+
+static bool other_rotation(const reader *r, int segment, int frame, himc_quat *q)
+{
+    himc_vec3 *const *x = r->points->x;
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        int from = others[i].from, to = others[i].to, beside = POINT_BESIDE + segment;
+        int node = r->node ? r->points->node[from] : -1;
+        if (others[i].segment != segment)
+            continue;
+        if (node >= 0 && has_child(r->points->take, node)) {
+            *q = r->node[node];
+            return true;
+        }
+        if (r->node || !x[from] || !x[to] || !x[beside])
+            return false;
+        *q = frame_of(own_direction(r->skeleton, segment), between_points(r, from, to, frame),
+                      between_points(r, from, beside, frame));
+        return true;
+    }
+    return false;
 }
 
 static int limb_of(int segment)
@@ -238,23 +279,24 @@ static int limb_of(int segment)
 // a segment in the world; false if the take does not show it
 static bool segment_rotation(const reader *r, int segment, int frame, himc_quat *q)
 {
-    int i = limb_of(segment), node = plain_node(r, segment);
+    int i = limb_of(segment);
     if (segment == HIMC_TRUNK)
         return trunk_rotation(r, frame, q);
-    if (node >= 0)
-        *q = r->node[node];
-    if (i >= 0 && r->frame[i][segment - limbs[i].segment].shown)
+    if (i < 0)
+        return other_rotation(r, segment, frame, q);
+    bool shown = r->frame[i][segment - limbs[i].segment].shown;
+    if (shown)
         *q = limb_rotation(r, i, segment - limbs[i].segment, frame);
-    return node >= 0 || (i >= 0 && r->frame[i][segment - limbs[i].segment].shown);
+    return shown;
 }
 
-static void read_frame(reader *r, const himc_skeleton *skeleton, int frame)
+static void read_frame(reader *r, int frame)
 {
     himc_quat world[HIMC_SEGMENTS] = {himc_quat_identity()};
     himc_pose *pose = &r->player->pose[frame];
     turn_nodes(r, frame);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_quat parent = world[skeleton->segment[i].parent], q;
+        himc_quat parent = world[r->skeleton->segment[i].parent], q;
         bool shown = segment_rotation(r, i, frame, &q);
         r->player->known[i - 1] = shown;
         pose->joint[i - 1] =
@@ -283,7 +325,7 @@ static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 bool himc_player_read_poses(himc_player *player, const player_points *points,
                             const himc_skeleton *skeleton, const himc_vec3 *waist)
 {
-    reader r = {.points = points, .player = player};
+    reader r = {.points = points, .skeleton = skeleton, .player = player};
     bool skeletal = himc_take_has_skeleton(points->take);
     if (skeletal)
         r.node = calloc((size_t)himc_take_points(points->take), sizeof *r.node);
@@ -303,7 +345,7 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
-        read_frame(&r, skeleton, frame);
+        read_frame(&r, frame);
     int known = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])

@@ -3,7 +3,9 @@
 /// A frame is the rotation of each joint in its parent's frame, in single precision: 1e-7 rad over
 /// an arm is a tenth of a micrometre. All memory is taken in advance, so that keeping a frame is
 /// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the two
-/// tips, then the ends of head and toes, without which a BVH would not have their rotations.
+/// tips, then the ends of head and toes, without which a BVH would not have their rotations. A file
+/// of markers knows no rotations; there each segment has another marker beside its joint, which
+/// with the one at its far end holds them.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/recording.h"
 
@@ -13,9 +15,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
+#define MARKERS (POINTS + HIMC_SEGMENTS)
+#define BESIDE 0.05 // of a marker beside a joint, along the segment's y (m)
 
 typedef struct frame {
     float q[HIMC_JOINTS][4];
@@ -29,31 +34,16 @@ struct himc_recording {
     frame *frames; ///< owned (room)
 };
 
-static const char *const names[POINTS] = {"Hips",
-                                          "Spine",
-                                          "Neck",
-                                          "Head",
-                                          "LeftArm",
-                                          "RightArm",
-                                          "LeftForeArm",
-                                          "RightForeArm",
-                                          "LeftHand",
-                                          "RightHand",
-                                          "LeftStick",
-                                          "RightStick",
-                                          "LeftUpLeg",
-                                          "RightUpLeg",
-                                          "LeftLeg",
-                                          "RightLeg",
-                                          "LeftFoot",
-                                          "RightFoot",
-                                          "LeftToeBase",
-                                          "RightToeBase",
-                                          "LeftStick_end",
-                                          "RightStick_end",
-                                          "Head_end",
-                                          "LeftToeBase_end",
-                                          "RightToeBase_end"};
+// clang-format off
+static const char *const names[POINTS] = {
+    "Hips", "Spine", "Neck", "Head", "LeftArm", "RightArm", "LeftForeArm", "RightForeArm",
+    "LeftHand", "RightHand", "LeftStick", "RightStick", "LeftUpLeg", "RightUpLeg", "LeftLeg",
+    "RightLeg", "LeftFoot", "RightFoot", "LeftToeBase", "RightToeBase", "LeftStick_end",
+    "RightStick_end", "Head_end", "LeftToeBase_end", "RightToeBase_end",
+};
+// clang-format on
+
+// what nothing is joined to, sticks apart
 static const int ends[ENDS] = {HIMC_HEAD, HIMC_LEFT_TOES, HIMC_RIGHT_TOES};
 
 // the far end of a segment, in its frame
@@ -146,6 +136,35 @@ static void fill_skeleton(himc_take *take, const himc_skeleton *skeleton)
     take->offsets[0] = himc_vec3_make(0, 0, 0);
 }
 
+static bool has_skeleton(const himc_recording *r)
+{
+    const char *dot = strrchr(r->path, '.');
+    return dot && strcasecmp(dot, ".bvh") == 0;
+}
+
+static void name_markers(himc_take *take)
+{
+    for (int i = 0; i < POINTS; i++)
+        himc_take_set_name(take, i, names[i], strlen(names[i]));
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        char side[32];
+        int n = snprintf(side, sizeof side, "%s_side", names[i]);
+        himc_take_set_name(take, POINTS + i, side, (size_t)n);
+    }
+}
+
+static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
+{
+    return himc_vec3_add(state->origin[i], himc_mat3_apply(&state->rotation[i], x));
+}
+
+static void fill_markers(himc_take *take, int index, const himc_body_state *state)
+{
+    himc_vec3 *x = himc_take_at(take, index, POINTS);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        x[i] = on_segment(state, i, himc_vec3_make(0, BESIDE, 0));
+}
+
 static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton, const frame *f)
 {
     himc_pose pose;
@@ -153,15 +172,16 @@ static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton
     for (int j = 0; j < HIMC_JOINTS; j++)
         pose.joint[j] = himc_quat_unit((himc_quat){f->q[j][0], f->q[j][1], f->q[j][2], f->q[j][3]});
     himc_pose_to_state(skeleton, &pose, NULL, &state);
-    himc_quat *rotation = take->rotations + (size_t)index * POINTS;
-    for (int i = 0; i < POINTS; i++)
+    himc_quat *rotation = take->rotations ? take->rotations + (size_t)index * POINTS : NULL;
+    for (int i = 0; rotation && i < POINTS; i++)
         rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
+    if (!rotation)
+        fill_markers(take, index, &state);
     memcpy(himc_take_at(take, index, 0), state.origin, sizeof state.origin);
     memcpy(himc_take_at(take, index, HIMC_SEGMENTS), state.tip, sizeof state.tip);
     for (int i = 0; i < ENDS; i++)
         *himc_take_at(take, index, HIMC_SEGMENTS + HIMC_HANDS + i) =
-            himc_vec3_add(state.origin[ends[i]],
-                          himc_mat3_apply(&state.rotation[ends[i]], far_end(skeleton, ends[i])));
+            on_segment(&state, ends[i], far_end(skeleton, ends[i]));
 }
 
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
@@ -173,11 +193,16 @@ himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
     }
     snprintf(take->file, sizeof take->file, "%.180s", r->path);
     snprintf(take->format, sizeof take->format, "recording");
-    if (!himc_take_allocate(take, r->rate, r->count, POINTS, true, error)) {
+    bool skeleton = has_skeleton(r);
+    if (!himc_take_allocate(take, r->rate, r->count, skeleton ? POINTS : MARKERS, skeleton,
+                            error)) {
         himc_take_free(take);
         return NULL;
     }
-    fill_skeleton(take, &r->skeleton);
+    if (skeleton)
+        fill_skeleton(take, &r->skeleton);
+    else
+        name_markers(take);
     for (int i = 0; i < r->count; i++)
         fill_frame(take, i, &r->skeleton, &r->frames[i]);
     return take;

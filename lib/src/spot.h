@@ -35,8 +35,8 @@ HIMC_RT spot *himc_membrane_spot(himc_membrane *membrane, double x, double y);
 HIMC_RT double himc_spot_displacement(const himc_membrane *membrane, const spot *s);
 /// Into how many parts a sample is divided for a stiff contact: steps of 5 microseconds or less.
 HIMC_RT int himc_membrane_parts(const himc_membrane *membrane);
-/// What comes is part `index` of a sample, 0 .. parts - 1; before and after, steps are whole samples,
-/// and `index` is 0 of 1.
+/// What comes is part `index` of a sample, 0 .. parts - 1; before and after, steps are whole
+/// samples, and `index` is 0 of 1.
 HIMC_RT void himc_membrane_part(himc_membrane *membrane, int index, int parts);
 /// What a newton at the spot does in a step now.
 HIMC_RT const effect *himc_spot_effect(const himc_membrane *membrane, const spot *s);

@@ -1,12 +1,14 @@
 /// take_describe.c: a take in a few lines for a person: what it is, how it was read, what is in it.
 #include "take_data.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define GAP_LINES 40    // points with gaps listed
 #define STRIKE_LINES 64 // strikes listed
+#define ONE_DRUM 0.45   // no two strikes on one are farther from its usual spot (m)
 
 typedef struct teller {
     void (*line)(void *, const char *);
@@ -94,6 +96,12 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
     if (himc_take_strike_place(strikes, count, &place))
         tell(to, "drum: the head belongs under %.3f %.3f m, at the height of %.3f m", place.x,
              place.y, place.z);
+    int far = 0;
+    for (int i = 0; i < count; i++)
+        far += hypot(strikes[i].x.x - place.x, strikes[i].x.y - place.y) > ONE_DRUM;
+    if (far > 0)
+        tell(to, "drum: %d strikes are more than %g m from there; a take is played on one drum",
+             far, ONE_DRUM);
     free(strikes);
 }
 

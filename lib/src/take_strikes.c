@@ -10,7 +10,7 @@
 /// The track near the touch is blunted by the capture's filter, so what happens is read from
 /// before: a parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall,
 /// those before the deceleration reaches a tenth of A. A must stand out of what noise alone gives
-/// (noise.c), over longer differences where a track is noisy. In a sharp track (nearly all of D within two
+/// (noise.c), over longer differences where a track is noisy. In a sharp track (nearly all of D in two
 /// frames) the touch is where the parabolas from before and after meet; in a blunted one, where the
 /// one from before passes the height of the lowest position. In a sharp track the speed is the
 /// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
@@ -57,8 +57,8 @@ static int frames_of(const track *t, double seconds, int least)
     return n < least ? least : n;
 }
 
-// standard deviation of bends over h frames by noise alone, times CERTAIN: of x_h - 2 x_0 + x_-h the
-// variance is 6 sigma^2
+// standard deviation of bends over h frames by noise alone, times CERTAIN: for x_h - 2 x_0 + x_-h
+// the variance is 6 sigma^2
 static double noise_bend(const track *t, int h)
 {
     double s = t->rate / h;

@@ -1,11 +1,9 @@
-/// track.c: local cubic fits (track_fit.c) give each frame position, velocity and acceleration;
-/// quintics join the frames.
+/// track.c: local fits (track_fit.c) give each frame a state, quintics join the frames.
 ///
-/// A fit uses only frames on the same side of every strike. A strike's frames from CUT before its lowest point to CUT after are
-/// dropped. Approach: from the last good frame to the head's plane with an acceleration that
-/// fades to nothing there gives the time of contact. Then a bridge: a quintic from there to where
-/// the capture is rejoined; the bridge is what control sees while it is released, and is replaced
-/// at separation by one from the measured state.
+/// A fit uses only frames on the same side of every strike; those from CUT before its lowest point
+/// to CUT after are dropped. Approach: from the last good frame to the head's plane with an
+/// acceleration that fades to nothing there gives the time of contact. Then a bridge: a quintic to
+/// where the capture is rejoined, replaced at separation by one from the measured state.
 #include "track_state.h"
 
 #include "noise.h"

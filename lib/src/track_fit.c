@@ -1,4 +1,4 @@
-/// track_fit.c: local cubic fits, x(u) = c0 + c1 u + c2 u^2 + c3 u^3 by least squares over the frames
+/// track_fit.c: local cubic fits, x(u) = c0 + c1 u + c2 u^2 + c3 u^3 by least squares over frames
 /// within +-WINDOW seconds on the same side of every strike (Savitzky and Golay 1964), so noise is
 /// smoothed before it is differentiated and no impact is smeared.
 #include "track_fit.h"
@@ -6,7 +6,7 @@
 #define WINDOW 0.025       // half width of the local fits (s)
 #define EDGE 6             // frames of the one-sided fit beside a strike ...
 #define LONGEST_EDGE 0.048 // ... and as much of a noisy capture as it takes (s) ...
-#define SURE_RATE 0.06     // ... until its rate is sure to that (m/s)
+#define SURE_RATE 0.03     // ... until its rate is sure to that (m/s)
 
 // the rate at the end of a parabola through n points errs by sqrt(192 / n^3) noise / dt
 int himc_fit_edge(double noise, double rate)

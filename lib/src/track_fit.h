@@ -10,7 +10,7 @@ typedef struct fit_window {
     int first, k, last, order, reach;
 } fit_window;
 
-/// What is fitted: `frames` at `rate` (Hz), and the frames that one-sided fits beside a strike take.
+/// What is fitted: `frames` at `rate` (Hz), and the frames of one-sided fits beside a strike.
 typedef struct fit_series {
     int frames, edge;
     double rate;

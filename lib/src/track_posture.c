@@ -2,9 +2,10 @@
 ///
 /// Frame by frame the rotations q_i about frame k, as vectors log(q_i q_k^-1), are fitted like the
 /// tips (track_fit.c), so joints and tips lose the same noise; quintics join the frames. An arm's
-/// frames around its own strikes are left out as its tip's are, and bridged. What the capture cannot
-/// tell there, the tip's path can: it is carried on to the head before a blow, starts from the stick
-/// as it really is after it. So the arm is bent to the tip, by the rotations of least effort
+/// frames around its own strikes are left out as its tip's are, and bridged. What the capture
+/// cannot tell there, the tip's path can: it is carried on to the head before a blow, and starts
+/// after it from the stick as it really is. So the arm is bent to the tip, by the rotations of
+/// least effort
 ///     min sum |theta_k|^2 / w_k  with  sum theta_k x r_k = e:   theta_k = w_k r_k x l,
 ///     (sum w_k (|r_k|^2 1 - r_k r_k')) l = e,
 /// r_k the levers from the joints to the tip, w_k larger towards the stick, as a hand corrects;

@@ -1,4 +1,4 @@
-/// track_state.h: what a track holds, shared by track.c (tips) and track_posture.c (joints); private.
+/// track_state.h: what a track holds, of track.c (tips) and track_posture.c (joints); private.
 #ifndef HIMC_TRACK_STATE_H
 #define HIMC_TRACK_STATE_H
 

@@ -1,9 +1,9 @@
 /// clips.c: blows of our own timpano as sound files, for patches/techniques: `clips FOLDER`.
 ///
-/// A 23 inch timpano in air at D3 is struck at three places by three velocities, a WAV file of 32-bit
-/// floats each, in the units of `pickup air`. They end in silence. FOLDER/clips.txt says what they
-/// are, a line for each: distance from the centre per radius, velocity (m/s), pitch (Hz), rate (Hz),
-/// file.
+/// A 23 inch timpano in air at D3 is struck at three places by three velocities, a WAV file of
+/// 32-bit floats each, in the units of `pickup air`. They end in silence. FOLDER/clips.txt says
+/// what they are, a line for each: distance from the centre per radius, velocity (m/s), pitch (Hz),
+/// rate (Hz), file.
 #include "himc/himc.h"
 
 #include <math.h>

@@ -10,6 +10,7 @@ docs/figures/timbre.svg: $(BUILD)/tools/figures/timbre tools/figures/timbre.gp
 	@mkdir -p $(BUILD)/figures && echo "draw $@"
 	$(Q)$< >$(BUILD)/figures/timbre.txt
 	$(Q)gnuplot -e "data='$(BUILD)/figures/timbre.txt'; out='$@'" tools/figures/timbre.gp
+	$(Q)sed -i 's/[[:blank:]]*$$//; s/\t/  /g' $@
 
 $(SOUNDS) &: $(BUILD)/tools/figures/sounds
 	@echo "play $(SOUNDS)"

@@ -1,8 +1,8 @@
 /// sounds.c: what the drum alone can do, as four short OGG files: `sounds FOLDER`.
 ///
 /// scale: D3 to A3 on a 23 inch timpano; roll: 13 blows a second from pp to ff and back; glissando:
-/// a blow, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood. The drum stands
-/// in air. Stereo, heard from both sides.
+/// a blow, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood. The drum
+/// stands in air. Stereo, heard from both sides.
 #include "himc/himc.h"
 
 #include <math.h>

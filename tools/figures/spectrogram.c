@@ -1,8 +1,8 @@
 /// spectrogram.c: a sound file's spectrogram as numbers, for spectrograms.gp: `spectrogram FILE`.
 ///
 /// A line is a time (s), then a frequency (Hz) and the level there (dB re full scale); lines of one
-/// time are a block. Windows of 4096 samples by Hann, every 20 ms, by the Goertzel recurrence, which
-/// needs no more than the frequencies one looks at.
+/// time are a block. Windows of 4096 samples by Hann, every 20 ms, by the Goertzel recurrence,
+/// which needs no more than the frequencies one looks at.
 #include "himc/base.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/// timbre.c: spectra of single blows on a 23 inch timpano at D3, for timbre.gp: the same blow at three
-/// places, with four mallets, at three speeds.
+/// timbre.c: spectra of single blows on a 23 inch timpano at D3, for timbre.gp: the same blow at
+/// three places, with four mallets, at three speeds.
 ///
 /// Prints one block for each panel: frequency (Hz), then the spectrum of each sound (dB re 1 s of
 /// full scale) over its first second, by a Hann window's falling half, so that the attack counts.

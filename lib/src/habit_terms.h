@@ -1,0 +1,34 @@
+/// habit_terms.h: what a habit's regression is made of, for learning it and for using it.
+#ifndef HIMC_HABIT_TERMS_H
+#define HIMC_HABIT_TERMS_H
+
+#include "himc/habit.h"
+
+#define TAPS HIMC_HABIT_TAPS
+#define TERMS HIMC_HABIT_TERMS
+#define TRUNK_TERMS HIMC_HABIT_TRUNK_TERMS
+#define ANGLES (3 * HIMC_ARM_JOINTS)
+#define TRUNK (HIMC_TRUNK - 1) // the joint
+
+/// A habit's numbers as they lie in a table.
+typedef struct himc_habit_numbers {
+    double weight[HIMC_HANDS * ANGLES * TERMS], trunk[3 * TRUNK_TERMS];
+    double spread[HIMC_HANDS * ANGLES * ANGLES];
+} himc_habit_numbers;
+
+extern const himc_habit_numbers himc_habit_table;
+
+/// A place as the trunk sees it, from where it turns (m).
+HIMC_RT himc_vec3 himc_habit_seen(himc_vec3 waist, himc_quat trunk, himc_vec3 x);
+/// The terms of a hand's tip, the trunk being as given.
+HIMC_RT void himc_habit_terms(const himc_habit_player *player, himc_hand hand, himc_quat trunk,
+                              const himc_vec3 tip[TAPS][HIMC_HANDS], double term[TERMS]);
+/// Those of the trunk: of both tips, as the trunk's mean sees them.
+HIMC_RT void himc_habit_trunk_terms(const himc_habit_player *player, himc_quat mean,
+                                    const himc_vec3 tip[TAPS][HIMC_HANDS],
+                                    double term[TRUNK_TERMS]);
+/// The mean rotation of an arm's segments in the trunk.
+HIMC_RT void himc_habit_frames(const himc_habit_player *player, himc_hand hand,
+                               himc_quat frame[HIMC_ARM_JOINTS]);
+
+#endif

@@ -1,0 +1,99 @@
+/* himc-drums.c: the drums of a [himc~]: found by name, taken and let go, and brought forward
+together with the performance, whoever of them comes first in a tick of Pd's. */
+#define _POSIX_C_SOURCE 200809L
+#include "himc-tilde.h"
+
+#include <time.h>
+
+static double himc_tilde_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void himc_tilde_advance(void *player, uint64_t time)
+{
+    t_himc *x = ((t_player *)player)->p_himc;
+    for (uint64_t now; (now = himc_performance_time(x->x_performance)) < time;) {
+        uint64_t at = now % FORCE_RING;
+        uint64_t n = time - now < FORCE_RING - at ? time - now : FORCE_RING - at;
+        double *force[HIMC_HANDS] = {x->x_force[HIMC_LEFT] + at, x->x_force[HIMC_RIGHT] + at};
+        double start = x->x_osc ? himc_tilde_seconds() : 0;
+        himc_performance_process(x->x_performance, (int)n, force);
+        if (x->x_osc)
+            himc_osc_publish(x->x_osc, x->x_performance, himc_tilde_seconds() - start);
+    }
+    x->x_player.p_time = himc_performance_time(x->x_performance);
+    if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
+        x->x_waiting = true;
+        clock_delay(x->x_clock, 0);
+    }
+}
+
+static void himc_tilde_let_go(t_himc *x, const t_himc_drum *d)
+{
+    if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == &x->x_player)
+        himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
+}
+
+/* Puts `drum` where another of its name was. */
+static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_error *error)
+{
+    if (!himc_performance_add_drum(x->x_performance, drum, error))
+        return false;
+    himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, &x->x_player});
+    d->d_drum = drum;
+    return true;
+}
+
+/* The drum of [membrane~ NAME] at the performance's rate, or NULL and why not. */
+static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error)
+{
+    t_drum_link *link = drum_link_find(name);
+    if (!link) {
+        himc_error_set(error, "no [membrane~ %s]", name);
+        return NULL;
+    }
+    void *performer = himc_drum_get_driver(link->l_drum).performer;
+    if (performer && performer != &x->x_player) {
+        himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);
+        return NULL;
+    }
+    if (link->l_rate != x->x_rate && !himc_drum_set_rate(link->l_drum, x->x_rate, error))
+        return NULL;
+    link->l_rate = x->x_rate;
+    return link->l_drum;
+}
+
+void himc_tilde_resolve(t_himc *x, bool tell)
+{
+    for (t_himc_drum *d = x->x_drum; d < x->x_drum + x->x_count; d++) {
+        himc_error error = {""};
+        himc_drum *drum = himc_tilde_find(x, d->d_name, &error);
+        if (drum && drum != d->d_drum) {
+            himc_tilde_let_go(x, d);
+            if (himc_tilde_take(x, d, drum, &error))
+                d->d_silent = d->d_told = false;
+            else
+                drum = NULL;
+        }
+        if (!drum && !d->d_silent) {
+            himc_error ignored;
+            himc_drum *silent = himc_drum_new(d->d_name, 23, x->x_rate, &ignored);
+            himc_tilde_let_go(x, d);
+            d->d_silent = silent && himc_tilde_take(x, d, silent, &ignored);
+            himc_drum_release(silent);
+        }
+        if (!drum && tell && !d->d_told) {
+            pd_error(x, "himc~: %s: playing on a silent one", error.text);
+            d->d_told = true;
+        }
+    }
+}
+
+void himc_tilde_leave(t_himc *x)
+{
+    for (int i = 0; i < x->x_count; i++)
+        himc_tilde_let_go(x, x->x_drum + i);
+}

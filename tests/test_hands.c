@@ -1,0 +1,183 @@
+/// test_hands.c: what one hand cannot play, the other one does, or it is given up, said and
+/// counted.
+#include "session.h"
+
+#include "himc/posture.h"
+
+static himc_performance *with_two_drums(double x, double y)
+{
+    himc_performance *p = session_new();
+    char place[64];
+    session_do(p, "drum kettle");
+    session_do(p, "drum side");
+    snprintf(place, sizeof place, "place %g %g 0.85", x, y);
+    session_drum(p, 1, place);
+    session_do(p, "tempo 60");
+    return p;
+}
+
+static bool was_said(himc_performance *p, double seconds, heard *h, const char *text)
+{
+    himc_event event;
+    bool said = false;
+    for (long i = 0; i < lround(seconds * 48000); i += 480) {
+        himc_performance_process(p, 480, NULL);
+        while (himc_performance_event(p, &event)) {
+            heard_event(h, &event);
+            said = said || (event.kind == HIMC_EVENT_NOTE && strcmp(event.text, text) == 0);
+        }
+    }
+    return said;
+}
+
+static void test_other_hand_plays_what_one_has_no_time_for(void)
+{
+    himc_performance *p = with_two_drums(0.2, 0.9);
+    heard h = {0};
+    session_do(p, "stroke 2 left legato f");
+    session_do(p, "stroke 2.06 left legato f side");
+    session_do(p, "stroke 3 right legato f");
+    session_do(p, "play");
+    TEST_ASSERT_TRUE(was_said(
+        p, 6, &h, "stroke at beat 2.06 left: no time to prepare it, the right hand plays it"));
+    TEST_ASSERT_EQUAL_INT(3, h.strikes);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, h.strike[1].hand);
+    TEST_ASSERT_EQUAL_STRING("side", h.strike[1].drum);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 2.06, h.strike[1].time);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(3, s.strokes);
+    TEST_ASSERT_EQUAL_INT(3, s.played);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_what_neither_hand_can_play_is_given_up_and_missed(void)
+{
+    himc_performance *p = with_two_drums(0.2, 0.9);
+    heard h = {0};
+    session_do(p, "stroke 2 left legato f");
+    session_do(p, "stroke 2 right legato f");
+    session_do(p, "stroke 2.06 left legato f side");
+    session_do(p, "stroke 3 right legato f");
+    session_do(p, "play");
+    TEST_ASSERT_TRUE(
+        was_said(p, 6, &h, "stroke at beat 2.06 left: given up, no time to prepare it"));
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(3, h.strikes);
+    TEST_ASSERT_EQUAL_INT(4, s.strokes);
+    TEST_ASSERT_EQUAL_INT(3, s.played);
+    TEST_ASSERT_EQUAL_INT(1, s.missed);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// where the head's usual spot is in reach of the left hand and not of the right one
+static double only_left(double away)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_skeleton skeleton;
+    himc_posture posture;
+    TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
+    himc_posture_init(&posture, &skeleton, 0.87);
+    for (double y = 0.5; y < 2; y += 0.01) {
+        himc_vec3 spot = {away, y, 0.87};
+        himc_vec3 right = himc_posture_reachable(&posture, HIMC_RIGHT, spot);
+        himc_vec3 left = himc_posture_reachable(&posture, HIMC_LEFT, spot);
+        if (himc_vec3_length(himc_vec3_sub(right, spot)) > 0.04)
+            return himc_vec3_length(himc_vec3_sub(left, spot)) < 1e-6 ? y : 0;
+    }
+    return 0;
+}
+
+static void test_nearer_hand_plays_what_the_other_cannot_reach(void)
+{
+    double away = -0.2, y = only_left(away);
+    TEST_ASSERT_TRUE(y > 0);
+    himc_performance *p = with_two_drums(away, y);
+    heard h = {0};
+    session_do(p, "stroke 2 right legato mf 0 0 side");
+    session_do(p, "stroke 3 right legato mf kettle");
+    session_do(p, "play");
+    session_play(p, 6, &h);
+    TEST_ASSERT_EQUAL_INT(2, h.strikes);
+    TEST_ASSERT_EQUAL_INT(HIMC_LEFT, h.strike[0].hand);
+    TEST_ASSERT_EQUAL_STRING("side", h.strike[0].drum);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, h.strike[1].hand);
+    TEST_ASSERT_EQUAL_INT(2, himc_performance_measure(p).played);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_stroke_out_of_reach_says_by_how_much_and_is_missed(void)
+{
+    himc_performance *p = with_two_drums(3, 0);
+    heard h = {0};
+    session_do(p, "stroke 2 left legato mf kettle");
+    session_do(p, "stroke 3 left legato mf side");
+    session_do(p, "stroke 4 left legato mf kettle");
+    session_do(p, "play");
+    session_play(p, 7, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.notes);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(h.note, "stroke at beat 3 left: given up, out of reach by 1.8"), h.note);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(2, s.played);
+    TEST_ASSERT_EQUAL_INT(1, s.missed);
+    TEST_ASSERT_TRUE(s.tip_rms < 1e-3);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// in a loop, with the tempo changing all the time: each stroke that is lent sounds once
+static void test_lent_strokes_are_played_once_however_often_the_plan_is_made(void)
+{
+    himc_performance *p = with_two_drums(0.2, 0.9);
+    heard h = {0};
+    session_do(p, "stroke 0 left legato f");
+    session_do(p, "stroke 0.06 left legato f side");
+    session_do(p, "stroke 1 right legato f");
+    session_do(p, "loop 1");
+    session_do(p, "play");
+    for (int i = 0; i < 120; i++) {
+        session_do(p, "tempo %g", 60 + 0.5 * (i & 1));
+        session_play(p, 0.1, &h);
+    }
+    int side = 0, left = 0;
+    for (int i = 0; i < h.strikes; i++) {
+        side += strcmp(h.strike[i].drum, "side") == 0;
+        left += h.strike[i].hand == HIMC_LEFT;
+    }
+    TEST_ASSERT_TRUE(left >= 5);
+    TEST_ASSERT_INT_WITHIN(1, left, side);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_what_was_not_played_as_written_is_summed_up_at_the_end(void)
+{
+    himc_performance *p = with_two_drums(3, 0);
+    heard h = {0};
+    for (int i = 0; i < 5; i++)
+        session_do(p, "stroke %d right legato mf side", 2 + i);
+    session_do(p, "stroke 8 left legato mf kettle");
+    session_do(p, "play");
+    session_play(p, 12, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.dones);
+    TEST_ASSERT_EQUAL_INT(2, h.notes); // the first of them, and how many
+    TEST_ASSERT_EQUAL_STRING("in all 0 strokes smaller, 0 by the other hand, 5 given up", h.note);
+    TEST_ASSERT_EQUAL_INT(5, himc_performance_measure(p).missed);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_other_hand_plays_what_one_has_no_time_for);
+    RUN_TEST(test_what_neither_hand_can_play_is_given_up_and_missed);
+    RUN_TEST(test_nearer_hand_plays_what_the_other_cannot_reach);
+    RUN_TEST(test_stroke_out_of_reach_says_by_how_much_and_is_missed);
+    RUN_TEST(test_lent_strokes_are_played_once_however_often_the_plan_is_made);
+    RUN_TEST(test_what_was_not_played_as_written_is_summed_up_at_the_end);
+    return UNITY_END();
+}

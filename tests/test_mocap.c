@@ -1,0 +1,348 @@
+/// test_mocap.c: the motion database as motion: strokes that meet the head, bodies that move as
+/// bodies do, files that read back.
+#include "mocap_sequences.h"
+
+#include "himc/take.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#define SAME_POINT 1e-4    // (m)
+#define SAME_ROTATION 2e-5 // (rad)
+#define MOST_SINK 0.002    // of the mallet below the head (m)
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void test_all_45_sequences_have_both_hands_in_turn(void)
+{
+    TEST_ASSERT_EQUAL_INT(45, MOCAP_SEQUENCES);
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        TEST_ASSERT_TRUE(himc_mocap_touches(m) >= 12);
+        for (int k = 1; k < himc_mocap_touches(m); k++) {
+            himc_mocap_touch a = himc_mocap_touch_at(m, k - 1), b = himc_mocap_touch_at(m, k);
+            TEST_ASSERT_TRUE(b.hand != a.hand);
+            TEST_ASSERT_TRUE(b.time - a.time > 0.2 && b.time - a.time < 0.5);
+        }
+        TEST_ASSERT_TRUE(himc_mocap_length(m) <
+                         himc_mocap_touch_at(m, himc_mocap_touches(m) - 1).time + 1);
+        himc_mocap_free(m);
+    }
+}
+
+static void test_the_stick_is_level_and_the_mallet_on_the_head_at_each_impact(void)
+{
+    double away = 0, tilt = 0;
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        for (int k = 0; k < himc_mocap_touches(m); k++) {
+            himc_mocap_touch touch = himc_mocap_touch_at(m, k);
+            himc_body_state s = sequence_state(m, touch.time);
+            himc_vec3 tip = s.tip[touch.hand], grip = s.origin[himc_stick_segment(touch.hand)];
+            double plane = HIMC_MOCAP_HEAD + himc_mocap_skeleton(m)->mallet_radius;
+            away = fmax(away, fabs(tip.z - plane));
+            away = fmax(away, hypot(tip.x - touch.x.x, tip.y - touch.x.y));
+            tilt = fmax(tilt, fabs(tip.z - grip.z) / himc_vec3_length(himc_vec3_sub(tip, grip)));
+        }
+        himc_mocap_free(m);
+    }
+    printf("tips within %.2f mm of the aim, sticks within %.1f degrees of level\n", 1e3 * away,
+           asin(tilt) * 180 / HIMC_PI);
+    TEST_ASSERT_TRUE(away < 0.004);
+    TEST_ASSERT_TRUE(asin(tilt) < 5 * HIMC_PI / 180);
+}
+
+static void test_strike_places_are_those_of_the_captures(void)
+{
+    static const double in_front[] = {0.53, 0.40, 0.30};
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap_config c = sequence_config(i);
+        himc_mocap *m = sequence(i);
+        double edge = himc_mocap_drum(m).x - in_front[HIMC_SPOT_CENTER], x = 0, y[2] = {0, 0};
+        int count = himc_mocap_touches(m);
+        for (int k = 0; k < count; k++) {
+            himc_mocap_touch touch = himc_mocap_touch_at(m, k);
+            x += touch.x.x / count;
+            y[touch.hand] += 2 * touch.x.y / count;
+            TEST_ASSERT_TRUE(hypot(touch.x.x - himc_mocap_drum(m).x, touch.x.y) <
+                             HIMC_MOCAP_RADIUS);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, in_front[c.spot], x - edge);
+        TEST_ASSERT_TRUE(y[HIMC_LEFT] > 0.02 && y[HIMC_RIGHT] < -0.02);
+        himc_mocap_free(m);
+    }
+}
+
+// between the frames as well
+static void test_no_stick_goes_through_the_head(void)
+{
+    double deepest = 0;
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        double plane = HIMC_MOCAP_HEAD + himc_mocap_skeleton(m)->mallet_radius;
+        for (double t = 0; t < himc_mocap_length(m); t += 0.001) {
+            himc_body_state s = sequence_state(m, t);
+            for (int hand = 0; hand < HIMC_HANDS; hand++) {
+                deepest = fmax(deepest, plane - s.tip[hand].z);
+                TEST_ASSERT_TRUE(s.origin[HIMC_LEFT_STICK + hand].z > HIMC_MOCAP_HEAD);
+            }
+        }
+        himc_mocap_free(m);
+    }
+    printf("mallets at most %.2f mm below their touch\n", 1e3 * deepest);
+    TEST_ASSERT_TRUE(deepest < MOST_SINK);
+}
+
+// the bounce is the stick's: its speed turns within 8 ms, upwards by more than half a metre a second
+static void test_a_mallet_turns_within_its_contact(void)
+{
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        for (int k = 0; k < himc_mocap_touches(m); k++) {
+            himc_mocap_touch touch = himc_mocap_touch_at(m, k);
+            double z[4];
+            for (int n = 0; n < 4; n++) {
+                double t = touch.time + (n < 2 ? -0.005 : 0.004) + 0.001 * (n % 2);
+                z[n] = sequence_state(m, t).tip[touch.hand].z;
+            }
+            TEST_ASSERT_TRUE(z[1] - z[0] < -0.001 && z[3] - z[2] > 0.0005);
+        }
+        himc_mocap_free(m);
+    }
+}
+
+// largest angular speeds over all sequences (rad/s)
+static void test_joints_move_as_fast_as_joints_do(void)
+{
+    static const double most[HIMC_ARM_JOINTS] = {8, 15, 15, 45};
+    double fastest[HIMC_ARM_JOINTS] = {0}, trunk = 0;
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        himc_pose last = himc_mocap_pose(m, 0);
+        for (int f = 1; f < himc_mocap_frames(m); f++) {
+            himc_pose now = himc_mocap_pose(m, f / HIMC_MOCAP_RATE);
+            for (int j = 0; j < HIMC_JOINTS; j++) {
+                himc_quat turn = himc_quat_mul(himc_quat_conj(last.joint[j]), now.joint[j]);
+                double speed = himc_vec3_length(himc_quat_log(turn)) * HIMC_MOCAP_RATE;
+                int k = (j - himc_arm_joint(HIMC_LEFT, 0)) / 2;
+                bool arm = j >= himc_arm_joint(HIMC_LEFT, 0) && k < HIMC_ARM_JOINTS;
+                double *best = arm ? &fastest[k] : &trunk;
+                *best = fmax(*best, speed);
+            }
+            last = now;
+        }
+        himc_mocap_free(m);
+    }
+    printf("fastest: shoulder %.1f, elbow %.1f, wrist %.1f, grip %.1f, the rest %.2f rad/s\n",
+           fastest[0], fastest[1], fastest[2], fastest[3], trunk);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        TEST_ASSERT_TRUE(fastest[k] < most[k] && fastest[k] > 1);
+    TEST_ASSERT_TRUE(trunk < 1);
+}
+
+static void test_the_same_seed_is_the_same_motion_and_another_is_another(void)
+{
+    himc_mocap_config c = sequence_config(7);
+    himc_mocap *a = sequence_made(&c), *b = sequence_made(&c);
+    c.seed = 2;
+    himc_mocap *other = sequence_made(&c);
+    double differs = 0;
+    for (int f = 0; f < himc_mocap_frames(a); f++) {
+        himc_pose x = himc_mocap_pose(a, f / HIMC_MOCAP_RATE),
+                  y = himc_mocap_pose(b, f / HIMC_MOCAP_RATE),
+                  z = himc_mocap_pose(other, f / HIMC_MOCAP_RATE);
+        TEST_ASSERT_EQUAL_MEMORY(&x, &y, sizeof x);
+        differs = fmax(differs,
+                       fabs(x.joint[HIMC_LEFT_FOREARM - 1].w - z.joint[HIMC_LEFT_FOREARM - 1].w));
+    }
+    TEST_ASSERT_TRUE(differs > 0.01);
+    himc_mocap_free(a);
+    himc_mocap_free(b);
+    himc_mocap_free(other);
+}
+
+static void test_what_cannot_be_played_is_refused_in_a_line(void)
+{
+    himc_mocap_config c = himc_mocap_default();
+    c.player = 3;
+    TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
+    TEST_ASSERT_EQUAL_STRING("player: 3, allowed 0 .. 2", error.text);
+    c = himc_mocap_default();
+    c.spot = HIMC_SPOT_XY;
+    TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
+    c = himc_mocap_default();
+    c.strokes = 1;
+    TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
+    TEST_ASSERT_EQUAL_STRING("strokes: 1, allowed 2 .. 200", error.text);
+}
+
+static himc_take *write_and_read(const himc_mocap *m, const char *suffix)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/himc-mocap-%d.%s", (int)getpid(), suffix);
+    TEST_ASSERT_TRUE_MESSAGE(himc_mocap_write(m, path, &error), error.text);
+    himc_take *take = himc_take_load(path, NULL, &error);
+    unlink(path);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(himc_mocap_frames(m), himc_take_frames(take));
+    TEST_ASSERT_EQUAL_DOUBLE(HIMC_MOCAP_RATE, himc_take_rate(take));
+    return take;
+}
+
+// how far found strikes lie from those that were made
+typedef struct misses {
+    double time, floor, height;
+} misses;
+
+// strikes found in a take: as many as were made, each by its hand at its time and place
+static void expect_strikes(const himc_mocap *m, himc_take *take, misses *worst)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_take_strike strikes[32];
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_tips(take, NULL, tips, &error), error.text);
+    int count = himc_take_strikes(take, tips, strikes, 32);
+    TEST_ASSERT_EQUAL_INT(himc_mocap_touches(m), count);
+    for (int i = 0; i < count; i++) {
+        himc_mocap_touch touch = himc_mocap_touch_at(m, i);
+        himc_vec3 away = himc_vec3_sub(touch.x, strikes[i].x);
+        TEST_ASSERT_EQUAL_INT(touch.hand, strikes[i].hand);
+        worst->time = fmax(worst->time, fabs(touch.time - strikes[i].time));
+        worst->floor = fmax(worst->floor, hypot(away.x, away.y));
+        worst->height = fmax(worst->height, fabs(away.z));
+    }
+}
+
+static void expect_found(const misses *worst)
+{
+    printf("strikes found within %.1f ms, %.1f mm on the head and %.1f mm in height\n",
+           1e3 * worst->time, 1e3 * worst->floor, 1e3 * worst->height);
+    TEST_ASSERT_TRUE(worst->time < 0.004);
+    TEST_ASSERT_TRUE(worst->floor < 0.003);
+    TEST_ASSERT_TRUE(worst->height < 0.015);
+}
+
+static void test_each_stroke_is_found_in_each_of_the_45_files(void)
+{
+    misses worst = {0};
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        himc_take *take = write_and_read(m, "c3d");
+        expect_strikes(m, take, &worst);
+        himc_take_free(take);
+        himc_mocap_free(m);
+    }
+    expect_found(&worst);
+}
+
+static int found(const himc_take *take, const char *name)
+{
+    int point = himc_take_find(take, name);
+    TEST_ASSERT_TRUE_MESSAGE(point >= 0, name);
+    return point;
+}
+
+static void test_a_bvh_reads_back_rotation_by_rotation(void)
+{
+    static const char *const name[] = {"Spine", "LeftArm", "RightForeArm", "LeftHand",
+                                       "RightStick"};
+    static const int segment[] = {HIMC_TRUNK, HIMC_LEFT_UPPER_ARM, HIMC_RIGHT_FOREARM,
+                                  HIMC_LEFT_HAND, HIMC_RIGHT_STICK};
+    double point = 0, angle = 0;
+    misses worst = {0};
+    for (int i = 4; i < MOCAP_SEQUENCES; i += 19) {
+        himc_mocap *m = sequence(i);
+        himc_take *take = write_and_read(m, "bvh");
+        expect_strikes(m, take, &worst);
+        for (int f = 0; f < himc_take_frames(take); f += 5)
+            for (int k = 0; k < 5; k++) {
+                himc_body_state s = sequence_state(m, f / HIMC_MOCAP_RATE);
+                himc_pose pose = himc_mocap_pose(m, f / HIMC_MOCAP_RATE);
+                int p = found(take, name[k]);
+                himc_quat q = himc_take_rotation(take, f, p);
+                himc_quat turn = himc_quat_mul(himc_quat_conj(q), pose.joint[segment[k] - 1]);
+                angle = fmax(angle, himc_vec3_length(himc_quat_log(turn)));
+                himc_vec3 away = himc_vec3_sub(himc_take_point(take, f, p), s.origin[segment[k]]);
+                point = fmax(point, himc_vec3_length(away));
+            }
+        himc_take_free(take);
+        himc_mocap_free(m);
+    }
+    printf("BVH: points within %.1g m, rotations within %.1g rad\n", point, angle);
+    expect_found(&worst);
+    TEST_ASSERT_TRUE(point < SAME_POINT && angle < SAME_ROTATION);
+}
+
+#define CHECKED 3
+
+// points of frame f as they were made
+static void checked_points(const himc_mocap *m, int f, himc_vec3 x[CHECKED])
+{
+    himc_body_state s = sequence_state(m, f / HIMC_MOCAP_RATE);
+    himc_vec3 beside = himc_mat3_apply(&s.rotation[HIMC_RIGHT_HAND], (himc_vec3){0, 0.05, 0});
+    x[0] = s.tip[HIMC_LEFT];
+    x[1] = s.origin[HIMC_LEFT_FOREARM];
+    x[2] = himc_vec3_add(s.origin[HIMC_RIGHT_HAND], beside);
+}
+
+// the reader turns every take so that its body looks along x on the average, this one hardly
+static double heading_given(const himc_mocap *m, const himc_take *take, const int point[CHECKED])
+{
+    himc_vec3 x[CHECKED];
+    double sine = 0, cosine = 0;
+    for (int f = 0; f < himc_take_frames(take); f++) {
+        checked_points(m, f, x);
+        for (int k = 0; k < CHECKED; k++) {
+            himc_vec3 y = himc_take_point(take, f, point[k]);
+            sine += x[k].x * y.y - x[k].y * y.x;
+            cosine += x[k].x * y.x + x[k].y * y.y;
+        }
+    }
+    return atan2(sine, cosine);
+}
+
+static void test_a_c3d_reads_back_marker_by_marker(void)
+{
+    himc_mocap *m = sequence(22);
+    himc_take *take = write_and_read(m, "c3d");
+    const int point[CHECKED] = {found(take, "LeftStick_end"), found(take, "LeftForeArm"),
+                                found(take, "RightHand_side")};
+    double worst = 0, turn = heading_given(m, take, point);
+    himc_quat heading = himc_quat_exp(himc_vec3_make(0, 0, turn));
+    for (int f = 0; f < himc_take_frames(take); f += 3) {
+        himc_vec3 x[CHECKED];
+        checked_points(m, f, x);
+        for (int k = 0; k < CHECKED; k++) {
+            himc_vec3 y = himc_quat_rotate(heading, x[k]);
+            y = himc_vec3_sub(himc_take_point(take, f, point[k]), y);
+            worst = fmax(worst, himc_vec3_length(y));
+        }
+    }
+    printf("C3D: markers within %.1g m after a turn of %.1g rad\n", worst, turn);
+    TEST_ASSERT_TRUE(worst < 1e-6);
+    TEST_ASSERT_TRUE(fabs(turn) < 1e-3);
+    himc_take_free(take);
+    himc_mocap_free(m);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_all_45_sequences_have_both_hands_in_turn);
+    RUN_TEST(test_the_stick_is_level_and_the_mallet_on_the_head_at_each_impact);
+    RUN_TEST(test_strike_places_are_those_of_the_captures);
+    RUN_TEST(test_no_stick_goes_through_the_head);
+    RUN_TEST(test_a_mallet_turns_within_its_contact);
+    RUN_TEST(test_joints_move_as_fast_as_joints_do);
+    RUN_TEST(test_the_same_seed_is_the_same_motion_and_another_is_another);
+    RUN_TEST(test_what_cannot_be_played_is_refused_in_a_line);
+    RUN_TEST(test_each_stroke_is_found_in_each_of_the_45_files);
+    RUN_TEST(test_a_bvh_reads_back_rotation_by_rotation);
+    RUN_TEST(test_a_c3d_reads_back_marker_by_marker);
+    return UNITY_END();
+}
