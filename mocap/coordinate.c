@@ -75,8 +75,8 @@ static double joint_rate(const double rate[2], int k)
     return rate[0] + distal[k] * (rate[1] - rate[0]);
 }
 
-static void share_stroke(const himc_mocap *m, const mocap_stroke *s, const double slope[2][4],
-                         mocap_share share[HIMC_ARM_JOINTS])
+static void share_stroke(const himc_mocap *m, const mocap_stroke *s,
+                         double slope[2][HIMC_ARM_JOINTS], mocap_share share[HIMC_ARM_JOINTS])
 {
     const mocap_gesture *g = &s->gesture;
     double arrive[2], rebound[2];
