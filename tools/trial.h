@@ -34,6 +34,7 @@ typedef struct trial_frame {
     const himc_pose *captured_pose;
     const himc_body_state *captured;
     const himc_motion_row *simulated;
+    const himc_body_state *simulated_body;
 } trial_frame;
 
 /// How a trial is played.
