@@ -66,7 +66,7 @@ trial_config trial_default(const trial_kind *kind, int number)
                           .limits = true};
 }
 
-static himc_mocap_config sequence_of(const trial_config *config)
+himc_mocap_config trial_sequence(const trial_config *config)
 {
     himc_mocap_config sequence = himc_mocap_default();
     sequence.player = (config->number - 1) % HIMC_MOCAP_PLAYERS;
@@ -208,7 +208,7 @@ static himc_performance *prepare(const trial_config *config, himc_take *take, hi
     rates.sample_rate = RATE;
     himc_performance *p = himc_performance_new(&rates, error);
     himc_drum *drum = p ? himc_drum_new("kettle", 23, RATE, error) : NULL;
-    himc_mocap_config sequence = sequence_of(config);
+    himc_mocap_config sequence = trial_sequence(config);
     bool good =
         drum && himc_performance_add_drum(p, drum, error) &&
         himc_performance_play_take(p, take, "take", error) && weigh(p, config, error) &&
@@ -345,7 +345,7 @@ static bool run_sequence(const trial_config *config, himc_mocap *mocap, trial_re
 
 bool trial_run(const trial_config *config, trial_result *result, himc_error *error)
 {
-    himc_mocap_config sequence = sequence_of(config);
+    himc_mocap_config sequence = trial_sequence(config);
     himc_mocap *mocap = himc_mocap_new(&sequence, error);
     bool good = mocap && run_sequence(config, mocap, result, error);
     himc_mocap_free(mocap);

@@ -2,6 +2,7 @@
 #ifndef TRIAL_H
 #define TRIAL_H
 
+#include "../mocap/mocap.h"
 #include "himc/performance.h"
 
 /// What is compared: one row of the published table.
@@ -52,6 +53,9 @@ typedef struct trial_config {
 
 /// As the evaluation plays it.
 trial_config trial_default(const trial_kind *kind, int number);
+
+/// The sequence of the motion database that it plays.
+himc_mocap_config trial_sequence(const trial_config *config);
 
 /// Runs a trial. The disturbance is its number's, the same for every controller.
 bool trial_run(const trial_config *config, trial_result *result, himc_error *error);
