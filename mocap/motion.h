@@ -30,7 +30,7 @@ struct himc_mocap {
     const mocap_player *player;
     himc_skeleton skeleton;
     himc_pose rest;
-    double length; ///< (s)
+    double length; ///< at the pace 1, as all times kept here (s)
     mocap_arm arm[HIMC_HANDS];
     mocap_wander turn, lean, nod;
 };

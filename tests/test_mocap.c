@@ -332,6 +332,34 @@ static void test_a_c3d_reads_back_marker_by_marker(void)
     himc_mocap_free(m);
 }
 
+static void test_mocap_pace_scales_time_and_nothing_else(void)
+{
+    himc_mocap_config c = sequence_config(7);
+    himc_mocap *usual = sequence_made(&c);
+    c.pace = 2;
+    himc_mocap *fast = sequence_made(&c);
+    TEST_ASSERT_EQUAL_DOUBLE(himc_mocap_length(usual) / 2, himc_mocap_length(fast));
+    for (int i = 0; i < himc_mocap_touches(usual); i++) {
+        himc_mocap_touch a = himc_mocap_touch_at(usual, i), b = himc_mocap_touch_at(fast, i);
+        TEST_ASSERT_EQUAL_DOUBLE(a.time / 2, b.time);
+        TEST_ASSERT_EQUAL_MEMORY(&a.x, &b.x, sizeof a.x);
+    }
+    for (double t = 0; t < himc_mocap_length(fast); t += 0.01) {
+        himc_pose a = himc_mocap_pose(usual, 2 * t), b = himc_mocap_pose(fast, t);
+        TEST_ASSERT_EQUAL_MEMORY(&a, &b, sizeof a);
+    }
+    himc_mocap_free(fast);
+    himc_mocap_free(usual);
+}
+
+static void test_mocap_pace_out_of_range_is_refused(void)
+{
+    himc_mocap_config c = himc_mocap_default();
+    c.pace = 5;
+    TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "pace"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -346,5 +374,7 @@ int main(void)
     RUN_TEST(test_each_stroke_is_found_in_each_of_the_45_files);
     RUN_TEST(test_a_bvh_reads_back_rotation_by_rotation);
     RUN_TEST(test_a_c3d_reads_back_marker_by_marker);
+    RUN_TEST(test_mocap_pace_scales_time_and_nothing_else);
+    RUN_TEST(test_mocap_pace_out_of_range_is_refused);
     return UNITY_END();
 }
