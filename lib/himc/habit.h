@@ -66,9 +66,9 @@ bool himc_habit_correct(himc_habit *habit, const himc_habit_take *take, himc_err
 /// be filled in.
 HIMC_RT void himc_habit_usual(himc_habit *habit);
 
-/// The arms' posture for tips at each tap; the rest of the pose, and an arm of which the player
-/// knows nothing, is taken as given, but that its trunk sways with the tips. The tips are at their places, if those are not far from what was
-/// seen: of all such postures the likeliest.
+/// The arms' posture for tips at each tap; the rest of the pose, and an arm of which nothing was
+/// seen, is taken as given, but that its trunk sways with the tips. The tips are at their places,
+/// if those are not far from what was seen: of all such postures the likeliest.
 HIMC_RT void himc_habit_at(const himc_habit *habit,
                            const himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS], himc_pose *pose);
 /// Puts the habit into a natural posture in motion (himc_posture_moving): the arms are the habit's,
