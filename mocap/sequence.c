@@ -41,7 +41,7 @@ int himc_mocap_touches(const himc_mocap *m)
 himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
 {
     himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
-    double t = m->arm[hand].stroke[index / 2].landed;
+    double t = m->arm[hand].stroke[index / 2].touch;
     himc_quat joint[HIMC_ARM_JOINTS];
     himc_mocap_arm_at(m, hand, t, joint);
     himc_quat trunk = himc_mocap_trunk(m, t);

@@ -181,6 +181,21 @@ static void test_numbers_that_are_not_finite_are_refused(void)
     TEST_ASSERT_FALSE(perform("tempo 0x50"));
 }
 
+// Pd's numbers are of single precision: its 2.2 and 1.5708 are a little more than those
+static void test_ends_of_a_range_arrive_exactly_from_single_precision(void)
+{
+    himc_atom atom[4] = {{HIMC_ATOM_SYMBOL, 0, "air"},
+                         {HIMC_ATOM_NUMBER, 0, NULL},
+                         {HIMC_ATOM_NUMBER, 1.5708f, NULL},
+                         {HIMC_ATOM_NUMBER, 2, NULL}};
+    TEST_ASSERT_TRUE(himc_command_parse(&command, HIMC_DRUM, "pickup", atom, 4, &error));
+    TEST_ASSERT_TRUE(command.atom[2].number == 1.5708);
+    atom[2].number = nextafterf(1.5708f, 2);
+    TEST_ASSERT_FALSE(himc_command_parse(&command, HIMC_DRUM, "pickup", atom, 4, &error));
+    TEST_ASSERT_TRUE(drum("pickup air 0 0.7 2"));
+    TEST_ASSERT_TRUE(command.atom[2].number == 0.7f);
+}
+
 static void test_refused_command_leaves_the_result_untouched(void)
 {
     himc_command before;
@@ -285,6 +300,7 @@ int main(void)
     RUN_TEST(test_faults_name_what_value_and_what_is_allowed);
     RUN_TEST(test_unknown_commands_are_answered_with_the_nearest_name);
     RUN_TEST(test_numbers_that_are_not_finite_are_refused);
+    RUN_TEST(test_ends_of_a_range_arrive_exactly_from_single_precision);
     RUN_TEST(test_refused_command_leaves_the_result_untouched);
     RUN_TEST(test_note_names_arrive_as_frequencies);
     RUN_TEST(test_text_and_atoms_give_the_same_bits);

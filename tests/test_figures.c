@@ -72,19 +72,19 @@ static void test_tips_are_measured_outside_contact_only(void)
     himc_performance_free(p);
 }
 
+// servos act implicitly and hold whatever their gains; 1.7 kN on a stick of some grams, in
+// steps of 2 ms, is more than the engine can follow
 static void test_each_recovery_is_counted_and_the_first_is_said(void)
 {
     himc_performance *p = session_new();
     heard h = {0};
     session_do(p, "drum kettle");
     session_do(p, "rate physics 500");
-    session_do(p, "law printed");
-    session_do(p, "gain left-shoulder 100000 10000");
-    session_do(p, "hit left legato f");
-    session_play(p, 1, &h);
+    session_do(p, "push left-stick 1000 1000 1000 1");
+    session_play(p, 0.3, &h);
     long first = himc_performance_measure(p).recoveries;
     TEST_ASSERT_TRUE(first > 0);
-    session_play(p, 1, &h);
+    session_play(p, 0.3, &h);
     TEST_ASSERT_TRUE(himc_performance_measure(p).recoveries > first);
     TEST_ASSERT_EQUAL_INT(1, h.notes);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.note, "flew apart"), h.note);

@@ -129,6 +129,49 @@ static void test_rates_are_those_of_the_posture(void)
         }
 }
 
+// in the body's own mirror: its plane of symmetry is y = 0
+static himc_vec3 in_mirror(himc_vec3 x)
+{
+    return himc_vec3_make(x.x, -x.y, x.z);
+}
+
+// A player one of whose arms rests: learned from the other, it plays as that one does in a mirror.
+static void test_an_arm_that_rests_learns_from_the_other_in_a_mirror(void)
+{
+    himc_pose *pose = malloc((size_t)seen[0].frames * sizeof *pose);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_habit habit;
+        himc_error error = {""};
+        himc_habit_take take = seen[0];
+        memcpy(pose, seen[0].pose, (size_t)take.frames * sizeof *pose);
+        for (int i = 0; i < take.frames; i++)
+            for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+                int j = himc_arm_joint((himc_hand)hand, k);
+                pose[i].joint[j] = who[0].low.joint[j];
+            }
+        take.pose = pose;
+        TEST_ASSERT_TRUE_MESSAGE(himc_habit_learn(&habit, &take, 1, &error), error.text);
+        TEST_ASSERT_TRUE_MESSAGE(himc_habit_meet(&habit.player, &seen[0], 1, &error), error.text);
+        for (int i = 0; i < 250; i += 10) {
+            himc_vec3 tip[2][HIMC_HABIT_TAPS][HIMC_HANDS];
+            himc_pose played[2] = {seen[0].pose[i], seen[0].pose[i]};
+            tips_ahead(&who[0], 1 + i / PLAYER_RATE, tip[0]);
+            for (int tap = 0; tap < HIMC_HABIT_TAPS; tap++)
+                for (int h = 0; h < HIMC_HANDS; h++)
+                    tip[1][tap][h] = in_mirror(tip[0][tap][1 - h]);
+            for (int m = 0; m < 2; m++)
+                himc_habit_at(&habit, (const himc_vec3(*)[HIMC_HANDS])tip[m], &played[m]);
+            for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+                himc_quat own = played[0].joint[himc_arm_joint((himc_hand)hand, k)];
+                himc_quat other = played[1].joint[himc_arm_joint((himc_hand)(1 - hand), k)];
+                own = (himc_quat){own.w, -own.x, own.y, -own.z};
+                TEST_ASSERT_TRUE(angle_between(own, other) < DEGREE);
+            }
+        }
+    }
+    free(pose);
+}
+
 static void test_what_determines_nothing_is_refused_with_the_reason(void)
 {
     himc_habit habit;
@@ -148,8 +191,7 @@ static void test_what_determines_nothing_is_refused_with_the_reason(void)
         still[i] = seen[0].pose[0];
     take = (himc_habit_take){&who[0].skeleton, still, 200, PLAYER_RATE};
     TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
-    TEST_ASSERT_EQUAL_STRING("habit: the left tip hardly moves: nothing to learn from it",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING("habit: no tip moves: nothing to learn from it", error.text);
     still[7].joint[3].x = NAN;
     TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
     TEST_ASSERT_EQUAL_STRING("habit: left-shoulder in frame 7: not a rotation", error.text);
@@ -165,6 +207,7 @@ int main(void)
     RUN_TEST(test_a_player_never_seen_is_met_within_a_degree);
     RUN_TEST(test_tips_are_where_they_are_asked_to_be);
     RUN_TEST(test_rates_are_those_of_the_posture);
+    RUN_TEST(test_an_arm_that_rests_learns_from_the_other_in_a_mirror);
     RUN_TEST(test_what_determines_nothing_is_refused_with_the_reason);
     for (int i = 0; i < PLAYERS; i++)
         free((void *)(uintptr_t)seen[i].pose);

@@ -84,15 +84,18 @@ static void test_strokes_vary_no_more_than_the_captured_and_at_least_half(void)
 static void test_nuances_are_ordered_as_in_the_captures(void)
 {
     for (int n = 0; n < HIMC_NUANCES; n++) {
-        if (n != HIMC_VERTICAL_ACCENT)
+        if (n != HIMC_VERTICAL_ACCENT) {
             TEST_ASSERT_TRUE(mean(HIMC_VERTICAL_ACCENT, HIMC_MOCAP_IMPACT) >
                              1.4 * mean((himc_nuance)n, HIMC_MOCAP_IMPACT));
-        if (n != HIMC_STACCATO)
+        }
+        if (n != HIMC_STACCATO) {
             TEST_ASSERT_TRUE(mean(HIMC_STACCATO, HIMC_MOCAP_IMPACT) <
                              0.8 * mean((himc_nuance)n, HIMC_MOCAP_IMPACT));
-        if (n != HIMC_TENUTO)
+        }
+        if (n != HIMC_TENUTO) {
             TEST_ASSERT_TRUE(mean(HIMC_TENUTO, HIMC_MOCAP_UP) <
                              mean((himc_nuance)n, HIMC_MOCAP_UP));
+        }
     }
     TEST_ASSERT_TRUE(mean(HIMC_STACCATO, HIMC_MOCAP_UP) >
                      1.5 * mean(HIMC_STACCATO, HIMC_MOCAP_DOWN));
@@ -107,9 +110,10 @@ static void test_the_accent_is_high_and_narrow_vertical_accent_and_staccato_deep
         TEST_ASSERT_TRUE(mean(HIMC_ACCENT, HIMC_MOCAP_TIP_HEIGHT) >
                          mean(nuance, HIMC_MOCAP_TIP_HEIGHT));
         TEST_ASSERT_TRUE(mean(HIMC_ACCENT, HIMC_MOCAP_DEPTH) < mean(nuance, HIMC_MOCAP_DEPTH));
-        if (n == HIMC_VERTICAL_ACCENT || n == HIMC_STACCATO)
+        if (n == HIMC_VERTICAL_ACCENT || n == HIMC_STACCATO) {
             TEST_ASSERT_TRUE(mean(nuance, HIMC_MOCAP_DEPTH) >
                              1.15 * mean(HIMC_LEGATO, HIMC_MOCAP_DEPTH));
+        }
     }
 }
 

@@ -157,9 +157,15 @@ bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
     double value = atom->number;
     if (argument->kind == HIMC_ARGUMENT_COUNT && value != floor(value))
         return false;
-    // as single precision knows the ends: Pd's 2.2 is a little more than 2.2
     return isfinite(value) && (float)value >= (float)argument->low &&
            (float)value <= (float)argument->high;
+}
+
+double himc_argument_number(const himc_argument *argument, double number)
+{
+    if ((float)number == (float)argument->low)
+        return argument->low;
+    return (float)number == (float)argument->high ? argument->high : (float)number;
 }
 
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)

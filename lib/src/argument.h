@@ -28,6 +28,10 @@ const himc_argument *himc_argument_find(const char *name, const char *context);
 /// Whether the atom fits.
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom);
 
+/// The number of an accepted atom as all hosts have it, in single precision, but for the ends of
+/// the range, which are what the table says: Pd's 2.2 is a little more than 2.2.
+double himc_argument_number(const himc_argument *argument, double number);
+
 /// What would fit, for a person: "0 .. 1 m", "left right".
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size);
 

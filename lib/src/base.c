@@ -34,8 +34,7 @@ bool himc_error_prefix(himc_error *error, const char *format, ...)
 bool himc_check_range(const char *name, double value, double low, double high, const char *unit,
                       himc_error *error)
 {
-    // a command's number has been through single precision, and so its ends must have been
-    if (isfinite(value) && (float)value >= (float)low && (float)value <= (float)high)
+    if (isfinite(value) && value >= low && value <= high)
         return true;
     const char *space = unit[0] ? " " : "";
     return himc_error_set(error, "%s: %g%s%s, allowed %g .. %g%s%s", name, value, space, unit, low,

@@ -56,8 +56,8 @@ static const himc_command_row table[] = {
     {HIMC_COMMAND_LAW, HIMC_PERFORMER, "law", "printed|feedforward|computed-torque",
      "chooses the inverse dynamics"},
     {HIMC_COMMAND_GAIN, HIMC_PERFORMER, "gain", "reset | frequency FACTOR | JOINT KS KD",
-     "sets stiffness and damping of a joint's servo, the natural frequency of all over the usual, or "
-     "all as they were"},
+     "sets stiffness and damping of a joint's servo, the natural frequency of all over the usual, "
+     "or all as they were"},
     {HIMC_COMMAND_LIMITS, HIMC_PERFORMER, "limits", "ellipsoid|euler|off",
      "keeps the joints as far as the take's player turned them, or table 1's"},
     {HIMC_COMMAND_STRENGTH, HIMC_PERFORMER, "strength", "human|off | JOINT TORQUE",
@@ -141,7 +141,8 @@ typedef struct walk {
     const char *context; ///< command or last literal word
     const himc_atom *atom;
     int count, at;
-    bool literal; ///< a literal word fitted
+    bool literal;   ///< a literal word fitted
+    double *number; ///< what the atoms that fitted are stored as (HIMC_COMMAND_ATOMS)
 } walk;
 
 static const char *next_token(const char *grammar, char token[WORD_SIZE], bool *optional)
@@ -161,6 +162,13 @@ static bool is_place(const walk *w)
            w->atom[w->at + 1].kind == HIMC_ATOM_NUMBER &&
            himc_argument_accepts(x, &w->atom[w->at]) &&
            himc_argument_accepts(x, &w->atom[w->at + 1]);
+}
+
+static void take_atoms(walk *w, const himc_argument *argument, int count)
+{
+    for (; count > 0; count--, w->at++)
+        if (w->at < HIMC_COMMAND_ATOMS && w->atom[w->at].kind == HIMC_ATOM_NUMBER)
+            w->number[w->at] = himc_argument_number(argument, w->atom[w->at].number);
 }
 
 /// Takes the atoms that fit the token; false if the next one does not.
@@ -186,7 +194,7 @@ static bool take(walk *w, const char *token, char allowed[ALLOWED_SIZE])
     bool place = spot && is_place(w);
     if (!place && !himc_argument_accepts(argument, atom))
         return false;
-    w->at += place ? 2 : 1;
+    take_atoms(w, place ? himc_argument_find("X", "stroke") : argument, place ? 2 : 1);
     return true;
 }
 
@@ -260,10 +268,11 @@ static void keep_closer(attempt *best, const attempt *other)
     }
 }
 
-static bool check(const himc_command_row *row, const himc_atom *atoms, int count, himc_error *error)
+static bool check(const himc_command_row *row, const himc_atom *atoms, int count,
+                  double number[HIMC_COMMAND_ATOMS], himc_error *error)
 {
     attempt best = {.rank = -1}, now;
-    walk start = {row->name, atoms, count, 0, false};
+    walk start = {row->name, atoms, count, 0, false, number};
     for (const char *grammar = row->atoms; grammar;) {
         grammar = follow(grammar, start, &now);
         if (now.end == FITS)
@@ -336,13 +345,13 @@ static const himc_command_row *find_row(himc_receiver receiver, const char *name
 }
 
 /// Copies atoms and their symbols; they have been checked, so they fit.
-static void store(himc_command *out, const himc_atom *atoms, int count)
+static void store(himc_command *out, const himc_atom *atoms, const double *number, int count)
 {
     size_t used = 0;
     out->count = count;
     for (int i = 0; i < count; i++) {
         double hz;
-        out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, (float)atoms[i].number, NULL};
+        out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, number[i], NULL};
         if (atoms[i].kind != HIMC_ATOM_SYMBOL)
             continue;
         if (out->id == HIMC_COMMAND_TUNE && himc_note_frequency(atoms[i].symbol, &hz)) {
@@ -390,10 +399,11 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
     const himc_command_row *row = find_row(receiver, name);
     if (!row)
         return refuse_name(receiver, name, error);
-    if (!check(row, atoms, count, error))
+    double number[HIMC_COMMAND_ATOMS] = {0};
+    if (!check(row, atoms, count, number, error))
         return false;
     out->id = row->id;
-    store(out, atoms, count);
+    store(out, atoms, number, count);
     if (row->id == HIMC_COMMAND_STROKE || row->id == HIMC_COMMAND_HIT)
         out->stroke = read_stroke(out);
     return true;
