@@ -8,6 +8,7 @@ eval terminal(1500, 620)
 set output out
 array name[5] = ["legato", "tenuto", "accent", "vertical-accent", "staccato"]
 array panel[4] = ["printed law, gain × 1", "printed law, gain × 3", "feedforward, gain × 3", "computed torque, gain × 3"]
+array step[4] = [5, 1, 0.5, 0.25]
 array law[4] = ["", "printed", "feedforward", "computed-torque"]
 place(what) = what eq name[1] ? 5 : what eq name[2] ? 4 : what eq name[3] ? 3 : what eq name[4] ? 2 : 1
 
@@ -37,7 +38,8 @@ do for [i = 1:4] {
     set rmargin at screen left + 0.196
     set title panel[i] font ",13" textcolor rgb ink
     set xrange [0:*]
-    if (i > 1) { set format y "" }
+    set xtics step[i]
+    if (i > 1) { set ytics ("" 5, "" 4, "" 3, "" 2, "" 1) }
     if (i == 1) {
         set datafile separator whitespace
         plot gentle using (0):(place(strcol(1))):(0):2:(place(strcol(1))):(place(strcol(1)) + half) \
