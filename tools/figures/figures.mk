@@ -107,3 +107,8 @@ docs/figures/claim.svg docs/figures/claim.png &: $(CURVES)/rates.txt tools/figur
 docs/figures/evaluation.svg docs/figures/evaluation.png: SAID := $(TRIALS) trials of each nuance; joint limits on
 docs/figures/evaluation.svg docs/figures/evaluation.png &: $(CURVES)/nuances.txt docs/figures/evaluation.csv tools/figures/evaluation.gp tools/figures/style.gp
 	$(call draw,evaluation,evaluation,gentle='$<'; table='$(word 2,$^)')
+
+# the table of the undisturbed database in docs/evaluation.md
+$(CURVES)/database.txt: $(BUILD)/tools/figures/database
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< >$@
