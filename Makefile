@@ -216,6 +216,8 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 
 $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit/table: $(MOCAP_O)
 
+$(BUILD)/tools/figures/strokes $(BUILD)/tools/figures/claim: $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@

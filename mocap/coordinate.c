@@ -3,22 +3,23 @@
 /// With s_k the share of joint k, 0 at impact and 1 at the apex, the tip's height changes by
 /// dz/dt = sum_k dz/ds_k s_k'. Shoulder and elbow arrive with one rate, the grip with another, the
 /// wrist with their mean; these two follow from two speeds that are measured, the mallet's and
-/// that of a point behind it on the stick. So also the rebound. While the stick turns in its few
-/// milliseconds of contact the rest of the arm goes on, and the grip's rates allow for that.
-/// Invariant: the mallet is never
-/// lower than where it touches: each stroke's grip is shifted by what the arm's motion during the
-/// contact leaves over (a degree at most).
+/// that of a point behind it on the stick. So also the rebound. The mallet comes straight to the
+/// head; felt and head yield, and it leaves them CONTACT later, having been some 0.3 v CONTACT
+/// deeper. Meanwhile the rest of the arm goes on, and the grip's rates allow for that. Invariant:
+/// at the touch the mallet is where it was aimed: each stroke's grip is shifted by what the arm's
+/// motion leaves over (a degree at most).
 #include "motion.h"
 
-#define POINT 0.15 // of the stick that is measured, behind the mallet (m)
-#define READY 0.45 // share of the first apex in which the hands wait
-#define GRIP 3     // the joint
-#define WAIT 0.12  // from where they leave (s)
+#define POINT 0.15     // of the stick that is measured, behind the mallet (m)
+#define READY 0.45     // share of the first apex in which the hands wait
+#define GRIP 3         // the joint
+#define WAIT 0.12      // from where they leave (s)
+#define CONTACT 0.0075 // of a felt mallet with the head (s)
 
 // times before and after the impact in which a joint turns from falling to rising: the stick
 // within its contact, the heavier parts slower and later (s)
 static const double turns[HIMC_ARM_JOINTS][2] = {
-    {0.025, 0.035}, {0.020, 0.030}, {0.008, 0.014}, {0.0035, 0.0035}};
+    {0.025, 0.035}, {0.020, 0.030}, {0.008, 0.014}, {0, CONTACT}};
 // share of the grip's rate in the joint's, the rest is the elbow's
 static const double distal[HIMC_ARM_JOINTS] = {0, 0, 0.15, 1};
 
@@ -95,10 +96,10 @@ static void share_stroke(const himc_mocap *m, const mocap_stroke *s,
 
 // where the grip is, and how fast, when the mallet is at height z with speed v at `t` from the
 // touch, the rest of the arm being where it is
-static mocap_knot grip_at(const mocap_arm *arm, const double mallet[], const mocap_share share[],
-                          double t, double speed)
+static mocap_knot grip_at(const mocap_arm *arm, const double mallet[HIMC_ARM_JOINTS],
+                          const mocap_share *share, double t, double z, double v)
 {
-    double now = share[GRIP].touch + t, z = fabs(t * speed), v = speed;
+    double now = share[GRIP].touch + t;
     for (int k = 0; k < GRIP; k++) {
         z -= mallet[k] * himc_mocap_curve_at(&arm->share[k], now);
         v -= mallet[k] * himc_mocap_turn_rate(&share[k], t);
@@ -106,19 +107,20 @@ static mocap_knot grip_at(const mocap_arm *arm, const double mallet[], const moc
     return (mocap_knot){now, z / mallet[GRIP], v / mallet[GRIP], 0};
 }
 
-// the mallet goes straight to the head and back from it: while the arm turns, the fingers make up
-// for it
-static void add_grip(mocap_arm *arm, const mocap_gesture *g, const double mallet[],
-                     const mocap_share share[])
+// the mallet goes straight to the head and, after the contact, straight from it: while the arm
+// turns, the fingers make up for it
+static void add_grip(mocap_arm *arm, const mocap_gesture *g, const double mallet[HIMC_ARM_JOINTS],
+                     const mocap_share *share)
 {
     const mocap_share *own = &share[GRIP];
     mocap_curve *curve = &arm->share[GRIP];
-    mocap_knot knot[4];
-    for (int i = 0; i < 4; i++) {
-        double t = i < 2 ? -turns[i == 0 ? 0 : GRIP][0] : turns[i == 2 ? GRIP : 0][1];
-        knot[i] = grip_at(arm, mallet, share, t, i < 2 ? -g->impact : g->rebound);
-    }
-    double fall = own->fall - turns[0][0], lift = own->lift - turns[0][1];
+    double begin = -turns[0][0], end = turns[0][1];
+    mocap_knot knot[4] = {
+        grip_at(arm, mallet, share, begin, -begin * g->impact, -g->impact),
+        grip_at(arm, mallet, share, 0, 0, -g->impact),
+        grip_at(arm, mallet, share, CONTACT, 0, g->rebound),
+        grip_at(arm, mallet, share, end, (end - CONTACT) * g->rebound, g->rebound)};
+    double fall = own->fall + begin, lift = own->lift - end;
     knot[0].a = himc_mocap_soften(own->arrive, &fall);
     knot[3].a = himc_mocap_soften(own->rebound, &lift);
     himc_mocap_curve_add(curve, (mocap_knot){knot[0].t - fall, 1, 0, 0});
@@ -146,23 +148,16 @@ static void add_stroke(himc_mocap *m, himc_hand hand, int i)
     himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch + s->gesture.lift, 0, 0, 0});
 }
 
-// how far the mallet goes below its place (m), and when
-static double sinking(const himc_mocap *m, himc_hand hand, const mocap_stroke *s, double *when)
+// how far the mallet is below its place when it touches (m)
+static double sinking(const himc_mocap *m, himc_hand hand, const mocap_stroke *s)
 {
     himc_quat joint[HIMC_ARM_JOINTS];
-    double lowest = HUGE_VAL;
-    for (int i = -50; i <= 50; i++) {
-        double t = s->touch + 2e-4 * i;
-        himc_mocap_arm_at(m, hand, t, joint);
-        himc_quat trunk = himc_mocap_trunk(m, t);
-        double z = himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0).z;
-        *when = z < lowest ? t : *when;
-        lowest = fmin(lowest, z);
-    }
-    return s->aim.z - lowest;
+    himc_mocap_arm_at(m, hand, s->touch, joint);
+    himc_quat trunk = himc_mocap_trunk(m, s->touch);
+    return s->aim.z - himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0).z;
 }
 
-// shifts the grip in each contact so that the mallet's lowest place is on the head
+// shifts the grip in each contact so that the mallet touches on the head
 static void level_touches(himc_mocap *m, himc_hand hand)
 {
     mocap_arm *arm = &m->arm[hand];
@@ -172,7 +167,7 @@ static void level_touches(himc_mocap *m, himc_hand hand)
         double slope[HIMC_ARM_JOINTS];
         slopes(m, hand, s, 0, slope);
         for (int round = 0; round < 4; round++) {
-            double more = sinking(m, hand, s, &s->landed) / slope[GRIP];
+            double more = sinking(m, hand, s) / slope[GRIP];
             for (int k = 1; k < MOCAP_GRIP_KNOTS - 1; k++)
                 grip[k].x += more;
         }

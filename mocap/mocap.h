@@ -21,6 +21,7 @@ typedef struct himc_mocap_config {
     himc_spot spot; ///< center, normal or rim
     uint64_t seed;  ///< default 1
     int strokes;    ///< of both hands together, 2 .. 200, default 16
+    double pace;    ///< the same motion so many times as fast, 0.25 .. 4, default 1
 } himc_mocap_config;
 
 himc_mocap_config himc_mocap_default(void);

@@ -34,7 +34,7 @@
 himc_mocap_config himc_mocap_default(void)
 {
     return (himc_mocap_config){
-        .nuance = HIMC_LEGATO, .spot = HIMC_SPOT_NORMAL, .seed = 1, .strokes = 16};
+        .nuance = HIMC_LEGATO, .spot = HIMC_SPOT_NORMAL, .seed = 1, .strokes = 16, .pace = 1};
 }
 
 static himc_quat bearing(double turn, double lean)
@@ -283,7 +283,8 @@ static bool check_config(const himc_mocap_config *c, himc_error *error)
     return himc_check_range("player", c->player, 0, HIMC_MOCAP_PLAYERS - 1, "", error) &&
            himc_check_range("nuance", c->nuance, 0, HIMC_NUANCES - 1, "", error) &&
            himc_check_range("spot", c->spot, 0, HIMC_SPOT_RIM, "", error) &&
-           himc_check_range("strokes", c->strokes, 2, 200, "", error);
+           himc_check_range("strokes", c->strokes, 2, 200, "", error) &&
+           himc_check_range("pace", c->pace, 0.25, 4, "", error);
 }
 
 himc_mocap *himc_mocap_new(const himc_mocap_config *config, himc_error *error)
@@ -369,7 +370,7 @@ himc_pose himc_mocap_pose(const himc_mocap *m, double t)
 {
     himc_pose pose = m->rest;
     himc_quat joint[HIMC_ARM_JOINTS];
-    t = fmin(fmax(t, 0), m->length);
+    t = fmin(fmax(t * m->config.pace, 0), m->length);
     pose.joint[HIMC_TRUNK - 1] = himc_mocap_trunk(m, t);
     himc_quat nod =
         himc_quat_exp(himc_vec3_make(0, 2 * TRUNK_WANDER * himc_mocap_wander_at(&m->nod, t), 0));

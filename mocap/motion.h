@@ -11,7 +11,6 @@ typedef struct mocap_stroke {
     mocap_gesture gesture; ///< as this stroke is played
     himc_vec3 aim;         ///< of the tip at impact (m)
     double touch;          ///< when it is aimed to be there (s)
-    double landed;         ///< when the mallet is lowest (s)
     mocap_key low;         ///< impact
     himc_vec3 impact[HIMC_ARM_JOINTS], apex[HIMC_ARM_JOINTS];
     himc_vec3 loop[HIMC_ARM_JOINTS]; ///< what the way up is off the way down, at its middle
@@ -31,7 +30,7 @@ struct himc_mocap {
     const mocap_player *player;
     himc_skeleton skeleton;
     himc_pose rest;
-    double length; ///< (s)
+    double length; ///< at the pace 1, as all times kept here (s)
     mocap_arm arm[HIMC_HANDS];
     mocap_wander turn, lean, nod;
 };

@@ -25,12 +25,12 @@ himc_vec3 himc_mocap_drum(const himc_mocap *m)
 
 double himc_mocap_length(const himc_mocap *m)
 {
-    return m->length;
+    return m->length / m->config.pace;
 }
 
 int himc_mocap_frames(const himc_mocap *m)
 {
-    return 1 + (int)floor(m->length * HIMC_MOCAP_RATE);
+    return 1 + (int)floor(himc_mocap_length(m) * HIMC_MOCAP_RATE);
 }
 
 int himc_mocap_touches(const himc_mocap *m)
@@ -41,11 +41,12 @@ int himc_mocap_touches(const himc_mocap *m)
 himc_mocap_touch himc_mocap_touch_at(const himc_mocap *m, int index)
 {
     himc_hand hand = index % 2 ? HIMC_LEFT : HIMC_RIGHT;
-    double t = m->arm[hand].stroke[index / 2].landed;
+    double t = m->arm[hand].stroke[index / 2].touch;
     himc_quat joint[HIMC_ARM_JOINTS];
     himc_mocap_arm_at(m, hand, t, joint);
     himc_quat trunk = himc_mocap_trunk(m, t);
-    return (himc_mocap_touch){hand, t, himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0)};
+    himc_vec3 x = himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, 0);
+    return (himc_mocap_touch){hand, t / m->config.pace, x};
 }
 
 bool himc_mocap_write(const himc_mocap *mocap, const char *path, himc_error *error)

@@ -9,7 +9,7 @@
 
 #define SAME_POINT 1e-4    // (m)
 #define SAME_ROTATION 2e-5 // (rad)
-#define MOST_SINK 0.002    // of the mallet below the head (m)
+#define MOST_SINK 0.020    // of the mallet into felt and head (m)
 
 void setUp(void)
 {
@@ -99,7 +99,8 @@ static void test_no_stick_goes_through_the_head(void)
     TEST_ASSERT_TRUE(deepest < MOST_SINK);
 }
 
-// the bounce is the stick's: its speed turns within 8 ms, upwards by more than half a metre a second
+// the bounce is the stick's: falling until it touches, rising by more than half a metre a second 8 ms
+// later
 static void test_a_mallet_turns_within_its_contact(void)
 {
     for (int i = 0; i < MOCAP_SEQUENCES; i++) {
@@ -108,7 +109,7 @@ static void test_a_mallet_turns_within_its_contact(void)
             himc_mocap_touch touch = himc_mocap_touch_at(m, k);
             double z[4];
             for (int n = 0; n < 4; n++) {
-                double t = touch.time + (n < 2 ? -0.005 : 0.004) + 0.001 * (n % 2);
+                double t = touch.time + (n < 2 ? -0.001 : 0.008) + 0.001 * (n % 2);
                 z[n] = sequence_state(m, t).tip[touch.hand].z;
             }
             TEST_ASSERT_TRUE(z[1] - z[0] < -0.001 && z[3] - z[2] > 0.0005);
@@ -222,9 +223,10 @@ static void expect_found(const misses *worst)
 {
     printf("strikes found within %.1f ms, %.1f mm on the head and %.1f mm in height\n",
            1e3 * worst->time, 1e3 * worst->floor, 1e3 * worst->height);
-    TEST_ASSERT_TRUE(worst->time < 0.004);
-    TEST_ASSERT_TRUE(worst->floor < 0.003);
-    TEST_ASSERT_TRUE(worst->height < 0.015);
+    // where fall and rebound meet is half a contact later than the touch, and deeper
+    TEST_ASSERT_TRUE(worst->time < 0.006);
+    TEST_ASSERT_TRUE(worst->floor < 0.005);
+    TEST_ASSERT_TRUE(worst->height < 0.035);
 }
 
 static void test_each_stroke_is_found_in_each_of_the_45_files(void)
@@ -330,6 +332,34 @@ static void test_a_c3d_reads_back_marker_by_marker(void)
     himc_mocap_free(m);
 }
 
+static void test_mocap_pace_scales_time_and_nothing_else(void)
+{
+    himc_mocap_config c = sequence_config(7);
+    himc_mocap *usual = sequence_made(&c);
+    c.pace = 2;
+    himc_mocap *fast = sequence_made(&c);
+    TEST_ASSERT_EQUAL_DOUBLE(himc_mocap_length(usual) / 2, himc_mocap_length(fast));
+    for (int i = 0; i < himc_mocap_touches(usual); i++) {
+        himc_mocap_touch a = himc_mocap_touch_at(usual, i), b = himc_mocap_touch_at(fast, i);
+        TEST_ASSERT_EQUAL_DOUBLE(a.time / 2, b.time);
+        TEST_ASSERT_EQUAL_MEMORY(&a.x, &b.x, sizeof a.x);
+    }
+    for (double t = 0; t < himc_mocap_length(fast); t += 0.01) {
+        himc_pose a = himc_mocap_pose(usual, 2 * t), b = himc_mocap_pose(fast, t);
+        TEST_ASSERT_EQUAL_MEMORY(&a, &b, sizeof a);
+    }
+    himc_mocap_free(fast);
+    himc_mocap_free(usual);
+}
+
+static void test_mocap_pace_out_of_range_is_refused(void)
+{
+    himc_mocap_config c = himc_mocap_default();
+    c.pace = 5;
+    TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "pace"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -344,5 +374,7 @@ int main(void)
     RUN_TEST(test_each_stroke_is_found_in_each_of_the_45_files);
     RUN_TEST(test_a_bvh_reads_back_rotation_by_rotation);
     RUN_TEST(test_a_c3d_reads_back_marker_by_marker);
+    RUN_TEST(test_mocap_pace_scales_time_and_nothing_else);
+    RUN_TEST(test_mocap_pace_out_of_range_is_refused);
     return UNITY_END();
 }

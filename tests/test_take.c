@@ -221,7 +221,7 @@ static void test_describe_tells_what_was_found_and_how_it_was_read(void)
         "gaps: 0 frames in 0 points\n",
         "tip: right is Anna:R_Stick_Tip, 0 frames filled\n",
         "strikes: 15\n",
-        "drum: the head belongs under 0.650 0.050 m, at the height of 0.800 m\n"};
+        "drum: the head belongs under 0.650 0.050 m, at the height of 0.811 m\n"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, lines[i]), lines[i]);
     himc_take_free(take);

@@ -40,6 +40,7 @@ typedef struct tally {
     double angle[3]; ///< squares: shoulder, elbow, wrist (rad^2)
     long count;
     double low[2][HIMC_HANDS], high[2][HIMC_HANDS]; ///< elbows: captured, simulated (m)
+    himc_body_state body;                           ///< simulated, at the latest tick
 } tally;
 
 const char *trial_controller_name(himc_pipeline controller)
@@ -65,12 +66,13 @@ trial_config trial_default(const trial_kind *kind, int number)
                           .limits = true};
 }
 
-static himc_mocap_config sequence_of(const trial_config *config)
+himc_mocap_config trial_sequence(const trial_config *config)
 {
     himc_mocap_config sequence = himc_mocap_default();
     sequence.player = (config->number - 1) % HIMC_MOCAP_PLAYERS;
     sequence.spot = (himc_spot)((config->number - 1) / HIMC_MOCAP_PLAYERS % SPOTS);
     sequence.nuance = config->kind.nuance;
+    sequence.pace = config->pace;
     return sequence;
 }
 
@@ -101,6 +103,7 @@ static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_
     himc_habit_take take[TAKES] = {{0}};
     himc_mocap *mocap[TAKES] = {NULL};
     int unseen = config.player, count = 0;
+    config.pace = 1; // how an arm lies with its stick, not how fast
     bool good = true;
     for (config.player = 0; config.player < HIMC_MOCAP_PLAYERS; config.player++)
         for (int spot = 0; good && config.player != unseen && spot < SPOTS; spot++, count++) {
@@ -205,7 +208,7 @@ static himc_performance *prepare(const trial_config *config, himc_take *take, hi
     rates.sample_rate = RATE;
     himc_performance *p = himc_performance_new(&rates, error);
     himc_drum *drum = p ? himc_drum_new("kettle", 23, RATE, error) : NULL;
-    himc_mocap_config sequence = sequence_of(config);
+    himc_mocap_config sequence = trial_sequence(config);
     bool good =
         drum && himc_performance_add_drum(p, drum, error) &&
         himc_performance_play_take(p, take, "take", error) && weigh(p, config, error) &&
@@ -253,6 +256,11 @@ static void compare_joints(tally *t, const himc_motion_row *row, const himc_pose
     }
 }
 
+static void keep_body(void *user, const himc_tick *tick)
+{
+    ((tally *)user)->body = *tick->body;
+}
+
 static void compare(void *user, const himc_motion_row *row)
 {
     tally *t = user;
@@ -268,7 +276,7 @@ static void compare(void *user, const himc_motion_row *row)
         compare_hand(t, row, &captured, (himc_hand)hand);
         compare_joints(t, row, &pose, (himc_hand)hand);
     }
-    trial_frame frame = {time, &pose, &captured, row};
+    trial_frame frame = {time, &pose, &captured, row, &t->body};
     if (t->config->frame)
         t->config->frame(t->config->user, &frame);
 }
@@ -326,6 +334,7 @@ static bool run_sequence(const trial_config *config, himc_mocap *mocap, trial_re
             t.low[which][hand] = INFINITY;
             t.high[which][hand] = -INFINITY;
         }
+    himc_performance_on_tick(p, keep_body, &t);
     himc_performance_on_motion(p, compare, &t);
     play(p);
     himc_performance_stats stats = himc_performance_measure(p);
@@ -336,7 +345,7 @@ static bool run_sequence(const trial_config *config, himc_mocap *mocap, trial_re
 
 bool trial_run(const trial_config *config, trial_result *result, himc_error *error)
 {
-    himc_mocap_config sequence = sequence_of(config);
+    himc_mocap_config sequence = trial_sequence(config);
     himc_mocap *mocap = himc_mocap_new(&sequence, error);
     bool good = mocap && run_sequence(config, mocap, result, error);
     himc_mocap_free(mocap);

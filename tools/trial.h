@@ -2,6 +2,7 @@
 #ifndef TRIAL_H
 #define TRIAL_H
 
+#include "../mocap/mocap.h"
 #include "himc/performance.h"
 
 /// What is compared: one row of the published table.
@@ -34,6 +35,7 @@ typedef struct trial_frame {
     const himc_pose *captured_pose;
     const himc_body_state *captured;
     const himc_motion_row *simulated;
+    const himc_body_state *simulated_body;
 } trial_frame;
 
 /// How a trial is played.
@@ -51,6 +53,9 @@ typedef struct trial_config {
 
 /// As the evaluation plays it.
 trial_config trial_default(const trial_kind *kind, int number);
+
+/// The sequence of the motion database that it plays.
+himc_mocap_config trial_sequence(const trial_config *config);
 
 /// Runs a trial. The disturbance is its number's, the same for every controller.
 bool trial_run(const trial_config *config, trial_result *result, himc_error *error);

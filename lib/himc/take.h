@@ -100,6 +100,7 @@ typedef struct himc_take_strike {
     double time;     ///< of the touch, between frames, from the first frame (s)
     himc_vec3 x;     ///< where (m)
     double velocity; ///< downward, just before (m/s)
+    double rebound;  ///< upward, just after (m/s); 0 where the capture is too blunted to tell
 } himc_take_strike;
 
 /// Finds strikes in the tips, in order of time; writes at most `capacity`, returns how many there
@@ -107,7 +108,9 @@ typedef struct himc_take_strike {
 int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                       himc_take_strike *strikes, int capacity);
 
-/// Where a drumhead belongs under these strikes: the middle of both hands' median places (m).
+/// Where a tip touches the drumhead that belongs under these strikes: the middle of both hands'
+/// median places (m). Where a fall and its rebound meet is below that: on the simulated head a mallet
+/// stays some 7 ms, and the head is put so high that such a contact joins the two.
 /// False without strikes.
 bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place);
 

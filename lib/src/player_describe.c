@@ -1,25 +1,10 @@
 /// player_describe.c: a take's player in a few lines for a person.
 #include "himc/player.h"
 
+#include "teller.h"
+
 #include <stdio.h>
 #include <string.h>
-
-typedef struct teller {
-    void (*line)(void *, const char *);
-    void *user;
-} teller;
-
-static void tell(const teller *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void tell(const teller *to, const char *format, ...)
-{
-    char text[256];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    to->line(to->user, text);
-}
 
 // "upper-arm 0.281 0.283": left and right
 static void tell_lengths(const himc_skeleton_config *c, const teller *to)
@@ -37,7 +22,7 @@ static void tell_lengths(const himc_skeleton_config *c, const teller *to)
             used += (size_t)snprintf(text + used, sizeof text - used, " %.3f", c->length[++i]);
     }
     if (used)
-        tell(to, "lengths (m):%s", text);
+        himc_tell(to, "lengths (m):%s", text);
 }
 
 static void tell_measures(const himc_player *player, const teller *to)
@@ -45,11 +30,11 @@ static void tell_measures(const himc_player *player, const teller *to)
     const himc_skeleton_config *c = &player->config;
     const char *from = player->height_from[0] ? player->height_from : "nothing in the take";
     if (player->mass_said)
-        tell(to, "player: %.3f m tall (by %s), %.1f kg (the file says so)", c->height, from,
-             c->mass);
+        himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (the file says so)", c->height, from,
+                  c->mass);
     else
-        tell(to, "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f)", c->height,
-             from, c->mass, c->mass / (c->height * c->height));
+        himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f)",
+                  c->height, from, c->mass, c->mass / (c->height * c->height));
     tell_lengths(c, to);
 }
 
@@ -60,7 +45,7 @@ static void tell_posture(const himc_player *player, const teller *to)
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (player->known[j] && used < sizeof text)
             used += (size_t)snprintf(text + used, sizeof text - used, " %s", himc_joint_name(j));
-    tell(to, "posture:%s", used ? text : " the natural one, for no joint is shown");
+    himc_tell(to, "posture:%s", used ? text : " the natural one, for no joint is shown");
 }
 
 // in our world, whose origin is on the floor under the player, and in the take
@@ -68,13 +53,14 @@ static void tell_places(const himc_player *player, const himc_place *drum, const
 {
     himc_vec3 floor = himc_vec3_scale(player->offset, -1);
     himc_vec3 head = himc_vec3_add(drum->center, floor), hips = player->hips;
-    tell(to, "seat: hip joints %.3f m above the floor, by %s; in the take at %.3f %.3f %.3f m",
-         himc_skeleton_seat(&player->config), player->placed ? "the take's own" : "the strikes",
-         hips.x, hips.y, hips.z);
-    tell(to,
-         "drumhead: centre %.3f m before the player, %.3f m to the left, %.3f m high; in the take "
-         "at %.3f %.3f %.3f m",
-         drum->center.x, drum->center.y, drum->center.z, head.x, head.y, head.z);
+    himc_tell(to, "seat: hip joints %.3f m above the floor, by %s; in the take at %.3f %.3f %.3f m",
+              himc_skeleton_seat(&player->config),
+              player->placed ? "the take's own" : "the strikes", hips.x, hips.y, hips.z);
+    himc_tell(
+        to,
+        "drumhead: centre %.3f m before the player, %.3f m to the left, %.3f m high; in the take "
+        "at %.3f %.3f %.3f m",
+        drum->center.x, drum->center.y, drum->center.z, head.x, head.y, head.z);
 }
 
 void himc_player_describe(const himc_player *player, const himc_place *drum,
@@ -84,7 +70,7 @@ void himc_player_describe(const himc_player *player, const himc_place *drum,
     tell_measures(player, &to);
     tell_posture(player, &to);
     for (int i = 0; i < player->note_count; i++)
-        tell(&to, "note: %.240s", player->notes[i]);
+        himc_tell(&to, "note: %.240s", player->notes[i]);
     if (player->seated && drum)
         tell_places(player, drum, &to);
 }

@@ -1,5 +1,6 @@
 /// take_describe.c: a take in a few lines for a person: what it is, how it was read, what is in it.
 #include "take_data.h"
+#include "teller.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,23 +11,6 @@
 #define STRIKE_LINES 64 // strikes listed
 #define ONE_DRUM 0.45   // no two strikes on one are farther from its usual spot (m)
 
-typedef struct teller {
-    void (*line)(void *, const char *);
-    void *user;
-} teller;
-
-static void tell(const teller *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void tell(const teller *to, const char *format, ...)
-{
-    char text[256];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    to->line(to->user, text);
-}
-
 // names in lines of at most 100 characters
 static void tell_points(const himc_take *take, const teller *to)
 {
@@ -35,12 +19,12 @@ static void tell_points(const himc_take *take, const teller *to)
                         "%s %d:", himc_take_has_skeleton(take) ? "joints" : "points", take->points);
     for (int i = 0; i < take->points; i++) {
         if (used + (int)strlen(take->names[i]) > 98) {
-            tell(to, "%s", text);
+            himc_tell(to, "%s", text);
             used = snprintf(text, sizeof text, "   ");
         }
         used += snprintf(text + used, sizeof text - (size_t)used, " %s", take->names[i]);
     }
-    tell(to, "%s", text);
+    himc_tell(to, "%s", text);
 }
 
 // "gap NAME: 92 frames: 1-40 77-128", at most six of its gaps
@@ -63,7 +47,7 @@ static void tell_gap(const himc_take *take, int point, int missing, const teller
             shown++;
         }
     }
-    tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
+    himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
 }
 
 static void tell_gaps(const himc_take *take, const teller *to)
@@ -76,7 +60,7 @@ static void tell_gaps(const himc_take *take, const teller *to)
         if (missing > 0 && points <= GAP_LINES)
             tell_gap(take, i, missing, to);
     }
-    tell(to, "gaps: %d frames in %d points", all, points);
+    himc_tell(to, "gaps: %d frames in %d points", all, points);
 }
 
 static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
@@ -87,21 +71,22 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
     if (!strikes)
         return;
     count = himc_take_strikes(take, tips, strikes, count);
-    tell(to, "strikes: %d", count);
+    himc_tell(to, "strikes: %d", count);
     for (int i = 0; i < count && i < STRIKE_LINES; i++)
-        tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", strikes[i].time,
-             himc_hand_name(strikes[i].hand), strikes[i].x.x, strikes[i].x.y, strikes[i].x.z,
-             strikes[i].velocity);
+        himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", strikes[i].time,
+                  himc_hand_name(strikes[i].hand), strikes[i].x.x, strikes[i].x.y, strikes[i].x.z,
+                  strikes[i].velocity);
     himc_vec3 place;
     if (himc_take_strike_place(strikes, count, &place))
-        tell(to, "drum: the head belongs under %.3f %.3f m, at the height of %.3f m", place.x,
-             place.y, place.z);
+        himc_tell(to, "drum: the head belongs under %.3f %.3f m, at the height of %.3f m", place.x,
+                  place.y, place.z);
     int far = 0;
     for (int i = 0; i < count; i++)
         far += hypot(strikes[i].x.x - place.x, strikes[i].x.y - place.y) > ONE_DRUM;
     if (far > 0)
-        tell(to, "drum: %d strikes are more than %g m from there; a take is played on one drum",
-             far, ONE_DRUM);
+        himc_tell(to,
+                  "drum: %d strikes are more than %g m from there; a take is played on one drum",
+                  far, ONE_DRUM);
     free(strikes);
 }
 
@@ -110,13 +95,13 @@ static void tell_tips(himc_take *take, const himc_take_options *options, const t
     himc_take_tip tips[HIMC_HANDS];
     himc_error error = {""};
     if (!himc_take_tips(take, options, tips, &error)) {
-        tell(to, "tips: %.249s", error.text);
+        himc_tell(to, "tips: %.249s", error.text);
         return;
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (tips[hand].present)
-            tell(to, "tip: %s is %s, %d frames filled", himc_hand_name((himc_hand)hand),
-                 tips[hand].name, tips[hand].filled);
+            himc_tell(to, "tip: %s is %s, %d frames filled", himc_hand_name((himc_hand)hand),
+                      tips[hand].name, tips[hand].filled);
     tell_strikes(take, tips, to);
 }
 
@@ -124,16 +109,16 @@ void himc_take_describe(himc_take *take, const himc_take_options *options,
                         void (*line)(void *, const char *), void *user)
 {
     teller to = {line, user};
-    tell(&to, "format: %s", take->format);
-    tell(&to, "length: %d frames at %g Hz, %.3f s, from frame %d", take->frames, take->rate,
-         take->frames / take->rate, take->first_frame);
+    himc_tell(&to, "format: %s", take->format);
+    himc_tell(&to, "length: %d frames at %g Hz, %.3f s, from frame %d", take->frames, take->rate,
+              take->frames / take->rate, take->first_frame);
     tell_points(take, &to);
-    tell(&to, "units: %s", take->units_text);
-    tell(&to, "axes: %s", take->axes_text);
+    himc_tell(&to, "units: %s", take->units_text);
+    himc_tell(&to, "axes: %s", take->axes_text);
     for (int i = 0; i < take->note_count; i++)
-        tell(&to, "note: %s", take->notes[i]);
+        himc_tell(&to, "note: %s", take->notes[i]);
     tell_gaps(take, &to);
     for (int i = 0; i < take->event_count; i++)
-        tell(&to, "event: %.3f s %s", take->events[i].time, take->events[i].label);
+        himc_tell(&to, "event: %.3f s %s", take->events[i].time, take->events[i].label);
     tell_tips(take, options, &to);
 }

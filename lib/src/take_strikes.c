@@ -24,6 +24,7 @@
 #define LEAST_SPEED 0.3 // slower touches are no strokes (m/s)
 #define REFRACTORY 0.05 // strikes of one hand are further apart (s)
 #define WINDOW 0.03     // (s)
+#define CONTACT 0.007   // of a felt mallet with a drumhead (s)
 #define CERTAIN 5.0     // standard deviations of noise that a bend must exceed
 #define CALM 100.0      // noise's bend, that many times, up to which differences stay short (m/s^2)
 
@@ -208,8 +209,13 @@ static himc_take_strike measure(const track *t, const spike *s, himc_hand hand)
     double touch = crossing(&before, &after, end, sharp ? end + 1 : low + 1);
     double u = sharp ? touch - end : 0;
     double height = sharp ? value(&before, touch) : t->x[low].z;
-    return (himc_take_strike){hand, low, touch / t->rate, place_between(t, touch, height),
-                              -(before.b + 2 * before.c * u) * t->rate};
+    double up = sharp ? (after.b + 2 * after.c * (touch - end - 1)) * t->rate : 0;
+    return (himc_take_strike){.hand = hand,
+                              .frame = low,
+                              .time = touch / t->rate,
+                              .x = place_between(t, touch, height),
+                              .velocity = -(before.b + 2 * before.c * u) * t->rate,
+                              .rebound = fmax(up, 0)};
 }
 
 // strikes of one hand from frame *from on; false when there are no more
@@ -263,6 +269,13 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
     return count;
 }
 
+// how far the head is above where fall and rebound meet: v t down and u (CONTACT - t) up again
+static double above_meeting(const himc_take_strike *s)
+{
+    double sum = s->velocity + s->rebound;
+    return sum > 0 ? CONTACT * s->velocity * s->rebound / sum : 0;
+}
+
 // the middle of one hand's strikes along one axis; false if it has none
 static bool hand_median(const himc_take_strike *strikes, int count, int hand, int axis,
                         double *scratch, double *middle)
@@ -271,7 +284,7 @@ static bool hand_median(const himc_take_strike *strikes, int count, int hand, in
     for (int i = 0; i < count; i++)
         if ((int)strikes[i].hand == hand) {
             himc_vec3 x = strikes[i].x;
-            scratch[n++] = axis == 0 ? x.x : axis == 1 ? x.y : x.z;
+            scratch[n++] = axis == 0 ? x.x : axis == 1 ? x.y : x.z + above_meeting(&strikes[i]);
         }
     if (n > 0)
         *middle = median(scratch, n);

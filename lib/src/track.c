@@ -14,7 +14,7 @@
 
 #define CUT 0.0125        // of the capture around a strike's lowest point (s)
 #define TOO_LATE 0.015    // with less of the take left, its bridge is left as it is (s)
-#define REJOIN 0.040      // from separation back to the capture (s)
+#define REJOIN 0.020      // from separation back to the capture (s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
 #define SLOWEST 0.2       // pace of a take's time from which on nothing is replanned
 #define HOVER 0.08        // of a tip at rest above the head (m)

@@ -1,0 +1,78 @@
+#!/bin/sh
+# `himc evaluate` from outside: its table, trials in pieces and on more cores, a log gone on with, what it refuses.
+: "${HIMC_BUILD:=build}"
+himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc
+work=$(mktemp -d "$(cd "$HIMC_BUILD" && pwd)/evaluate.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+tests=0
+failures=0
+
+# check NAME CONDITION... ; prints the line that Unity would
+check() {
+    name=$1
+    shift
+    tests=$((tests + 1))
+    if "$@"; then
+        echo "tests/test_evaluate.sh:0:$name:PASS"
+    else
+        failures=$((failures + 1))
+        echo "tests/test_evaluate.sh:0:$name:FAIL: not so: $*"
+    fi
+}
+
+# refuses NAME TEXT ARGUMENT...: status 1, nothing on stdout, one line on stderr with TEXT in it
+refuses() {
+    name=$1
+    text=$2
+    shift 2
+    "$himc" evaluate "$@" >stdout 2>stderr
+    check "$name" [ "$? $(wc -l <stdout) $(wc -l <stderr) $(grep -cF -- "$text" stderr)" = "1 0 1 1" ]
+}
+
+two() {
+    "$himc" evaluate --trials 2 --only legato,himc,computed-torque "$@"
+}
+
+# fields of a table's only row
+row() {
+    sed -n 2p "$1" | cut -d , -f "$2"
+}
+
+two --jobs 2 --log whole.log --csv whole.csv
+check test_evaluate_succeeds [ $? = 0 ]
+check test_header_is_the_published_one [ "$(head -n 1 whole.csv)" = \
+    nuance,controller,law,trials,rms_mm,rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratio ]
+check test_only_keeps_one_row [ "$(wc -l <whole.csv) $(row whole.csv 1-4)" = "2 legato,himc,computed-torque,2" ]
+check test_percent_is_rms_of_amplitude [ "$(row whole.csv 5-8 |
+    awk -F , '{e = 100 * $1 / $3 - $4; print (e < 1e-4 && e > -1e-4 && $1 > 0 && $2 > 0)}')" = 1 ]
+
+# in pieces, on one core
+two --jobs 1 --range 2-2 --log second.log --csv /dev/null
+two --jobs 1 --range 1-1 --log first.log --csv first.csv
+check test_a_range_has_its_trials_only [ "$(row first.csv 4)" = 1 ]
+cat second.log first.log >joined.log
+two --log joined.log --csv joined.csv
+check test_ranges_joined_by_cat_are_the_whole cmp joined.csv whole.csv
+check test_nothing_in_the_log_is_done_again [ "$(wc -l <joined.log)" = 4 ]
+
+# stopped while it wrote its last row
+head -c -9 whole.log >cut.log
+two --log cut.log --csv cut.csv
+check test_a_cut_off_row_is_done_again cmp cut.csv whole.csv
+check test_a_log_gone_on_with_has_whole_rows [ "$(sort cut.log)" = "$(sort whole.log)" ]
+
+refuses test_no_trials_are_refused "--trials" --trials 0
+refuses test_a_range_beyond_the_trials_is_refused "--range: 2-3, allowed A-B within 1-2" --trials 2 --range 2-3
+refuses test_a_range_backwards_is_refused "--range: 2-1" --trials 2 --range 2-1
+refuses test_an_unknown_word_is_refused "--only: legatto, allowed: a nuance" --trials 2 --only legatto
+refuses test_no_jobs_are_refused "--jobs" --jobs 0
+refuses test_one_file_for_both_tables_is_refused "x.csv: named twice" --trials 1 --log x.csv --csv x.csv
+sed '2s/legato/legatto/' whole.log >foreign.log
+refuses test_a_foreign_row_is_refused_with_its_line "foreign.log:2: no row of trials" --trials 2 --log foreign.log
+sed '3s/[^,]*$/nan/' whole.log >nan.log
+refuses test_a_number_not_finite_is_refused_with_its_line "nan.log:3: played: nan" --trials 2 --log nan.log
+
+echo "-----------------------"
+echo "$tests Tests $failures Failures 0 Ignored"
+[ $failures = 0 ]
