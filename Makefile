@@ -218,6 +218,8 @@ $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit
 
 $(BUILD)/tools/figures/strokes $(BUILD)/tools/figures/claim: $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
 
+$(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
+
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
