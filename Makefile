@@ -219,6 +219,8 @@ $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit
 
 $(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
 
+$(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
+
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
