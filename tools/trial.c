@@ -76,6 +76,20 @@ himc_mocap_config trial_sequence(const trial_config *config)
     return sequence;
 }
 
+double trial_own_rate(const trial_config *config)
+{
+    himc_error error;
+    himc_mocap_statistics statistics;
+    memset(&statistics, 0, sizeof statistics);
+    himc_mocap_config sequence = trial_sequence(config);
+    himc_mocap *mocap = himc_mocap_new(&sequence, &error);
+    if (!mocap)
+        return NAN;
+    himc_mocap_measure(mocap, &statistics);
+    himc_mocap_free(mocap);
+    return 1 / himc_mocap_mean(&statistics, HIMC_MOCAP_INTERVAL);
+}
+
 static uint64_t seed_of(const trial_config *config)
 {
     return (uint64_t)config->kind.nuance << 32 | (uint64_t)config->number;

@@ -30,21 +30,6 @@ typedef struct claim {
     double *percent; ///< RMS over amplitude (rows, trials, CONTROLS)
 } claim;
 
-/// A sequence's own rate, strokes a second with one hand.
-static double own_rate(const trial_config *config)
-{
-    himc_error error;
-    himc_mocap_statistics statistics;
-    memset(&statistics, 0, sizeof statistics);
-    himc_mocap_config sequence = trial_sequence(config);
-    himc_mocap *mocap = himc_mocap_new(&sequence, &error);
-    if (!mocap)
-        return NAN;
-    himc_mocap_measure(mocap, &statistics);
-    himc_mocap_free(mocap);
-    return 1 / himc_mocap_mean(&statistics, HIMC_MOCAP_INTERVAL);
-}
-
 // rows of `rates`: the rate runs fastest, then limits, then the gain
 static trial_config config_of(const claim *c, int item)
 {
@@ -57,7 +42,7 @@ static trial_config config_of(const claim *c, int item)
         return config;
     config.gain = gains[row / RATES / 2];
     config.limits = row / RATES % 2 == 0;
-    config.pace = rates[row % RATES] / own_rate(&config);
+    config.pace = rates[row % RATES] / trial_own_rate(&config);
     return config;
 }
 
