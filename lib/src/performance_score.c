@@ -51,6 +51,8 @@ static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc
         himc_drum_release(drum);
         return NULL;
     }
+    if (drum && real)
+        himc_drum_set_answered(drum, himc_drum_is_answered(real));
     if (drum)
         r->drum[r->drums++] = drum;
     return drum;
