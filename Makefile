@@ -54,7 +54,7 @@ endif
 .DELETE_ON_ERROR:
 
 ##@ Build
-all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
+all: $(if $(wildcard $(VIEWER)),$(VIEWER)) $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
@@ -217,7 +217,9 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 
 $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit/table: $(MOCAP_O)
 
-$(BUILD)/tools/figures/strokes $(BUILD)/tools/figures/claim: $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+$(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+
+$(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
 
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)

@@ -1,8 +1,9 @@
-/// trial.c: a trial is a sequence of the motion database as a laboratory would have captured it (its
-/// markers with a tracker's noise), played by a body whose segments do not weigh quite what control
-/// believes. The body's measures, its mean posture and its joint limits come from that noisy
-/// take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the habit
-/// of the other two players in that nuance. What was simulated is compared with the motion itself, noiseless.
+/// trial.c: a trial is a sequence of the motion database as a laboratory would have captured it
+/// (its markers with a tracker's noise), played by a body whose segments do not weigh quite what
+/// control believes. The body's measures, its mean posture and its joint limits come from that
+/// noisy take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the
+/// habit of the other two players in that nuance. What was simulated is compared with the motion
+/// itself, noiseless.
 ///
 /// Under the `printed` law `himc` is as published: nothing in the null space but the limits; and
 /// the servos are as soft as a player's (the default ones are three times as fast).
@@ -76,6 +77,20 @@ himc_mocap_config trial_sequence(const trial_config *config)
     return sequence;
 }
 
+double trial_own_rate(const trial_config *config)
+{
+    himc_error error;
+    himc_mocap_statistics statistics;
+    memset(&statistics, 0, sizeof statistics);
+    himc_mocap_config sequence = trial_sequence(config);
+    himc_mocap *mocap = himc_mocap_new(&sequence, &error);
+    if (!mocap)
+        return NAN;
+    himc_mocap_measure(mocap, &statistics);
+    himc_mocap_free(mocap);
+    return 1 / himc_mocap_mean(&statistics, HIMC_MOCAP_INTERVAL);
+}
+
 static uint64_t seed_of(const trial_config *config)
 {
     return (uint64_t)config->kind.nuance << 32 | (uint64_t)config->number;
@@ -90,7 +105,10 @@ static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take
         return false;
     int frames = himc_mocap_frames(*mocap);
     himc_pose *pose = malloc((size_t)frames * sizeof *pose);
-    *take = (himc_habit_take){himc_mocap_skeleton(*mocap), pose, frames, HIMC_MOCAP_RATE};
+    *take = (himc_habit_take){.skeleton = himc_mocap_skeleton(*mocap),
+                              .pose = pose,
+                              .frames = frames,
+                              .rate = HIMC_MOCAP_RATE};
     for (int frame = 0; pose && frame < frames; frame++)
         pose[frame] = himc_mocap_pose(*mocap, frame / HIMC_MOCAP_RATE);
     return pose || himc_error_set(error, "out of memory");
@@ -168,7 +186,10 @@ static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_c
     bool good = seen && himc_skeleton_init(&skeleton, &seen->config, error);
     if (good) {
         himc_habit habit = *learned;
-        himc_habit_take one = {&skeleton, seen->pose, seen->frames, himc_take_rate(take)};
+        himc_habit_take one = {.skeleton = &skeleton,
+                               .pose = seen->pose,
+                               .frames = seen->frames,
+                               .rate = himc_take_rate(take)};
         good = himc_habit_meet(&habit.player, &one, 1, error);
         if (good)
             himc_performance_set_habit(p, &habit);

@@ -56,6 +56,8 @@ trial_config trial_default(const trial_kind *kind, int number);
 
 /// The sequence of the motion database that it plays.
 himc_mocap_config trial_sequence(const trial_config *config);
+/// Strokes a second with one hand in that sequence, at its pace; NAN if it cannot be made.
+double trial_own_rate(const trial_config *config);
 
 /// Runs a trial. The disturbance is its number's, the same for every controller.
 bool trial_run(const trial_config *config, trial_result *result, himc_error *error);

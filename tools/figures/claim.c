@@ -2,11 +2,12 @@
 /// "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for claim.gp
 /// and evaluation.gp: `claim rates TRIALS` and `claim nuances TRIALS`.
 ///
-/// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with three
-/// gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean RMS of
-/// `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
-/// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on: rows
-/// of name, mean and deviation of `id`, of `himc`, of the difference. Trials are spread over the cores.
+/// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with
+/// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean
+/// RMS of `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
+/// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on:
+/// rows of name, mean and deviation of `id`, of `himc`, of the difference. Trials are spread over
+/// the cores.
 #include "../pool.h"
 #include "../trial.h"
 
@@ -30,21 +31,6 @@ typedef struct claim {
     double *percent; ///< RMS over amplitude (rows, trials, CONTROLS)
 } claim;
 
-/// A sequence's own rate, strokes a second with one hand.
-static double own_rate(const trial_config *config)
-{
-    himc_error error;
-    himc_mocap_statistics statistics;
-    memset(&statistics, 0, sizeof statistics);
-    himc_mocap_config sequence = trial_sequence(config);
-    himc_mocap *mocap = himc_mocap_new(&sequence, &error);
-    if (!mocap)
-        return NAN;
-    himc_mocap_measure(mocap, &statistics);
-    himc_mocap_free(mocap);
-    return 1 / himc_mocap_mean(&statistics, HIMC_MOCAP_INTERVAL);
-}
-
 // rows of `rates`: the rate runs fastest, then limits, then the gain
 static trial_config config_of(const claim *c, int item)
 {
@@ -57,7 +43,7 @@ static trial_config config_of(const claim *c, int item)
         return config;
     config.gain = gains[row / RATES / 2];
     config.limits = row / RATES % 2 == 0;
-    config.pace = rates[row % RATES] / own_rate(&config);
+    config.pace = rates[row % RATES] / trial_own_rate(&config);
     return config;
 }
 

@@ -3,8 +3,14 @@
 #
 # A new one is a file in FIGURES and a rule for it. Programs in tools/figures/ are built by the rule for tools/*/*.c.
 SOUNDS  := $(patsubst %,docs/sounds/%.ogg,scale roll glissando mallets)
+MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluation claim,docs/figures/$(name).svg docs/figures/$(name).png)
 FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/improvisation.png $(SOUNDS) \
-           docs/sounds/improvisation.ogg
+           docs/sounds/improvisation.ogg $(MOTION)
+
+# trials of each row of the evaluation, and of each point of the claim's dependences; 100 take two cores an hour, 9 a few
+# minutes: make figures TRIALS=9
+TRIALS ?= 100
+CLAIM  ?= 3
 
 docs/figures/timbre.svg: $(BUILD)/tools/figures/timbre tools/figures/timbre.gp
 	@mkdir -p $(BUILD)/figures && echo "draw $@"
@@ -32,3 +38,77 @@ docs/figures/improvisation.png: $(BUILD)/demo/improvisation.wav
 docs/sounds/improvisation.ogg: $(BUILD)/demo/improvisation.wav
 	@echo "play $@"
 	$(Q)sox $< -C 2 $@
+
+# the papers' figures; a curve is drawn twice, as SVG and as PNG. Gains are said over those of a player's own stiffness, a
+# third of the default ones.
+FOLLOW := $(BUILD)/tools/figures/strokes
+CURVES := $(BUILD)/figures
+
+# draw SCRIPT NAME SETTINGS; the line below the title is SAID
+define draw
+	@echo "draw docs/figures/$(2)"
+	$(Q)for kind in svg png; do gnuplot -e "kind='$$kind'; out='docs/figures/$(2).$$kind'; said='$(SAID)'; $(3)" tools/figures/$(1).gp || exit 1; done
+	$(Q)sed -i 's/[[:blank:]]*$$//; s/\t/  /g' docs/figures/$(2).svg
+endef
+
+$(CURVES)/printed.txt: $(FOLLOW)
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< follow printed 0.333333 >$@
+
+$(CURVES)/default.txt: $(FOLLOW)
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< follow computed-torque 1 >$@
+
+$(CURVES)/phases.txt: $(FOLLOW)
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< phases printed 0.333333 >$@
+
+$(CURVES)/rates.txt: $(BUILD)/tools/figures/claim
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< rates $(CLAIM) >$@
+
+$(CURVES)/nuances.txt: $(BUILD)/tools/figures/claim
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< nuances $(TRIALS) >$@
+
+$(CURVES)/beats.txt: tools/figures/score.awk tools/figures/legato-accent.txt
+	@mkdir -p $(@D)
+	$(Q)awk -f $^ >$@
+
+$(CURVES)/legato-accent.csv: tools/figures/legato-accent.txt $(PROGRAM)
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$(PROGRAM) render $< -o $(CURVES)/legato-accent.wav --motion $@ >/dev/null
+
+# trials already in the log are not done again, but for those of a program that was another
+docs/figures/evaluation.csv: $(PROGRAM)
+	@echo "play $@"
+	$(Q)test $(BUILD)/evaluation-trials.csv -nt $(PROGRAM) || rm -f $(BUILD)/evaluation-trials.csv
+	$(Q)$(PROGRAM) evaluate --trials $(TRIALS) --log $(BUILD)/evaluation-trials.csv --csv $@
+
+docs/figures/strokes.svg docs/figures/strokes.png: SAID := legato, right side; printed law, gain × 1, joint limits on
+docs/figures/strokes.svg docs/figures/strokes.png &: $(CURVES)/printed.txt tools/figures/follow.gp tools/figures/style.gp
+	$(call draw,follow,strokes,data='$<'; from=2.2; to=5)
+
+docs/figures/strokes-default.svg docs/figures/strokes-default.png: SAID := legato, right side; computed torque, gain × 3, as himc plays by default
+docs/figures/strokes-default.svg docs/figures/strokes-default.png &: $(CURVES)/default.txt tools/figures/follow.gp tools/figures/style.gp
+	$(call draw,follow,strokes-default,data='$<'; from=2.2; to=5)
+
+docs/figures/phases.svg docs/figures/phases.png: SAID := right hand; printed law, gain × 1, joint limits on
+docs/figures/phases.svg docs/figures/phases.png &: $(CURVES)/phases.txt tools/figures/phases.gp tools/figures/style.gp
+	$(call draw,phases,phases,data='$<'; from=2; to=4.6)
+
+docs/figures/legato-accent.svg docs/figures/legato-accent.png &: $(CURVES)/beats.txt $(CURVES)/legato-accent.csv tools/figures/score.gp tools/figures/style.gp
+	$(call draw,score,legato-accent,beats='$<'; motion='$(word 2,$^)')
+
+docs/figures/claim.svg docs/figures/claim.png: SAID := printed law, legato made slower and faster; mean and deviation of $(CLAIM) players
+docs/figures/claim.svg docs/figures/claim.png &: $(CURVES)/rates.txt tools/figures/claim.gp tools/figures/style.gp
+	$(call draw,claim,claim,data='$<')
+
+docs/figures/evaluation.svg docs/figures/evaluation.png: SAID := $(TRIALS) trials of each nuance; joint limits on
+docs/figures/evaluation.svg docs/figures/evaluation.png &: $(CURVES)/nuances.txt docs/figures/evaluation.csv tools/figures/evaluation.gp tools/figures/style.gp
+	$(call draw,evaluation,evaluation,gentle='$<'; table='$(word 2,$^)')
+
+# the table of the undisturbed database in docs/evaluation.md
+$(CURVES)/database.txt: $(BUILD)/tools/figures/database
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< >$@

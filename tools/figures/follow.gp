@@ -1,7 +1,9 @@
-# follow.gp: figure 5 of Bouënard, Gibet and Wanderley 2012 remade, the data from strokes.c:
-#   gnuplot -e "data='follow.txt'; said='...'; out='strokes.svg'; kind='svg'" follow.gp
+# follow.gp: figure 5 of Bouënard, Gibet and Wanderley 2012 remade from what `strokes follow` prints. Wanted:
+#   data, said   the table and the line below the title
+#   from, to     of the excerpt (s)
+#   kind, out    svg or png, the file to write
 load "tools/figures/style.gp"
-@terminal_wide
+eval terminal(1500, 860)
 set output out
 
 # captured is the same in all blocks; columns 2 .. 7 captured, 8 .. 13 simulated
@@ -9,10 +11,17 @@ set xrange [from:to]
 set xtics 0.5
 stats data index 0 using 5 nooutput
 head = STATS_min
-value(c) = c % 6 == 5 ? 100 * (column(c) - head) : c % 6 == 2 || c % 6 == 3 || c % 6 == 4 ? column(c) : 100 * column(c)
+# of the six, three are angles and the fourth is shown from the head
+which(c) = (c - 2) % 6
+shown(c) = which(c) < 3 ? column(c) : 100 * (column(c) - (which(c) == 3 ? head : 0))
 
+unset key
 set multiplot
-set label 1 title at screen 0.065,0.960 font ",19" textcolor rgb ink
+eval legend(1, 0.660, 0.960, captured, "captured")
+eval legend(2, 0.765, 0.960, ik, "IK")
+eval legend(3, 0.835, 0.960, id, "ID")
+eval legend(4, 0.905, 0.960, himc, "HIMC")
+set label 1 "Captured strokes and what the controllers make of them" at screen 0.065,0.960 font bold textcolor rgb ink
 set label 2 said at screen 0.065,0.917 font ",13" textcolor rgb soft
 array name[6] = ["(a) wrist flexion (°)", "(b) elbow flexion (°)", "(c) shoulder flexion (°)", \
                  "(d) stick's tip above the head (cm)", "(e) height of the wrist (cm)", \
@@ -26,12 +35,14 @@ do for [i = 0:5] {
     set title name[i + 1] font ",13" textcolor rgb ink offset 0,-0.4
     if (i < 3) { set format x "" } else { set format x "%g"; set xlabel "time (s)" textcolor rgb ink }
     set yrange [*:*]
-    if (i == 0) { @legend } else { unset key }
+    if (i == 5) { set ytics 1 }
     c = i + 2
-    plot data index 0 using 1:(value(c)) with lines linewidth 2.6 linecolor rgb captured title "captured", \
-         data index 0 using 1:(value(c + 6)) with lines linewidth 1.6 linecolor rgb ik title "IK", \
-         data index 1 using 1:(value(c + 6)) with lines linewidth 1.6 linecolor rgb id title "ID", \
-         data index 2 using 1:(value(c + 6)) with lines linewidth 1.6 linecolor rgb himc title "HIMC"
+    plot data index 0 using 1:(shown(c)) with lines linewidth 2.6 linecolor rgb captured, \
+         data index 0 using 1:(shown(c + 6)) with lines linewidth 1.6 linecolor rgb ik, \
+         data index 1 using 1:(shown(c + 6)) with lines linewidth 1.6 linecolor rgb id, \
+         data index 2 using 1:(shown(c + 6)) with lines linewidth 1.6 linecolor rgb himc
     unset label
+    unset arrow
+    set ytics autofreq
 }
 unset multiplot

@@ -1,0 +1,96 @@
+/// database.c: how close the sticks stay to the captured ones when nothing is disturbed: all 45
+/// sequences of the motion database, without a tracker's noise, segments as heavy as control
+/// believes.
+///
+/// Prints a row for each nuance under `himc` with computed torque, at its own pace, and with
+/// velocity fed forward, at 2 strokes a second with each hand; then one for all: law, nuance, RMS
+/// outside contact and impacts included (% of amplitude), least and largest range of the elbow's
+/// height over the captured, RMS angle of shoulder, elbow and wrist to the captured joints
+/// (degrees), strokes and those of them that landed.
+#include "../pool.h"
+#include "../trial.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SEQUENCES 9 // players and spots
+#define LAWS 2
+#define ROWS (LAWS * HIMC_NUANCES)
+#define RATE 2.0 // (1/s)
+
+static const himc_law laws[LAWS] = {HIMC_LAW_COMPUTED_TORQUE, HIMC_LAW_FEEDFORWARD};
+
+static trial_config config_of(int item)
+{
+    int row = item / SEQUENCES;
+    trial_kind kind = {(himc_nuance)(row % HIMC_NUANCES), HIMC_PIPELINE_HIMC,
+                       laws[row / HIMC_NUANCES]};
+    trial_config config = trial_default(&kind, 1 + item % SEQUENCES);
+    config.noise = 0;
+    config.misjudged = 0;
+    if (kind.law == HIMC_LAW_FEEDFORWARD)
+        config.pace = RATE / trial_own_rate(&config);
+    return config;
+}
+
+static bool work(void *user, int item, void *result, himc_error *error)
+{
+    (void)user;
+    trial_config config = config_of(item);
+    return trial_run(&config, result, error);
+}
+
+static bool done(void *user, int item, const void *result, himc_error *error)
+{
+    (void)error;
+    memcpy((trial_result *)user + item, result, sizeof(trial_result));
+    return true;
+}
+
+static double square(double x)
+{
+    return x * x;
+}
+
+// root of the mean of squares of what is in percent of each sequence's own amplitude
+static void print_row(const trial_result *result, int count, const char *law, const char *nuance)
+{
+    double outside = 0, rms = 0, angle[3] = {0}, least = INFINITY, most = 0;
+    double strokes = 0, played = 0, degrees = 180 / HIMC_PI;
+    for (int i = 0; i < count; i++) {
+        const trial_result *r = &result[i];
+        outside += square(100 * r->outside / r->amplitude) / count;
+        rms += square(100 * r->rms / r->amplitude) / count;
+        angle[0] += square(degrees * r->shoulder_error) / count;
+        angle[1] += square(degrees * r->elbow_error) / count;
+        angle[2] += square(degrees * r->wrist_error) / count;
+        least = fmin(least, r->elbow);
+        most = fmax(most, r->elbow);
+        strokes += r->strokes;
+        played += r->played;
+    }
+    printf("| %s | %s | %.4f | %.3f | %.3f .. %.3f | %.2f, %.2f, %.2f | %.0f of %.0f |\n", law,
+           nuance, sqrt(outside), sqrt(rms), least, most, sqrt(angle[0]), sqrt(angle[1]),
+           sqrt(angle[2]), played, strokes);
+}
+
+int main(void)
+{
+    static trial_result result[ROWS * SEQUENCES];
+    himc_error error;
+    pool spread = {ROWS * SEQUENCES, pool_cores(), sizeof(trial_result), work, done, result};
+    if (!pool_run(&spread, &error)) {
+        fprintf(stderr, "database: %s\n", error.text);
+        return 1;
+    }
+    for (int l = 0; l < LAWS; l++) {
+        trial_kind kind = {HIMC_LEGATO, HIMC_PIPELINE_HIMC, laws[l]};
+        const trial_result *own = &result[l * HIMC_NUANCES * SEQUENCES];
+        for (int n = 0; n < HIMC_NUANCES; n++)
+            print_row(&own[n * SEQUENCES], SEQUENCES, trial_law_name(&kind),
+                      himc_nuance_name((himc_nuance)n));
+        print_row(own, HIMC_NUANCES * SEQUENCES, trial_law_name(&kind), "all");
+    }
+    return 0;
+}
