@@ -5,7 +5,7 @@
 SOUNDS  := $(patsubst %,docs/sounds/%.ogg,scale roll glissando mallets)
 MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluation claim,docs/figures/$(name).svg docs/figures/$(name).png)
 FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/improvisation.png $(SOUNDS) \
-           docs/sounds/improvisation.ogg $(MOTION)
+           docs/sounds/improvisation.ogg $(MOTION) $(BUILD)/figures/database.txt
 
 # trials of each row of the evaluation, and of each point of the claim's dependences; 100 take two cores an hour, 9 a few
 # minutes: make figures TRIALS=9
