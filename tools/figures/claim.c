@@ -1,12 +1,12 @@
-/// claim.c: what the published claim depends on: that HIMC misses less than joint space control, by
-/// "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for claim.gp
-/// and evaluation.gp: `claim rates TRIALS` and `claim nuances TRIALS`.
+/// claim.c: what the published claim depends on: that HIMC misses less than joint space control,
+/// by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for
+/// claim.gp and evaluation.gp: `claim rates TRIALS` and `claim nuances TRIALS`.
 ///
-/// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with three
-/// gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean RMS of
-/// `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
-/// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on: rows
-/// of name, mean and deviation of `id`, of `himc`, of the difference. Trials are spread over the cores.
+/// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with
+/// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean
+/// RMS of `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
+/// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on:
+/// rows of name, mean and deviation of `id`, of `himc`, of the difference. All cores work.
 #include "../pool.h"
 #include "../trial.h"
 

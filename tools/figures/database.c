@@ -5,8 +5,8 @@
 /// Prints a row for each nuance under `himc` with computed torque, at its own pace, and with
 /// velocity fed forward, at 2 strokes a second with each hand; then one for all: law, nuance, RMS
 /// outside contact and impacts included (% of amplitude), least and largest range of the elbow's
-/// height over the captured, RMS angle of shoulder, elbow and wrist to the captured joints (degrees),
-/// strokes and those of them that landed.
+/// height over the captured, RMS angle of shoulder, elbow and wrist to the captured joints
+/// (degrees), strokes that landed, of how many.
 #include "../pool.h"
 #include "../trial.h"
 

@@ -7,8 +7,8 @@
 /// nuance: time; depth and height of the right tip, captured, then simulated by `himc` (m).
 ///
 /// Flexions are read off the segments' directions alike in both: of the elbow the angle between
-/// upper arm and forearm, of the shoulder the upper arm's from hanging, in the sagittal plane, of the
-/// wrist the hand's elevation over the forearm's.
+/// upper arm and forearm, of the shoulder the upper arm's from hanging, in the sagittal plane, of
+/// the wrist the hand's elevation over the forearm's.
 #include "../trial.h"
 
 #include <stdio.h>
