@@ -37,6 +37,7 @@ BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
+WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
 SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
@@ -53,7 +54,7 @@ endif
 .DELETE_ON_ERROR:
 
 ##@ Build
-all: $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
+all: $(if $(wildcard $(VIEWER)),$(VIEWER)) $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
@@ -106,13 +107,13 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT)
 
-check: all units ## the same without installing
+check: all units $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all $(UNIT) $(LONG)
+check-long: all $(UNIT) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C under the address and undefined behaviour sanitizers
@@ -157,7 +158,7 @@ format: ## let clang-format lay out all C files
 	clang-format -i $(SOURCES)
 
 help: ## this list
-	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
 .PHONY: still habit-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
         figures check-figures air-table manual lint format help
@@ -217,6 +218,8 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit/table: $(MOCAP_O)
 
 $(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+
+$(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
 
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)

@@ -85,7 +85,8 @@ static inline himc_habit_take player_take(const player *p, double seconds)
     himc_pose *pose = malloc((size_t)frames * sizeof *pose);
     for (int i = 0; i < frames; i++)
         pose[i] = player_at(p, 1 + i / PLAYER_RATE);
-    return (himc_habit_take){&p->skeleton, pose, frames, PLAYER_RATE};
+    return (himc_habit_take){
+        .skeleton = &p->skeleton, .pose = pose, .frames = frames, .rate = PLAYER_RATE};
 }
 
 #endif

@@ -81,16 +81,16 @@ printf 'PathFileType\t4\t(X/Y/Z)\tcut.trc\nDataRate\tCameraRate\n' >cut.trc
 version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/himc.h")
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
-check test_help_lists_all_calls [ "$calls" = "render info modes serve " ]
-for call in render info modes; do
+check test_help_lists_all_calls [ "$calls" = \
+    "render evaluate info modes serve bench " ]
+for call in $calls; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "allowed: render, info, modes"
+refuses test_no_call_is_refused "allowed: render, evaluate, info, modes, serve, bench"
 refuses test_unknown_call_is_refused '"play"' play
-refuses test_call_of_a_later_day_is_refused '"evaluate"' evaluate
 refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
     render piece.txt -o x.wav --speed 2
 refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q
@@ -116,6 +116,18 @@ refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, allowe
 refuses test_missing_score_is_refused "none.txt: No such file" render none.txt -o x.wav
 refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
 refuses test_folder_is_refused "directory" render . -o x.wav
+refuses test_unknown_row_is_refused "--only: magic, allowed: a nuance" evaluate --only legato,magic
+refuses test_row_that_is_none_is_refused "--only: ik,printed: no row is all of these" \
+    evaluate --only ik,printed
+refuses test_no_trials_are_refused "--trials: 0, allowed 1 .. 10000" evaluate --trials 0
+refuses test_range_beyond_the_trials_is_refused "--range: 3-11, allowed A-B within 1-10" \
+    evaluate --trials 10 --range 3-11
+refuses test_range_backwards_is_refused "--range: 4-3, allowed" evaluate --trials 10 --range 4-3
+refuses test_one_file_for_table_and_log_is_refused "x.csv: named twice" \
+    evaluate --csv x.csv --log ./x.csv
+refuses test_jobs_zero_are_refused "--jobs: 0, allowed 1 .. 256" evaluate --jobs 0
+refuses test_evaluation_of_a_file_is_refused '"piece.txt" is one too many' evaluate piece.txt
+refuses test_bench_of_a_file_is_refused '"piece.txt" is one too many' bench piece.txt
 refuses test_truncated_take_is_refused "cut.trc" render cut.trc -o x.wav
 refuses test_typo_is_refused_with_its_line "typo.txt:2: " render typo.txt -o x.wav
 refuses test_nan_in_a_score_is_refused "nan.txt:1: " render nan.txt -o x.wav
@@ -214,6 +226,21 @@ ln -s real.wav link.wav
 echo old >real.wav
 "$himc" render empty.txt -o link.wav >/dev/null
 check test_link_stays_a_link [ "$(test -L link.wav && head -c 4 real.wav)" = RIFF ]
+
+# the evaluation, and what this machine does
+"$himc" evaluate --trials 1 --only legato,ik >out 2>err
+check test_evaluation_is_a_row_of_the_contract [ "$?$(cat err)$(head -n 1 out)$(sed 1d out | cut -d, -f 1-4)" = \
+    "0nuance,controller,law,trials,rms_mm,rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratiolegato,ik,none,1" ]
+check test_simulated_sticks_are_near_the_captured \
+    true_that "$(sed 1d out | cut -d, -f 8) > 0 && $(sed 1d out | cut -d, -f 8) < 1"
+"$himc" bench --json >out 2>err
+check test_bench_succeeds_and_says_nothing_on_stderr [ "$?$(cat err)" = 0 ]
+check test_bench_has_the_keys_of_the_contract [ "$(cat out | grep -o '"[a-z_]*":' | tr -d '":' | tr '\n' ' ')" = \
+    "step_us engine_step_us step_ratio modes_per_core performers_per_core " ]
+check test_bench_is_one_object_of_numbers [ "$(grep -cx '{\("[a-z_]*": [0-9.]*[,}] *\)*' out)" = 1 ]
+check test_a_step_is_dearer_than_the_engine_alone true_that "$(number step_us) > $(number engine_step_us)"
+check test_step_ratio_is_that_of_the_steps \
+    true_that "($(number step_us) / $(number engine_step_us) / $(number step_ratio) - 1) ^ 2 < 1e-4"
 
 # an end before the end
 printf 'stroke 1 right legato mf;\nstroke 3000 left legato mf;\n' >long.txt

@@ -5,6 +5,7 @@
 #include "players.h"
 #include "unity.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define DEGREE (HIMC_PI / 180)
@@ -129,6 +130,67 @@ static void test_rates_are_those_of_the_posture(void)
         }
 }
 
+// RMS of an arm's joints against the player's (rad)
+static double arms_off(const himc_habit *habit, int n)
+{
+    double square = 0;
+    for (int i = 0; i < seen[n].frames; i++) {
+        himc_pose pose = seen[n].pose[i];
+        himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
+        tips_ahead(&who[n], 1 + i / PLAYER_RATE, tip);
+        himc_habit_at(habit, (const himc_vec3(*)[HIMC_HANDS])tip, &pose);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint(HIMC_RIGHT, k);
+            double off = angle_between(pose.joint[j], seen[n].pose[i].joint[j]);
+            square += off * off;
+        }
+    }
+    return sqrt(square / (HIMC_ARM_JOINTS * seen[n].frames));
+}
+
+static void test_a_take_of_the_player_corrects_the_habit_of_others(void)
+{
+    himc_error error = {""};
+    himc_habit habit = without(2);
+    double before = arms_off(&habit, 2);
+    TEST_ASSERT_TRUE_MESSAGE(himc_habit_correct(&habit, &seen[2], &error), error.text);
+    double after = arms_off(&habit, 2);
+    printf("a player's arms: %.2f degrees by others' habit, %.2f corrected\n", before / DEGREE,
+           after / DEGREE);
+    TEST_ASSERT_TRUE(after < 0.9 * before);
+    himc_habit_take none = seen[2];
+    himc_habit kept = habit;
+    none.frames = 20;
+    TEST_ASSERT_FALSE(himc_habit_correct(&habit, &none, &error));
+    TEST_ASSERT_EQUAL_STRING("habit: a take of 20 frames, allowed 36 or more", error.text);
+    TEST_ASSERT_EQUAL_MEMORY(&kept, &habit, sizeof habit);
+}
+
+// of a capture of one arm the other, and the trunk, are left as they are given
+static void test_an_arm_that_was_not_seen_stays_as_it_is(void)
+{
+    himc_error error = {""};
+    himc_habit habit = without(0);
+    himc_habit_take take = seen[0];
+    take.hides[HIMC_LEFT] = take.hides_trunk = true;
+    TEST_ASSERT_TRUE_MESSAGE(himc_habit_correct(&habit, &take, &error), error.text);
+    for (int i = 0; i < seen[0].frames; i += 50) {
+        himc_pose given = himc_pose_zero(), pose;
+        himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
+        given.joint[HIMC_TRUNK - 1] = seen[0].pose[i].joint[HIMC_TRUNK - 1];
+        pose = given;
+        tips_ahead(&who[0], 1 + i / PLAYER_RATE, tip);
+        himc_habit_at(&habit, (const himc_vec3(*)[HIMC_HANDS])tip, &pose);
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            bool right = false;
+            for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+                right = right || j == himc_arm_joint(HIMC_RIGHT, k);
+            double turned = angle_between(given.joint[j], pose.joint[j]);
+            TEST_ASSERT_TRUE(right ? turned > 1e-3 : turned == 0);
+        }
+    }
+}
+
 // in the body's own mirror: its plane of symmetry is y = 0
 static himc_vec3 in_mirror(himc_vec3 x)
 {
@@ -189,7 +251,8 @@ static void test_what_determines_nothing_is_refused_with_the_reason(void)
     himc_pose still[200];
     for (int i = 0; i < 200; i++)
         still[i] = seen[0].pose[0];
-    take = (himc_habit_take){&who[0].skeleton, still, 200, PLAYER_RATE};
+    take = (himc_habit_take){
+        .skeleton = &who[0].skeleton, .pose = still, .frames = 200, .rate = PLAYER_RATE};
     TEST_ASSERT_FALSE(himc_habit_learn(&habit, &take, 1, &error));
     TEST_ASSERT_EQUAL_STRING("habit: no tip moves: nothing to learn from it", error.text);
     still[7].joint[3].x = NAN;
@@ -207,6 +270,8 @@ int main(void)
     RUN_TEST(test_a_player_never_seen_is_met_within_a_degree);
     RUN_TEST(test_tips_are_where_they_are_asked_to_be);
     RUN_TEST(test_rates_are_those_of_the_posture);
+    RUN_TEST(test_a_take_of_the_player_corrects_the_habit_of_others);
+    RUN_TEST(test_an_arm_that_was_not_seen_stays_as_it_is);
     RUN_TEST(test_an_arm_that_rests_learns_from_the_other_in_a_mirror);
     RUN_TEST(test_what_determines_nothing_is_refused_with_the_reason);
     for (int i = 0; i < PLAYERS; i++)

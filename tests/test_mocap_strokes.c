@@ -153,7 +153,10 @@ static himc_habit_take postures(const himc_mocap *m)
     TEST_ASSERT_NOT_NULL(pose);
     for (int f = 0; f < frames; f++)
         pose[f] = himc_mocap_pose(m, f / HIMC_MOCAP_RATE);
-    return (himc_habit_take){himc_mocap_skeleton(m), pose, frames, HIMC_MOCAP_RATE};
+    return (himc_habit_take){.skeleton = himc_mocap_skeleton(m),
+                             .pose = pose,
+                             .frames = frames,
+                             .rate = HIMC_MOCAP_RATE};
 }
 
 // adds the squared angles between a sequence's joints and those its tips alone give; returns how

@@ -74,7 +74,7 @@ bool cli_file_close(cli_file *file, himc_error *error);
 bool cli_file_keep(cli_file *file, himc_error *error);
 /// Closes and removes what is not kept. Safe on a file in any state, also one that is all zero.
 void cli_file_drop(cli_file *file);
-/// True if both names are one existing file, or spelled alike.
+/// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);
 
 /// The drum that is there when a score makes none.

@@ -84,7 +84,11 @@ static bool read_only(const char *text, evaluation *e, himc_error *error)
                                   "--only: %s, allowed: a nuance (legato ...), a controller (ik id "
                                   "himc), a law (none printed feedforward computed-torque)",
                                   word);
-    return true;
+    for (int kind = 0; kind < TRIAL_KINDS; kind++)
+        if (e->wanted[kind])
+            return true;
+    return himc_error_set(error, "--only: %s: no row is all of these, allowed: words of one row",
+                          text);
 }
 
 static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_error *error)

@@ -7,7 +7,9 @@
 #include "cli.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -143,6 +145,22 @@ void cli_file_drop(cli_file *file)
     file->temp[0] = '\0';
 }
 
+static bool same_inode(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+// the folder that a file is or will be in; returns the file's own name
+static const char *stat_folder(const char *path, struct stat *folder, bool *there)
+{
+    char text[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    int length = slash ? (int)(slash - path) + 1 : 0;
+    snprintf(text, sizeof text, "%.*s.", length, path);
+    *there = !stat(text, folder);
+    return path + length;
+}
+
 bool cli_same_file(const char *a, const char *b)
 {
     struct stat first, second;
@@ -150,6 +168,9 @@ bool cli_same_file(const char *a, const char *b)
         return false;
     if (!strcmp(a, b))
         return true;
-    return !stat(a, &first) && !stat(b, &second) && S_ISREG(first.st_mode) &&
-           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+    if (!stat(a, &first) && !stat(b, &second))
+        return S_ISREG(first.st_mode) && same_inode(&first, &second);
+    bool there[2];
+    const char *name[2] = {stat_folder(a, &first, &there[0]), stat_folder(b, &second, &there[1])};
+    return there[0] && there[1] && same_inode(&first, &second) && !strcmp(name[0], name[1]);
 }

@@ -105,7 +105,10 @@ static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take
         return false;
     int frames = himc_mocap_frames(*mocap);
     himc_pose *pose = malloc((size_t)frames * sizeof *pose);
-    *take = (himc_habit_take){himc_mocap_skeleton(*mocap), pose, frames, HIMC_MOCAP_RATE};
+    *take = (himc_habit_take){.skeleton = himc_mocap_skeleton(*mocap),
+                              .pose = pose,
+                              .frames = frames,
+                              .rate = HIMC_MOCAP_RATE};
     for (int frame = 0; pose && frame < frames; frame++)
         pose[frame] = himc_mocap_pose(*mocap, frame / HIMC_MOCAP_RATE);
     return pose || himc_error_set(error, "out of memory");
@@ -183,7 +186,10 @@ static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_c
     bool good = seen && himc_skeleton_init(&skeleton, &seen->config, error);
     if (good) {
         himc_habit habit = *learned;
-        himc_habit_take one = {&skeleton, seen->pose, seen->frames, himc_take_rate(take)};
+        himc_habit_take one = {.skeleton = &skeleton,
+                               .pose = seen->pose,
+                               .frames = seen->frames,
+                               .rate = himc_take_rate(take)};
         good = himc_habit_meet(&habit.player, &one, 1, error);
         if (good)
             himc_performance_set_habit(p, &habit);

@@ -81,6 +81,7 @@ const char *himc_technique_name(himc_technique technique);
 HIMC_RT himc_technique himc_drum_technique(const himc_drum *drum);
 /// Whether somebody asks for its touches and sounds them. Until then modal alone is allowed.
 void himc_drum_set_answered(himc_drum *drum, bool answered);
+HIMC_RT bool himc_drum_is_answered(const himc_drum *drum);
 
 /// A blow as it begins, whoever strikes.
 typedef struct himc_touch {

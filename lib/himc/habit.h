@@ -24,7 +24,9 @@ typedef struct himc_habit_player {
     himc_vec3 waist;           ///< where the trunk turns (m)
     himc_vec3 joint[HIMC_HANDS][HIMC_ARM_JOINTS]; ///< of the arms, in the parent's frame (m)
     himc_vec3 stick;                              ///< its tip, in its frame (m)
-    himc_quat usual; ///< the trunk's bearing (himc_posture_bearing) for where they strike
+    himc_quat usual;      ///< the trunk's bearing (himc_posture_bearing) for where they strike
+    bool arm[HIMC_HANDS]; ///< seen: what was not, a habit leaves as it is given
+    bool trunk;           ///< seen, and both arms: so it sways with them
 } himc_habit_player;
 
 typedef struct himc_habit {
@@ -35,12 +37,14 @@ typedef struct himc_habit {
     double spread[HIMC_HANDS][3 * HIMC_ARM_JOINTS][3 * HIMC_ARM_JOINTS];
 } himc_habit;
 
-/// A take of a player's whole body: postures and the tips they have (borrowed).
+/// A take of a player's body: postures and the tips they have (borrowed).
 typedef struct himc_habit_take {
     const himc_skeleton *skeleton; ///< the same for all takes of a player
     const himc_pose *pose;         ///< (frames)
     int frames;
-    double rate; ///< frames per second (Hz), 20 or more
+    double rate;            ///< frames per second (Hz), 20 or more
+    bool hides[HIMC_HANDS]; ///< arms that the capture does not show: nothing is learned from them
+    bool hides_trunk;       ///< likewise
 } himc_habit_take;
 
 /// What `count` takes of a player say of the player; false with the reason.
@@ -53,13 +57,18 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
 /// determine it.
 bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error);
 
+/// Makes a habit (the usual one, say) the take's player's own: of all that explain what the take
+/// shows the nearest, by ridge regression; so one stroke corrects what it moves and leaves the rest
+/// as it was. False, and nothing changed, with the reason.
+bool himc_habit_correct(himc_habit *habit, const himc_habit_take *take, himc_error *error);
+
 /// The habit learned from the whole motion database (make habit-table); its player, nobody, is to
 /// be filled in.
 HIMC_RT void himc_habit_usual(himc_habit *habit);
 
-/// The arms' posture for tips at each tap; the rest of the pose is taken as given, but that its
-/// trunk sways with the tips. The tips are at their places, if those are not far from what was
-/// seen: of all such postures the likeliest.
+/// The arms' posture for tips at each tap; the rest of the pose, and an arm of which nothing was
+/// seen, is taken as given, but that its trunk sways with the tips. The tips are at their places,
+/// if those are not far from what was seen: of all such postures the likeliest.
 HIMC_RT void himc_habit_at(const himc_habit *habit,
                            const himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS], himc_pose *pose);
 /// Puts the habit into a natural posture in motion (himc_posture_moving): the arms are the habit's,

@@ -27,6 +27,11 @@ void himc_drum_set_answered(himc_drum *drum, bool answered)
     drum->answered = answered;
 }
 
+bool himc_drum_is_answered(const himc_drum *drum)
+{
+    return drum->answered;
+}
+
 double himc_drum_loudness(himc_drum *drum)
 {
     double goal = drum->technique == HIMC_TECHNIQUE_MODAL, step = 1 / (FADE * drum->rate);

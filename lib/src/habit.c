@@ -149,8 +149,11 @@ static himc_quat sway(const himc_habit *habit, const himc_vec3 tip[TAPS][HIMC_HA
 
 void himc_habit_at(const himc_habit *habit, const himc_vec3 tip[TAPS][HIMC_HANDS], himc_pose *pose)
 {
-    pose->joint[TRUNK] = sway(habit, tip, pose->joint[TRUNK]);
+    if (habit->player.trunk)
+        pose->joint[TRUNK] = sway(habit, tip, pose->joint[TRUNK]);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        if (!habit->player.arm[hand])
+            continue;
         double term[TERMS];
         himc_quat frame[HIMC_ARM_JOINTS];
         himc_habit_terms(&habit->player, (himc_hand)hand, pose->joint[TRUNK], tip, term);
@@ -171,21 +174,29 @@ void himc_habit_at(const himc_habit *habit, const himc_vec3 tip[TAPS][HIMC_HANDS
     }
 }
 
+// a joint of a motion, `dt` later
+static himc_quat joint_after(const himc_posture_motion *m, int j, double dt)
+{
+    himc_vec3 turn =
+        himc_vec3_madd(himc_vec3_scale(m->rate[j], dt), 0.5 * dt * dt, m->acceleration[j]);
+    return himc_quat_mul(himc_quat_exp(turn), m->joint[j]);
+}
+
 void himc_habit_moving(const himc_habit *habit, const himc_target tip[TAPS][HIMC_HANDS],
                        himc_posture_motion *motion)
 {
     const himc_habit_player *player = &habit->player;
     himc_pose pose[3];
-    himc_vec3 rate = motion->rate[TRUNK], turning = motion->acceleration[TRUNK];
-    himc_quat trunk =
-        himc_quat_mul(motion->joint[TRUNK],
-                      himc_quat_mul(himc_quat_conj(player->usual), player->mean.joint[TRUNK]));
+    himc_quat own = himc_quat_mul(himc_quat_conj(player->usual), player->mean.joint[TRUNK]);
     for (int i = 0; i < 3; i++) {
         double dt = (i - 1) * DIFFERENCE;
         himc_vec3 then[TAPS][HIMC_HANDS];
-        himc_vec3 turned = himc_vec3_madd(himc_vec3_scale(rate, dt), 0.5 * dt * dt, turning);
         pose[i] = player->mean;
-        pose[i].joint[TRUNK] = himc_quat_mul(himc_quat_exp(turned), trunk);
+        pose[i].joint[TRUNK] = himc_quat_mul(joint_after(motion, TRUNK, dt), own);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            for (int k = 0; k < HIMC_ARM_JOINTS && !player->arm[hand]; k++)
+                pose[i].joint[himc_arm_joint((himc_hand)hand, k)] =
+                    joint_after(motion, himc_arm_joint((himc_hand)hand, k), dt);
         for (int tap = 0; tap < TAPS; tap++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
                 then[tap][hand] = himc_target_after(&tip[tap][hand], dt).x;

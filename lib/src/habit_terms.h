@@ -31,4 +31,12 @@ HIMC_RT void himc_habit_trunk_terms(const himc_habit_player *player, himc_quat m
 HIMC_RT void himc_habit_frames(const himc_habit_player *player, himc_hand hand,
                                himc_quat frame[HIMC_ARM_JOINTS]);
 
+/// A posture's tip (m).
+HIMC_RT himc_vec3 himc_habit_tip(const himc_skeleton *skeleton, const himc_pose *pose,
+                                 himc_hand hand);
+/// Frames of a take whose future is known.
+int himc_habit_known_frames(const himc_habit_take *take);
+/// That there is enough of it, and that its rotations are some; false with the reason.
+bool himc_habit_check(const himc_habit_take *take, himc_error *error);
+
 #endif

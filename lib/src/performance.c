@@ -71,7 +71,7 @@ static void set_course(himc_performance *p, double t)
         place[hand] = attention(p, (himc_hand)hand, t);
     p->course.from = bearing_at(p, t);
     p->course.goal = himc_posture_bearing(place, p->grip);
-    if (p->track && p->manner_known[HIMC_TRUNK - 1] && !p->has_habit) {
+    if (p->track && p->manner_known[HIMC_TRUNK - 1]) {
         p->course.goal.value[HIMC_BEARING_TURN] = p->bearing.value[HIMC_BEARING_TURN];
         p->course.goal.value[HIMC_BEARING_LEAN] = p->bearing.value[HIMC_BEARING_LEAN];
     }

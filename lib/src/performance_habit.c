@@ -41,11 +41,6 @@ void himc_performance_follow_habit(const himc_performance *p, himc_task_tick *ti
             tip[tap][hand] =
                 himc_performance_planned(p, (himc_hand)hand, tick->time + tap * HIMC_HABIT_STEP);
     himc_posture_motion natural = tick->posture;
-    if (p->track && p->manner_known[HIMC_TRUNK - 1]) { // it bears itself as the player already
-        himc_quat *trunk = &tick->posture.joint[HIMC_TRUNK - 1];
-        himc_quat back = himc_quat_conj(p->habit.player.mean.joint[HIMC_TRUNK - 1]);
-        *trunk = himc_quat_mul(p->habit.player.usual, himc_quat_mul(back, *trunk));
-    }
     himc_habit_moving(&p->habit, (const himc_target(*)[HIMC_HANDS])tip, &tick->posture);
     if (share.x.x < 1)
         for (int j = 0; j < HIMC_JOINTS; j++)

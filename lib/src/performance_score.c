@@ -51,9 +51,10 @@ static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc
         himc_drum_release(drum);
         return NULL;
     }
-    if (drum)
-        r->drum[r->drums++] = drum;
-    return drum;
+    if (!drum)
+        return NULL;
+    himc_drum_set_answered(drum, real && himc_drum_is_answered(real));
+    return r->drum[r->drums++] = drum;
 }
 
 /// Whether a line for the performer could be carried out; one that reads a file reads it now.

@@ -3,7 +3,8 @@
 ///
 /// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known, and
 /// the null space has the natural posture, with neck, head, legs and the trunk's mean as this
-/// player holds them; of a take that shows both arms, their means with the usual habit about them.
+/// player holds them. Of an arm that the take shows it has the player's own way instead: the mean
+/// and the habit, the usual one corrected by this take's postures.
 #include "performance_state.h"
 
 #include <stdlib.h>
@@ -119,24 +120,35 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
                               path, outside, count, himc_drum_name(drum));
 }
 
-// of both arms, hands and sticks included
-static bool shows_arms(const himc_player *player)
+// an arm, its hand and stick included
+static bool shows_arm(const himc_player *player, himc_hand hand)
 {
-    bool all = player->pose && !player->walks && player->known[HIMC_TRUNK - 1];
-    for (int i = 0; i < HIMC_HANDS * HIMC_ARM_JOINTS; i++)
-        all = all && player->known[himc_arm_joint((himc_hand)(i % 2), i / 2)];
+    bool all = player->pose && !player->walks;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        all = all && player->known[himc_arm_joint(hand, k)];
     return all;
 }
 
-// the usual habit about this player's means, unless another has been set
-static void adopt_habit(himc_performance *p, const himc_player *player, const himc_take *take)
+// the usual habit, corrected by what the take shows of this player's, unless another has been set
+static void adopt_habit(himc_performance *p, const himc_player *player, const himc_take *take,
+                        const char *path)
 {
     himc_habit habit;
-    himc_habit_take seen = {&p->skeleton, player->pose, player->frames, himc_take_rate(take)};
+    himc_error error = {""};
+    himc_habit_take seen = {
+        .skeleton = &p->skeleton,
+        .pose = player->pose,
+        .frames = player->frames,
+        .rate = himc_take_rate(take),
+        .hides = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
+        .hides_trunk = !player->known[HIMC_TRUNK - 1]};
     if (p->has_habit && !p->habit_of_take)
         return;
     himc_habit_usual(&habit);
-    bool met = shows_arms(player) && himc_habit_meet(&habit.player, &seen, 1, NULL);
+    bool shown = !seen.hides[HIMC_LEFT] || !seen.hides[HIMC_RIGHT];
+    bool met = shown && himc_habit_correct(&habit, &seen, &error);
+    if (shown && !met)
+        himc_performance_note(p, "%s: %s: the arms go as is natural", path, error.text);
     himc_performance_set_habit(p, met ? &habit : NULL);
     p->habit_of_take = met;
 }
@@ -168,7 +180,7 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     if (p->has_learned)
         p->learned = learned;
     himc_performance_renew_limits(p);
-    adopt_habit(p, player, take);
+    adopt_habit(p, player, take, path);
     himc_performance_fit_habit(p);
     p->replan = true;
     return true;

@@ -346,6 +346,7 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
         read_frame(&r, frame);
+    himc_player_fit_arms(player, points, skeleton);
     int known = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])

@@ -15,7 +15,7 @@ tests=0 failures=0 ignored=0
 play_pd() { # play_pd PATCH [OPTION...]: what Pd says goes to $work/log
     local patch=$1
     shift
-    timeout 100 pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$build/externals/himc" \
+    timeout "${TEST_TIMEOUT:-120}" pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$build/externals/himc" \
         -path "$root/patches/lib" -path "$root/patches/techniques" -path "$build/clips" "$@" -open "$patch" >"$work/log" 2>&1 </dev/null
 }
 

@@ -25,7 +25,10 @@ static bool make_take(int index, himc_habit_take *take, himc_error *error)
     himc_pose *pose = malloc((size_t)frames * sizeof *pose);
     for (int i = 0; pose && i < frames; i++)
         pose[i] = himc_mocap_pose(mocap, i / HIMC_MOCAP_RATE);
-    *take = (himc_habit_take){himc_mocap_skeleton(mocap), pose, frames, HIMC_MOCAP_RATE};
+    *take = (himc_habit_take){.skeleton = himc_mocap_skeleton(mocap),
+                              .pose = pose,
+                              .frames = frames,
+                              .rate = HIMC_MOCAP_RATE};
     return pose || himc_error_set(error, "out of memory");
 }
 
