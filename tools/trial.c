@@ -5,8 +5,8 @@
 /// habit of the other two players in that nuance. What was simulated is compared with the motion
 /// itself, noiseless.
 ///
-/// Under the `printed` law `himc` is as published: nothing in the null space but the limits; and
-/// the servos are as soft as a player's (the default ones are three times as fast).
+/// Under the `printed` law `himc` is as published: nothing in the null space but the limits. The
+/// servos are the default ones; a player's are a third as fast, `gain` 1/3.
 #define _DEFAULT_SOURCE // mkstemps
 #include "trial.h"
 

@@ -1,6 +1,6 @@
-/// claim.c: what the published claim depends on: that HIMC misses less than joint space control, by
-/// "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for claim.gp
-/// and evaluation.gp: `claim rates TRIALS` and `claim nuances TRIALS`.
+/// claim.c: what the published claim depends on: that HIMC misses less than joint space control,
+/// by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for
+/// claim.gp and evaluation.gp: `claim rates TRIALS` and `claim nuances TRIALS`.
 ///
 /// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with
 /// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean

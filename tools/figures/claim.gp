@@ -15,7 +15,8 @@ stats data using ($4 - $5) name "LOW" nooutput
 stats data using ($4 + $5) name "HIGH" nooutput
 least = floor(LOW_min - 0.3)
 most = ceil((HIGH_max > 2 ? HIGH_max : 2) + 0.3)
-set label 1 "HIMC against joint space control: what the published 2 % depend on" at screen 0.06,0.958 font bold textcolor rgb ink
+set label 1 "HIMC against joint space control: what the published 2 % depend on" \
+    at screen 0.06,0.958 font bold textcolor rgb ink
 set label 2 said at screen 0.06,0.916 font ",13" textcolor rgb soft
 set xrange [0.9:3.1]
 set xtics 0.5

@@ -12,7 +12,7 @@ eval legend(2, 0.880, 0.945, himc, "HIMC")
 set label 1 "Phases of a stroke: depth and height of the stick's tip" at screen 0.05,0.945 font bold textcolor rgb ink
 set label 2 said at screen 0.05,0.880 font ",13" textcolor rgb soft
 set grid xtics ytics linetype 1 linecolor rgb rule linewidth 1
-set xrange [-30:5]
+set xrange [-36:6]
 set yrange [-3:58]
 set xtics 10
 set ytics 10

@@ -23,8 +23,9 @@ set rmargin at screen 0.985
 set xrange [0.5:last]
 set xtics 1
 set label 1 "Legato and accent beats under a varying tempo" at screen 0.065,0.958 font bold textcolor rgb ink
-set label 2 "the score, notes where they sound: right hand stems up, left hand stems down, > an accent; below, what the virtual timpanist plays" \
-    at screen 0.065,0.916 font ",13" textcolor rgb soft
+how = "the score, notes where they sound: right hand stems up, left hand stems down, > an accent; " \
+    . "below, what the virtual timpanist plays"
+set label 2 how at screen 0.065,0.916 font ",13" textcolor rgb soft
 
 # the score: notes stand where they sound, so a hurrying tempo draws them together
 set tmargin at screen 0.870
