@@ -5,8 +5,8 @@
 /// with the acceleration of that power, -e (n - 1) / T (for n below 3 less of it, none below 2).
 /// The rebound is the mirror image. What arrives faster than a fall of power 4.5 begins its fall
 /// later: so the distal joints, which are the faster ones, follow the proximal ones, as in every
-/// stroke and throw. Around the impact one quintic leads from the arrival to the rebound, as long as `turn`
-/// says; it is shifted so that it passes 0 at the impact.
+/// stroke and throw. Around the impact one quintic leads from the arrival to the rebound, as long
+/// as `turn` says; it is shifted so that it passes 0 at the impact.
 #include "parts.h"
 
 #include "himc/quintic.h"

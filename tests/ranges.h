@@ -40,8 +40,9 @@ static inline void set_range(himc_limits *limits, int joint, himc_quat mean, him
 
 /// The ranges of motion of the American Academy of Orthopaedic Surgeons (Greene & Heckman 1994), as
 /// ellipsoids or boxes about their middles: half of flexion 180 + extension 60 and abduction 180 at
-/// the shoulder, 150 at the elbow with pronation 160, flexion 80 + 70 and deviation 50 at the wrist;
-/// the trunk's 80 + 25 forward, 70 to the sides, 90 in turning; of a stick in the hand a guess.
+/// the shoulder, 150 at the elbow with pronation 160, flexion 80 + 70 and deviation 50 at the
+/// wrist; the trunk's 80 + 25 forward, 70 to the sides, 90 in turning; of a stick in the hand a
+/// guess.
 static inline himc_limits wide_ranges(himc_limits_kind kind)
 {
     himc_limits limits = {.kind = kind};
@@ -64,7 +65,8 @@ static inline double range_unit(void)
     return 2.0 * rand() / RAND_MAX - 1;
 }
 
-/// A rotation within the limits, all of them as likely; of free joints within half a radian of `rest`.
+/// A rotation within the limits, all of them as likely; of free joints within half a radian of
+/// `rest`.
 static inline himc_quat random_within(const himc_limits *limits, int joint, himc_quat rest)
 {
     const himc_limit *l = &limits->joint[joint];

@@ -313,7 +313,8 @@ static bool stands(himc_pipeline mode, himc_law law, double factor, double *away
 
 static void keeps_on_its_feet(double factor, double step)
 {
-    // of printed, feedforward, computed torque, a quarter of a second after the usual gains are back
+    // of printed, feedforward, computed torque, a quarter of a second after the usual gains are
+    // back
     static const double near[] = {0.07 * HEIGHT, 0.012 * HEIGHT, 0.0002};
     controller.step = step;
     for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++)

@@ -2,7 +2,7 @@
 /// the take, and played from the tips alone, the null space being for the habit of the other two
 /// players in that nuance; then compared with the joints that nobody had seen.
 ///
-/// One sequence of each nuance, all 45 with HIMC_LONG: 3 players, 5 nuances, 3 spots. No noise, the
+/// One sequence of each nuance, or all 45 with HIMC_LONG (make test-long): 3 players, 5 nuances, 3 spots. No noise, the
 /// masses as they are believed to be: what is left is the control's own.
 #include "../tools/trial.h"
 
@@ -22,6 +22,7 @@ typedef struct film {
     int frames;
     double time[FRAMES];
     himc_vec3 tip[FRAMES][HIMC_HANDS];
+    double elbow[FRAMES][HIMC_HANDS][2]; // heights: captured, simulated (m)
 } film;
 
 // sums over the sequences of a nuance
@@ -29,7 +30,8 @@ typedef struct sums {
     int count, strokes, gaps;
     double played;
     double all, outside; // squares of RMS over amplitude
-    double elbow;        // range of its height over the captured
+    double elbow[2];     // ranges of the elbows' heights, captured and simulated, likewise
+    double whole[2];     // the same, from a sequence's lowest to its highest
     double angle[3];     // squares of RMS: shoulder, elbow, wrist (rad^2)
     double speed;        // of the mallets at impact (m/s), all strokes
     double height;       // from it to the next apex (m), all gaps between strokes
@@ -48,13 +50,21 @@ void tearDown(void)
 {
 }
 
+static bool is_long(void)
+{
+    return getenv("HIMC_LONG") != NULL;
+}
+
 static void keep_frame(void *user, const trial_frame *frame)
 {
     film *f = user;
     TEST_ASSERT_TRUE(f->frames < FRAMES);
     f->time[f->frames] = frame->time;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         f->tip[f->frames][hand] = frame->simulated->tip[hand];
+        f->elbow[f->frames][hand][0] = frame->captured->origin[HIMC_LEFT_FOREARM + hand].z;
+        f->elbow[f->frames][hand][1] = frame->simulated->elbow[hand].z;
+    }
     f->frames++;
 }
 
@@ -70,6 +80,22 @@ static double impact_speed(const film *f, himc_hand hand, double at)
     return fastest;
 }
 
+// ranges of its heights, captured and simulated (m)
+static void add_elbow(const film *f, himc_hand hand, double from, double to, double range[2])
+{
+    double high[2] = {-9, -9}, low[2] = {9, 9};
+    for (int i = 0; i < f->frames; i++)
+        for (int which = 0; which < 2; which++) {
+            double z = f->elbow[i][hand][which];
+            if (f->time[i] < from || f->time[i] > to)
+                continue;
+            high[which] = fmax(high[which], z);
+            low[which] = fmin(low[which], z);
+        }
+    range[0] += high[0] - low[0];
+    range[1] += high[1] - low[1];
+}
+
 static void measure_gap(const film *f, himc_hand hand, double from, double to, sums *s)
 {
     double high = -9, low = 9, near = 9, far = -9;
@@ -83,6 +109,7 @@ static void measure_gap(const film *f, himc_hand hand, double from, double to, s
     s->height += high - low;
     s->depth += far - near;
     s->gaps++;
+    add_elbow(f, hand, from, to, s->elbow);
 }
 
 // the strokes as they were simulated, but for the first and the last of a hand
@@ -119,7 +146,8 @@ static void play_sequence(const trial_kind *kind, int number, sums *s)
         s->angle[k] += angle[k] * angle[k];
     s->all += r.rms * r.rms / (r.amplitude * r.amplitude);
     s->outside += r.outside * r.outside / (r.amplitude * r.amplitude);
-    s->elbow += r.elbow;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        add_elbow(&seen, (himc_hand)hand, 0, seen.time[seen.frames - 1], s->whole);
     s->strokes += (int)r.strokes;
     s->played += r.played;
     s->count++;
@@ -128,33 +156,37 @@ static void play_sequence(const trial_kind *kind, int number, sums *s)
 static void print_row(const char *name, const sums *s)
 {
     double n = s->count;
-    printf("%-16s %9.4f %9.4f %7.3f %6.2f %6.2f %6.2f %7.2f %6.0f %6.0f %4.0f/%d\n", name,
-           100 * sqrt(s->outside / n), 100 * sqrt(s->all / n), s->elbow / n,
-           sqrt(s->angle[0] / n) / DEGREE, sqrt(s->angle[1] / n) / DEGREE,
-           sqrt(s->angle[2] / n) / DEGREE, s->speed / s->gaps, 1e3 * s->height / s->gaps,
-           1e3 * s->depth / s->gaps, s->played, s->strokes);
+    printf("%-16s %9.4f %9.4f %6.3f %6.3f %6.2f %6.2f %6.2f %6.2f %6.0f %6.0f %4.0f/%d\n", name,
+           100 * sqrt(s->outside / n), 100 * sqrt(s->all / n), s->elbow[1] / s->elbow[0],
+           s->whole[1] / s->whole[0], sqrt(s->angle[0] / n) / DEGREE,
+           sqrt(s->angle[1] / n) / DEGREE, sqrt(s->angle[2] / n) / DEGREE, s->speed / s->gaps,
+           1e3 * s->height / s->gaps, 1e3 * s->depth / s->gaps, s->played, s->strokes);
 }
 
 static void add_sums(const sums *a, sums *total)
 {
     total->count += a->count, total->strokes += a->strokes, total->gaps += a->gaps;
     total->played += a->played, total->all += a->all, total->outside += a->outside;
-    total->elbow += a->elbow, total->speed += a->speed;
+    total->speed += a->speed;
     total->height += a->height, total->depth += a->depth;
     for (int k = 0; k < 3; k++)
         total->angle[k] += a->angle[k];
+    for (int i = 0; i < 2; i++)
+        total->elbow[i] += a->elbow[i], total->whole[i] += a->whole[i];
 }
 
-// all nuances, a row of the table each; the sums of all
-static sums play_database(himc_pipeline controller, himc_law law, sums nuance[HIMC_NUANCES])
+// nuances, a row of the table each, all of them if long; the sums of all
+static sums play_database(himc_pipeline controller, himc_law law, int few,
+                          sums nuance[HIMC_NUANCES])
 {
     sums total = {0};
-    printf("%-16s %9s %9s %7s %6s %6s %6s %7s %6s %6s\n", trial_controller_name(controller),
-           "outside %", "all %", "elbow", "sh deg", "el deg", "wr deg", "m/s", "mm", "deep");
-    for (int i = 0; i < HIMC_NUANCES; i++) {
+    printf("%-16s %9s %9s %6s %6s %6s %6s %6s %6s %6s %6s\n", trial_controller_name(controller),
+           "outside %", "all %", "elbow", "whole", "sh deg", "el deg", "wr deg", "m/s", "mm",
+           "deep");
+    for (int i = 0; i < (is_long() ? HIMC_NUANCES : few); i++) {
         trial_kind kind = {(himc_nuance)i, controller, law};
         nuance[i] = (sums){0};
-        int count = getenv("HIMC_LONG") ? EACH : 1;
+        int count = is_long() ? EACH : 1;
         for (int k = 0; k < count; k++) // else another player and spot in each
             play_sequence(&kind, 1 + (count == 1 ? (4 * i) % EACH : k), &nuance[i]);
         print_row(himc_nuance_name(kind.nuance), &nuance[i]);
@@ -169,9 +201,12 @@ static double percent(double squares, const sums *s)
     return 100 * sqrt(squares / s->count);
 }
 
+// The elbow's range is that of a stroke. Over a whole sequence the captured trunk wanders by 0.3
+// degrees, which no tip tells of, and an elbow that rises by some centimetres is so 2 to 6 % less.
 static void expect_unseen_joints(const sums *s)
 {
-    TEST_ASSERT_DOUBLE_WITHIN(0.05, 1, s->elbow / s->count);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 1, s->elbow[1] / s->elbow[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.08, 1, s->whole[1] / s->whole[0]);
     for (int k = 0; k < 3; k++)
         TEST_ASSERT_TRUE(sqrt(s->angle[k] / s->count) < DEGREE);
 }
@@ -197,20 +232,21 @@ static void expect_order(const sums *n)
 static void test_tips_alone_give_back_the_player(void)
 {
     sums nuance[HIMC_NUANCES];
-    sums all = play_database(HIMC_PIPELINE_HIMC, HIMC_LAW_COMPUTED_TORQUE, nuance);
+    sums all = play_database(HIMC_PIPELINE_HIMC, HIMC_LAW_COMPUTED_TORQUE, HIMC_NUANCES, nuance);
     TEST_ASSERT_EQUAL_INT(all.strokes, (int)all.played);
     TEST_ASSERT_TRUE(percent(all.outside, &all) < 0.05);
     TEST_ASSERT_TRUE(percent(all.all, &all) < 0.3);
-    for (int i = 0; i < HIMC_NUANCES; i++)
+    expect_unseen_joints(&all);
+    for (int i = 0; is_long() && i < HIMC_NUANCES; i++) // one player is no nuance's mean
         expect_unseen_joints(&nuance[i]);
-    if (getenv("HIMC_LONG")) // players differ: an order is that of the same ones
+    if (is_long())
         expect_order(nuance);
 }
 
 static void test_feedforward_tips_stay_within_6_thousandths(void)
 {
     sums nuance[HIMC_NUANCES];
-    sums all = play_database(HIMC_PIPELINE_HIMC, HIMC_LAW_FEEDFORWARD, nuance);
+    sums all = play_database(HIMC_PIPELINE_HIMC, HIMC_LAW_FEEDFORWARD, 1, nuance);
     TEST_ASSERT_EQUAL_INT(all.strokes, (int)all.played);
     TEST_ASSERT_TRUE(percent(all.outside, &all) < 0.6);
 }
@@ -218,9 +254,9 @@ static void test_feedforward_tips_stay_within_6_thousandths(void)
 static void test_id_from_the_joints_has_tips_and_joints(void)
 {
     sums nuance[HIMC_NUANCES];
-    if (!getenv("HIMC_LONG"))
+    if (!is_long())
         TEST_IGNORE_MESSAGE("long");
-    sums all = play_database(HIMC_PIPELINE_ID, HIMC_LAW_COMPUTED_TORQUE, nuance);
+    sums all = play_database(HIMC_PIPELINE_ID, HIMC_LAW_COMPUTED_TORQUE, HIMC_NUANCES, nuance);
     TEST_ASSERT_EQUAL_INT(all.strokes, (int)all.played);
     TEST_ASSERT_TRUE(percent(all.outside, &all) < 0.05);
     TEST_ASSERT_TRUE(percent(all.all, &all) < 0.3);
@@ -233,7 +269,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_tips_alone_give_back_the_player);
     RUN_TEST(test_feedforward_tips_stay_within_6_thousandths);
-    
     RUN_TEST(test_id_from_the_joints_has_tips_and_joints);
     return UNITY_END();
 }

@@ -117,7 +117,8 @@ static void test_grid_disc_is_struck_and_sounds_as_the_round_head_does(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1 * peak[0], peak[0], peak[1]);
 }
 
-// growth of the energy above its lowest so far when `count` sticks strike, as a fraction of the blow
+// growth of the energy above its lowest so far when `count` sticks strike, as a fraction of the
+// blow
 static double growth_of(int count, double k)
 {
     himc_membrane *m = himc_drum_membrane(drum);

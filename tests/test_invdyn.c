@@ -350,8 +350,8 @@ static void test_resisting_joints_get_the_accelerations_their_remaining_torques_
     }
 }
 
-// Two hands drumming at 2 Hz: the torques that inverse dynamics gives for the motion, applied without
-// any feedback for 10 ms from everywhere along it, carry the body along it.
+// Two hands drumming at 2 Hz: the torques that inverse dynamics gives for the motion, applied
+// without any feedback for 10 ms from everywhere along it, carry the body along it.
 static void test_torques_of_a_motion_return_it_in_the_physics_open_loop(void)
 {
     const himc_vec3 none[HIMC_HANDS] = {{0, 0, 0}};

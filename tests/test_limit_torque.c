@@ -1,5 +1,5 @@
-/// test_limit_torque.c: joints sent beyond their bounds come back under every law and mode, whatever
-/// the bounds; and the strength of muscles.
+/// test_limit_torque.c: joints sent beyond their bounds come back under every law and mode,
+/// whatever the bounds; and the strength of muscles.
 #include "himc/character.h"
 #include "himc/controller.h"
 

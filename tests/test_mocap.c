@@ -99,8 +99,8 @@ static void test_no_stick_goes_through_the_head(void)
     TEST_ASSERT_TRUE(deepest < MOST_SINK);
 }
 
-// the bounce is the stick's: falling until it touches, rising by more than half a metre a second 8 ms
-// later
+// the bounce is the stick's: falling until it touches, rising by more than half a metre a second 8
+// ms later
 static void test_a_mallet_turns_within_its_contact(void)
 {
     for (int i = 0; i < MOCAP_SEQUENCES; i++) {

@@ -1,5 +1,5 @@
-/// test_noise.c: what a tracker's noise does: it is measured, makes no strikes of its own and hardly
-/// shows in the accelerations asked for.
+/// test_noise.c: what a tracker's noise does: it is measured, makes no strikes of its own and
+/// hardly shows in the accelerations asked for.
 #include "take_files.h"
 
 #include "himc/planner.h"

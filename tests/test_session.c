@@ -49,7 +49,8 @@ static void test_eight_dynamics_rise_over_20_dB(void)
     himc_performance_free(p);
 }
 
-// 14 strokes a second from one dynamic to another; the steps in time and level from stroke to stroke
+// 14 strokes a second from one dynamic to another; the steps in time and level from stroke to
+// stroke
 static heard roll(double from, double to, double *time, double *level)
 {
     enum { COUNT = 42 };

@@ -2,8 +2,8 @@
 /// cannot disagree.
 ///
 /// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that
-/// names the call, what was wrong and what is allowed. Options take a value, switches none; given twice, the
-/// last counts, as POSIX tools do.
+/// names the call, what was wrong and what is allowed. Options take a value, switches none; given
+/// twice, the last counts, as POSIX tools do.
 #include "cli.h"
 
 #include <errno.h>

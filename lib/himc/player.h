@@ -6,8 +6,8 @@
 /// its turn about that line comes from the skeleton's frames, else from a marker beside it, else
 /// from the plane of the bent elbow or knee, and for forearm, hand and stick from the vertical
 /// plane of the stroke. An arm that is shown to its tip is then bent a little, so that its tip is
-/// where it was captured and its joints as near as can be, for captured limbs stretch. The simulated
-/// pelvis is held, so the trunk's and the thighs' rotations are those in the world.
+/// where it was captured and its joints as near as can be, for captured limbs stretch. The
+/// simulated pelvis is held, so the trunk's and the thighs' rotations are those in the world.
 #ifndef HIMC_PLAYER_H
 #define HIMC_PLAYER_H
 

@@ -4,9 +4,9 @@
 /// where the file has it.
 /// Up: HIMC_UP_* if given, else what the file says (C3D X_SCREEN, Y_SCREEN), else heads above hips
 /// in the data, else the format's habit (BVH and TRC y up, C3D z up). Up y becomes (x, -z, y).
-/// Heading: the body's left side to +y where hips, else shoulders, are named in pairs; else, by quarter
-/// turns, the left tip left of the right one, or the tip in front of the shoulder; else as it is.
-/// himc_take_describe says which.
+/// Heading: the body's left side to +y where hips, else shoulders, are named in pairs; else, by
+/// quarter turns, the left tip left of the right one, or the tip in front of the shoulder; else as
+/// it is. himc_take_describe says which.
 /// A BVH's joints and end sites ("NAME_end") are points too, by forward kinematics; its skeleton
 /// stays readable. Gaps are NaN; only the tips are filled. All functions are setup; a loaded take
 /// may be read from any thread.
@@ -109,8 +109,8 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
                       himc_take_strike *strikes, int capacity);
 
 /// Where a tip touches the drumhead that belongs under these strikes: the middle of both hands'
-/// median places (m). Where a fall and its rebound meet is below that: on the simulated head a mallet
-/// stays some 7 ms, and the head is put so high that such a contact joins the two.
+/// median places (m). Where a fall and its rebound meet is below that: on the simulated head a
+/// mallet stays some 7 ms, and the head is put so high that such a contact joins the two.
 /// False without strikes.
 bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place);
 

@@ -8,8 +8,8 @@
 ///
 /// A regression misses the tips themselves by some millimetres. With S the covariance of its
 /// residuals over the arm's joints and J the tip's Jacobian, the likeliest correction that brings
-/// the tip to its place is S J' (J S J')^-1 e: least squares again, weighted by how surely each joint
-/// is known.
+/// the tip to its place is S J' (J S J')^-1 e: least squares again, weighted by how surely each
+/// joint is known.
 #include "habit_terms.h"
 
 #include "difference.h"

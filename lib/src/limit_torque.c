@@ -1,18 +1,18 @@
 /// limit_torque.c: joints beyond their bounds are brought back towards the nearest orientation
-/// within (2012 paper, section 3.1), by accelerations where the law asks for those, by torques where
-/// it makes those. Limits win over tips, tips over posture.
+/// within (2012 paper, section 3.1), by accelerations where the law asks for those, by torques
+/// where it makes those. Limits win over tips, tips over posture.
 ///
 /// Computed torque: where a joint would be in a moment T is kept within its bounds,
 ///     q_T = exp(omega T + alpha T^2 / 2) q,     alpha += 2 / T^2 log(q_T^-1 q_lim(q_T)),
-/// from outside e'' = -2 / T^2 e - 2 / T e', a spring damped by .71 of critical. A motion that turns
-/// back by itself is left alone, one along the limit slides freely. What that takes from the tips
-/// the arm's other freedoms give back: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
+/// from outside e'' = -2 / T^2 e - 2 / T e', a spring damped by .71 of critical. A motion that
+/// turns back by itself is left alone, one along the limit slides freely. What that takes from the
+/// tips the arm's other freedoms give back: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
 /// directions of the corrections.
 ///
-/// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion of
-/// that orientation, so that nothing damps the way along the limit; implicit over the step like the
-/// servos themselves, which drive no joint further out. It is a spring and a damper: it pumps no
-/// energy.
+/// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion
+/// of that orientation, so that nothing damps the way along the limit; implicit over the step like
+/// the servos themselves, which drive no joint further out. It is a spring and a damper: it pumps
+/// no energy.
 #include "limit_torque.h"
 
 #define MOMENT 0.0056   // T: a spring of 40 Hz (s)

@@ -75,7 +75,8 @@ double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotati
 }
 
 // with everything in units of the thinnest semi-axis squared: r = radius^2, s = t, and
-// sum (r z / (s + r))^2 - 1 falls from above zero at s = 0 to below at |r z| - 1, where z = x / radius
+// sum (r z / (s + r))^2 - 1 falls from above zero at s = 0 to below at |r z| - 1, where z = x /
+// radius
 static double excess(himc_vec3 r, himc_vec3 rz, double s)
 {
     himc_vec3 y = himc_vec3_make(rz.x / (s + r.x), rz.y / (s + r.y), rz.z / (s + r.z));

@@ -1,8 +1,8 @@
 /// performance_take.c: the command `take`: a capture's player becomes the performer, and sits where
 /// the capture has it, before a drum that stands under the strikes.
 ///
-/// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known, and
-/// the null space has the natural posture, with neck, head, legs and the trunk's mean as this
+/// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known,
+/// and the null space has the natural posture, with neck, head, legs and the trunk's mean as this
 /// player holds them. Of an arm that the take shows it has the player's own way instead: the mean
 /// and the habit, the usual one corrected by this take's postures.
 #include "performance_state.h"

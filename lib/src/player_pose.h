@@ -10,7 +10,6 @@
 bool himc_player_read_poses(himc_player *player, const player_points *points,
                             const himc_skeleton *skeleton, const himc_vec3 *waist);
 
-
 /// player_fit.c: turns the arms that are wholly shown so that their joint centres are nearest to
 /// the captured and their tips are there.
 void himc_player_fit_arms(himc_player *player, const player_points *points,

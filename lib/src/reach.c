@@ -1,8 +1,8 @@
 /// reach.c: Levenberg and Marquardt's method in coordinates in which the limits are simple.
 ///
-/// In the coordinates x of reach_joint.c a joint moves as willingly as its range is wide, and a step
-/// that leaves the limits is put back by shortening x. With G the derivative of the tips by all x
-/// and P what takes away, at joints on their bounds, motion further out,
+/// In the coordinates x of reach_joint.c a joint moves as willingly as its range is wide, and a
+/// step that leaves the limits is put back by shortening x. With G the derivative of the tips by
+/// all x and P what takes away, at joints on their bounds, motion further out,
 ///     dx = W P G' (G W P G' + mu)^-1 e,  mu = |e|^2 / 2 + mu_0 and larger while no step helps,
 /// 6 equations for 27 unknowns (Sugihara 2011: such a damping converges quadratically and needs
 /// not know what is reachable). Where it sticks it begins again from a posture at random, the same

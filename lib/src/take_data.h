@@ -82,8 +82,8 @@ typedef struct himc_take_gap {
     int begin, end;
 } himc_take_gap;
 
-/// A point's places (frames), gaps bridged. Returns how many frames were, or -1 at a gap longer than
-/// `longest` (s), or if the point is never seen; `gap` is that one then.
+/// A point's places (frames), gaps bridged. Returns how many frames were, or -1 at a gap longer
+/// than `longest` (s), or if the point is never seen; `gap` is that one then.
 int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
                    himc_take_gap *gap);
 /// Index of a hand's tip by its name, or -1.

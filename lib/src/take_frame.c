@@ -6,9 +6,9 @@
 /// shoulders or the like, are named in pairs, by quarter turns if only the tips tell (players do
 /// not strike exactly along their room's axes, but their hands are not exactly abreast either). A
 /// skeleton's joint frames get a rest rotation of their own, found from the bones in the zero pose,
-/// so that the zero pose looks along x whichever way the player faced on the day: with A for the points and
-/// B for the zero pose, a root turns by A R B^T, other joints by B R B^T, and offsets become B o;
-/// forward kinematics then gives A times the points.
+/// so that the zero pose looks along x whichever way the player faced on the day: with A for the
+/// points and B for the zero pose, a root turns by A R B^T, other joints by B R B^T, and offsets
+/// become B o; forward kinematics then gives A times the points.
 #include "take_data.h"
 
 #include <stdio.h>

@@ -10,9 +10,9 @@
 /// The track near the touch is blunted by the capture's filter, so what happens is read from
 /// before: a parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall,
 /// those before the deceleration reaches a tenth of A. A must stand out of what noise alone gives
-/// (noise.c), over longer differences where a track is noisy. In a sharp track (nearly all of D in two
-/// frames) the touch is where the parabolas from before and after meet; in a blunted one, where the
-/// one from before passes the height of the lowest position. In a sharp track the speed is the
+/// (noise.c), over longer differences where a track is noisy. In a sharp track (nearly all of D in
+/// two frames) the touch is where the parabolas from before and after meet; in a blunted one, where
+/// the one from before passes the height of the lowest position. In a sharp track the speed is the
 /// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
 /// beyond is not the filter's to tell.
 #include "himc/take.h"

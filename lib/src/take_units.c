@@ -3,8 +3,8 @@
 ///
 /// A BVH never says. Its skeleton does: the longest way through the bones (toe to head, or hand to
 /// hand) of a grown player, sticks included, is 1.2 to 3.2 m. The first unit that makes it so is
-/// taken, of m, cm, mm and CMU's 1/0.45 inch, which do not overlap, then, for bodies with legs, inches
-/// and feet; a skeleton without legs may be 0.3 m, but then only in m, cm or mm.
+/// taken, of m, cm, mm and CMU's 1/0.45 inch, which do not overlap, then, for bodies with legs,
+/// inches and feet; a skeleton without legs may be 0.3 m, but then only in m, cm or mm.
 ///
 /// Marker files do say, not always rightly: points that lie more than 8 m apart within one frame,
 /// or stay all in all within 2 cm, are read again in the one metric unit that makes them 0.2 .. 4 m

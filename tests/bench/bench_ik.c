@@ -1,6 +1,6 @@
 /// bench_ik.c: what inverse kinematics costs: a solver's step, and a posture from tips at a
-/// distance, both arms and trunk, from rest with limits on (TRAC-IK's yardstick, Beeson & Ames 2015:
-/// 99.6 to 99.99 % in about 0.5 ms).
+/// distance, both arms and trunk, from rest with limits on (TRAC-IK's yardstick, Beeson & Ames
+/// 2015: 99.6 to 99.99 % in about 0.5 ms).
 #define _POSIX_C_SOURCE 200809L
 #include "himc/ik.h"
 #include "himc/reach.h"

@@ -6,7 +6,8 @@
 /// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean
 /// RMS of `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
 /// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on:
-/// rows of name, mean and deviation of `id`, of `himc`, of the difference. All cores work.
+/// rows of name, mean and deviation of `id`, of `himc`, of the difference. Trials are spread over
+/// the cores.
 #include "../pool.h"
 #include "../trial.h"
 

@@ -6,7 +6,7 @@
 /// velocity fed forward, at 2 strokes a second with each hand; then one for all: law, nuance, RMS
 /// outside contact and impacts included (% of amplitude), least and largest range of the elbow's
 /// height over the captured, RMS angle of shoulder, elbow and wrist to the captured joints
-/// (degrees), strokes that landed, of how many.
+/// (degrees), strokes and those of them that landed.
 #include "../pool.h"
 #include "../trial.h"
 
