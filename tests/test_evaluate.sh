@@ -56,6 +56,12 @@ two --log joined.log --csv joined.csv
 check test_ranges_joined_by_cat_are_the_whole cmp joined.csv whole.csv
 check test_nothing_in_the_log_is_done_again [ "$(wc -l <joined.log)" = 4 ]
 
+# a player at the rim, where habit, trunk and limits have the least room to agree
+"$himc" evaluate --trials 7 --range 7-7 --only legato,himc,computed-torque --log rim.log --csv rim.csv
+check test_at_the_rim_limits_leave_the_sticks_where_they_are [ "$(row rim.csv 8,9 |
+    awk -F , '{print ($1 < 0.5 && $2 > 0.8 && $2 < 1.2)}')" = 1 ]
+check test_at_the_rim_every_stroke_is_played [ "$(sed -n 2p rim.log | awk -F , '{print $(NF - 1) == $NF}')" = 1 ]
+
 # stopped while it wrote its last row
 head -c -9 whole.log >cut.log
 two --log cut.log --csv cut.csv
