@@ -27,6 +27,10 @@ await() { # await FILE WORDS: until the file has them
     done
 }
 
+child() { # child PID: the process that `timeout` keeps
+    tr -d ' ' <"/proc/$1/task/$1/children"
+}
+
 memory() { # memory PID: kilobytes in use
     sed -n 's/^VmRSS:[^0-9]*\([0-9]*\).*/\1/p' "/proc/$1/status"
 }
@@ -58,7 +62,7 @@ serve() { # serve SECONDS: 0 is a storm's length
     timeout 900 "$bin/himc" serve patches/improvisation.txt --port $port >"$dir/out" 2>"$dir/err" &
     keeper=$!
     await "$dir/out" listening
-    pid=$(pgrep -P $keeper -x himc)
+    pid=$(child $keeper)
     [ "$1" = 0 ] && storm $port || sleep "$1"
     alive=$(kill -0 $pid 2>/dev/null || echo dead)
     kill -TERM $pid
@@ -141,7 +145,7 @@ in_pd() { # in_pd SECONDS: 0 is a storm's length
         -r 48000 -path "$externals" -path patches -open "$dir/storm.pd" >"$dir/pd" 2>&1 </dev/null &
     keeper=$!
     await "$dir/pd" '^status'
-    pid=$(pgrep -P $keeper -x pd)
+    pid=$(child $keeper)
     [ "$1" = 0 ] && storm $port || sleep "$1"
     alive=$(kill -0 $pid 2>/dev/null || echo dead)
     kill -TERM $pid 2>/dev/null
