@@ -2,6 +2,8 @@
 # `make figures` installs what they need and makes those that are older than what they are made of.
 #
 # A new one is a file in FIGURES and a rule for it. Programs in tools/figures/ are built by the rule for tools/*/*.c.
+# both NAME: a curve as it is for the page and for print
+both     = docs/figures/$(1).svg docs/figures/$(1).png
 SOUNDS  := $(patsubst %,docs/sounds/%.ogg,scale roll glissando mallets)
 MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluation claim,$(call both,$(name)))
 FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/improvisation.png $(SOUNDS) \
