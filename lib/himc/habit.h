@@ -53,8 +53,7 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
 /// Least squares over `count` takes, those of a player after one another, each player about his own
 /// means; the habit is then the first player's, until another is put into its `player`.
 /// Directions in which no tip moves get no weight; an arm whose tip does not move is taken to do
-/// as the other in a mirror. False with the reason if the takes do not
-/// determine it.
+/// as the other in a mirror. False with the reason if the takes do not determine it.
 bool himc_habit_learn(himc_habit *habit, const himc_habit_take *take, int count, himc_error *error);
 
 /// Makes a habit (the usual one, say) the take's player's own: of all that explain what the take

@@ -6,6 +6,9 @@
 ///     samples ←──────────────────────────── drum (membrane ⇄ contact) ┘
 ///     command (Pd, OSC, file) → performance: the clock of it all → osc: what others see of it
 ///
+/// Beside the way: player finds in a take whose body it is, habit how that player's arms go with
+/// the sticks, limits how far the joints turn; reach finds a posture for tips anywhere.
+///
 /// A percussionist of 20 segments and 57 degrees of freedom is driven, from nothing but the
 /// trajectories of its two drumstick tips, by Hybrid Inverse Motion Control (Bouënard, Gibet and
 /// Wanderley, The Visual Computer 28(4), 2012) inside every physics step; sticks and drumheads

@@ -37,8 +37,7 @@ HIMC_RT void himc_articulate(const himc_skeleton *skeleton, const himc_body_stat
 
 /// The same of all segments, when each joint beside its torque resists the relative acceleration
 /// it gets by `resistance` about the child's axes (kg m^2): what a servo taken implicitly over a
-/// step does, h Kd + h^2 Kp
-/// (Tan, Liu & Turk 2011).
+/// step does, h Kd + h^2 Kp (Tan, Liu & Turk 2011).
 HIMC_RT void himc_articulate_resisting(const himc_skeleton *skeleton, const himc_body_state *state,
                                        const himc_vec3 resistance[HIMC_JOINTS],
                                        himc_articulation *articulation);
