@@ -371,6 +371,27 @@ static void test_printed_law_over_no_time_is_equation_2(void)
     }
 }
 
+// the paper clips no step: a soft servo lags by more than a few centimetres
+static void test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm(void)
+{
+    himc_vec3 near[HIMC_JOINTS], far[HIMC_JOINTS], rest = reference.tip[HIMC_LEFT].x;
+    controller.law = HIMC_LAW_PRINTED;
+    controller.aimless = true;
+    controller.step = 0;
+    memset(state.spin, 0, sizeof state.spin);
+    himc_body_state_complete(&skeleton, &state);
+    reference.tip[HIMC_LEFT].x = himc_vec3_add(rest, himc_vec3_make(0, 0, 0.04));
+    himc_controller_torques(&controller, &skeleton, &state, &reference, near);
+    reference.tip[HIMC_LEFT].x = himc_vec3_add(rest, himc_vec3_make(0, 0, 0.12));
+    himc_controller_torques(&controller, &skeleton, &state, &reference, far);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(HIMC_LEFT, k);
+        TEST_ASSERT_TRUE(himc_vec3_length(near[j]) > 1e-3);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6 * himc_vec3_length(far[j]), 0,
+                                  distance(himc_vec3_scale(near[j], 3), far[j]));
+    }
+}
+
 static void test_default_gains_are_critically_damped_at_the_frequencies_of_the_table(void)
 {
     static const double hertz[HIMC_ARM_JOINTS] = {24, 30, 42, 54};
@@ -415,6 +436,7 @@ int main(void)
     RUN_TEST(test_all_laws_stand_gains_of_a_tenth_and_of_ten_and_a_thousand_times);
     RUN_TEST(test_all_laws_stand_those_gains_at_one_kilohertz_of_physics);
     RUN_TEST(test_printed_law_over_no_time_is_equation_2);
+    RUN_TEST(test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm);
     RUN_TEST(test_default_gains_are_critically_damped_at_the_frequencies_of_the_table);
     RUN_TEST(test_set_gain_sets_flexion_and_spares_the_length_axis);
     return UNITY_END();

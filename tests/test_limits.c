@@ -149,6 +149,23 @@ static void test_margin_widens_ellipsoid_and_box_by_its_share(void)
     }
 }
 
+static void test_loosened_bounds_are_at_least_so_wide_and_wider_ones_stay(void)
+{
+    learn(0);
+    himc_limits before = limits;
+    himc_limits_loosen(&limits, 0.05);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const himc_limit *l = &limits.joint[j], *b = &before.joint[j];
+        TEST_ASSERT_EQUAL_DOUBLE(fmax(b->radius.x, 0.05), l->radius.x);
+        TEST_ASSERT_EQUAL_DOUBLE(fmax(b->radius.y, 0.05), l->radius.y);
+        TEST_ASSERT_EQUAL_DOUBLE(fmax(b->radius.z, 0.05), l->radius.z);
+        TEST_ASSERT_EQUAL_DOUBLE(fmin(b->lower.x, -0.05), l->lower.x);
+        TEST_ASSERT_EQUAL_DOUBLE(fmin(b->lower.z, -0.05), l->lower.z);
+        TEST_ASSERT_EQUAL_DOUBLE(fmax(b->upper.y, 0.05), l->upper.y);
+        TEST_ASSERT_EQUAL_DOUBLE(fmax(b->upper.z, 0.05), l->upper.z);
+    }
+}
+
 static void test_joint_that_did_not_move_turns_freely_and_frames_may_be_one(void)
 {
     for (int f = 0; f < FRAMES; f++)
@@ -321,6 +338,7 @@ int main(void)
     RUN_TEST(test_learned_axes_and_radii_are_those_of_the_spread);
     RUN_TEST(test_learned_bounds_contain_the_motion_and_touch_it);
     RUN_TEST(test_margin_widens_ellipsoid_and_box_by_its_share);
+    RUN_TEST(test_loosened_bounds_are_at_least_so_wide_and_wider_ones_stay);
     RUN_TEST(test_joint_that_did_not_move_turns_freely_and_frames_may_be_one);
     RUN_TEST(test_learning_refuses_no_frames_margins_out_of_range_and_what_is_no_rotation);
     RUN_TEST(test_closest_point_of_3000_ellipsoids_is_on_them_with_the_way_along_the_normal);

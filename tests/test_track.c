@@ -211,6 +211,23 @@ static void test_after_separation_the_target_goes_on_from_the_measured_state_and
     TEST_ASSERT_DOUBLE_WITHIN(0.002, 0.9 - EARLIER, again);
 }
 
+static void test_20_ms_after_separation_the_take_is_followed_however_the_stick_left(void)
+{
+    himc_vec3 rejoined[2];
+    for (int i = 0; i < 2; i++) {
+        double time, x, y;
+        make_take(4, 0);
+        himc_track_current(track, HIMC_RIGHT, 0.2, &time, &x, &y);
+        himc_target measured = at(time);
+        measured.v = himc_vec3_make(0, 0, i ? 3.6 : 1.8);
+        himc_track_separated(track, HIMC_RIGHT, time + 0.0065, &measured);
+        rejoined[i] = at(time + 0.0065 + 0.0201).x;
+        tearDown();
+        setUp();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, distance(rejoined[0], rejoined[1]));
+}
+
 static void test_rewind_forgets_the_strikes_and_plays_the_same_bit_by_bit(void)
 {
     make_take(4, 0.0002);
@@ -510,6 +527,7 @@ int main(void)
     RUN_TEST(test_impact_speed_survives_noise_of_a_fifth_of_a_millimetre);
     RUN_TEST(test_target_is_smooth_but_for_the_contact);
     RUN_TEST(test_after_separation_the_target_goes_on_from_the_measured_state_and_rejoins);
+    RUN_TEST(test_20_ms_after_separation_the_take_is_followed_however_the_stick_left);
     RUN_TEST(test_rewind_forgets_the_strikes_and_plays_the_same_bit_by_bit);
     RUN_TEST(test_approach_and_stop_lead_in_and_out_smoothly);
     RUN_TEST(test_the_take_may_be_freed_and_the_strikes_stand_over_the_spot);
