@@ -1,7 +1,7 @@
 /// trial.c: a trial is a sequence of the motion database as a laboratory would have captured it
-/// (its markers with a tracker's noise), played by a body whose segments do not weigh quite what
-/// control believes. The body's measures, its mean posture and its joint limits come from that
-/// noisy take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the
+/// (its markers with a tracker's noise), played by a body whose limbs are not quite as long as the
+/// player's, and whose segments do not weigh quite what control believes. The body's measures, but
+/// for that error, its mean posture and its joint limits come from that noisy take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the
 /// habit of the other two players in that nuance. What was simulated is compared with the motion
 /// itself, noiseless.
 ///
@@ -21,9 +21,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#define NOISE 2e-4    // of each marker's coordinate (m)
-#define MISJUDGED 0.1 // standard deviation of a segment's weight
-#define LEAST_WEIGHT 0.5
+#define NOISE 2e-4       // of each marker's coordinate (m)
+#define MISJUDGED 0.1    // standard deviation of a segment's weight
+#define MISMEASURED 0.01 // and of a limb's length
+#define LEAST_SHARE 0.5
 #define RATE 48000
 #define BLOCK 64
 #define SPOTS 3
@@ -62,6 +63,7 @@ trial_config trial_default(const trial_kind *kind, int number)
                           .number = number,
                           .noise = NOISE,
                           .misjudged = MISJUDGED,
+                          .mismeasured = MISMEASURED,
                           .gain = 1,
                           .pace = 1,
                           .limits = true};
@@ -173,29 +175,25 @@ static bool tell(himc_performance *p, himc_error *error, const char *text)
            himc_performance_command(p, &c, 0, error);
 }
 
-static bool adopt_habit(himc_performance *p, himc_take *take, const himc_mocap_config *config,
-                        himc_error *error)
+static bool adopt_habit(himc_performance *p, const himc_player *seen, double rate,
+                        const himc_mocap_config *config, himc_error *error)
 {
     const himc_habit *learned = habit_without(config, error);
-    himc_skeleton_config given = himc_skeleton_default();
-    himc_player *seen = learned ? himc_player_new(take, NULL, &given, error) : NULL;
-    himc_place place = *himc_drum_place(himc_performance_drum(p, 0));
     himc_skeleton skeleton;
-    if (seen)
-        himc_player_sit(seen, take, NULL, &place);
-    bool good = seen && himc_skeleton_init(&skeleton, &seen->config, error);
-    if (good) {
-        himc_habit habit = *learned;
-        himc_habit_take one = {.skeleton = &skeleton,
-                               .pose = seen->pose,
-                               .frames = seen->frames,
-                               .rate = himc_take_rate(take)};
-        good = himc_habit_meet(&habit.player, &one, 1, error);
-        if (good)
-            himc_performance_set_habit(p, &habit);
-    }
-    himc_player_free(seen);
-    return good;
+    if (!learned || !himc_skeleton_init(&skeleton, &seen->config, error))
+        return false;
+    himc_habit habit = *learned;
+    himc_habit_take one = {
+        .skeleton = &skeleton, .pose = seen->pose, .frames = seen->frames, .rate = rate};
+    if (!himc_habit_meet(&habit.player, &one, 1, error))
+        return false;
+    himc_performance_set_habit(p, &habit);
+    return true;
+}
+
+static double near_one(mocap_dice *dice, double deviation)
+{
+    return fmax(1 + deviation * himc_mocap_normal(dice), LEAST_SHARE);
 }
 
 static bool weigh(himc_performance *p, const trial_config *config, himc_error *error)
@@ -203,8 +201,18 @@ static bool weigh(himc_performance *p, const trial_config *config, himc_error *e
     double weight[HIMC_SEGMENTS];
     mocap_dice dice = himc_mocap_dice(seed_of(config), NULL, 0);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
-        weight[i] = fmax(1 + config->misjudged * himc_mocap_normal(&dice), LEAST_WEIGHT);
+        weight[i] = near_one(&dice, config->misjudged);
     return himc_performance_set_weights(p, weight, error);
+}
+
+/// The sticks are measured on the table.
+static void mismeasure(himc_skeleton_config *body, const trial_config *config)
+{
+    int which = 1; // other dice than the weights'
+    mocap_dice dice = himc_mocap_dice(seed_of(config), &which, 1);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        if (i != HIMC_LEFT_STICK && i != HIMC_RIGHT_STICK)
+            body->length[i] *= near_one(&dice, config->mismeasured);
 }
 
 static bool set_control(himc_performance *p, const trial_config *config, himc_error *error)
@@ -212,8 +220,10 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     const trial_kind *kind = &config->kind;
     char text[64];
     bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
+    bool joints = kind->controller == HIMC_PIPELINE_ID;
     snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
     if (!tell(p, error, text) || (published && !tell(p, error, "posture 0")) ||
+        (joints && !tell(p, error, "bend 0")) ||
         (config->limits && !tell(p, error, "limits ellipsoid")))
         return false;
     snprintf(text, sizeof text, "gain frequency %.6f", config->gain);
@@ -223,19 +233,29 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     return kind->controller == HIMC_PIPELINE_IK || tell(p, error, text);
 }
 
+static bool play_as(himc_performance *p, const trial_config *config, himc_take *take,
+                    himc_player *player, himc_error *error)
+{
+    himc_mocap_config sequence = trial_sequence(config);
+    mismeasure(&player->config, config);
+    return himc_performance_play_player(p, take, player, "take", error) &&
+           weigh(p, config, error) && set_control(p, config, error) &&
+           (config->kind.controller != HIMC_PIPELINE_HIMC ||
+            adopt_habit(p, player, himc_take_rate(take), &sequence, error)) &&
+           tell(p, error, "play");
+}
+
 static himc_performance *prepare(const trial_config *config, himc_take *take, himc_error *error)
 {
+    himc_skeleton_config given = himc_skeleton_default();
     himc_performance_config rates = himc_performance_default();
     rates.sample_rate = RATE;
     himc_performance *p = himc_performance_new(&rates, error);
     himc_drum *drum = p ? himc_drum_new("kettle", 23, RATE, error) : NULL;
-    himc_mocap_config sequence = trial_sequence(config);
-    bool good =
-        drum && himc_performance_add_drum(p, drum, error) &&
-        himc_performance_play_take(p, take, "take", error) && weigh(p, config, error) &&
-        set_control(p, config, error) &&
-        (config->kind.controller != HIMC_PIPELINE_HIMC || adopt_habit(p, take, &sequence, error)) &&
-        tell(p, error, "play");
+    himc_player *player = drum ? himc_player_new(take, NULL, &given, error) : NULL;
+    bool good = player && himc_performance_add_drum(p, drum, error) &&
+                play_as(p, config, take, player, error);
+    himc_player_free(player);
     himc_drum_release(drum);
     if (good)
         return p;

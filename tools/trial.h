@@ -44,6 +44,7 @@ typedef struct trial_config {
     int number;       ///< from 1: which player, spot and disturbance
     double noise;     ///< of each marker's coordinate (m)
     double misjudged; ///< standard deviation of the segments' weights over what control believes
+    double mismeasured; ///< and of their lengths, the sticks apart, over what the take shows
     double gain;      ///< frequencies of the servos over the default ones
     double pace;      ///< of the sequence over its own
     bool limits;      ///< joint limits learned from the take are kept

@@ -10,6 +10,7 @@
 #include "himc/controller.h"
 #include "himc/drum.h"
 #include "himc/habit.h"
+#include "himc/player.h"
 #include "himc/take.h"
 
 typedef struct himc_performance_config {
@@ -52,6 +53,11 @@ void himc_performance_take_options(himc_performance *performance, const himc_tak
 /// errors.
 bool himc_performance_play_take(himc_performance *performance, himc_take *take, const char *name,
                                 himc_error *error);
+/// The same with a body that the take does not show: `player`, made from the take by
+/// himc_player_new, its measures since changed (within the ranges of himc_skeleton_config), is
+/// seated and played; its joints' rotations stay as captured. Borrowed.
+bool himc_performance_play_player(himc_performance *performance, himc_take *take,
+                                  himc_player *player, const char *name, himc_error *error);
 /// Added to the coordinates of the take being played to make ours (m).
 himc_vec3 himc_performance_take_offset(const himc_performance *performance);
 

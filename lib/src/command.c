@@ -49,6 +49,9 @@ static const himc_command_row table[] = {
      "sets the damping of the least squares"},
     {HIMC_COMMAND_POSTURE, HIMC_PERFORMER, "posture", "SWITCH",
      "whether the tips' null space is for a natural posture (1), or for nothing, as published"},
+    {HIMC_COMMAND_BEND, HIMC_PERFORMER, "bend", "SWITCH",
+     "whether `id` bends a take's arms to its tips, so that strokes land (1), or follows the joints "
+     "as captured, as published (0)"},
     {HIMC_COMMAND_ELBOW, HIMC_PERFORMER, "elbow", "SWITCH",
      "whether the elbow's place comes before the rest of the posture"},
     {HIMC_COMMAND_WEIGHTS, HIMC_PERFORMER, "weights", "SHOULDER ELBOW WRIST GRIP",

@@ -2,18 +2,23 @@
 ///
 /// W is by least squares over all frames of all players, each about his own means (LAPACK's
 /// dgelsd; singular values under 1e-3 of the largest are left out: the solution of least norm).
+/// A regression says less than it was told: its mean square is that of what it explains. So the
+/// weights of a joint are then scaled until its rotations are as far as those seen, on average (the
+/// reduced major axis): an elbow that moves as far as the captured costs next to nothing in angle.
 /// One take corrects a habit by ridge regression (Hoerl and Kennard 1970), the W + D of
 ///     min sum |u - (W + D) phi|^2 + TRUST^2 |D|^2.
 #include "habit_terms.h"
 
 #include <lapacke.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define NEGLIGIBLE 1e-3   // singular values under this share of the largest
-#define LEAST_SPREAD 2e-3 // no joint is known better than this (rad)
-#define TRUST 1.0         // in a habit that a take corrects, as many frames of a tip a reach away
-#define LEAST_RANK 3      // of a problem that is determined: a tip that moves in two ways
+#define NEGLIGIBLE 1e-3     // singular values under this share of the largest
+#define LEAST_SPREAD 2e-3   // no joint is known better than this (rad)
+#define TRUST 1.0           // in a habit that a take corrects, as many frames of a tip a reach away
+#define LEAST_EXPLAINED 0.5 // of a joint's mean square, below which it is not scaled to all of it
+#define LEAST_RANK 3        // of a problem that is determined: a tip that moves in two ways
 
 // rows of `terms` numbers, and of the `angles` that they are to give
 typedef struct problem {
@@ -110,6 +115,34 @@ static void mirror(himc_habit *habit, himc_hand unseen)
         }
 }
 
+static double explained(const double *weight, const double *term, int terms)
+{
+    double sum = 0;
+    for (int t = 0; t < terms; t++)
+        sum += weight[t] * term[t];
+    return sum;
+}
+
+// each joint's weights, of three angles, so that it turns as far as it was seen to
+static void restore_extent(const problem *p, double *weight)
+{
+    for (int joint = 0; joint < p->angles; joint += 3) {
+        double seen = 0, said = 0;
+        for (int i = 0; i < p->rows; i++)
+            for (int c = joint; c < joint + 3; c++) {
+                double u = p->angle[p->angles * (size_t)i + c];
+                double v =
+                    explained(weight + p->terms * c, p->term + p->terms * (size_t)i, p->terms);
+                seen += u * u;
+                said += v * v;
+            }
+        if (said < LEAST_EXPLAINED * seen || said == 0)
+            continue;
+        for (int i = p->terms * joint; i < p->terms * (joint + 3); i++)
+            weight[i] *= sqrt(seen / said);
+    }
+}
+
 // the covariance of what is left of the rows
 static void measure_spread(himc_habit *habit, himc_hand hand, const problem *p)
 {
@@ -118,8 +151,7 @@ static void measure_spread(himc_habit *habit, himc_hand hand, const problem *p)
         const double *term = p->term + TERMS * (size_t)i;
         double *left = p->angle + ANGLES * (size_t)i;
         for (int c = 0; c < ANGLES; c++)
-            for (int t = 0; t < TERMS; t++)
-                left[c] -= habit->weight[hand][c / 3][c % 3][t] * term[t];
+            left[c] -= explained(habit->weight[hand][c / 3][c % 3], term, TERMS);
         for (int c = 0; c < ANGLES; c++)
             for (int d = 0; d < ANGLES; d++)
                 habit->spread[hand][c][d] += left[c] * left[d] / p->rows;
@@ -199,6 +231,8 @@ static bool learn(himc_habit *habit, problem p[PROBLEMS], const himc_habit_take 
     add_solutions(habit, p);
     if (!gather(habit, p, take, count, error))
         return false;
+    for (int i = 0; i < PROBLEMS; i++)
+        restore_extent(&p[i], weights_of(habit, i));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         measure_spread(habit, (himc_hand)hand, &p[hand]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -246,8 +280,8 @@ static void ask_correction(problem *p, const double *weight)
         return;
     for (int i = 0; i < p->rows; i++)
         for (int c = 0; c < p->angles; c++)
-            for (int t = 0; t < p->terms; t++)
-                p->angle[p->angles * i + c] -= weight[p->terms * c + t] * p->term[p->terms * i + t];
+            p->angle[p->angles * i + c] -=
+                explained(weight + p->terms * c, p->term + p->terms * i, p->terms);
     for (int t = 0; t < p->terms; t++, p->rows++) {
         memset(p->term + p->terms * p->rows, 0, (size_t)p->terms * sizeof *p->term);
         memset(p->angle + p->angles * p->rows, 0, (size_t)p->angles * sizeof *p->angle);

@@ -56,6 +56,14 @@ static bool do_posture(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
+static bool do_bend(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    p->unbent = c->atom[0].number == 0;
+    p->replan = true;
+    return true;
+}
+
 static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
@@ -225,7 +233,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     p->controller.solver = HIMC_SOLVER_DLS;
     p->config.physics_rate = himc_performance_default().physics_rate;
     p->config.task_rate = himc_performance_default().task_rate;
-    p->one_way = p->playing = false;
+    p->one_way = p->playing = p->unbent = false;
     memset(p->push, 0, sizeof p->push);
     p->square_sum = p->height_sum = p->peak_force = 0;
     p->square_count = p->height_count = p->recoveries = 0;
@@ -269,6 +277,7 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_SOLVER] = do_solver,
     [HIMC_COMMAND_DAMPING] = do_damping,
     [HIMC_COMMAND_POSTURE] = do_posture,
+    [HIMC_COMMAND_BEND] = do_bend,
     [HIMC_COMMAND_ELBOW] = do_elbow,
     [HIMC_COMMAND_WEIGHTS] = do_weights,
     [HIMC_COMMAND_LAW] = do_law,

@@ -99,6 +99,7 @@ struct himc_performance {
     himc_planner *planner;
     himc_track *track;  // instead of the planner when a take is loaded
     double track_start; // (s); infinite while stopped
+    bool unbent;        // in `id` its joints are followed as captured
     himc_take_options take_options;
     double piece_start, end; // of the piece being played (s)
     bool playing;

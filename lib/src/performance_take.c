@@ -38,7 +38,8 @@ void himc_performance_posture(const himc_performance *p, double t,
     bool captured = p->controller.mode != HIMC_PIPELINE_HIMC && p->track &&
                     isfinite(p->track_start) && himc_track_has_posture(p->track);
     if (captured)
-        himc_track_posture(p->track, &p->skeleton, t - p->track_start, tip, motion);
+        himc_track_posture(p->track, &p->skeleton, t - p->track_start, p->unbent ? NULL : tip,
+                           motion);
 }
 
 // a drum that the take's strikes would miss is put under them
@@ -186,14 +187,21 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     return true;
 }
 
+bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_player *player,
+                                  const char *name, himc_error *error)
+{
+    bool played = player && play_take(p, take, player, name, error);
+    if (!played && error && strncmp(error->text, name, strlen(name)) != 0)
+        himc_error_prefix(error, "%s", name);
+    return played;
+}
+
 bool himc_performance_play_take(himc_performance *p, himc_take *take, const char *name,
                                 himc_error *error)
 {
     himc_player *player = himc_player_new(take, &p->take_options, &p->body, error);
-    bool played = player && play_take(p, take, player, name, error);
+    bool played = himc_performance_play_player(p, take, player, name, error);
     himc_player_free(player);
-    if (!played && error && strncmp(error->text, name, strlen(name)) != 0)
-        himc_error_prefix(error, "%s", name);
     return played;
 }
 

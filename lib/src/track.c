@@ -217,7 +217,7 @@ void himc_track_free(himc_track *track)
         free(track->hand[hand].planned);
     }
     for (int j = 0; j < TRACK_JOINTS; j++)
-        free(track->joint[j]);
+        free(track->joint[j]), free(track->uncut[j]);
     free(track);
 }
 

@@ -10,6 +10,7 @@
 ///     (sum w_k (|r_k|^2 1 - r_k r_k')) l = e,
 /// r_k the levers from the joints to the tip, w_k larger towards the stick, as a hand corrects;
 /// repeated, since it is the linear part of the way. Rates come from differences of that map.
+/// As published, joints are neither cut nor bent: a second fit, of all frames.
 #include "track_state.h"
 
 #include <stdlib.h>
@@ -45,19 +46,27 @@ static joint_state fit_joint(const himc_pose *pose, int j, fit_window w, double 
                          himc_vec3_add(s.a, himc_vec3_cross(half, s.a))};
 }
 
+// frames lo to hi, which know of no others
+static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, int lo, int hi,
+                        joint_state *joint)
+{
+    fit_series series = {track->frames, track->edge, track->rate};
+    for (int k = lo; k <= hi; k++)
+        joint[k] = fit_joint(pose, j, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
+}
+
 // stretch by stretch, as the tip of the joint's arm is cut; others in one
 static void fit_frames(himc_track *track, const himc_pose *pose, int j)
 {
     const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
-    fit_series series = {track->frames, track->edge, track->rate};
     int gaps = h ? h->bridge_count : 0, lo = 0;
     for (int i = 0; i <= gaps; i++) {
-        int hi = i < gaps ? h->planned[i].last : track->frames - 1;
-        for (int k = lo; k <= hi; k++)
-            track->joint[j][k] =
-                fit_joint(pose, j, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
+        fit_stretch(track, pose, j, lo, i < gaps ? h->planned[i].last : track->frames - 1,
+                    track->joint[j]);
         lo = i < gaps ? h->planned[i].next : 0;
     }
+    if (track->uncut[j])
+        fit_stretch(track, pose, j, 0, track->frames - 1, track->uncut[j]);
 }
 
 bool himc_track_fit_postures(himc_track *track, const himc_player *player)
@@ -66,7 +75,9 @@ bool himc_track_fit_postures(himc_track *track, const himc_player *player)
         if (!player->pose || !player->known[j] || (is_arm(j) && !track->hand[hand_of(j)].present))
             continue;
         track->joint[j] = malloc((size_t)track->frames * sizeof *track->joint[j]);
-        if (!track->joint[j])
+        if (is_arm(j))
+            track->uncut[j] = malloc((size_t)track->frames * sizeof *track->uncut[j]);
+        if (!track->joint[j] || (is_arm(j) && !track->uncut[j]))
             return false;
         track->known[j] = true;
         fit_frames(track, player->pose, j);
@@ -97,25 +108,26 @@ static int gap_at(const hand_track *h, double u)
     return lo;
 }
 
-static joint_state captured_joint(const himc_track *track, int j, double t)
+static joint_state captured_joint(const himc_track *track, int j, double t, bool cut)
 {
+    const joint_state *joint = is_arm(j) && !cut ? track->uncut[j] : track->joint[j];
     double u = fmin(fmax(t * track->rate, 0), track->frames - 1);
     int from = u < track->frames - 2 ? (int)u : track->frames - 2, to = from + 1;
-    const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
+    const hand_track *h = is_arm(j) && cut ? &track->hand[hand_of(j)] : NULL;
     int i = h ? gap_at(h, u) : 0;
     if (h && i < h->bridge_count && h->planned[i].last <= u) {
         from = h->planned[i].last;
         to = h->planned[i].next;
     }
     between b = himc_between_make((u - from) / track->rate, (to - from) / track->rate);
-    return himc_between_joints(&b, &track->joint[j][from], &track->joint[j][to]);
+    return himc_between_joints(&b, &joint[from], &joint[to]);
 }
 
-static joint_state warped_joint(const himc_track *track, int j, double t)
+static joint_state warped_joint(const himc_track *track, int j, double t, bool cut)
 {
     double at[3];
     himc_track_warp(track, t, at);
-    joint_state s = captured_joint(track, j, at[0]);
+    joint_state s = captured_joint(track, j, at[0], cut);
     s.acceleration = himc_vec3_madd(himc_vec3_scale(s.acceleration, at[1] * at[1]), at[2], s.rate);
     s.rate = himc_vec3_scale(s.rate, at[1]);
     return s;
@@ -127,7 +139,7 @@ static double approach_time(const himc_track *track)
 }
 
 // with the way in before the first frame and the way out after a stop
-static joint_state played_joint(const himc_track *track, int j, double t)
+static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
 {
     double approach = approach_time(track), since = t + 0.5 * EASE + approach;
     if (t < -0.5 * EASE && approach > 0) {
@@ -136,8 +148,8 @@ static joint_state played_joint(const himc_track *track, int j, double t)
         return himc_between_joints(&b, &track->before[j], &first);
     }
     if (t < track->stop)
-        return warped_joint(track, j, t);
-    joint_state left = warped_joint(track, j, track->stop), rest = {.q = left.q};
+        return warped_joint(track, j, t, cut);
+    joint_state left = warped_joint(track, j, track->stop, cut), rest = {.q = left.q};
     rest.q = himc_quat_mul(himc_quat_exp(himc_vec3_scale(left.rate, 0.3 * SETTLE)), left.q);
     between b = himc_between_make(fmin(t - track->stop, SETTLE), SETTLE);
     return himc_between_joints(&b, &left, &rest);
@@ -242,10 +254,11 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
     for (int j = 0; j < TRACK_JOINTS; j++) {
         if (!track->known[j])
             continue;
-        joint_state s = played_joint(track, j, t);
+        joint_state s = played_joint(track, j, t, tip != NULL);
         motion->joint[j] = s.q;
         motion->rate[j] = s.rate;
         motion->acceleration[j] = s.acceleration;
     }
-    bend_arms(skeleton, tip, motion);
+    if (tip)
+        bend_arms(skeleton, tip, motion);
 }

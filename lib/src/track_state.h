@@ -41,6 +41,7 @@ struct himc_track {
     hand_track hand[HIMC_HANDS];
     bool known[TRACK_JOINTS];         ///< joints the take moves
     joint_state *joint[TRACK_JOINTS]; ///< (frames), owned; NULL where not known
+    joint_state *uncut[TRACK_JOINTS]; ///< of an arm, its strikes included (frames), owned
     joint_state before[TRACK_JOINTS]; ///< where the approach begins
 };
 
