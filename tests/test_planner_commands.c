@@ -1,0 +1,336 @@
+/// test_planner_commands.c: what a planner is told while it plays and what it tells: its stroke,
+/// its beat, its notes; whatever it is told, the motion stays continuous, finite and the same.
+#include "planners.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#define COUNTS_ALLOCATIONS 1
+static long allocations;
+void *__libc_malloc(size_t size);
+void *__libc_realloc(void *p, size_t size);
+void *__libc_calloc(size_t n, size_t size);
+void *malloc(size_t size)
+{
+    allocations++;
+    return __libc_malloc(size);
+}
+void *realloc(void *p, size_t size)
+{
+    allocations++;
+    return __libc_realloc(p, size);
+}
+void *calloc(size_t n, size_t size)
+{
+    allocations++;
+    return __libc_calloc(n, size);
+}
+#endif
+
+static void test_current_names_the_stroke_until_its_touch_is_over(void)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    add(planner, 2, HIMC_LEFT, HIMC_TENUTO, 0.5);
+    add(planner, 4, HIMC_LEFT, HIMC_ACCENT, 0.5);
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 0.9);
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.02, &s, &drum, &touch));
+    TEST_ASSERT_EQUAL_INT(HIMC_TENUTO, s.nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(1, touch);
+    himc_planner_advance(planner, 1.1);
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.1, &s, &drum, &touch));
+    TEST_ASSERT_EQUAL_INT(HIMC_ACCENT, s.nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(2, touch);
+    himc_planner_advance(planner, 3);
+    TEST_ASSERT_FALSE(himc_planner_current(planner, HIMC_LEFT, 3, &s, &drum, &touch));
+    TEST_ASSERT_FALSE(himc_planner_current(planner, HIMC_RIGHT, 3, &s, &drum, &touch));
+}
+
+static void test_first_stroke_too_early_moves_the_beginning_and_says_so(void)
+{
+    himc_planner_note note;
+    add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 1);
+    double touch = first_touch(HIMC_RIGHT);
+    TEST_ASSERT_TRUE(touch > 1.3 && touch < 1.8);
+    TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_NOT_NULL(strstr(note.text, "late: the first stroke must be prepared"));
+    TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_planner_beat(planner, 1));
+}
+
+static void test_fast_strokes_are_smaller_and_said_once(void)
+{
+    himc_planner_note note;
+    use(200);
+    for (int i = 0; i < 40; i++)
+        add(planner, 4 + 0.5 * i, HIMC_RIGHT, HIMC_LEGATO, 0.7);
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < 8; t += 0.01)
+        himc_planner_advance(planner, t);
+    TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 4.5 right: 0.15 s after the last, played 0.073 m high",
+                             note.text);
+    TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
+}
+
+static void test_notes_are_bounded_and_what_is_lost_is_counted(void)
+{
+    himc_planner_note note, last = {""};
+    int count = 0;
+    for (int i = 0; i < 40; i++) {
+        himc_planner_seek(planner, 0, 0);
+        himc_planner_clear(planner);
+        add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
+        himc_planner_play(planner, 0);
+    }
+    while (himc_planner_note_next(planner, &note)) {
+        last = note;
+        count++;
+    }
+    TEST_ASSERT_EQUAL_INT(32, count);
+    TEST_ASSERT_NOT_NULL(strstr(last.text, "more notes were lost"));
+}
+
+static void test_tempo_change_keeps_the_beat_and_moves_what_is_not_begun(void)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    for (int i = 0; i < 8; i++)
+        add(planner, 1 + i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < 1.25; t += 0.004)
+        himc_planner_advance(planner, t);
+    double beat = himc_planner_beat(planner, 1.25);
+    himc_planner_tempo(planner, 1.25, 60);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, beat, himc_planner_beat(planner, 1.25));
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.25, &s, &drum, &touch));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.75, touch);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, 1.75).x.z);
+}
+
+static void test_stop_brings_the_tip_to_rest_and_play_resumes(void)
+{
+    for (int i = 0; i < 8; i++)
+        add(planner, 1 + i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 1.3);
+    himc_planner_stop(planner, 1.3);
+    TEST_ASSERT_TRUE(himc_planner_beat(planner, 1.4) < 0);
+    TEST_ASSERT_TRUE(isinf(himc_planner_end(planner)));
+    himc_target s = at(planner, HIMC_LEFT, 4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.48, s.x.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(s.v));
+    himc_planner_play(planner, 4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.6, himc_planner_beat(planner, 4));
+    double end = himc_planner_end(planner);
+    s = at(planner, HIMC_LEFT, end);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(s.v));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, s.x.z);
+}
+
+static void test_hit_comes_within_a_quarter_second_from_rest(void)
+{
+    himc_stroke s = {
+        .hand = HIMC_LEFT, .nuance = HIMC_LEGATO, .dynamic = 4 / 7.0, .spot = HIMC_SPOT_NORMAL};
+    himc_planner_advance(planner, 1);
+    double t = himc_planner_hit(planner, 1, &s, 0);
+    TEST_ASSERT_TRUE(t > 1 && t <= 1.25);
+    himc_target x = at(planner, HIMC_LEFT, t - 1e-12);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, x.x.z);
+    TEST_ASSERT_TRUE(x.v.z < -1.5);
+    himc_planner_advance(planner, 4);
+    himc_planner_reach(planner, 4, HIMC_LEFT, himc_vec3_make(0.525, 0.015, 1.15));
+    himc_planner_advance(planner, 5);
+    t = himc_planner_hit(planner, 5, &s, 0);
+    TEST_ASSERT_TRUE(t <= 5.12);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, t).x.z);
+}
+
+static void test_reach_arrives_and_stays(void)
+{
+    himc_vec3 goal = {0.6, 0.2, 1.2};
+    himc_planner_reach(planner, 0, HIMC_RIGHT, goal);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0,
+                              himc_vec3_length(himc_vec3_sub(goal, at(planner, HIMC_RIGHT, 1).x)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0,
+                              himc_vec3_length(himc_vec3_sub(goal, at(planner, HIMC_RIGHT, 9).x)));
+}
+
+static void test_strokes_that_nobody_can_play_are_refused(void)
+{
+    himc_stroke s = {.beat = 1.05, .hand = HIMC_LEFT};
+    add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    TEST_ASSERT_FALSE(himc_planner_add(planner, &s, 0, &error));
+    TEST_ASSERT_EQUAL_STRING("stroke: BEAT: 1.05 is 0.025 s from another stroke of the left hand, "
+                             "allowed 0.04 s or more",
+                             error.text);
+    s.hand = HIMC_RIGHT;
+    TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 0, &error));
+    TEST_ASSERT_FALSE(himc_planner_add(planner, &s, 99, &error));
+}
+
+static void test_stroke_added_while_playing_is_played(void)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    add(planner, 20, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    himc_planner_advance(planner, 3);
+    add(planner, 8, HIMC_LEFT, HIMC_ACCENT, 0.5);
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 3, &s, &drum, &touch));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4, touch);
+    himc_planner_advance(planner, 3.9);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, 4).x.z);
+}
+
+static void test_state_is_continuous_through_every_command(void)
+{
+    srand(3);
+    for (int i = 0; i < 60; i++)
+        add(planner, 1 + i * 0.5, HIMC_LEFT, (himc_nuance)(i % 5), i % 8 / 7.0);
+    for (int k = 0; k < 400; k++) {
+        double t = k * 0.037;
+        himc_target before = at(planner, HIMC_LEFT, t);
+        switch (rand() % 6) {
+        case 0: himc_planner_tempo(planner, t, 40 + rand() % 160); break;
+        case 1: himc_planner_stop(planner, t); break;
+        case 2: himc_planner_play(planner, t); break;
+        case 3: himc_planner_seek(planner, t, rand() % 30); break;
+        case 4:
+            himc_planner_hit(planner, t, &(himc_stroke){.hand = HIMC_LEFT, .dynamic = 0.5}, 1);
+            break;
+        default: himc_planner_reach(planner, t, HIMC_LEFT, himc_vec3_make(0.5, 0.2, 1.1));
+        }
+        same_state(before, himc_planner_target(planner, HIMC_LEFT, t));
+    }
+}
+
+/// A storm of everything; returns a digest of the motion.
+static double storm(unsigned seed, int commands)
+{
+    double digest = 0, t = 0;
+    srand(seed);
+    use(120);
+    for (int k = 0; k < commands; k++) {
+        himc_stroke s = {.beat = rand() % 400 / 4.0,
+                         .hand = (himc_hand)(rand() % 2),
+                         .nuance = (himc_nuance)(rand() % 5),
+                         .dynamic = rand() % 8 / 7.0,
+                         .spot = (himc_spot)(rand() % 3)};
+        himc_target m = himc_planner_target(planner, s.hand, t);
+        m.v.z = rand() % 9;
+        m.a.z = rand() % 2000 - 1000;
+        switch (rand() % 11) {
+        case 0: himc_planner_tempo(planner, t, 1 + rand() % 1000); break;
+        case 1: himc_planner_stop(planner, t); break;
+        case 2:
+        case 3: himc_planner_play(planner, t); break;
+        case 4: himc_planner_seek(planner, t, rand() % 100); break;
+        case 5: himc_planner_hit(planner, t, &s, rand() % 3); break;
+        case 6:
+            himc_planner_reach(planner, t, s.hand, himc_vec3_make(rand() % 7 * 0.1, 0.3, 1.1));
+            break;
+        case 7: himc_planner_separated(planner, s.hand, t, &m); break;
+        case 8:
+            himc_planner_set_drum(planner, 0,
+                                  &(himc_place){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3});
+            break;
+        case 9:
+            if (rand() % 40 == 0)
+                himc_planner_clear(planner);
+            break;
+        default: himc_planner_add(planner, &s, rand() % 2, &error);
+        }
+        t += rand() % 50 * 1e-3;
+        himc_planner_advance(planner, t);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_target x = himc_planner_target(planner, (himc_hand)hand, t);
+            TEST_ASSERT_TRUE(himc_vec3_finite(x.x) && himc_vec3_finite(x.v) &&
+                             himc_vec3_finite(x.a));
+            TEST_ASSERT_TRUE(himc_vec3_length(x.x) < 3);
+            digest = digest * 0.99 + x.x.x + 2 * x.x.z + x.v.y;
+        }
+    }
+    return digest;
+}
+
+static void test_ten_thousand_random_commands_keep_the_motion_finite_and_near(void)
+{
+    storm(1, 10000);
+}
+
+static void test_the_same_commands_give_the_same_bits(void)
+{
+    double a = storm(9, 2000), b = storm(9, 2000);
+    TEST_ASSERT_EQUAL_MEMORY(&a, &b, sizeof a);
+}
+
+static void test_values_that_are_not_finite_change_nothing(void)
+{
+    himc_target bad = {{NAN, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    himc_target before = at(planner, HIMC_LEFT, 1);
+    himc_planner_separated(planner, HIMC_LEFT, 1, &bad);
+    himc_planner_reach(planner, 1, HIMC_LEFT, bad.x);
+    himc_planner_tempo(planner, 1, NAN);
+    himc_planner_seek(planner, 1, NAN);
+    TEST_ASSERT_FALSE(himc_planner_set_drum(planner, 0, &(himc_place){{NAN, 0, 0}, 0, 0.3}));
+    same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
+}
+
+static void test_nothing_is_allocated_while_playing(void)
+{
+#ifdef COUNTS_ALLOCATIONS
+    for (int i = 0; i < 200; i++)
+        add(planner, i * 0.25, (himc_hand)(i & 1), (himc_nuance)(i % 5), 0.6);
+    himc_stroke s = {.hand = HIMC_LEFT, .dynamic = 0.5};
+    himc_planner_note note;
+    long before = allocations;
+    himc_planner_play(planner, 0);
+    for (int k = 0; k < 5000; k++) {
+        double t = k * 0.004;
+        himc_planner_advance(planner, t);
+        himc_target x = himc_planner_target(planner, HIMC_LEFT, t);
+        if (k % 100 == 0)
+            himc_planner_separated(planner, HIMC_LEFT, t, &x);
+        if (k % 70 == 0)
+            himc_planner_hit(planner, t, &s, 0);
+        if (k % 300 == 0)
+            himc_planner_tempo(planner, t, 60 + k % 100);
+        if (k % 900 == 0)
+            himc_planner_seek(planner, t, 3);
+        if (k % 1000 == 999)
+            himc_planner_stop(planner, t), himc_planner_play(planner, t);
+        himc_planner_note_next(planner, &note);
+    }
+    TEST_ASSERT_EQUAL_INT(before, allocations);
+#else
+    TEST_IGNORE_MESSAGE("allocations cannot be counted here");
+#endif
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_current_names_the_stroke_until_its_touch_is_over);
+    RUN_TEST(test_first_stroke_too_early_moves_the_beginning_and_says_so);
+    RUN_TEST(test_fast_strokes_are_smaller_and_said_once);
+    RUN_TEST(test_notes_are_bounded_and_what_is_lost_is_counted);
+    RUN_TEST(test_tempo_change_keeps_the_beat_and_moves_what_is_not_begun);
+    RUN_TEST(test_stop_brings_the_tip_to_rest_and_play_resumes);
+    RUN_TEST(test_hit_comes_within_a_quarter_second_from_rest);
+    RUN_TEST(test_reach_arrives_and_stays);
+    RUN_TEST(test_strokes_that_nobody_can_play_are_refused);
+    RUN_TEST(test_stroke_added_while_playing_is_played);
+    RUN_TEST(test_state_is_continuous_through_every_command);
+    RUN_TEST(test_ten_thousand_random_commands_keep_the_motion_finite_and_near);
+    RUN_TEST(test_the_same_commands_give_the_same_bits);
+    RUN_TEST(test_values_that_are_not_finite_change_nothing);
+    RUN_TEST(test_nothing_is_allocated_while_playing);
+    return UNITY_END();
+}
