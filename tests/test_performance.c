@@ -1,5 +1,6 @@
 /// test_performance.c: the whole path from commands to forces and sound.
 #define _GNU_SOURCE
+#include "allocations.h"
 #include "himc/himc.h"
 #include "performance_state.h"
 
@@ -27,33 +28,6 @@ void setUp(void)
 void tearDown(void)
 {
 }
-
-// allocations made while `watching`
-static long allocations;
-static volatile bool watching;
-#ifndef __SANITIZE_ADDRESS__
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *old, size_t size);
-
-void *malloc(size_t size)
-{
-    allocations += watching;
-    return __libc_malloc(size);
-}
-
-void *calloc(size_t count, size_t size)
-{
-    allocations += watching;
-    return __libc_calloc(count, size);
-}
-
-void *realloc(void *old, size_t size)
-{
-    allocations += watching;
-    return __libc_realloc(old, size);
-}
-#endif
 
 static bool try_command(himc_performance *p, const char *text)
 {
@@ -232,11 +206,10 @@ static void test_process_never_allocates_after_the_first_stroke(void)
     himc_performance *p = with_score(PIECE);
     command(p, "play");
     play(p, 1.2);
-    watching = true;
+    watch_allocations();
     play(p, 3);
-    watching = false;
+    TEST_ASSERT_EQUAL_INT(0, allocations_seen());
     himc_performance_free(p);
-    TEST_ASSERT_EQUAL_INT(0, allocations);
 }
 
 static void test_bad_commands_change_nothing_and_name_what_is_allowed(void)

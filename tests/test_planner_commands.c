@@ -1,32 +1,10 @@
 /// test_planner_commands.c: what a planner is told while it plays and what it tells: its stroke,
 /// its beat, its notes; whatever it is told, the motion stays continuous, finite and the same.
+#include "allocations.h"
 #include "planners.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
-#define COUNTS_ALLOCATIONS 1
-static long allocations;
-void *__libc_malloc(size_t size);
-void *__libc_realloc(void *p, size_t size);
-void *__libc_calloc(size_t n, size_t size);
-void *malloc(size_t size)
-{
-    allocations++;
-    return __libc_malloc(size);
-}
-void *realloc(void *p, size_t size)
-{
-    allocations++;
-    return __libc_realloc(p, size);
-}
-void *calloc(size_t n, size_t size)
-{
-    allocations++;
-    return __libc_calloc(n, size);
-}
-#endif
 
 static void test_current_names_the_stroke_until_its_touch_is_over(void)
 {
@@ -285,12 +263,11 @@ static void test_values_that_are_not_finite_change_nothing(void)
 
 static void test_nothing_is_allocated_while_playing(void)
 {
-#ifdef COUNTS_ALLOCATIONS
     for (int i = 0; i < 200; i++)
         add(planner, i * 0.25, (himc_hand)(i & 1), (himc_nuance)(i % 5), 0.6);
     himc_stroke s = {.hand = HIMC_LEFT, .dynamic = 0.5};
     himc_planner_note note;
-    long before = allocations;
+    watch_allocations();
     himc_planner_play(planner, 0);
     for (int k = 0; k < 5000; k++) {
         double t = k * 0.004;
@@ -308,10 +285,7 @@ static void test_nothing_is_allocated_while_playing(void)
             himc_planner_stop(planner, t), himc_planner_play(planner, t);
         himc_planner_note_next(planner, &note);
     }
-    TEST_ASSERT_EQUAL_INT(before, allocations);
-#else
-    TEST_IGNORE_MESSAGE("allocations cannot be counted here");
-#endif
+    TEST_ASSERT_EQUAL_INT(0, allocations_seen());
 }
 
 int main(void)

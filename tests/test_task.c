@@ -1,5 +1,6 @@
 /// test_task.c: between ticks tips move on quintics and joints on unit quaternions, C2 at the
 /// ticks; and the contract of all that runs in a physics step: nothing is allocated.
+#include "allocations.h"
 #include "himc/character.h"
 #include "himc/task.h"
 
@@ -13,40 +14,6 @@
 
 static himc_skeleton skeleton;
 static himc_posture posture;
-
-// allocations made while `watching`; sanitizers bring their own malloc, so there it is left alone
-static volatile long allocations;
-static volatile bool watching;
-#if !defined(__SANITIZE_ADDRESS__)
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *old, size_t size);
-void __libc_free(void *old);
-
-void *malloc(size_t size)
-{
-    allocations += watching;
-    return __libc_malloc(size);
-}
-
-void *calloc(size_t count, size_t size)
-{
-    allocations += watching;
-    return __libc_calloc(count, size);
-}
-
-void *realloc(void *old, size_t size)
-{
-    allocations += watching;
-    return __libc_realloc(old, size);
-}
-
-void free(void *old)
-{
-    allocations += watching && old;
-    __libc_free(old);
-}
-#endif
 
 void setUp(void)
 {
@@ -272,19 +239,10 @@ static void test_nothing_is_allocated_from_task_to_character(void)
         himc_task_tick_complete(&tick[k], &posture);
     }
     himc_character *character = himc_character_new(&skeleton, NULL);
-    allocations = 0;
-    watching = true;
+    watch_allocations();
     run_all_rt(character, tick);
-    watching = false;
+    TEST_ASSERT_EQUAL_INT(0, allocations_seen());
     himc_character_free(character);
-    TEST_ASSERT_EQUAL_INT(0, allocations);
-#if !defined(__SANITIZE_ADDRESS__)
-    watching = true; // and the watch is awake
-    void *volatile block = malloc(8);
-    watching = false;
-    TEST_ASSERT_EQUAL_INT(1, allocations);
-    free(block);
-#endif
 }
 
 int main(void)

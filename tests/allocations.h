@@ -1,0 +1,73 @@
+/// allocations.h: how often this thread called the allocator between two points, for the tests of
+/// what runs in the audio callback. It stands in front of libc's own; a sanitizer brings another,
+/// under which nothing is counted.
+#ifndef HIMC_TESTS_ALLOCATIONS_H
+#define HIMC_TESTS_ALLOCATIONS_H
+
+#include "unity.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+// volatile: a compiler knows malloc and thinks it touches neither
+static _Thread_local volatile bool watching;
+static _Thread_local volatile int allocations;
+
+#ifndef __SANITIZE_ADDRESS__
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *old, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+void __libc_free(void *old);
+
+void *malloc(size_t size)
+{
+    allocations += watching;
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size)
+{
+    allocations += watching;
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *old, size_t size)
+{
+    allocations += watching;
+    return __libc_realloc(old, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size)
+{
+    allocations += watching;
+    return __libc_memalign(alignment, size);
+}
+
+void free(void *old)
+{
+    allocations += watching && old;
+    __libc_free(old);
+}
+#endif
+
+static inline void watch_allocations(void)
+{
+    allocations = 0;
+    watching = true;
+}
+
+/// Since the watch began, which ends here; fails if the watch was asleep.
+static inline int allocations_seen(void)
+{
+    int seen = allocations;
+#ifndef __SANITIZE_ADDRESS__
+    void *volatile block = malloc(8);
+    free(block);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(seen + 2, allocations, "the allocator is not watched");
+#endif
+    watching = false;
+    return seen;
+}
+
+#endif
