@@ -135,6 +135,7 @@ static void play_sequence(const trial_kind *kind, int number, sums *s)
     trial_result r;
     config.noise = config.misjudged = config.mismeasured = 0;
     config.limits = false;
+    config.bent = true;
     config.frame = keep_frame;
     config.user = &seen;
     seen.frames = 0;

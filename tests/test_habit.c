@@ -2,6 +2,7 @@
 /// gives back from the tips alone.
 #include "himc/habit.h"
 
+#include "habit_terms.h"
 #include "players.h"
 #include "unity.h"
 
@@ -191,6 +192,55 @@ static void test_an_arm_that_was_not_seen_stays_as_it_is(void)
     }
 }
 
+// a take whose elbow also swings about the line from shoulder to tip, of which no tip tells
+static void swivel(const himc_habit_take *take, himc_pose *pose)
+{
+    for (int i = 0; i < take->frames; i++) {
+        himc_body_state s;
+        pose[i] = take->pose[i];
+        himc_pose_to_state(take->skeleton, &pose[i], NULL, &s);
+        himc_vec3 line = himc_vec3_sub(s.tip[HIMC_LEFT], s.origin[HIMC_LEFT_UPPER_ARM]);
+        double angle = 0.05 * sin(2.3 * i / take->rate) / himc_vec3_length(line);
+        himc_quat turn = himc_quat_exp(himc_vec3_scale(line, angle));
+        himc_quat trunk = pose[i].joint[HIMC_TRUNK - 1],
+                  *q = &pose[i].joint[himc_arm_joint(HIMC_LEFT, 0)];
+        turn = himc_quat_mul(himc_quat_conj(trunk), himc_quat_mul(turn, trunk));
+        *q = himc_quat_mul(turn, *q);
+    }
+}
+
+// least squares alone would say less than it was told: here by a ninth
+static void test_what_is_said_of_an_upper_arm_goes_as_far_as_what_was_seen(void)
+{
+    himc_error error = {""};
+    himc_habit habit;
+    himc_habit_take take = seen[1];
+    himc_pose *pose = malloc((size_t)take.frames * sizeof *pose);
+    double square[2] = {0, 0}; // seen, said
+    swivel(&seen[1], pose);
+    take.pose = pose;
+    TEST_ASSERT_TRUE_MESSAGE(himc_habit_learn(&habit, &take, 1, &error), error.text);
+    int shoulder = himc_arm_joint(HIMC_LEFT, 0);
+    himc_quat back = himc_quat_conj(habit.player.mean.joint[shoulder]);
+    for (int i = 0; i < take.frames - 15; i++) {
+        double term[HIMC_HABIT_TERMS];
+        himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
+        himc_vec3 turned = himc_quat_log(himc_quat_mul(back, pose[i].joint[shoulder]));
+        tips_ahead(&who[1], 1 + i / PLAYER_RATE, tip);
+        himc_habit_terms(&habit.player, HIMC_LEFT, pose[i].joint[HIMC_TRUNK - 1],
+                         (const himc_vec3(*)[HIMC_HANDS])tip, term);
+        square[0] += himc_vec3_dot(turned, turned);
+        for (int c = 0; c < 3; c++) {
+            double u = 0;
+            for (int t = 0; t < HIMC_HABIT_TERMS; t++)
+                u += habit.weight[HIMC_LEFT][0][c][t] * term[t];
+            square[1] += u * u;
+        }
+    }
+    free(pose);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1, sqrt(square[1] / square[0]));
+}
+
 // in the body's own mirror: its plane of symmetry is y = 0
 static himc_vec3 in_mirror(himc_vec3 x)
 {
@@ -271,6 +321,7 @@ int main(void)
     RUN_TEST(test_tips_are_where_they_are_asked_to_be);
     RUN_TEST(test_rates_are_those_of_the_posture);
     RUN_TEST(test_a_take_of_the_player_corrects_the_habit_of_others);
+    RUN_TEST(test_what_is_said_of_an_upper_arm_goes_as_far_as_what_was_seen);
     RUN_TEST(test_an_arm_that_was_not_seen_stays_as_it_is);
     RUN_TEST(test_an_arm_that_rests_learns_from_the_other_in_a_mirror);
     RUN_TEST(test_what_determines_nothing_is_refused_with_the_reason);

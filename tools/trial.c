@@ -220,7 +220,7 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     const trial_kind *kind = &config->kind;
     char text[64];
     bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
-    bool joints = kind->controller == HIMC_PIPELINE_ID;
+    bool joints = kind->controller == HIMC_PIPELINE_ID && !config->bent;
     snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
     if (!tell(p, error, text) || (published && !tell(p, error, "posture 0")) ||
         (joints && !tell(p, error, "bend 0")) ||

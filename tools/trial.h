@@ -41,13 +41,14 @@ typedef struct trial_frame {
 /// How a trial is played.
 typedef struct trial_config {
     trial_kind kind;
-    int number;       ///< from 1: which player, spot and disturbance
-    double noise;     ///< of each marker's coordinate (m)
-    double misjudged; ///< standard deviation of the segments' weights over what control believes
+    int number;         ///< from 1: which player, spot and disturbance
+    double noise;       ///< of each marker's coordinate (m)
+    double misjudged;   ///< standard deviation of the segments' weights over what control believes
     double mismeasured; ///< and of their lengths, the sticks apart, over what the take shows
-    double gain;      ///< frequencies of the servos over the default ones
-    double pace;      ///< of the sequence over its own
-    bool limits;      ///< joint limits learned from the take are kept
+    double gain;        ///< frequencies of the servos over the default ones
+    double pace;        ///< of the sequence over its own
+    bool bent;          ///< `id` bends the arms to the tips; else as published (command `bend`)
+    bool limits;        ///< joint limits learned from the take are kept
     void (*frame)(void *user, const trial_frame *frame); ///< called at each one, or NULL
     void *user;
 } trial_config;
