@@ -13,7 +13,7 @@
 static _Thread_local volatile bool watching;
 static _Thread_local volatile int allocations;
 
-#ifndef __SANITIZE_ADDRESS__
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *old, size_t size);
@@ -61,7 +61,7 @@ static inline void watch_allocations(void)
 static inline int allocations_seen(void)
 {
     int seen = allocations;
-#ifndef __SANITIZE_ADDRESS__
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     void *volatile block = malloc(8);
     free(block);
     TEST_ASSERT_EQUAL_INT_MESSAGE(seen + 2, allocations, "the allocator is not watched");
