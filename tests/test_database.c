@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define SPOTS 3
-#define EACH (HIMC_MOCAP_PLAYERS * SPOTS) // sequences of a nuance
 #define FRAMES 8192
 #define DEGREE (HIMC_PI / 180)
 #define AROUND 0.08 // of an impact: where the mallet is fastest (s)
@@ -187,9 +185,9 @@ static sums play_database(himc_pipeline controller, himc_law law, int few,
     for (int i = 0; i < (is_long() ? HIMC_NUANCES : few); i++) {
         trial_kind kind = {(himc_nuance)i, controller, law};
         nuance[i] = (sums){0};
-        int count = is_long() ? EACH : 1;
+        int count = is_long() ? TRIAL_SEQUENCES : 1;
         for (int k = 0; k < count; k++) // else another player and spot in each
-            play_sequence(&kind, 1 + (count == 1 ? (4 * i) % EACH : k), &nuance[i]);
+            play_sequence(&kind, 1 + (count == 1 ? (4 * i) % TRIAL_SEQUENCES : k), &nuance[i]);
         print_row(himc_nuance_name(kind.nuance), &nuance[i]);
         add_sums(&nuance[i], &total);
     }

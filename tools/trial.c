@@ -27,7 +27,6 @@
 #define LEAST_SHARE 0.5
 #define RATE 48000
 #define BLOCK 64
-#define SPOTS 3
 #define SETTLED 0.3 // after a take begins and before it ends, that are not compared (s)
 
 /// What is summed up while a trial plays.
@@ -73,7 +72,7 @@ himc_mocap_config trial_sequence(const trial_config *config)
 {
     himc_mocap_config sequence = himc_mocap_default();
     sequence.player = (config->number - 1) % HIMC_MOCAP_PLAYERS;
-    sequence.spot = (himc_spot)((config->number - 1) / HIMC_MOCAP_PLAYERS % SPOTS);
+    sequence.spot = (himc_spot)((config->number - 1) / HIMC_MOCAP_PLAYERS % TRIAL_SPOTS);
     sequence.nuance = config->kind.nuance;
     sequence.pace = config->pace;
     return sequence;
@@ -119,14 +118,14 @@ static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take
 /// How the other players' arms go with their sticks in this nuance, all spots.
 static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_error *error)
 {
-    enum { TAKES = (HIMC_MOCAP_PLAYERS - 1) * SPOTS };
+    enum { TAKES = (HIMC_MOCAP_PLAYERS - 1) * TRIAL_SPOTS };
     himc_habit_take take[TAKES] = {{0}};
     himc_mocap *mocap[TAKES] = {NULL};
     int unseen = config.player, count = 0;
     config.pace = 1; // how an arm lies with its stick, not how fast
     bool good = true;
     for (config.player = 0; config.player < HIMC_MOCAP_PLAYERS; config.player++)
-        for (int spot = 0; good && config.player != unseen && spot < SPOTS; spot++, count++) {
+        for (int spot = 0; good && config.player != unseen && spot < TRIAL_SPOTS; spot++, count++) {
             config.spot = (himc_spot)spot;
             good = make_sequence(&config, &take[count], &mocap[count], error);
         }

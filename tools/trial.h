@@ -25,6 +25,9 @@ typedef struct trial_result {
 } trial_result;
 
 #define TRIAL_LAWS 3
+#define TRIAL_SPOTS 3
+/// Trials whose numbers differ by this play the same sequence, otherwise disturbed.
+#define TRIAL_SEQUENCES (HIMC_MOCAP_PLAYERS * TRIAL_SPOTS)
 
 const char *trial_controller_name(himc_pipeline controller);
 const char *trial_law_name(const trial_kind *kind); ///< "none" for `ik`

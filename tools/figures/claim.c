@@ -6,8 +6,8 @@
 /// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean
 /// RMS of `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
 /// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on:
-/// rows of name, mean and deviation of `id`, of `himc`, of the difference. Trials are spread over
-/// the cores.
+/// rows of nuance, `id`, `himc` or `less` (their difference), law, mean (% of amplitude), standard
+/// deviation of all trials, and of those of the same sequence. Trials are spread over the cores.
 #include "../pool.h"
 #include "../trial.h"
 
@@ -66,22 +66,35 @@ static bool done(void *user, int item, const void *result, himc_error *error)
     return true;
 }
 
-/// Mean and standard deviation over a row's trials of `id` times a plus `himc` times b.
+/// Of a row's trials, `id` times a plus `himc` times b.
 typedef struct spread {
-    double mean, deviation;
+    double mean, deviation; ///< of all trials
+    double disturbance;     ///< deviation of trials of the same sequence; NaN if there are no two
 } spread;
 
 static spread spread_of(const claim *c, int row, double a, double b)
 {
     const double *percent = &c->percent[row * c->trials * CONTROLS];
-    double sum = 0, squares = 0;
-    for (int i = 0; i < c->trials; i++)
+    double sum = 0, squares = 0, disturbed = 0, own[TRIAL_SEQUENCES] = {0};
+    int n = c->trials, sequences = n < TRIAL_SEQUENCES ? n : TRIAL_SEQUENCES;
+    for (int i = 0; i < n; i++)
         sum += a * percent[CONTROLS * i] + b * percent[CONTROLS * i + 1];
-    for (int i = 0; i < c->trials; i++) {
-        double off = a * percent[CONTROLS * i] + b * percent[CONTROLS * i + 1] - sum / c->trials;
+    for (int i = 0; i < n; i++) {
+        double off = a * percent[CONTROLS * i] + b * percent[CONTROLS * i + 1] - sum / n;
         squares += off * off;
+        disturbed += off * off;
+        own[i % TRIAL_SEQUENCES] += off;
     }
-    return (spread){sum / c->trials, c->trials > 1 ? sqrt(squares / (c->trials - 1)) : 0};
+    for (int k = 0; k < sequences; k++)
+        disturbed -= own[k] * own[k] / ((n - 1 - k) / TRIAL_SEQUENCES + 1);
+    return (spread){sum / n, n > 1 ? sqrt(squares / (n - 1)) : 0,
+                    n > sequences ? sqrt(disturbed / (n - sequences)) : NAN};
+}
+
+static void print_nuance(int nuance, const char *control, spread s)
+{
+    printf("%s %s printed %.4f %.4f %.4f\n", himc_nuance_name((himc_nuance)nuance), control, s.mean,
+           s.deviation, s.disturbance);
 }
 
 static void print_row(const claim *c, int row)
@@ -89,8 +102,9 @@ static void print_row(const claim *c, int row)
     spread id = spread_of(c, row, 1, 0), himc = spread_of(c, row, 0, 1);
     spread less = spread_of(c, row, 1, -1);
     if (c->by_nuance) {
-        printf("%s %.4f %.4f %.4f %.4f %.4f %.4f\n", himc_nuance_name((himc_nuance)row), id.mean,
-               id.deviation, himc.mean, himc.deviation, less.mean, less.deviation);
+        print_nuance(row, "id", id);
+        print_nuance(row, "himc", himc);
+        print_nuance(row, "less", less);
         return;
     }
     if (row % RATES == 0)

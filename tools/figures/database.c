@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SEQUENCES 9 // players and spots
 #define LAWS 2
 #define ROWS (LAWS * HIMC_NUANCES)
 #define RATE 2.0 // (1/s)
@@ -23,10 +22,10 @@ static const himc_law laws[LAWS] = {HIMC_LAW_COMPUTED_TORQUE, HIMC_LAW_FEEDFORWA
 
 static trial_config config_of(int item)
 {
-    int row = item / SEQUENCES;
+    int row = item / TRIAL_SEQUENCES;
     trial_kind kind = {(himc_nuance)(row % HIMC_NUANCES), HIMC_PIPELINE_HIMC,
                        laws[row / HIMC_NUANCES]};
-    trial_config config = trial_default(&kind, 1 + item % SEQUENCES);
+    trial_config config = trial_default(&kind, 1 + item % TRIAL_SEQUENCES);
     config.noise = 0;
     config.misjudged = config.mismeasured = 0;
     if (kind.law == HIMC_LAW_FEEDFORWARD)
@@ -77,20 +76,20 @@ static void print_row(const trial_result *result, int count, const char *law, co
 
 int main(void)
 {
-    static trial_result result[ROWS * SEQUENCES];
+    static trial_result result[ROWS * TRIAL_SEQUENCES];
     himc_error error;
-    pool spread = {ROWS * SEQUENCES, pool_cores(), sizeof(trial_result), work, done, result};
+    pool spread = {ROWS * TRIAL_SEQUENCES, pool_cores(), sizeof(trial_result), work, done, result};
     if (!pool_run(&spread, &error)) {
         fprintf(stderr, "database: %s\n", error.text);
         return 1;
     }
     for (int l = 0; l < LAWS; l++) {
         trial_kind kind = {HIMC_LEGATO, HIMC_PIPELINE_HIMC, laws[l]};
-        const trial_result *own = &result[l * HIMC_NUANCES * SEQUENCES];
+        const trial_result *own = &result[l * HIMC_NUANCES * TRIAL_SEQUENCES];
         for (int n = 0; n < HIMC_NUANCES; n++)
-            print_row(&own[n * SEQUENCES], SEQUENCES, trial_law_name(&kind),
+            print_row(&own[n * TRIAL_SEQUENCES], TRIAL_SEQUENCES, trial_law_name(&kind),
                       himc_nuance_name((himc_nuance)n));
-        print_row(own, HIMC_NUANCES * SEQUENCES, trial_law_name(&kind), "all");
+        print_row(own, HIMC_NUANCES * TRIAL_SEQUENCES, trial_law_name(&kind), "all");
     }
     return 0;
 }

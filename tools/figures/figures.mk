@@ -109,8 +109,12 @@ $(call both,claim): SAID := printed law, legato made slower and faster; mean and
 $(call both,claim) &: $(CURVES)/rates.txt tools/figures/claim.gp $(STYLE)
 	$(call draw,claim,claim,data='$<')
 
+$(CURVES)/spread.txt: docs/figures/evaluation.csv tools/figures/spread.awk
+	@mkdir -p $(@D)
+	$(Q)awk -f tools/figures/spread.awk $(BUILD)/evaluation-trials.csv >$@
+
 $(call both,evaluation): SAID := $(TRIALS) trials of each nuance; joint limits on
-$(call both,evaluation) &: $(CURVES)/nuances.txt docs/figures/evaluation.csv tools/figures/evaluation.gp $(STYLE)
+$(call both,evaluation) &: $(CURVES)/nuances.txt $(CURVES)/spread.txt tools/figures/evaluation.gp $(STYLE)
 	$(call draw,evaluation,evaluation,gentle='$<'; table='$(word 2,$^)')
 
 # the table of the undisturbed database in docs/evaluation.md
