@@ -1,13 +1,16 @@
 /// claim.c: what the published claim depends on: that HIMC misses less than joint space control,
 /// by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for
-/// claim.gp and evaluation.gp: `claim rates TRIALS` and `claim nuances TRIALS`.
+/// claim.gp, evaluation.gp and measures.gp: `claim rates|nuances|measures TRIALS`.
 ///
 /// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with
 /// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean
 /// RMS of `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
 /// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on:
 /// rows of nuance, `id`, `himc` or `less` (their difference), law, mean (% of amplitude), standard
-/// deviation of all trials, and of those of the same sequence. Trials are spread over the cores.
+/// deviation of all trials, and of those of the same sequence. `measures` plays legato at its own
+/// pace, limits on, limbs measured with errors of 0 to 2 %: a block for the printed law with the
+/// softest gain and one for each law with the default one, rows of error (%), then as in `rates`.
+/// Trials are spread over the cores.
 #include "../pool.h"
 #include "../trial.h"
 
@@ -19,31 +22,60 @@
 #define CONTROLS 2 // id, himc
 #define GAINS 3
 #define RATES 5
+#define LAWS 4
+#define ERRORS 5
 
 static const double gains[GAINS] = {1.0 / 3, 2.0 / 3, 1};
 static const double rates[RATES] = {1, 1.5, 2, 2.5, 3};
 static const himc_pipeline controls[CONTROLS] = {HIMC_PIPELINE_ID, HIMC_PIPELINE_HIMC};
+static const himc_law laws[LAWS] = {HIMC_LAW_PRINTED, HIMC_LAW_PRINTED, HIMC_LAW_FEEDFORWARD,
+                                    HIMC_LAW_COMPUTED_TORQUE};
+static const double errors[ERRORS] = {0, 0.005, 0.01, 0.015, 0.02};
+
+typedef struct claim claim;
+
+/// What a table's rows are.
+typedef struct table {
+    const char *name;
+    int rows;
+    void (*set)(trial_config *config, int row); ///< from a printed legato trial with limits
+    void (*print)(const claim *c, int row);
+} table;
 
 /// All trials of a table: rows, each of both controls.
-typedef struct claim {
-    bool by_nuance;
-    int rows, trials;
+struct claim {
+    const table *table;
+    int trials;
     double *percent; ///< RMS over amplitude (rows, trials, CONTROLS)
-} claim;
+};
 
-// rows of `rates`: the rate runs fastest, then limits, then the gain
+// the rate runs fastest, then limits, then the gain
+static void set_rate(trial_config *config, int row)
+{
+    config->gain = gains[row / RATES / 2];
+    config->limits = row / RATES % 2 == 0;
+    config->pace = rates[row % RATES] / trial_own_rate(config);
+}
+
+static void set_nuance(trial_config *config, int row)
+{
+    config->kind.nuance = (himc_nuance)row;
+    config->gain = gains[0];
+}
+
+// the error runs fastest, then the law
+static void set_measures(trial_config *config, int row)
+{
+    config->kind.law = laws[row / ERRORS];
+    config->gain = row / ERRORS == 0 ? gains[0] : 1;
+    config->mismeasured = errors[row % ERRORS];
+}
+
 static trial_config config_of(const claim *c, int item)
 {
-    int row = item / CONTROLS / c->trials, number = 1 + item / CONTROLS % c->trials;
-    trial_kind kind = {c->by_nuance ? (himc_nuance)row : HIMC_LEGATO, controls[item % CONTROLS],
-                       HIMC_LAW_PRINTED};
-    trial_config config = trial_default(&kind, number);
-    config.gain = gains[0];
-    if (c->by_nuance)
-        return config;
-    config.gain = gains[row / RATES / 2];
-    config.limits = row / RATES % 2 == 0;
-    config.pace = rates[row % RATES] / trial_own_rate(&config);
+    trial_kind kind = {HIMC_LEGATO, controls[item % CONTROLS], HIMC_LAW_PRINTED};
+    trial_config config = trial_default(&kind, 1 + item / CONTROLS % c->trials);
+    c->table->set(&config, item / CONTROLS / c->trials);
     return config;
 }
 
@@ -91,33 +123,60 @@ static spread spread_of(const claim *c, int row, double a, double b)
                     n > sequences ? sqrt(disturbed / (n - sequences)) : NAN};
 }
 
-static void print_nuance(int nuance, const char *control, spread s)
+static void print_spread(int nuance, const char *control, spread s)
 {
     printf("%s %s printed %.4f %.4f %.4f\n", himc_nuance_name((himc_nuance)nuance), control, s.mean,
            s.deviation, s.disturbance);
 }
 
-static void print_row(const claim *c, int row)
+static void print_nuance(const claim *c, int row)
+{
+    print_spread(row, "id", spread_of(c, row, 1, 0));
+    print_spread(row, "himc", spread_of(c, row, 0, 1));
+    print_spread(row, "less", spread_of(c, row, 1, -1));
+}
+
+// a row of a curve over x
+static void print_point(const claim *c, int row, double x)
 {
     spread id = spread_of(c, row, 1, 0), himc = spread_of(c, row, 0, 1);
     spread less = spread_of(c, row, 1, -1);
-    if (c->by_nuance) {
-        print_nuance(row, "id", id);
-        print_nuance(row, "himc", himc);
-        print_nuance(row, "less", less);
-        return;
-    }
+    printf("%.2f %.4f %.4f %.4f %.4f\n", x, id.mean, himc.mean, less.mean, less.deviation);
+}
+
+static void print_rate(const claim *c, int row)
+{
     if (row % RATES == 0)
         printf("\n\n# gain %.4f, limits %s\n", gains[row / RATES / 2],
                row / RATES % 2 ? "off" : "on");
-    printf("%.2f %.4f %.4f %.4f %.4f\n", rates[row % RATES], id.mean, himc.mean, less.mean,
-           less.deviation);
+    print_point(c, row, rates[row % RATES]);
+}
+
+static void print_measures(const claim *c, int row)
+{
+    trial_kind kind = {.law = laws[row / ERRORS]};
+    if (row % ERRORS == 0)
+        printf("\n\n# %s, gain %.4f\n", trial_law_name(&kind), row / ERRORS == 0 ? gains[0] : 1);
+    print_point(c, row, 100 * errors[row % ERRORS]);
+}
+
+static const table tables[] = {
+    {"rates", GAINS * 2 * RATES, set_rate, print_rate},
+    {"nuances", HIMC_NUANCES, set_nuance, print_nuance},
+    {"measures", LAWS *ERRORS, set_measures, print_measures},
+};
+
+static const table *find_table(const char *name)
+{
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+        if (!strcmp(tables[i].name, name))
+            return &tables[i];
+    return NULL;
 }
 
 static bool measure(claim *c, himc_error *error)
 {
-    c->rows = c->by_nuance ? HIMC_NUANCES : GAINS * 2 * RATES;
-    int items = c->rows * c->trials * CONTROLS;
+    int items = c->table->rows * c->trials * CONTROLS;
     c->percent = calloc((size_t)items, sizeof *c->percent);
     if (!c->percent)
         return himc_error_set(error, "out of memory");
@@ -128,15 +187,15 @@ static bool measure(claim *c, himc_error *error)
 int main(int count, char **word)
 {
     himc_error error;
-    claim c = {.by_nuance = count == 3 && !strcmp(word[1], "nuances"),
+    claim c = {.table = count == 3 ? find_table(word[1]) : NULL,
                .trials = count == 3 ? atoi(word[2]) : 0};
-    if (c.trials < 1 || c.trials > TRIALS_MOST || (!c.by_nuance && strcmp(word[1], "rates"))) {
-        fprintf(stderr, "claim: wanted is rates|nuances TRIALS, 1 .. %d\n", TRIALS_MOST);
+    if (!c.table || c.trials < 1 || c.trials > TRIALS_MOST) {
+        fprintf(stderr, "claim: wanted is rates|nuances|measures TRIALS, 1 .. %d\n", TRIALS_MOST);
         return 1;
     }
     bool good = measure(&c, &error);
-    for (int row = 0; good && row < c.rows; row++)
-        print_row(&c, row);
+    for (int row = 0; good && row < c.table->rows; row++)
+        c.table->print(&c, row);
     if (!good)
         fprintf(stderr, "claim: %s\n", error.text);
     free(c.percent);

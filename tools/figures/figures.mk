@@ -5,7 +5,7 @@
 # both NAME: a curve as it is for the page and for print
 both     = docs/figures/$(1).svg docs/figures/$(1).png
 SOUNDS  := $(patsubst %,docs/sounds/%.ogg,scale roll glissando mallets)
-MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluation claim,$(call both,$(name)))
+MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluation claim measures,$(call both,$(name)))
 FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/improvisation.png $(SOUNDS) \
            docs/sounds/improvisation.ogg $(MOTION) $(BUILD)/figures/database.txt
 
@@ -13,6 +13,7 @@ FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/im
 # minutes: make figures TRIALS=9
 TRIALS ?= 100
 CLAIM  ?= 3
+MEASURES ?= 9
 
 docs/figures/timbre.svg: $(BUILD)/tools/figures/timbre tools/figures/timbre.gp
 	@mkdir -p $(BUILD)/figures && echo "draw $@"
@@ -72,6 +73,10 @@ $(CURVES)/rates.txt: $(BUILD)/tools/figures/claim
 	@mkdir -p $(@D) && echo "play $@"
 	$(Q)$< rates $(CLAIM) >$@
 
+$(CURVES)/measures.txt: $(BUILD)/tools/figures/claim
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$< measures $(MEASURES) >$@
+
 $(CURVES)/nuances.txt: $(BUILD)/tools/figures/claim
 	@mkdir -p $(@D) && echo "play $@"
 	$(Q)$< nuances $(TRIALS) >$@
@@ -108,6 +113,10 @@ $(call both,legato-accent) &: $(CURVES)/beats.txt $(CURVES)/legato-accent.csv to
 $(call both,claim): SAID := printed law, legato made slower and faster; mean and deviation of $(CLAIM) players
 $(call both,claim) &: $(CURVES)/rates.txt tools/figures/claim.gp $(STYLE)
 	$(call draw,claim,claim,data='$<')
+
+$(call both,measures): SAID := legato, joint limits on; mean and deviation of $(MEASURES) trials: players and spots
+$(call both,measures) &: $(CURVES)/measures.txt tools/figures/measures.gp $(STYLE)
+	$(call draw,measures,measures,data='$<')
 
 $(CURVES)/spread.txt: docs/figures/evaluation.csv tools/figures/spread.awk
 	@mkdir -p $(@D)
