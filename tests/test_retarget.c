@@ -91,11 +91,22 @@ static void test_joints_as_captured_have_the_tips_of_their_own_player(void)
     TEST_ASSERT_TRUE(play() < 5e-3);
 }
 
+static void keep_mode(void *user, const char *line)
+{
+    if (strncmp(line, "mode", 4) == 0)
+        snprintf(user, 256, "%s", line);
+}
+
 static void test_reset_bends_again(void)
 {
+    char mode[256] = "";
     lengthen_arms();
     tell("bend 0");
+    himc_performance_describe(performance, keep_mode, mode);
+    TEST_ASSERT_NOT_NULL(strstr(mode, "himc (in id, arms as captured), solver"));
     tell("reset");
+    himc_performance_describe(performance, keep_mode, mode);
+    TEST_ASSERT_NOT_NULL(strstr(mode, "himc, solver"));
     tell("mode id");
     TEST_ASSERT_TRUE(play() < 2e-4);
 }

@@ -196,9 +196,10 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
              "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
              p->body.height, p->body.mass);
     line(user, text);
-    snprintf(text, sizeof text, "mode %s, solver %s, damping %g m, law %s, coupling %s",
-             mode[p->controller.mode], solver[p->controller.solver], p->controller.damping,
-             law[p->controller.law], p->one_way ? "one-way" : "two-way");
+    snprintf(text, sizeof text, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
+             mode[p->controller.mode], p->unbent ? " (in id, arms as captured)" : "",
+             solver[p->controller.solver], p->controller.damping, law[p->controller.law],
+             p->one_way ? "one-way" : "two-way");
     line(user, text);
     snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz", p->physics_rate,
              p->config.task_rate, p->config.sample_rate);
