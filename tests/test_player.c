@@ -51,9 +51,9 @@ static void test_postures_of_a_skeleton_take_come_back_as_they_were(void)
 static void test_postures_survive_a_bvh_file(void)
 {
     make_take(&given);
-    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/player.bvh", &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/saved-player.bvh", &error), error.text);
     himc_take_free(take);
-    take = himc_take_load("build/player.bvh", NULL, &error);
+    take = himc_take_load("build/saved-player.bvh", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     read_player();
     TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, known_joints());
@@ -178,14 +178,14 @@ static void test_a_player_of_seventeen_metres_is_refused_with_a_line(void)
 static himc_take *in_units(double unit)
 {
     himc_take_options options = himc_take_default();
-    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/player.bvh", &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/saved-player.bvh", &error), error.text);
     options.unit = 0.01 * unit; // the file has cm: read them as something else, and write again
-    himc_take *scaled = himc_take_load("build/player.bvh", &options, &error);
+    himc_take *scaled = himc_take_load("build/saved-player.bvh", &options, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(scaled, error.text);
-    bool saved = himc_take_save(scaled, "build/player.bvh", &error);
+    bool saved = himc_take_save(scaled, "build/saved-player.bvh", &error);
     himc_take_free(scaled);
     TEST_ASSERT_TRUE_MESSAGE(saved, error.text);
-    return himc_take_load("build/player.bvh", NULL, &error);
+    return himc_take_load("build/saved-player.bvh", NULL, &error);
 }
 
 static void test_inches_and_feet_are_known_by_the_players_size(void)
@@ -220,8 +220,8 @@ static void test_metres_ten_times_too_long_are_refused_with_a_line(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(other, error.text); // it might be a child in CMU's units
     TEST_ASSERT_NULL(himc_player_new(other, NULL, &given, &error));
     himc_take_free(other);
-    TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: height: 0.987778 m, allowed 1.19 .. 2.21 m",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "build/saved-player.bvh: player: height: 0.987778 m, allowed 1.19 .. 2.21 m", error.text);
 }
 
 static void test_a_cmu_skeleton_gives_a_player_of_human_size(void)
