@@ -1,6 +1,7 @@
 // OSC from strangers: what they cannot read, write or make us send, and floods of it.
-#include "allocations.h"
 #include "osc_ear.h"
+
+#include "allocations.h"
 
 static void test_no_file_is_read_over_the_network_unless_allowed(void)
 {
