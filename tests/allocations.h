@@ -60,14 +60,14 @@ static inline void watch_allocations(void)
 /// Since the watch began, which ends here; fails if the watch was asleep.
 static inline int allocations_seen(void)
 {
-    int seen = allocations;
+    int count = allocations;
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     void *volatile block = malloc(8);
     free(block);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(seen + 2, allocations, "the allocator is not watched");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(count + 2, allocations, "the allocator is not watched");
 #endif
     watching = false;
-    return seen;
+    return count;
 }
 
 #endif
