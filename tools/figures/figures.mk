@@ -13,7 +13,7 @@ FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/im
 # minutes: make figures TRIALS=9
 TRIALS ?= 100
 CLAIM  ?= 3
-MEASURES ?= 9
+MEASURES ?= 3
 
 docs/figures/timbre.svg: $(BUILD)/tools/figures/timbre tools/figures/timbre.gp
 	@mkdir -p $(BUILD)/figures && echo "draw $@"
@@ -114,7 +114,7 @@ $(call both,claim): SAID := printed law, legato made slower and faster; mean and
 $(call both,claim) &: $(CURVES)/rates.txt tools/figures/claim.gp $(STYLE)
 	$(call draw,claim,claim,data='$<')
 
-$(call both,measures): SAID := legato, joint limits on; mean and deviation of $(MEASURES) trials: players and spots
+$(call both,measures): SAID := legato, joint limits on; mean and deviation of $(MEASURES) players
 $(call both,measures) &: $(CURVES)/measures.txt tools/figures/measures.gp $(STYLE)
 	$(call draw,measures,measures,data='$<')
 

@@ -9,7 +9,7 @@ array shade[4] = ["#7b3294", "#d95f02", "#1b7f8c", "#a6761d"]
 array law[4] = ["printed law, gain × 1", "printed law, gain × 3", "feedforward, gain × 3", "computed torque, gain × 3"]
 unset key
 set multiplot
-do for [i = 1:4] { eval legend(i, 0.13 + 0.19 * (i - 1), 0.835, shade[i], law[i]) }
+do for [i = 1:4] { eval legend(i, 0.06 + 0.19 * (i - 1), 0.835, shade[i], law[i]) }
 set label 1 "Limbs not quite as long as measured: why HIMC misses less" at screen 0.06,0.945 font bold textcolor rgb ink
 set label 2 said at screen 0.06,0.890 font ",13" textcolor rgb soft
 set tmargin at screen 0.770
@@ -24,7 +24,7 @@ set ylabel "RMS error of the tip\n(% of amplitude)" textcolor rgb ink
 set logscale y
 set yrange [0.1:30]
 set ytics (0.1, 0.2, 0.5, 1, 2, 5, 10, 20)
-set key bottom right vertical samplen 4 reverse Left textcolor rgb ink
+set key at graph 0.03,0.64 left top vertical samplen 4 reverse Left textcolor rgb ink
 plot keyentry with linespoints linewidth 2 dashtype 2 pointtype 6 linecolor rgb ink title "ID", \
      keyentry with linespoints linewidth 2 pointtype 7 linecolor rgb ink title "HIMC", \
      for [i = 0:3] data index i using 1:2 \
