@@ -47,7 +47,7 @@ do for [i = 0:1] {
     set xlabel "strokes with each hand (1/s)" textcolor rgb ink
     set ylabel "ID minus HIMC\n(points of amplitude)"
     unset key
-    set label 4 "as published" at 0.95,2 offset 0,0.7 textcolor rgb himc
+    set label 4 "as published" at 2.55,2 offset 0,0.7 textcolor rgb himc
     plot 2 with lines linewidth 2 dashtype 3 linecolor rgb himc, \
          0 with lines linewidth 1 linecolor rgb soft, \
          for [g = 0:2] data index 2 * g + i using 1:4:5 \
