@@ -2,8 +2,8 @@
 /// the take, and played from the tips alone, the null space being for the habit of the other two
 /// players in that nuance; then compared with the joints that nobody had seen.
 ///
-/// One sequence of each nuance, or all 45 with HIMC_LONG (make test-long): 3 players, 5 nuances, 3 spots. No noise, the
-/// masses as they are believed to be: what is left is the control's own.
+/// One sequence of each nuance, or all 45 with HIMC_LONG (make test-long): 3 players, 5 nuances, 3
+/// spots. No noise, limbs and masses as they are believed to be: what is left is the control's own.
 #include "../tools/trial.h"
 
 #include "unity.h"

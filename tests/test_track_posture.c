@@ -146,14 +146,13 @@ static void test_between_blows_the_joints_are_the_captured_ones(void)
 static void test_as_captured_the_joints_bounce_with_the_frames(void)
 {
     make_played(250);
-           TEST_ASSERT_TRUE(worst_joint(captured_at, 0.5, 2.5) < 1.5 * DEGREE);
-           for (double t = 0.5, h = 1e-4; t < 2.5; t += 0.0037) {
-               himc_posture_motion a = captured_at(t), b = captured_at(t + h);
-               for (int j = 0; j < HIMC_LEFT_UPPER_LEG - 1; j++) // no contact anywhere
-                   TEST_ASSERT_DOUBLE_WITHIN(
-                       0.1, 0,
-                       distance(b.rate[j], himc_vec3_madd(a.rate[j], h, a.acceleration[j])));
-           }
+    TEST_ASSERT_TRUE(worst_joint(captured_at, 0.5, 2.5) < 1.5 * DEGREE);
+    for (double t = 0.5, h = 1e-4; t < 2.5; t += 0.0037) {
+        himc_posture_motion a = captured_at(t), b = captured_at(t + h);
+        for (int j = 0; j < HIMC_LEFT_UPPER_LEG - 1; j++) // no contact anywhere
+            TEST_ASSERT_DOUBLE_WITHIN(
+                0.1, 0, distance(b.rate[j], himc_vec3_madd(a.rate[j], h, a.acceleration[j])));
+    }
 }
 
 static void test_joint_targets_are_smooth_but_for_the_contact(void)

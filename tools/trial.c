@@ -1,9 +1,9 @@
 /// trial.c: a trial is a sequence of the motion database as a laboratory would have captured it
 /// (its markers with a tracker's noise), played by a body whose limbs are not quite as long as the
 /// player's, and whose segments do not weigh quite what control believes. The body's measures, but
-/// for that error, its mean posture and its joint limits come from that noisy take; `id` and `ik` follow its joints, `himc` its tips alone, its null space being for the
-/// habit of the other two players in that nuance. What was simulated is compared with the motion
-/// itself, noiseless.
+/// for that error, its mean posture and its joint limits come from that noisy take; `id` and `ik`
+/// follow its joints, `himc` its tips alone, its null space being for the habit of the other two
+/// players in that nuance. What was simulated is compared with the motion itself, noiseless.
 ///
 /// Under the `printed` law `himc` is as published: nothing in the null space but the limits. The
 /// servos are the default ones; a player's are a third as fast, `gain` 1/3.

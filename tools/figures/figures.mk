@@ -9,7 +9,7 @@ MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluatio
 FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/improvisation.png $(SOUNDS) \
            docs/sounds/improvisation.ogg $(MOTION) $(BUILD)/figures/database.txt
 
-# trials of each row of the evaluation, and of each point of the claim's dependences; 100 take two cores an hour, 9 a few
+# trials of each row of the evaluation, and of each point of the claim's dependences; 100 take two cores two hours, 9 ten
 # minutes: make figures TRIALS=9
 TRIALS ?= 100
 CLAIM  ?= 3

@@ -1,4 +1,5 @@
-/// table.c: makes lib/src/habit_table.c from the motion database. A few seconds; not a part of himc.
+/// table.c: makes lib/src/habit_table.c from the motion database. A few seconds; not a part of
+/// himc.
 ///
 /// All 45 sequences of mocap/ (seed 1), each about its own means: so what is learned is how arms
 /// move with their sticks, not where who holds them.
