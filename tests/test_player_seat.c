@@ -68,16 +68,84 @@ static void test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 2 + 0.42 * 1.75, player->hips.z);
 }
 
-static void test_a_walking_player_is_told_from_a_swaying_one(void)
+static void test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor(void)
+{
+    himc_place drum = usual_drum;
+    make_take(&given);
+    move_take(himc_vec3_make(2, 3, 0.1));
+    for (int i = 1; i < take->frames; i++)
+        memcpy(himc_take_at(take, i, 0), himc_take_at(take, 0, 0),
+               (size_t)take->points * sizeof *take->x);
+    read_player();
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2, player->offset.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3, player->offset.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, player->offset.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.root.z + 0.1, player->config.seat);
+}
+
+// a take of tips alone, `shape` of the time from 0 to 1
+static void make_tips(himc_vec3 (*shape)(double))
 {
     make_take(&given);
+    forget_skeleton();
+    for (int k = 0; k < take->points; k++) {
+        bool tip = strstr(take->names[k], "_end");
+        bool left = tip && strstr(take->names[k], "eft");
+        if (!tip)
+            snprintf(take->names[k], TAKE_NAME, "thing%d", k);
+        for (int i = 0; i < take->frames && tip; i++) {
+            himc_vec3 x = shape((double)i / take->frames);
+            x.y += left ? 0.1 : -0.1;
+            *himc_take_at(take, i, k) = x;
+        }
+    }
+    read_player();
+}
+
+static himc_vec3 wide_circle(double u)
+{
+    return himc_vec3_make(7 + 0.4 * sin(2 * HIMC_PI * u), 1, 3 + 0.5 * cos(2 * HIMC_PI * u));
+}
+
+static void test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_out_of_the_way(void)
+{
+    himc_place drum = usual_drum;
+    himc_take_tip tips[HIMC_HANDS];
+    himc_posture posture;
+    make_tips(wide_circle);
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_take_tips(take, NULL, tips, &error));
+    himc_posture_init(&posture, &skeleton, usual_drum.center.z + given.mallet_radius);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < take->frames; i++) {
+            himc_vec3 x = himc_vec3_add(tips[hand].x[i], player->offset), local;
+            himc_vec3 near = himc_posture_reachable(&posture, (himc_hand)hand, x);
+            TEST_ASSERT_DOUBLE_WITHIN(1.1e-3, 0, himc_vec3_length(himc_vec3_sub(near, x)));
+            local = himc_place_from_world(&drum, x);
+            TEST_ASSERT_TRUE(hypot(local.x, local.y) > drum.radius || local.z > 0.0499);
+        }
+    TEST_ASSERT_TRUE(drum.center.z < usual_drum.center.z);
+    TEST_ASSERT_EQUAL_DOUBLE(usual_drum.center.x, drum.center.x);
+}
+
+static void test_a_walking_player_is_told_from_a_swaying_one_and_held(void)
+{
+    himc_place drum = usual_drum;
+    make_take(&given);
+    himc_vec3 before = *himc_take_at(take, 100, take->points - 1);
     for (int i = 0; i < take->frames; i++)
         for (int k = 0; k < take->points; k++)
-            himc_take_at(take, i, k)->x += 0.002 * i;
+            himc_take_at(take, i, k)->x += 0.002 * (i - 0.5 * (take->frames - 1));
     read_player();
     TEST_ASSERT_TRUE(player->walks);
     TEST_ASSERT_EQUAL_INT(1, player->note_count);
     TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6); // about the hips, wherever they are
+    for (int twice = 0; twice < 2; twice++) { // what has been taken out is taken out once
+        TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+        himc_vec3 after = *himc_take_at(take, 100, take->points - 1);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_vec3_length(himc_vec3_sub(after, before)));
+    }
 }
 
 static void hear(void *user, const char *line)
@@ -109,7 +177,9 @@ int main(void)
     RUN_TEST(test_a_player_far_off_is_brought_before_the_drum);
     RUN_TEST(test_a_drum_that_would_be_missed_is_moved_under_the_strikes);
     RUN_TEST(test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot);
-    RUN_TEST(test_a_walking_player_is_told_from_a_swaying_one);
+    RUN_TEST(test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor);
+    RUN_TEST(test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_out_of_the_way);
+    RUN_TEST(test_a_walking_player_is_told_from_a_swaying_one_and_held);
     RUN_TEST(test_description_says_how_tall_how_heavy_and_where_the_head_goes);
     return UNITY_END();
 }

@@ -24,6 +24,8 @@ typedef struct himc_player {
     int frames;                  ///< of the take
     himc_pose *pose;    ///< (frames), owned; NULL if no joint is known. Joints not known as in mean
     bool walks;         ///< too far for a held pelvis: postures are those about the moving hips
+    himc_vec3 *walk;    ///< (frames), owned: the hips from their mean (m), if they walk; NULL once
+                        ///< himc_player_sit has taken it out of the take
     bool placed;        ///< the take shows where the player is: hips or shoulders
     himc_vec3 hips;     ///< between the hip joints, in the take (m); mean, or by himc_player_sit
     bool seated;        ///< himc_player_sit has put the player where config.seat and offset say
@@ -43,8 +45,10 @@ void himc_player_free(himc_player *player);
 /// Puts the player over the world's origin. One that the take places has the seat raised or lowered
 /// so that the take's strikes meet a head at the drum's height; `drum` is moved under the strikes
 /// where they would miss the head, or where no seat (0.3 .. 1.3 m) would do. One that it does not
-/// place sits where the strikes fall on the drum's usual spot. False, and nothing changed, if the
-/// take has no strikes.
+/// place sits where the strikes fall on the drum's usual spot. Without strikes the one has the seat
+/// that the take shows, the other sits where all of it is in reach, if there is such a place, and
+/// `drum` is lowered out of the way. If the player walks, the hips' way is taken out of the take.
+/// False, and nothing else changed, if the take has no tips, or a gap in them.
 bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
                      himc_place *drum);
 

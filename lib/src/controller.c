@@ -17,6 +17,7 @@
 
 #include "limit_torque.h"
 #include "strength.h"
+#include "stretch.h"
 
 #define PD_STIFFER 3.0    // the default gains' frequencies above the table's
 #define LARGEST_STEP 0.20 // of the tip, one step of inverse kinematics (m)
@@ -138,16 +139,19 @@ static void go_home(const errors *joints, double away, himc_hand hand, errors *e
     }
 }
 
-// equation 3: replaces the arm's joint errors by those that its tip asks for
+// equation 3: replaces the arm's joint errors by those that its tip asks for, or the nearest place
+// in reach
 static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
-                       const himc_body_state *s, const himc_target *target, himc_hand hand,
+                       const himc_body_state *s, const himc_target *asked, himc_hand hand,
                        const himc_arm_jacobian *jacobian, errors *e)
 {
     errors joints = *e;
-    himc_vec3 way = himc_vec3_sub(target->x, s->tip[hand]);
+    himc_vec3 shoulder = s->origin[himc_arm_joint(hand, 0) + 1];
+    himc_target target = himc_stretch_towards(asked, shoulder, himc_stretch(skeleton, hand));
+    himc_vec3 way = himc_vec3_sub(target.x, s->tip[hand]);
     himc_vec3 missing = clamp_length(way, LARGEST_STEP);
-    himc_vec3 slower = himc_vec3_sub(target->v, s->tip_velocity[hand]);
-    himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target->a);
+    himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
+    himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target.a);
     arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
     begin_tasks(&tasks, s, missing);
     solve_demand(&tasks, missing, e->angle);

@@ -42,10 +42,11 @@ void himc_performance_posture(const himc_performance *p, double t,
                            motion);
 }
 
-// a drum that the take's strikes would miss is put under them
-static bool move_drum(himc_performance *p, int index, const himc_place *place, const char *path,
-                      himc_error *error)
+// a drum that the take's strikes would miss is put under them, one that is in its way is lowered
+static bool move_drum(himc_performance *p, int index, const himc_place *place,
+                      const himc_track *track, const char *path, himc_error *error)
 {
+    bool strikes = himc_track_strikes(track, HIMC_LEFT) + himc_track_strikes(track, HIMC_RIGHT) > 0;
     himc_drum *drum = p->drum[index].drum;
     himc_vec3 to = place->center, from = himc_drum_place(drum)->center;
     if (himc_vec3_length(himc_vec3_sub(to, from)) < 1e-6)
@@ -56,8 +57,9 @@ static bool move_drum(himc_performance *p, int index, const himc_place *place, c
         move.atom[i] = (himc_atom){.kind = HIMC_ATOM_NUMBER, .number = x[i]};
     if (!himc_drum_command(drum, &move, error))
         return false;
-    himc_performance_note(p, "%s: the %s is moved to %.3f %.3f %.3f, where the take strikes", path,
-                          himc_drum_name(drum), to.x, to.y, to.z);
+    himc_performance_note(p, "%s: the %s is moved to %.3f %.3f %.3f, %s", path,
+                          himc_drum_name(drum), to.x, to.y, to.z,
+                          strikes ? "where the take strikes" : "out of the take's way");
     return true;
 }
 
@@ -168,7 +170,7 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
     if (!track)
         return false;
-    if (!move_drum(p, drum, &place, path, error) || !adopt_player(p, player, path, error)) {
+    if (!move_drum(p, drum, &place, track, path, error) || !adopt_player(p, player, path, error)) {
         himc_track_free(track);
         return false;
     }

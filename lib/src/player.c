@@ -120,7 +120,7 @@ static bool center_hips(player_points *p)
 }
 
 // a held pelvis stands for one that sways a little, not for one that goes somewhere
-static void find_walk(const player_points *p, himc_vec3 mean, himc_player *player)
+static bool find_walk(const player_points *p, himc_vec3 mean, himc_player *player)
 {
     double square = 0;
     for (int i = 0; i < p->frames; i++) {
@@ -128,14 +128,21 @@ static void find_walk(const player_points *p, himc_vec3 mean, himc_player *playe
         square += himc_vec3_dot(d, d) / p->frames;
     }
     player->walks = sqrt(square) > WALK;
-    if (player->walks)
-        himc_player_note(player,
-                         "the player walks: the hips move by %.2f m RMS, here they are held",
-                         sqrt(square));
+    if (!player->walks)
+        return true;
+    himc_player_note(player,
+                     "the player walks: the hips move by %.2f m RMS, here they are held and all "
+                     "moves about them",
+                     sqrt(square));
+    player->walk = malloc((size_t)p->frames * sizeof *player->walk);
+    for (int i = 0; player->walk && i < p->frames; i++)
+        player->walk[i] = himc_vec3_sub(p->x[POINT_HIPS][i], mean);
+    return player->walk != NULL;
 }
 
-// where the player is, by the hips, else by the shoulders of a body that sits as usual
-static void find_place(const player_points *p, const himc_skeleton *s, himc_player *player)
+// where the player is, by the hips, else by the shoulders of a body that sits as usual; false
+// without memory
+static bool find_place(const player_points *p, const himc_skeleton *s, himc_player *player)
 {
     himc_vec3 up = s->segment[HIMC_TRUNK].origin, sum = {0, 0, 0};
     int shown = 0;
@@ -144,8 +151,7 @@ static void find_place(const player_points *p, const himc_skeleton *s, himc_play
         player->hips =
             waist ? himc_vec3_sub(mean_place(p, POINT_WAIST), up) : mean_place(p, POINT_HIPS);
         player->placed = true;
-        find_walk(p, mean_place(p, POINT_HIPS), player);
-        return;
+        return find_walk(p, mean_place(p, POINT_HIPS), player);
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         if (!p->x[POINT_SHOULDER + hand])
@@ -159,6 +165,7 @@ static void find_place(const player_points *p, const himc_skeleton *s, himc_play
     player->placed = shown > 0;
     if (shown)
         player->hips = himc_vec3_scale(sum, 1.0 / shown);
+    return true;
 }
 
 // the posture of a body nothing is known of
@@ -183,9 +190,9 @@ static bool read_player(himc_player *player, player_points *p, himc_error *error
     if (!find_height(p, player, error) || !himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     player->mean = natural(&skeleton);
-    find_place(p, &skeleton, player);
+    bool found = find_place(p, &skeleton, player);
     himc_vec3 waist = himc_vec3_add(player->hips, skeleton.segment[HIMC_TRUNK].origin);
-    if (!himc_player_read_poses(player, p, &skeleton, p->x[POINT_HIPS] ? &waist : NULL))
+    if (!found || !himc_player_read_poses(player, p, &skeleton, p->x[POINT_HIPS] ? &waist : NULL))
         return himc_error_set(error, "%s: no memory for %d postures", p->take->file, p->frames);
     return true;
 }
@@ -219,5 +226,6 @@ void himc_player_free(himc_player *player)
     if (!player)
         return;
     free(player->pose);
+    free(player->walk);
     free(player);
 }

@@ -54,8 +54,8 @@ static void tell_places(const himc_player *player, const himc_place *drum, const
     himc_vec3 floor = himc_vec3_scale(player->offset, -1);
     himc_vec3 head = himc_vec3_add(drum->center, floor), hips = player->hips;
     himc_tell(to, "seat: hip joints %.3f m above the floor, by %s; in the take at %.3f %.3f %.3f m",
-              himc_skeleton_seat(&player->config),
-              player->placed ? "the take's own" : "the strikes", hips.x, hips.y, hips.z);
+              himc_skeleton_seat(&player->config), player->placed ? "the take's own" : "the tips",
+              hips.x, hips.y, hips.z);
     himc_tell(
         to,
         "drumhead: centre %.3f m before the player, %.3f m to the left, %.3f m high; in the take "

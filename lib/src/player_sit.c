@@ -3,9 +3,15 @@
 /// the head; only strikes that would miss the head move the drum. A take of tips alone is moved so
 /// that its strikes fall on the drum's usual spot: the player then sits where a player of that drum
 /// does.
+///
+/// A take that strikes nothing keeps the player's height above the floor, or, of tips alone, is
+/// moved until the player reaches all of it; the drum goes down out of its way. A player who walks
+/// is held by the hips, which do not move here, and the take with them.
 #include "player_sit.h"
 
 #include "himc/player.h"
+
+#include "take_data.h"
 
 #include <stdlib.h>
 
@@ -14,6 +20,10 @@
 #define ON_HEAD 0.97     // of the radius: strikes further out would miss
 #define DENT 0.012       // a head gives way by so much: a take this near our floor stands on it (m)
 #define OVER_HEAD 0.05   // where nothing is struck, the lowest place is so high above the head (m)
+#define LOWEST_HEAD 0.1  // (m)
+#define BESIDE_HEAD 0.05 // what passes so near beside a head is over it (m)
+#define SHIFTS 50        // of a take, each as far as the worst of it is out of reach ...
+#define LOOKED_AT 1000   // ... of so many of its frames
 
 // the middle of the take's strikes; false without any
 static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
@@ -98,18 +108,102 @@ static void seat_player(himc_player *player, himc_vec3 struck, himc_place *drum)
     player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, kept - player->hips.z);
 }
 
+// one who strikes nothing is as high above the floor as in the take
+static void keep_player(himc_player *player)
+{
+    double seat = fmin(fmax(player->hips.z, LOWEST_SEAT), HIGHEST_SEAT);
+    player->config.seat = seat;
+    player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, seat - player->hips.z);
+}
+
+// how the farthest place of the tips, moved by `offset`, must be moved to come into reach
+static himc_vec3 back_into_reach(const himc_posture *posture, const himc_take *take,
+                                 const himc_take_tip tips[HIMC_HANDS], himc_vec3 offset)
+{
+    himc_vec3 back = {0, 0, 0};
+    int frames = himc_take_frames(take), step = frames / LOOKED_AT + 1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; tips[hand].present && i < frames; i += step) {
+            himc_vec3 x = himc_vec3_add(tips[hand].x[i], offset);
+            himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
+            himc_vec3 way = himc_vec3_sub(near, x);
+            if (himc_vec3_length(way) > himc_vec3_length(back))
+                back = way;
+        }
+    return back;
+}
+
+// if all of it can be reached from one place, that is found; else one from which little is missing
+static bool bring_into_reach(himc_player *player, const himc_take *take,
+                             const himc_take_tip tips[HIMC_HANDS], const himc_place *drum)
+{
+    himc_skeleton skeleton;
+    himc_posture posture;
+    himc_vec3 best = player->offset;
+    double least = INFINITY;
+    if (!himc_skeleton_init(&skeleton, &player->config, NULL))
+        return false;
+    himc_posture_init(&posture, &skeleton, drum->center.z + player->config.mallet_radius);
+    for (int i = 0; i < SHIFTS && least > 1e-3; i++) {
+        himc_vec3 back = back_into_reach(&posture, take, tips, player->offset);
+        if (himc_vec3_length(back) < least) {
+            least = himc_vec3_length(back);
+            best = player->offset;
+        }
+        player->offset = himc_vec3_add(player->offset, himc_vec3_scale(back, 1.01));
+    }
+    player->offset = best;
+    return true;
+}
+
+// a head under a take that strikes nothing is lowered until it is not struck
+static void clear_drum(himc_place *drum, const himc_take *take,
+                       const himc_take_tip tips[HIMC_HANDS], himc_vec3 offset)
+{
+    double under = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; tips[hand].present && i < himc_take_frames(take); i++) {
+            himc_vec3 x = himc_place_from_world(drum, himc_vec3_add(tips[hand].x[i], offset));
+            if (hypot(x.x, x.y) < drum->radius + BESIDE_HEAD)
+                under = fmax(under, OVER_HEAD - x.z);
+        }
+    drum->center.z = fmax(drum->center.z - under / cos(drum->tilt), LOWEST_HEAD);
+}
+
+// takes the hips' way over the floor out of everything
+static void hold_hips(himc_player *player, himc_take *take)
+{
+    for (int i = 0; player->walk && i < take->frames; i++)
+        for (int k = 0; k < take->points; k++) {
+            himc_vec3 *x = himc_take_at(take, i, k);
+            x->x -= player->walk[i].x;
+            x->y -= player->walk[i].y;
+        }
+    free(player->walk);
+    player->walk = NULL;
+}
+
 bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
                      himc_place *drum)
 {
     himc_vec3 struck;
     himc_take_tip tips[HIMC_HANDS];
-    if (!himc_take_tips(take, options, tips, NULL) || !strike_place(take, tips, &struck))
+    hold_hips(player, take);
+    if (!himc_take_tips(take, options, tips, NULL))
         return false;
-    if (player->placed) {
+    bool strikes = strike_place(take, tips, &struck);
+    if (player->placed && strikes)
         seat_player(player, struck, drum);
-    } else {
-        himc_vec3 root = {0, 0, himc_skeleton_seat(&player->config)};
+    else if (player->placed)
+        keep_player(player);
+    else
         player->offset = himc_strike_offset(take, tips, drum, player->config.mallet_radius);
+    if (!player->placed && !strikes && !bring_into_reach(player, take, tips, drum))
+        return false;
+    if (!strikes)
+        clear_drum(drum, take, tips, player->offset);
+    if (!player->placed) {
+        himc_vec3 root = {0, 0, himc_skeleton_seat(&player->config)};
         player->hips = himc_vec3_sub(root, player->offset);
     }
     player->seated = true;

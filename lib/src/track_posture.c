@@ -13,9 +13,13 @@
 /// As published, joints are neither cut nor bent: a second fit, of all frames.
 #include "track_state.h"
 
+#include "stretch.h"
+
 #include <stdlib.h>
 
-#define BENDS 5            // Gauss-Newton steps: quadratic, from 5 cm to rounding
+#define BENDS 5            // Gauss-Newton steps: quadratic, from 5 cm to rounding ...
+#define MOST_BENDS 40      // ... and more, if the tip is still ...
+#define BENT 1e-8          // ... farther from its place (m)
 #define LARGEST_BEND 0.1   // of the tip, one step (m)
 #define DAMPING 1e-8       // of a straight arm (m^2)
 #define DIFFERENCE 5e-4    // step of the differences (s)
@@ -186,7 +190,9 @@ static arm arm_of(const himc_skeleton *skeleton, const himc_pose *pose, himc_han
     return a;
 }
 
-static void bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip, himc_pose *pose)
+// one step; how far the tip was from its place before it (m)
+static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip,
+                        himc_pose *pose)
 {
     static const double share[HIMC_ARM_JOINTS] = {0.1, 0.2, 0.5, 1};
     arm a = arm_of(skeleton, pose, hand);
@@ -210,6 +216,19 @@ static void bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 t
         turn = himc_quat_rotate(himc_quat_conj(a.parent[k]), turn);
         *q = himc_quat_unit(himc_quat_mul(himc_quat_exp(turn), *q));
     }
+    return far;
+}
+
+static void bend_arm(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip, himc_pose *pose)
+{
+    himc_vec3 waist = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    himc_vec3 up = skeleton->segment[himc_arm_joint(hand, 0) + 1].origin;
+    himc_vec3 shoulder = himc_vec3_add(waist, himc_quat_rotate(pose->joint[HIMC_TRUNK - 1], up));
+    himc_target asked = {.x = tip};
+    tip = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
+    double far = INFINITY;
+    for (int i = 0; i < BENDS || (i < MOST_BENDS && far > BENT); i++)
+        far = bend_once(skeleton, hand, tip, pose);
 }
 
 // the joints `dt` later, going on as they move, the arms bent to the tips of that time
@@ -225,8 +244,7 @@ static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_mo
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_vec3 x = himc_vec3_madd(himc_vec3_madd(tip[hand].x, dt, tip[hand].v), 0.5 * dt * dt,
                                      tip[hand].a);
-        for (int i = 0; i < BENDS; i++)
-            bend_once(skeleton, (himc_hand)hand, x, &pose);
+        bend_arm(skeleton, (himc_hand)hand, x, &pose);
     }
     return pose;
 }

@@ -1,0 +1,146 @@
+/// test_strange_takes.c: captures that were not made for a drummer, played: by one who does not
+/// strike, by one who walks, by one whose gestures no arm can follow.
+#include "take_players.h"
+
+#include "session.h"
+
+#include "stretch.h"
+
+#define SECONDS 3.0 // of the swings
+
+static const char *notes_of(himc_performance *p, char *text, size_t size)
+{
+    himc_event event;
+    text[0] = 0;
+    while (himc_performance_event(p, &event))
+        if (event.kind == HIMC_EVENT_NOTE)
+            snprintf(text + strlen(text), size - strlen(text), "%s\n", event.text);
+    return text;
+}
+
+static himc_performance_stats play(const char *mode, const char *file, const char *left,
+                                   const char *right, double seconds, char *notes, size_t size)
+{
+    himc_performance *p = session_new();
+    himc_take_options options = himc_take_default();
+    options.left_tip = left;
+    options.right_tip = right;
+    himc_performance_take_options(p, &options);
+    session_do(p, "mode %s", mode);
+    session_do(p, "take %s", file);
+    notes_of(p, notes, size);
+    session_do(p, "play");
+    session_play(p, seconds, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    himc_performance_free(p);
+    return s;
+}
+
+static void test_an_arm_that_reaches_about_is_followed_in_every_mode(void)
+{
+    static const char *const modes[] = {"himc", "id", "ik"};
+    char path[512], notes[1024];
+    const char *shared = shared_capture("upperlimb_pyomeca_100hz/markers_analogs.c3d");
+    if (!shared)
+        TEST_IGNORE_MESSAGE("no ../shared/mocap");
+    snprintf(path, sizeof path, "%s", shared);
+    for (int i = 0; i < 3; i++) {
+        himc_performance_stats s =
+            play(modes[i], path, NULL, "Daphnee:INDEX", 7.5, notes, sizeof notes);
+        TEST_ASSERT_TRUE_MESSAGE(1e3 * s.tip_rms < 0.2, modes[i]);
+        TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+        TEST_ASSERT_EQUAL_INT(0, s.strokes);
+        TEST_ASSERT_EQUAL_DOUBLE(0, s.peak_force); // the head is out of its way
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(notes, "out of the take's way"), notes);
+        TEST_ASSERT_NULL_MESSAGE(strstr(notes, "out of reach"), notes);
+    }
+}
+
+static void test_one_who_hops_through_the_room_does_so_on_the_spot(void)
+{
+    char path[512], notes[1024];
+    const char *shared = shared_capture("cmu131_bvh_120hz/131_03.bvh");
+    if (!shared)
+        TEST_IGNORE_MESSAGE("no ../shared/mocap");
+    snprintf(path, sizeof path, "%s", shared);
+    himc_performance_stats s =
+        play("ik", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
+    TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.005, notes); // was .6 m, from where the hips began
+    s = play("himc", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
+    TEST_ASSERT_TRUE(s.tip_rms < 0.05); // the head is where a hand goes down, and holds it up
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+}
+
+// markers of two tips that swing 1.2 m to each side, wherever a player stands; y is up
+static void write_swings(const char *path)
+{
+    FILE *file = fopen(path, "w");
+    int frames = (int)(100 * SECONDS);
+    TEST_ASSERT_NOT_NULL(file);
+    fprintf(file,
+            "PathFileType\t4\t(X/Y/Z)\t%s\n"
+            "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\t"
+            "OrigDataStartFrame\tOrigNumFrames\n100\t100\t%d\t2\tm\t100\t1\t%d\n"
+            "Frame#\tTime\tLTIP\t\t\tRTIP\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n",
+            path, frames, frames);
+    for (int i = 0; i < frames; i++) {
+        double t = i / 100.0, aside = 1.2 * sin(2 * HIMC_PI * t / SECONDS);
+        fprintf(file, "%d\t%.2f\t0.5\t1\t%.5f\t0.5\t1\t%.5f\n", i + 1, t, aside - 0.15,
+                aside + 0.15);
+    }
+    fclose(file);
+}
+
+typedef struct seen {
+    himc_skeleton skeleton;
+    double off;    // farthest of a tip from the nearest place to its target in reach (m)
+    double beyond; // farthest of a target from that place (m)
+} seen;
+
+static void see(void *user, const himc_tick *tick)
+{
+    seen *s = user;
+    if (tick->time < 1.2) // the way in
+        return;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_target asked = {.x = tick->target[hand]};
+        himc_vec3 near =
+            himc_stretch_towards(&asked, tick->body->origin[HIMC_LEFT_UPPER_ARM + hand],
+                                 himc_stretch(&s->skeleton, (himc_hand)hand))
+                .x;
+        s->off = fmax(s->off, himc_vec3_length(himc_vec3_sub(tick->body->tip[hand], near)));
+        s->beyond = fmax(s->beyond, himc_vec3_length(himc_vec3_sub(asked.x, near)));
+    }
+}
+
+static void test_an_arm_is_stretched_after_what_no_arm_can_follow(void)
+{
+    char notes[1024];
+    const char *path = "build/swings.trc";
+    seen s = {.off = 0};
+    himc_performance *p = session_new();
+    himc_skeleton_config config = himc_skeleton_default();
+    TEST_ASSERT_TRUE(himc_skeleton_init(&s.skeleton, &config, &error));
+    write_swings(path);
+    himc_performance_on_tick(p, see, &s);
+    session_do(p, "take %s", path);
+    notes_of(p, notes, sizeof notes);
+    session_do(p, "play");
+    session_play(p, SECONDS + 1.5, NULL);
+    printf("targets up to %.2f m out of reach, tips %.1f mm from the nearest place\n", s.beyond,
+           1e3 * s.off);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(notes, "tips out of reach in"), notes);
+    TEST_ASSERT_TRUE(s.beyond > 0.2);
+    TEST_ASSERT_TRUE(s.off < 0.02);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_an_arm_that_reaches_about_is_followed_in_every_mode);
+    RUN_TEST(test_one_who_hops_through_the_room_does_so_on_the_spot);
+    RUN_TEST(test_an_arm_is_stretched_after_what_no_arm_can_follow);
+    return UNITY_END();
+}
