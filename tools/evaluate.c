@@ -77,6 +77,8 @@ static bool read_only(const char *text, evaluation *e, himc_error *error)
     char words[256], *rest = NULL;
     for (int kind = 0; kind < TRIAL_KINDS; kind++)
         e->wanted[kind] = true;
+    if (text && strspn(text, ",") == strlen(text))
+        return himc_error_set(error, "--only: no word, allowed: words of one row");
     snprintf(words, sizeof words, "%s", text ? text : "");
     for (char *word = strtok_r(words, ",", &rest); word; word = strtok_r(NULL, ",", &rest))
         if (!keep_rows(e, word))
@@ -167,29 +169,21 @@ static bool evaluate(evaluation *e, const char *log, himc_error *error)
     return pool_run(&spread, error);
 }
 
-static bool write_table(const evaluation *e, const char *path, himc_error *error)
+static bool write_table(const evaluation *e, cli_file *file, himc_error *error)
 {
-    cli_file file = {0};
-    if (!path) {
-        trial_table_print(&e->table, stdout);
-        return true;
-    }
-    if (cli_file_open(&file, path, error)) {
-        trial_table_print(&e->table, file.stream);
-        if (cli_file_close(&file, error) && cli_file_keep(&file, error))
-            return true;
-    }
-    cli_file_drop(&file);
-    return false;
+    trial_table_print(&e->table, file->stream ? file->stream : stdout);
+    return cli_file_close(file, error) && cli_file_keep(file, error);
 }
 
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
     evaluation e = {0};
+    cli_file csv = {0};
     bool good = read_arguments(arguments, &e, &error) &&
-                evaluate(&e, arguments->value[LOG], &error) &&
-                write_table(&e, arguments->value[CSV], &error);
+                cli_file_open(&csv, arguments->value[CSV], &error) && // not after hours of trials
+                evaluate(&e, arguments->value[LOG], &error) && write_table(&e, &csv, &error);
+    cli_file_drop(&csv);
     evaluate_log_close(&e.log);
     trial_table_free(&e.table);
     free(e.todo);

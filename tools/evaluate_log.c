@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct column {
@@ -161,8 +162,6 @@ static bool read_row(trial_table *table, char *row, himc_error *error)
 {
     char *fields[FIELDS];
     double number, value;
-    if (!strncmp(row, KEY, strlen(KEY)))
-        return true;
     int count = split(row, fields), kind = count == FIELDS ? find_kind(table, fields) : -1;
     if (kind < 0)
         return himc_error_set(error, "no row of trials, allowed: %s and %d numbers", KEY, COLUMNS);
@@ -179,21 +178,37 @@ static bool read_row(trial_table *table, char *row, himc_error *error)
     return table->known[index] = true;
 }
 
-// all complete rows; `*end` is where the last one ends
+// the first line, without its end
+static void name_columns(char *text, size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "%s", KEY);
+    for (int i = 0; i < COLUMNS; i++)
+        used += (size_t)snprintf(text + used, size - used, ",%s", columns[i].name);
+}
+
+// all complete rows; `*end` is where the last one ends. What is no log is refused as it is
 static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t *end,
                       himc_error *error)
 {
-    char *row = NULL;
+    char *row = NULL, header[256];
     size_t room = 0;
     ssize_t length;
     bool good = true;
     *end = 0;
+    name_columns(header, sizeof header);
     for (int line = 1; good && (length = getline(&row, &room, stream)) > 0; line++) {
-        if (row[length - 1] != '\n')
+        bool whole = row[length - 1] == '\n';
+        if (!whole && (line > 1 || !strncmp(row, header, (size_t)length)))
             break; // an interrupted write: that trial is done again
-        row[length - 1] = '\0';
+        row[length - whole] = '\0';
         *end += length;
-        good = read_row(table, row, error) || himc_error_prefix(error, "%s:%d", path, line);
+        if (strcmp(row, header) == 0)
+            continue; // logs joined by cat have several
+        good = line > 1 ? read_row(table, row, error)
+                        : himc_error_set(
+                              error, "no log of trials, allowed: one that begins with %s", header);
+        if (!good)
+            himc_error_prefix(error, "%s:%d", path, line);
     }
     free(row);
     return good;
@@ -201,10 +216,9 @@ static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t 
 
 static bool begin(evaluate_log *log, himc_error *error)
 {
-    fputs(KEY, log->stream);
-    for (int i = 0; i < COLUMNS; i++)
-        fprintf(log->stream, ",%s", columns[i].name);
-    fputc('\n', log->stream);
+    char header[256];
+    name_columns(header, sizeof header);
+    fprintf(log->stream, "%s\n", header);
     return fflush(log->stream) == 0 ||
            himc_error_set(error, "%s: cannot be written: %s", log->path, strerror(errno));
 }
@@ -212,9 +226,12 @@ static bool begin(evaluate_log *log, himc_error *error)
 bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, himc_error *error)
 {
     off_t end;
+    struct stat status;
     if (!path)
         return true;
     snprintf(log->path, sizeof log->path, "%s", path);
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
+        return himc_error_set(error, "%s: not a file, which a log must be", path);
     log->stream = fopen(path, "a+");
     if (!log->stream)
         return himc_error_set(error, "%s: cannot be opened: %s", path, strerror(errno));

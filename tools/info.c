@@ -120,6 +120,12 @@ static bool describe_take(const cli_arguments *arguments, himc_error *error)
     himc_take *take = himc_take_load(arguments->operand, &take_options, error);
     if (!take)
         return false;
+    himc_take_tip tips[HIMC_HANDS];
+    bool named = take_options.left_tip || take_options.right_tip;
+    if (named && !himc_take_tips(take, &take_options, tips, error)) {
+        himc_take_free(take);
+        return false;
+    }
     himc_take_describe(take, &take_options, print_line, NULL);
     bool described = describe_player(take, &take_options, error);
     himc_take_free(take);

@@ -100,13 +100,17 @@ static bool add_default_drum(himc_performance *performance, double rate, himc_er
     return good;
 }
 
-/// Looks whether the score makes drums itself, and whether a WAV file can hold it.
-static bool inspect_score(const job *wanted, bool *makes_drums, himc_error *error)
+/// Looks whether the score makes drums itself, whether it goes round, and whether a WAV file can
+/// hold it.
+static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, himc_error *error)
 {
     himc_score *score = himc_score_load(wanted->source, error);
     if (!score)
         return false;
     *makes_drums = cli_first_drum(score) != NULL;
+    for (int i = 0; i < score->line_count; i++)
+        if (score->lines[i].command.id == HIMC_COMMAND_LOOP)
+            *loops = score->lines[i].command.atom[0].number != 0;
     double beat = score->stroke_count ? score->strokes[score->stroke_count - 1].beat : 0;
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
     himc_score_free(score);
@@ -117,21 +121,33 @@ static bool inspect_score(const job *wanted, bool *makes_drums, himc_error *erro
     return true;
 }
 
+/// A loop has no end that a file could have.
+static bool end_loop(himc_performance *performance, himc_error *error)
+{
+    himc_command command;
+    himc_atom none = {HIMC_ATOM_NUMBER, 0, "0"};
+    return himc_command_parse(&command, HIMC_PERFORMER, "loop", &none, 1, error) &&
+           himc_performance_command(performance, &command, 0, error);
+}
+
 static bool prepare(himc_performance *performance, const job *wanted, himc_error *error)
 {
-    bool take = cli_is_take(wanted->source), makes_drums = false;
+    bool take = cli_is_take(wanted->source), makes_drums = false, loops = false;
     himc_performance_make_drums(performance, true);
     himc_performance_take_options(performance, &wanted->take);
     if (wanted->mode && !tell(performance, "mode", wanted->mode, error))
         return false;
-    if (!take && !inspect_score(wanted, &makes_drums, error))
+    if (!take && !inspect_score(wanted, &makes_drums, &loops, error))
         return false;
     if (!makes_drums && !add_default_drum(performance, wanted->rate, error))
         return false;
     if (wanted->limits && !tell(performance, "limits", wanted->limits, error))
         return false;
-    return tell(performance, take ? "take" : "score", wanted->source, error) &&
-           tell(performance, "play", NULL, error);
+    if (!tell(performance, take ? "take" : "score", wanted->source, error))
+        return false;
+    if (loops)
+        printf("note: %s: loop: one round is rendered\n", wanted->source);
+    return (!loops || end_loop(performance, error)) && tell(performance, "play", NULL, error);
 }
 
 static bool open_sound(rendering *r, const char *path, int rate, himc_error *error)

@@ -155,7 +155,7 @@ typedef struct himc_performance_stats {
     int missed;             ///< the rest
     double tip_rms;         ///< distance of tip and target outside contact (m)
     double stroke_height;   ///< mean over strokes, apex to contact (m)
-    double tip_rms_percent; ///< tip_rms / stroke_height (%)
+    double tip_rms_percent; ///< tip_rms / stroke_height (%), NaN before the first stroke
     double peak_force;      ///< (N)
     int hits;               ///< asked for
     double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)

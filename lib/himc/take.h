@@ -81,6 +81,7 @@ typedef struct himc_take_tip {
     bool present;
     char name[64];
     int filled; ///< frames that were interpolated, or held at the ends
+    int point;  ///< of the take, which knows what it has seen of it
     himc_vec3
         *x; ///< (frames) (m), owned by the take until the next himc_take_tips or himc_take_free
 } himc_take_tip;

@@ -99,6 +99,10 @@ static bool count_frames(const c3d *r, int *frames)
         most = said[i] >= 1 && most == 0 ? said[i] : most;
         if (said[i] >= 1 && said[i] <= there && said[i] <= 1e6) {
             *frames = (int)said[i];
+            if (said[i] < most)
+                himc_take_note(r->take,
+                               "frames: the file is said to have %.0f and holds %.0f: %d are read",
+                               most, there, *frames);
             r->take->first_frame = start > 0 && start < 1e9 ? (int)start : first;
             return true;
         }

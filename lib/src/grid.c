@@ -8,7 +8,6 @@
 
 #include "matrix_file.h"
 
-#include <errno.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
@@ -225,11 +224,9 @@ himc_grid *himc_grid_load(const char *path, himc_error *error)
 {
     parts p = {0};
     himc_grid *grid = NULL;
-    FILE *file = fopen(path, "r");
-    if (!file) {
-        himc_error_set(error, "%s: %s", path, strerror(errno));
+    FILE *file = himc_open_regular(path, error);
+    if (!file)
         return NULL;
-    }
     if (read_parts(&p, file, path, error)) {
         grid = make(&p, error);
         if (!grid)

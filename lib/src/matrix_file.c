@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 typedef struct reader {
     FILE *file;
@@ -42,7 +43,10 @@ static bool next_line(reader *r)
         if (!fgets(r->text + used, (int)(r->size - used < 1 << 30 ? r->size - used : 1 << 30),
                    r->file))
             break;
-        used += strlen(r->text + used);
+        size_t got = strlen(r->text + used);
+        used += got;
+        if (got == 0) // bytes of nothing are no text
+            return false;
         if (used > 0 && r->text[used - 1] == '\n')
             break;
     }
@@ -185,12 +189,24 @@ static bool read_market(reader *r, matrix *m)
     return coordinate || read_array(r, m, symmetric);
 }
 
+FILE *himc_open_regular(const char *path, himc_error *error)
+{
+    struct stat status;
+    FILE *file = stat(path, &status) == 0 ? fopen(path, "r") : NULL;
+    if (file && S_ISREG(status.st_mode))
+        return file;
+    himc_error_set(error, "%s: %s", path, file ? "not a file" : strerror(errno));
+    if (file)
+        fclose(file);
+    return NULL;
+}
+
 bool himc_matrix_load(matrix *out, const char *path, int columns, himc_error *error)
 {
-    reader r = {.file = fopen(path, "r"), .path = path, .error = error};
+    reader r = {.file = himc_open_regular(path, error), .path = path, .error = error};
     matrix m = {0};
     if (!r.file)
-        return himc_error_set(error, "%s: %s", path, strerror(errno));
+        return false;
     bool good = next_row(&r, '#');
     if (!good)
         himc_error_set(error, "%s: empty", path);

@@ -86,7 +86,7 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
                                 .task_rate = p->config.task_rate};
     s.tip_rms = p->square_count ? sqrt(p->square_sum / (double)p->square_count) : 0;
     s.stroke_height = p->height_count ? p->height_sum / (double)p->height_count : 0;
-    s.tip_rms_percent = s.stroke_height > 0 ? 100 * s.tip_rms / s.stroke_height : 0;
+    s.tip_rms_percent = s.stroke_height > 0 ? 100 * s.tip_rms / s.stroke_height : NAN;
     return s;
 }
 

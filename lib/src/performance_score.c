@@ -128,9 +128,12 @@ static bool rehearse(himc_performance *p, const himc_score *score, const char *p
 {
     rehearsal r = {.performance = p};
     bool good = true;
-    for (int i = 0; i < score->line_count && good; i++)
-        good = rehearse_line(&r, &score->lines[i], error) ||
-               himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
+    for (int i = 0; i < score->line_count && good; i++) {
+        good = rehearse_line(&r, &score->lines[i], error);
+        if (good && score->lines[i].command.id == HIMC_COMMAND_TAKE && score->stroke_count > 0)
+            good = himc_error_set(error, "take: a score with strokes cannot play a take");
+        good = good || himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
+    }
     good = good && (count_drums(&r, score, error) || himc_error_prefix(error, "%s", path));
     for (int i = 0; i < r.drums; i++)
         himc_drum_release(r.drum[i]);
@@ -147,15 +150,33 @@ static bool run_line(himc_performance *p, const himc_score_line *line, himc_erro
            himc_drum_command(p->drum[index].drum, &line->command, error);
 }
 
+// what acts on the strokes or on what plays has its turn when they are there
+static bool comes_after_strokes(const himc_score_line *line)
+{
+    himc_command_id id = line->command.id;
+    return !line->drum[0] &&
+           (id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_CLEAR || id == HIMC_COMMAND_PLAY ||
+            id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK || id == HIMC_COMMAND_TARGET);
+}
+
+static bool run_lines(himc_performance *p, const himc_score *score, bool after, const char *path,
+                      himc_error *error)
+{
+    for (int i = 0; i < score->line_count; i++)
+        if (comes_after_strokes(&score->lines[i]) == after && !run_line(p, &score->lines[i], error))
+            return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
+    return true;
+}
+
 static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
                             himc_error *error)
 {
-    for (int i = 0; i < score->line_count; i++)
-        if (!run_line(p, &score->lines[i], error))
-            return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
-    himc_performance_notice_drums(p);
     // while one is played the next one waits for its end
     bool queued = p->playing && !p->track;
+    himc_performance_drop_track(p);
+    if (!run_lines(p, score, false, path, error))
+        return false;
+    himc_performance_notice_drums(p);
     if (!queued)
         himc_planner_clear(p->planner);
     double from = queued ? himc_planner_next_start(p->planner, step_time(p)) : 0;
@@ -167,7 +188,7 @@ static bool fill_from_score(himc_performance *p, const himc_score *score, const 
         if (!himc_performance_add_stroke(p, &stroke, error))
             return himc_error_prefix(error, "%s", path);
     }
-    return true;
+    return run_lines(p, score, true, path, error);
 }
 
 bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
@@ -178,8 +199,6 @@ bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_
         return false;
     bool ok = rehearse(p, score, path, error) && fill_from_score(p, score, path, error);
     himc_score_free(score);
-    if (ok)
-        himc_performance_drop_track(p);
     p->replan = true;
     return ok;
 }

@@ -6,9 +6,24 @@
 /// player holds them. Of an arm that the take shows it has the player's own way instead: the mean
 /// and the habit, the usual one corrected by this take's postures.
 #include "performance_state.h"
+#include "take_data.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+// says what was repaired in reading it
+static void note_repairs(himc_performance *p, himc_take *take, const char *path)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    for (int i = 0; i < take->note_count; i++)
+        himc_performance_note(p, "%s: %s", path, take->notes[i]);
+    if (!himc_take_tips(take, &p->take_options, tips, NULL))
+        return;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (tips[hand].present && tips[hand].filled > 0)
+            himc_performance_note(p, "%s: %s is missing in %d frames, which are filled", path,
+                                  tips[hand].name, tips[hand].filled);
+}
 
 // says how much of a take the player cannot follow; the arm then stretches towards it
 static void note_reach(himc_performance *p, const himc_track *track, const char *path)
@@ -167,6 +182,12 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     if (!himc_performance_learn_limits(player, &learned, error))
         return false;
     himc_player_sit(player, take, &p->take_options, &place);
+    if (player->placed && !player->walks && place.center.x < 0)
+        return himc_error_set(
+            error,
+            "the sticks strike %.2f m behind the player, allowed before: are left "
+            "and right exchanged?",
+            -place.center.x);
     himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
     if (!track)
         return false;
@@ -175,6 +196,7 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
         return false;
     }
     himc_performance_notice_drums(p);
+    note_repairs(p, take, path);
     note_reach(p, track, path);
     note_outside(p, take, track, p->drum[drum].drum, path);
     himc_performance_drop_track(p);

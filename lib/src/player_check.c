@@ -52,6 +52,7 @@ static bool check_size(const player_points *p, himc_error *error)
 {
     int good = 0, bad = 0;
     const player_measure *first = NULL;
+    int side = 0;
     double length = 0;
     for (int i = 0; i < PLAYER_LIMBS; i++)
         for (int hand = 0; hand < HIMC_HANDS && himc_player_limbs[i].tells_size; hand++) {
@@ -62,6 +63,7 @@ static bool check_size(const player_points *p, himc_error *error)
             bad += l > 0 && !fits;
             if (l > 0 && !fits && !first) {
                 first = m;
+                side = hand;
                 length = l;
             }
         }
@@ -69,7 +71,7 @@ static bool check_size(const player_points *p, himc_error *error)
         return true;
     return himc_error_set(error,
                           "%s: player: %s of %.3g m, allowed %.2f .. %.2f m: is the unit right?",
-                          p->take->file, himc_segment_name(first->segment), length,
+                          p->take->file, himc_segment_name(first->segment + side), length,
                           LEAST * first->usual, MOST * first->usual);
 }
 

@@ -19,7 +19,8 @@
 #define MOST_STROKES 200000
 #define MOST_LINES 10000
 #define MOST_BYTES (64l << 20)
-#define CLOSEST 0.04 // two strokes of one hand (s)
+#define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors' first characters
+#define CLOSEST 0.04                   // two strokes of one hand (s)
 
 /// A score being read; what came from which line is kept for messages.
 typedef struct reader {
@@ -190,6 +191,8 @@ static bool read_all(reader *r, const char *text)
                              .storage = storage,
                              .size = sizeof storage};
     int line = 1;
+    if (strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK)) == 0)
+        text += strlen(BYTE_ORDER_MARK);
     while (himc_text_next(&text, &line, &s)) {
         r->line = s.line;
         if (!read_statement(r, &s))

@@ -66,6 +66,8 @@ bool himc_trc_read(himc_take *take, const char *bytes, size_t size, himc_error *
 double himc_take_unit(const char *name);
 /// Turns runs of exact zeros that a trajectory jumps to into gaps, with a note (marker files).
 void himc_take_drop_zeros(himc_take *take);
+/// Turns frames in which a point jumps away and back into gaps, with a note; in metres.
+void himc_take_drop_spikes(himc_take *take);
 /// Brings everything into metres and the library's axes.
 bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_error *error);
 /// The same for lengths alone: finds the unit, says how in units_text, scales.

@@ -27,7 +27,8 @@ static const char *const low_words[] = {"hips", "hip",  "joint", "pelvis", "asis
                                         "psi",  "knee", "ankle", "foot",   "toe",  "heel", NULL};
 static const char *const shoulder_words[] = {"shoulder", "sho", "acromion", "acr", "joint", NULL};
 
-#define SAMPLED 200 // frames looked at are about so many, spread over the take
+#define BLURRED 40.0 // a blow's few milliseconds are less than a third of a frame (Hz)
+#define SAMPLED 200  // frames looked at are about so many, spread over the take
 
 static int named(const himc_take *take, int point, const char *const *words, char rest[TAKE_NAME])
 {
@@ -243,12 +244,40 @@ static void say_axes(himc_take *take, himc_vec3 up, const char *heading)
              up.x + up.y + up.z < 0 ? "-" : "", axis, reason, heading);
 }
 
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+// what is asked for by name is the first of that name
+static void note_names(himc_take *take)
+{
+    size_t count = (size_t)take->points;
+    const char **name = malloc(count * sizeof *name);
+    for (size_t i = 0; name && i < count; i++)
+        name[i] = take->names[i];
+    if (name)
+        qsort(name, count, sizeof *name, by_name);
+    for (size_t i = 1; name && i < count; i++)
+        if (strcmp(name[i - 1], name[i]) == 0) {
+            himc_take_note(take, "names: more than one point is called %s, the first is read",
+                           name[i]);
+            break;
+        }
+    free(name);
+}
+
 bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_error *error)
 {
     if (!take->parents)
         himc_take_drop_zeros(take);
     if (!himc_take_settle_units(take, options, error))
         return false;
+    himc_take_drop_spikes(take);
+    note_names(take);
+    if (take->rate < BLURRED)
+        himc_take_note(take, "rate: at %g Hz strikes are blurred, and may be missed or misplaced",
+                       take->rate);
     himc_vec3 up = find_up(take, options->up), left, rest_left;
     himc_mat3 stand = stand_up(up, take->file_right), a = stand, b;
     const char *heading = "heading as in the file";

@@ -105,10 +105,8 @@ int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_op
     if (name)
         return himc_take_find(take, name);
     int found = best_tip(take, hand);
-    if (found >= 0 || hand == HIMC_LEFT)
-        return found;
-    // a lone bead without a side belongs to the right hand, unless it was named as the left one
-    int lone = best_tip(take, HIMC_HANDS);
-    bool taken = lone >= 0 && options->left_tip && himc_take_find(take, options->left_tip) == lone;
-    return taken ? -1 : lone;
+    if (found < 0 && hand == HIMC_RIGHT) // a lone bead without a side
+        found = best_tip(take, HIMC_HANDS);
+    const char *other = hand == HIMC_LEFT ? options->right_tip : options->left_tip;
+    return found >= 0 && other && himc_take_find(take, other) == found ? -1 : found;
 }

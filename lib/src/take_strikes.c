@@ -15,9 +15,13 @@
 /// the one from before passes the height of the lowest position. In a sharp track the speed is the
 /// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
 /// beyond is not the filter's to tell.
+///
+/// Where the tip was not seen for longer than a contact there is no telling: what fills a gap bends
+/// as it likes.
 #include "himc/take.h"
 
 #include "noise.h"
+#include "take_data.h"
 
 #include <stdlib.h>
 
@@ -25,10 +29,13 @@
 #define REFRACTORY 0.05 // strikes of one hand are further apart (s)
 #define WINDOW 0.03     // (s)
 #define CONTACT 0.007   // of a felt mallet with a drumhead (s)
+#define UNSEEN 0.012    // longer gaps hide whether there was one (s)
 #define CERTAIN 5.0     // standard deviations of noise that a bend must exceed
 #define CALM 100.0      // noise's bend, that many times, up to which differences stay short (m/s^2)
 
 typedef struct track {
+    const himc_take *take;
+    int point;
     const himc_vec3 *x;
     int frames;
     double rate;
@@ -141,6 +148,28 @@ typedef struct spike {
     double bend, rise; // A, D
 } spike;
 
+static bool is_unseen(const track *t, int frame)
+{
+    return frame < 0 || frame >= t->frames ||
+           !himc_vec3_finite(*himc_take_at(t->take, frame, t->point));
+}
+
+// whether frames from .. to reach into a gap that hides a strike; at the take's ends any does
+static bool in_gap(const track *t, int from, int to)
+{
+    int most = frames_of(t, UNSEEN, 2);
+    for (int i = from; i <= to; i++) {
+        int begin = i, end = i;
+        while (begin >= 0 && is_unseen(t, begin) && i - begin <= most)
+            begin--;
+        while (end < t->frames && is_unseen(t, end) && end - i <= most)
+            end++;
+        if (is_unseen(t, i) && (begin < 0 || end == t->frames || end - begin - 1 > most))
+            return true;
+    }
+    return false;
+}
+
 static bool is_strike(const track *t, int i, int h, spike *s)
 {
     int w = frames_of(t, WINDOW, 3);
@@ -157,7 +186,7 @@ static bool is_strike(const track *t, int i, int h, spike *s)
     *s = (spike){i, bend(t, i, h), up - down};
     double width = fmax(0.024, 3 / t->rate);
     return down < -LEAST_SPEED && up > 0.3 * down && s->rise < width * s->bend &&
-           s->bend > noise_bend(t, h);
+           s->bend > noise_bend(t, h) && !in_gap(t, i - h, i + h);
 }
 
 static double bend_or_zero(const track *t, int i, int h)
@@ -253,7 +282,7 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
     int from[HIMC_HANDS] = {0, 0}, count = 0;
     bool waits[HIMC_HANDS];
     for (int h = 0; h < HIMC_HANDS; h++) {
-        tracks[h] = (track){tips[h].x, himc_take_frames(take), himc_take_rate(take), 0};
+        tracks[h] = (track){take, tips[h].point, tips[h].x, take->frames, take->rate, 0};
         tracks[h].noise = tips[h].present ? himc_noise(tips[h].x, tracks[h].frames) : 0;
         waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
     }

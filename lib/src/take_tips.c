@@ -121,6 +121,7 @@ static bool fill_tip(himc_take *take, himc_hand hand, int point, double longest,
         return refuse_gap(take, hand, point, g, longest, error);
     snprintf(tip->name, sizeof tip->name, "%s", take->names[point]);
     tip->x = take->tip[hand];
+    tip->point = point;
     tip->present = true;
     return true;
 }
@@ -164,6 +165,9 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
             return refuse_name(take, (himc_hand)hand, name, error);
         if (point < 0)
             continue;
+        if (found && tips[HIMC_LEFT].point == point)
+            return himc_error_set(error, "%s: %s is named as both tips, allowed: one for each",
+                                  take->file, take->names[point]);
         if (!fill_tip(take, (himc_hand)hand, point, options->longest_gap, &tips[hand], error))
             return false;
         found++;

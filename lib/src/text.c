@@ -96,12 +96,11 @@ static void skip_space(const char **text, int *line)
 
 static void add_word(himc_text_statement *statement, const char *word)
 {
-    if (!word)
-        statement->overflow = true;
-    if (word && statement->count < statement->capacity) {
+    statement->overflow = statement->overflow || !word;
+    if (statement->count < statement->capacity) {
         himc_atom *atom = &statement->atom[statement->count];
-        *atom = (himc_atom){HIMC_ATOM_SYMBOL, 0, word};
-        if (himc_text_number(word, &atom->number))
+        *atom = (himc_atom){HIMC_ATOM_SYMBOL, 0, word ? word : ""};
+        if (himc_text_number(atom->symbol, &atom->number))
             atom->kind = HIMC_ATOM_NUMBER;
     }
     statement->count++;

@@ -386,7 +386,7 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
         i--; // separated after the bridge's end: it is lengthened
     }
     bridge *b = &h->bridges[i];
-    b->to = t + REJOIN;
+    b->to = fmax(t + REJOIN, b->next / track->rate); // between last and next nothing is known
     if (i + 1 < h->bridge_count)
         b->to = fmin(b->to, h->bridges[i + 1].from - 1e-3);
     b->to = fmin(b->to, (track->frames - 1) / track->rate);
