@@ -126,6 +126,11 @@ HIMC_RT himc_target himc_planner_target(const himc_planner *planner, himc_hand h
 HIMC_RT void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
                                     const himc_target *measured);
 
+/// The tip is in this state at `t`, wherever the plan had it: the plan goes on from there, C2. What
+/// was planned is planned anew. A state that is not finite is ignored.
+HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand,
+                                 const himc_target *state);
+
 /// The stroke that hand is on or about to play at `t`: its drum, spot and planned time of contact.
 /// A stroke is the current one until 50 ms after its time, or half way to the next. False if none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,

@@ -9,6 +9,8 @@
 
 #include "himc/command.h"
 
+#define HIMC_TEMPO 100 ///< where none is given (beats per minute)
+
 typedef struct himc_tempo_change {
     double beat; ///< from here on (beats)
     double bpm;  ///< 40 .. 200 are what the nuances are made for; 1 .. 1000 are taken

@@ -49,10 +49,13 @@ static inline void himc_chain_add(himc_chain *chain, double t0, const himc_targe
         chain->piece[chain->count++] = himc_piece_make(t0, from, t1, to);
 }
 
-/// Forgets what comes after t.
+/// Forgets what comes after t. The state at t stays, also where a piece that does not go on from
+/// the one before begins there: of such a piece nothing but its beginning is left.
 static inline void himc_chain_cut(himc_chain *chain, double t)
 {
-    while (chain->count > 1 && chain->piece[chain->count - 1].t0 >= t)
+    const himc_piece *piece = chain->piece;
+    while (chain->count > 1 && piece[chain->count - 1].t0 >= t &&
+           (piece[chain->count - 1].t0 > t || piece[chain->count - 2].t0 >= t))
         chain->count--;
     if (chain->count > 0)
         chain->piece[chain->count - 1].t1 = fmin(chain->piece[chain->count - 1].t1, t);

@@ -11,8 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TORN 0.01     // a joint further apart holds nothing (m)
-#define FORESIGHT 1.2 // a stroke further ahead does not turn the trunk yet (s)
+#define TORN 0.01        // a joint further apart holds nothing (m)
+#define REST_HEIGHT 0.12 // of resting tips above the sticks' level, until there is a drum (m)
+#define FORESIGHT 1.2    // a stroke further ahead does not turn the trunk yet (s)
 
 himc_performance_config himc_performance_default(void)
 {
@@ -41,7 +42,7 @@ static uint64_t steps_per_task(const himc_performance *p)
 
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t)
 {
-    if (p->track && isfinite(p->track_start) && himc_track_present(p->track, hand))
+    if (himc_performance_tracks(p, hand))
         return himc_track_target(p->track, hand, t - p->track_start);
     return himc_planner_target(p->planner, hand, t);
 }
@@ -86,6 +87,7 @@ static void fill_tick(himc_performance *p, himc_task_tick *tick, double t)
         tick->tip[hand] = himc_performance_planned(p, (himc_hand)hand, t);
     himc_performance_posture(p, t, tick->tip, &tick->posture);
     himc_performance_follow_habit(p, tick);
+    himc_performance_ease(p, tick);
 }
 
 // Read task: the targets at the next tick, and at this one if the plan has changed since it was
@@ -123,6 +125,19 @@ static himc_skeleton weigh(const himc_performance *p, const himc_skeleton *skele
     return plant;
 }
 
+void himc_performance_fresh_controller(const himc_performance *p, himc_controller *controller)
+{
+    himc_planner_config resting = himc_planner_default();
+    himc_posture posture = p->posture;
+    himc_body_state state;
+    himc_pose pose;
+    himc_posture_init(&posture, &p->skeleton, resting.rest[HIMC_RIGHT].z - REST_HEIGHT);
+    posture.rest = p->posture.rest;
+    himc_posture_at(&posture, resting.rest, &pose);
+    himc_pose_to_state(&p->skeleton, &pose, NULL, &state);
+    himc_controller_init(controller, &p->skeleton, &state);
+}
+
 bool himc_performance_build_body(himc_performance *p, himc_error *error)
 {
     himc_skeleton skeleton;
@@ -137,6 +152,7 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     p->skeleton = skeleton;
     p->plant = plant;
     p->habit_since = p->has_habit ? step_time(p) : -INFINITY; // the body begins in the posture
+    himc_performance_forget_ease(p);                          // likewise
     himc_posture_init(&p->posture, &skeleton, p->posture.level);
     for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
         if (p->manner_known[j])
@@ -148,7 +164,7 @@ bool himc_performance_build_body(himc_performance *p, himc_error *error)
     p->reference.posture = p->from.posture;
     place_body(p);
     himc_controller *c = &p->controller, old = *c;
-    himc_controller_init(c, &skeleton, &p->state);
+    himc_performance_fresh_controller(p, c);
     c->mode = old.mode;
     c->law = old.law;
     c->solver = old.solver;
@@ -361,7 +377,7 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
     planning.beyond = beyond_reach;
     planning.body = p;
     p->planner = himc_planner_new(&planning, error);
-    p->posture.level = planning.rest[HIMC_RIGHT].z - 0.12;
+    p->posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
     himc_performance_forget_touch(p);
     himc_performance_reset_clock(p);
     if (!p->planner || !himc_performance_build_body(p, error)) {

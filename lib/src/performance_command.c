@@ -90,14 +90,8 @@ static bool do_law(himc_performance *p, const himc_command *c, himc_error *error
 static bool reset_gains(himc_performance *p)
 {
     himc_controller fresh;
-    himc_body_state state;
-    himc_pose pose;
-    himc_vec3 level[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        level[hand] = p->from.tip[hand].x;
-    himc_posture_at(&p->posture, level, &pose);
-    himc_pose_to_state(&p->skeleton, &pose, NULL, &state);
-    himc_controller_init(&fresh, &p->skeleton, &state);
+    himc_performance_fresh_controller(p, &fresh);
+    memcpy(p->controller.inertia, fresh.inertia, sizeof fresh.inertia);
     memcpy(p->controller.gain, fresh.gain, sizeof fresh.gain);
     memcpy(p->controller.gain_set, fresh.gain_set, sizeof fresh.gain_set);
     return true;
@@ -169,6 +163,8 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
     himc_skeleton_config old = p->body;
     p->body.height = c->atom[0].number;
     p->body.mass = c->atom[1].number;
+    p->body.seat = p->body.shoulders = 0; // whatever a take has measured
+    memset(p->body.length, 0, sizeof p->body.length);
     if (himc_performance_build_body(p, error))
         return true;
     p->body = old;
@@ -214,18 +210,22 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     p->body = himc_skeleton_default();
     p->controller = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE}; // not the gains set since
     p->limits.kind = HIMC_LIMITS_OFF;
-    p->human = false;
+    p->human = p->has_habit = false;
     p->strain = (himc_strain){.steps = 0};
+    p->grip = HIMC_GRIP_GERMAN;
+    p->course.time = 0; // trunk and grip as in the beginning
+    memset(p->manner_known, 0, sizeof p->manner_known);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        p->weight[i] = 1;
+    himc_performance_drop_track(p);
     if (!himc_performance_build_body(p, error)) {
         p->body = old;
         return false;
     }
-    himc_performance_drop_track(p);
     himc_planner_stop(p->planner, step_time(p));
     himc_planner_clear(p->planner);
+    himc_planner_set_tempi(p->planner, &(himc_tempo_change){0, HIMC_TEMPO}, 1, NULL);
     himc_planner_loop(p->planner, step_time(p), false);
-    p->grip = HIMC_GRIP_GERMAN;
-    p->has_habit = false;
     himc_planner_set_grip(p->planner, p->grip);
     himc_planner_clear_units(p->planner);
     p->controller.mode = HIMC_PIPELINE_HIMC;
@@ -235,6 +235,9 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     p->config.task_rate = himc_performance_default().task_rate;
     p->one_way = p->playing = p->unbent = false;
     memset(p->push, 0, sizeof p->push);
+    memset(p->beyond, 0, sizeof p->beyond);
+    p->waiting_count = 0;
+    p->commands_dropped = 0;
     p->square_sum = p->height_sum = p->peak_force = 0;
     p->square_count = p->height_count = p->recoveries = 0;
     p->strokes = p->played = p->hits = 0;
@@ -296,14 +299,16 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_LISTEN] = do_network,
 };
 
-// commands that act at their sample; the others, which may allocate or read files, act at once
+// commands that act at their sample; others, which may allocate, read files or be refused for what
+// the parser does not know, act at once
 static bool waits(himc_command_id id)
 {
     return id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_TARGET || id == HIMC_COMMAND_TEMPO ||
            id == HIMC_COMMAND_PLAY || id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK ||
            id == HIMC_COMMAND_MODE || id == HIMC_COMMAND_LAW || id == HIMC_COMMAND_SOLVER ||
            id == HIMC_COMMAND_DAMPING || id == HIMC_COMMAND_ELBOW || id == HIMC_COMMAND_WEIGHTS ||
-           id == HIMC_COMMAND_COUPLING || id == HIMC_COMMAND_PUSH;
+           id == HIMC_COMMAND_COUPLING || id == HIMC_COMMAND_PUSH || id == HIMC_COMMAND_POSTURE ||
+           id == HIMC_COMMAND_BEND;
 }
 
 // drums that a waiting command will want are made now, not in the audio callback

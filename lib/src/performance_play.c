@@ -32,6 +32,8 @@ bool himc_performance_do_stroke(himc_performance *p, const himc_command *c, himc
 bool himc_performance_do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     int drum;
+    if (!himc_performance_lend_hand(p, c->stroke.hand))
+        return himc_error_set(error, "hit: a take has the hands, allowed when it is over");
     if (!himc_performance_ensure_drum(p, c->stroke.drum, &drum, error))
         return false;
     himc_performance_tell_places(p);
@@ -58,9 +60,9 @@ bool himc_performance_do_tempo(himc_performance *p, const himc_command *c, himc_
 
 void himc_performance_drop_track(himc_performance *p)
 {
+    himc_performance_take_hands_back(p);
     himc_track_free(p->track);
     p->track = NULL;
-    p->track_start = INFINITY;
     p->has_learned = false;
     himc_performance_renew_limits(p);
     if (p->habit_of_take)
@@ -143,6 +145,13 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
 {
     if (!himc_vec3_finite(asked))
         return;
+    if (!himc_performance_lend_hand(p, hand)) {
+        if (!p->beyond[hand])
+            himc_performance_note(p, "target %s: a take has the hands, allowed when it is over",
+                                  himc_hand_name(hand));
+        p->beyond[hand] = true;
+        return;
+    }
     himc_vec3 x = himc_posture_reachable(&p->posture, hand, asked);
     bool beyond = himc_vec3_length(himc_vec3_sub(x, asked)) > 1e-3;
     if (beyond && !p->beyond[hand]) // one line each time a stream leaves what can be reached

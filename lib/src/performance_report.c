@@ -57,7 +57,9 @@ static void measure_height(himc_performance *p, himc_hand hand)
 void himc_performance_measure_step(himc_performance *p)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        if (p->track && !himc_track_present(p->track, (himc_hand)hand))
+        bool tracks = himc_performance_tracks(p, (himc_hand)hand);
+        bool idle = p->track && !himc_track_present(p->track, (himc_hand)hand);
+        if (idle || (tracks && step_time(p) < p->track_start)) // nor on its way to a take
             continue;
         measure_height(p, (himc_hand)hand);
         if (p->touch[hand].released || p->touch[hand].touching)

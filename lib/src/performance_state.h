@@ -1,7 +1,7 @@
 /// performance_state.h: what a performance holds, shared by the files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_drums.c (what is
 /// struck), performance_command.c, performance_play.c, performance_score.c and performance_take.c
-/// (what is asked), performance_habit.c (how the arms go with it), performance_limits.c (how far
+/// (what is asked), performance_hands.c (of the planner or of the take), performance_habit.c (how the arms go with it), performance_limits.c (how far
 /// joints turn and how strong they are), performance_push.c (who pushes), performance_report.c
 /// (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
@@ -98,8 +98,13 @@ struct himc_performance {
     // what to play
     himc_planner *planner;
     himc_track *track;  // instead of the planner when a take is loaded
-    double track_start; // (s); infinite while stopped
-    bool unbent;        // in `id` its joints are followed as captured
+    double track_start; // (s); infinite while the planner has the hands
+    struct {
+        bool due;     // to be made from the next tick on
+        double since; // (s)
+        himc_quintic off[HIMC_JOINTS];
+    } ease;      // of the joint targets from one source to another
+    bool unbent; // in `id` its joints are followed as captured
     himc_take_options take_options;
     double piece_start, end; // of the piece being played (s)
     bool playing;
@@ -156,6 +161,8 @@ static inline double step_time(const himc_performance *p)
 
 // performance.c
 bool himc_performance_build_body(himc_performance *p, himc_error *error);
+/// As it is for this body at rest, whatever it is doing now.
+void himc_performance_fresh_controller(const himc_performance *p, himc_controller *controller);
 void himc_performance_reset_clock(himc_performance *p);
 void himc_performance_notice_drums(himc_performance *p);
 himc_target himc_performance_planned(const himc_performance *p, himc_hand hand, double t);
@@ -197,6 +204,16 @@ performance_action himc_performance_do_loop, himc_performance_do_stroke, himc_pe
     himc_performance_do_stop, himc_performance_do_seek, himc_performance_do_target,
     himc_performance_do_units;
 void himc_performance_drop_track(himc_performance *p);
+
+// performance_hands.c
+/// Whether the take has that hand now.
+bool himc_performance_tracks(const himc_performance *p, himc_hand hand);
+/// The planner goes on with what hands the take has.
+void himc_performance_take_hands_back(himc_performance *p);
+/// The hand for a hit or a live target, if its take is over; false while that plays.
+bool himc_performance_lend_hand(himc_performance *p, himc_hand hand);
+void himc_performance_forget_ease(himc_performance *p);
+void himc_performance_ease(himc_performance *p, himc_task_tick *tick);
 
 // performance_take.c
 performance_action himc_performance_do_take;

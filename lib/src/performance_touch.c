@@ -19,6 +19,7 @@
 #define LONG_GAP 0.005    // ... and of any (s)
 #define LONGEST 0.060     // control lets go at most so long (s)
 #define WINDOW 0.015      // after the planned time, for a contact still to come (s)
+#define REPLANNED 0.02    // a stroke that was given up may be planned again so much later (s)
 #define SAME_STROKE 0.100 // between planned and real contact of one stroke (s)
 
 void himc_performance_forget_touch(himc_performance *p)
@@ -31,7 +32,7 @@ stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, dou
 {
     stroke_plan next = {.any = false, .drum = 0};
     himc_stroke stroke;
-    if (p->track && himc_track_present(p->track, hand)) {
+    if (himc_performance_tracks(p, hand)) {
         next.any =
             himc_track_current(p->track, hand, t - p->track_start, &next.time, &next.x, &next.y);
         next.time += p->track_start;
@@ -43,7 +44,7 @@ stroke_plan himc_performance_plan(const himc_performance *p, himc_hand hand, dou
                              &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
     }
-    next.any = next.any && next.time > p->touch[hand].answered && isfinite(next.time);
+    next.any = next.any && next.time > p->touch[hand].answered + REPLANNED && isfinite(next.time);
     return next;
 }
 
@@ -63,7 +64,7 @@ static himc_target measured_tip(const himc_performance *p, himc_hand hand)
 static void go_on_from_here(himc_performance *p, himc_hand hand, double t)
 {
     himc_target measured = measured_tip(p, hand);
-    if (p->track && himc_track_present(p->track, hand))
+    if (himc_performance_tracks(p, hand))
         himc_track_separated(p->track, hand, t - p->track_start, &measured);
     else
         himc_planner_separated(p->planner, hand, t, &measured);

@@ -40,7 +40,7 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     }
     planner->config = *config;
     planner->tempi = tempi;
-    planner->tempi[0] = (himc_tempo_change){0, 100};
+    planner->tempi[0] = (himc_tempo_change){0, HIMC_TEMPO};
     planner->tempo_count = 1;
     for (int i = 0; i < HIMC_DRUMS; i++)
         planner->place[i] = (himc_place){{0.75, 0, 0.85}, 0, 0.2921};

@@ -242,14 +242,31 @@ himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, dou
     return himc_hand_at(&planner->hand[hand].plan, t);
 }
 
+static bool is_finite(double t, const himc_target *s)
+{
+    return isfinite(t) && himc_vec3_finite(s->x) && himc_vec3_finite(s->v) &&
+           himc_vec3_finite(s->a);
+}
+
+void himc_planner_resume(himc_planner *planner, double t, himc_hand hand, const himc_target *state)
+{
+    planner_hand *h = &planner->hand[hand];
+    if (!is_finite(t, state))
+        return;
+    unplan_after(h, t, 0);
+    h->touches = 0;
+    himc_hand_restart(&h->plan, t, state, HUGE_VAL);
+    h->plan.struck = false;
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+}
+
 void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
                             const himc_target *measured)
 {
     planner_hand *h = &planner->hand[hand];
-    if (!isfinite(t) || !himc_vec3_finite(measured->x) || !himc_vec3_finite(measured->v) ||
-        !himc_vec3_finite(measured->a))
-        return;
     planner_touch next;
+    if (!is_finite(t, measured))
+        return;
     unplan_after(h, t, EARLY);
     bool more = next_touch(planner, hand, &next);
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);

@@ -286,7 +286,7 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
         himc_error_set(error, "%s: out of memory", name);
         return NULL;
     }
-    r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, 100};
+    r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
     good = read_all(&r, text) && sort_strokes(&r) && check_playable(&r);
     free(r.stroke_line);
     if (good)

@@ -324,10 +324,10 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     double at[3];
     if (!h->present)
         return (himc_target){.x = track->place.center}; // nobody asks
-    if (t < -0.5 * EASE && h->approach_time > 0)
-        return himc_quintic_at(&h->approach, fmax(t + 0.5 * EASE + h->approach_time, 0));
     if (t >= track->stop)
         return himc_quintic_at(&h->settle, fmin(t - track->stop, SETTLE));
+    if (t < -0.5 * EASE && h->approach_time > 0)
+        return himc_quintic_at(&h->approach, fmax(t + 0.5 * EASE + h->approach_time, 0));
     himc_track_warp(track, t, at);
     himc_target s = played_at(track, h, at[0]);
     s.a = himc_vec3_madd(himc_vec3_scale(s.a, at[1] * at[1]), at[2], s.v);
@@ -365,6 +365,8 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     if (!h->present || i >= h->bridge_count)
         return false;
     *contact_time = unwarp(track, h->bridges[i].contact);
+    if (fmax(t, *contact_time) >= track->stop)
+        return false;
     *x = h->bridges[i].place.x;
     *y = h->bridges[i].place.y;
     return true;

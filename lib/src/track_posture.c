@@ -142,18 +142,23 @@ static double approach_time(const himc_track *track)
     return fmax(track->hand[HIMC_LEFT].approach_time, track->hand[HIMC_RIGHT].approach_time);
 }
 
-// with the way in before the first frame and the way out after a stop
-static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
+// with the way in before the first frame
+static joint_state entered_joint(const himc_track *track, int j, double t, bool cut)
 {
     double approach = approach_time(track), since = t + 0.5 * EASE + approach;
-    if (t < -0.5 * EASE && approach > 0) {
-        joint_state first = {.q = track->joint[j][0].q};
-        between b = himc_between_make(fmax(since, 0), approach);
-        return himc_between_joints(&b, &track->before[j], &first);
-    }
-    if (t < track->stop)
+    if (t >= -0.5 * EASE || approach <= 0)
         return warped_joint(track, j, t, cut);
-    joint_state left = warped_joint(track, j, track->stop, cut), rest = {.q = left.q};
+    joint_state first = {.q = track->joint[j][0].q};
+    between b = himc_between_make(fmax(since, 0), approach);
+    return himc_between_joints(&b, &track->before[j], &first);
+}
+
+// and the way out after a stop
+static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
+{
+    if (t < track->stop)
+        return entered_joint(track, j, t, cut);
+    joint_state left = entered_joint(track, j, track->stop, cut), rest = {.q = left.q};
     rest.q = himc_quat_mul(himc_quat_exp(himc_vec3_scale(left.rate, 0.3 * SETTLE)), left.q);
     between b = himc_between_make(fmin(t - track->stop, SETTLE), SETTLE);
     return himc_between_joints(&b, &left, &rest);
