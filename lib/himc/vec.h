@@ -172,6 +172,13 @@ static inline himc_vec3 himc_mat3_apply_transposed(const himc_mat3 *a, himc_vec3
                        a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
 }
 
+/// R diag(d) R' v: v scaled by d along the axes that are the columns of the rotation R.
+static inline himc_vec3 himc_mat3_scale_along(const himc_mat3 *r, himc_vec3 d, himc_vec3 v)
+{
+    himc_vec3 local = himc_mat3_apply_transposed(r, v);
+    return himc_mat3_apply(r, (himc_vec3){d.x * local.x, d.y * local.y, d.z * local.z});
+}
+
 static inline himc_mat3 himc_mat3_mul(const himc_mat3 *a, const himc_mat3 *b)
 {
     himc_mat3 c;

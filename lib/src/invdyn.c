@@ -17,14 +17,6 @@ static himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_vec3 spin
     return himc_vec3_add(base, himc_vec3_cross(spin, himc_vec3_cross(spin, r)));
 }
 
-// rotational inertia times a vector: R diag(I) R' v
-static himc_vec3 inertia_times(const himc_mat3 *rotation, himc_vec3 inertia, himc_vec3 v)
-{
-    himc_vec3 local = himc_mat3_apply_transposed(rotation, v);
-    local = himc_vec3_make(inertia.x * local.x, inertia.y * local.y, inertia.z * local.z);
-    return himc_mat3_apply(rotation, local);
-}
-
 static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
                      const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
 {
@@ -51,8 +43,8 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
         himc_vec3 c = himc_mat3_apply(&s->rotation[i], segment->center);
         himc_vec3 a = add_centripetal(m[i].linear, m[i].angular, spin[i], c);
         himc_vec3 own = himc_vec3_scale(a, segment->mass);
-        himc_vec3 l = inertia_times(&s->rotation[i], segment->inertia, spin[i]);
-        himc_vec3 turn = inertia_times(&s->rotation[i], segment->inertia, m[i].angular);
+        himc_vec3 l = himc_mat3_scale_along(&s->rotation[i], segment->inertia, spin[i]);
+        himc_vec3 turn = himc_mat3_scale_along(&s->rotation[i], segment->inertia, m[i].angular);
         turn = himc_vec3_add(turn, himc_vec3_cross(spin[i], l));
         moment[i] = himc_vec3_add(moment[i], himc_vec3_add(turn, himc_vec3_cross(c, own)));
         force[i] = himc_vec3_add(force[i], own);

@@ -170,13 +170,6 @@ void himc_limits_yield(const himc_controller *c, const himc_skeleton *skeleton,
     }
 }
 
-static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3 v)
-{
-    himc_vec3 local = himc_mat3_apply_transposed(rotation, v);
-    return himc_mat3_apply(rotation,
-                           himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
-}
-
 // the way to the nearest orientation within, and how fast that is left, in the parent's frame
 static void find_way(const himc_limits *limits, int j, const place *at, himc_vec3 *way,
                      himc_vec3 *rate)
@@ -210,9 +203,9 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
         himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);
         himc_vec3 n = himc_mat3_apply(parent, himc_vec3_unit(way));
         // what a servo does to a joint's inertia drives it no further out
-        double outward = fmin(himc_vec3_dot(n, scale_axes(child, light, torque[j])), 0);
+        double outward = fmin(himc_vec3_dot(n, himc_mat3_scale_along(child, light, torque[j])), 0);
         a = himc_vec3_madd(himc_mat3_apply(parent, a), -outward, n);
-        torque[j] = himc_vec3_add(torque[j], scale_axes(child, i, a));
+        torque[j] = himc_vec3_add(torque[j], himc_mat3_scale_along(child, i, a));
         resistance[j] = himc_vec3_madd(resistance[j], h * w * (2 + h * w), i);
     }
 }
