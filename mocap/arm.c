@@ -12,19 +12,6 @@
 #define BEHIND 0.08    // where the stick's plane begins: behind the shoulder (m) ...
 #define BESIDE 0.05    // ... and outside it (m)
 
-static himc_quat frame_along(himc_vec3 along, himc_vec3 flexion)
-{
-    himc_vec3 z = himc_vec3_scale(along, -1);
-    himc_vec3 y = himc_vec3_unit(himc_vec3_madd(flexion, -himc_vec3_dot(flexion, z), z));
-    return himc_quat_from_mat3(himc_mat3_from_axes(himc_vec3_cross(y, z), y, z));
-}
-
-static himc_vec3 elevated(double azimuth, double elevation)
-{
-    return himc_vec3_make(cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth),
-                          sin(elevation));
-}
-
 static himc_vec3 shoulder_of(const himc_skeleton *skeleton, himc_quat trunk, himc_hand hand)
 {
     himc_vec3 waist = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
@@ -61,7 +48,8 @@ bool himc_mocap_arm(const himc_skeleton *skeleton, himc_quat trunk, himc_hand ha
     himc_vec3 start =
         himc_vec3_add(shoulder, himc_quat_rotate(trunk, himc_vec3_make(-BEHIND, side * BESIDE, 0)));
     double azimuth = atan2(key->tip.y - start.y, key->tip.x - start.x);
-    himc_vec3 stick = elevated(azimuth, key->stick), palm = elevated(azimuth, key->hand);
+    himc_vec3 stick = himc_vec3_elevated(azimuth, key->stick),
+              palm = himc_vec3_elevated(azimuth, key->hand);
     himc_vec3 flexion = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     double reach[3] = {himc_vec3_length(s[HIMC_LEFT_FOREARM].origin),
                        himc_vec3_length(s[HIMC_LEFT_HAND].origin),
@@ -73,11 +61,11 @@ bool himc_mocap_arm(const himc_skeleton *skeleton, himc_quat trunk, himc_hand ha
     himc_vec3 upper = himc_vec3_unit(himc_vec3_sub(elbow, shoulder));
     himc_vec3 lower = himc_vec3_unit(himc_vec3_sub(wrist, elbow));
     himc_quat roll = himc_quat_exp(himc_vec3_make(0, 0, side * THUMBS_UP * key->french));
-    himc_quat frame[HIMC_ARM_JOINTS + 1] = {trunk,
-                                            frame_along(upper, himc_vec3_cross(lower, upper)),
-                                            himc_quat_mul(frame_along(lower, flexion), roll),
-                                            himc_quat_mul(frame_along(palm, flexion), roll),
-                                            himc_quat_mul(frame_along(stick, flexion), roll)};
+    himc_quat frame[HIMC_ARM_JOINTS + 1] = {
+        trunk, himc_quat_from_limb(upper, himc_vec3_cross(lower, upper)),
+        himc_quat_mul(himc_quat_from_limb(lower, flexion), roll),
+        himc_quat_mul(himc_quat_from_limb(palm, flexion), roll),
+        himc_quat_mul(himc_quat_from_limb(stick, flexion), roll)};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         joint[k] = himc_quat_mul(himc_quat_conj(frame[k]), frame[k + 1]);
     return true;

@@ -76,6 +76,13 @@ static inline himc_vec3 himc_vec3_unit(himc_vec3 a)
     return length > 0 ? himc_vec3_scale(a, 1 / length) : a;
 }
 
+/// The unit vector at these angles (rad): azimuth from x towards y, elevation from there up to z.
+static inline himc_vec3 himc_vec3_elevated(double azimuth, double elevation)
+{
+    return himc_vec3_make(cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth),
+                          sin(elevation));
+}
+
 static inline himc_quat himc_quat_identity(void)
 {
     return (himc_quat){1, 0, 0, 0};
@@ -150,6 +157,9 @@ static inline himc_mat3 himc_mat3_from_quat(himc_quat q)
 
 /// Rotation matrix to unit quaternion (Shepperd's choice of the largest component).
 himc_quat himc_quat_from_mat3(himc_mat3 a);
+/// The frame of a limb that goes along the unit vector `along`: z back against it, y as near as may
+/// be to the axis of its `flexion`, level where that is along it too.
+himc_quat himc_quat_from_limb(himc_vec3 along, himc_vec3 flexion);
 
 /// The rotation whose columns are the given orthonormal, right-handed axes.
 static inline himc_mat3 himc_mat3_from_axes(himc_vec3 x, himc_vec3 y, himc_vec3 z)

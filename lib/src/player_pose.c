@@ -65,19 +65,6 @@ static himc_quat swing(himc_vec3 from, himc_vec3 to)
     return himc_quat_unit((himc_quat){1 + c, axis.x, axis.y, axis.z});
 }
 
-// z against `along`, y as near to `flexion` as may be
-static himc_quat frame_along(himc_vec3 along, himc_vec3 flexion)
-{
-    himc_vec3 z = himc_vec3_scale(along, -1);
-    himc_vec3 y = himc_vec3_madd(flexion, -himc_vec3_dot(flexion, z), z);
-    if (himc_vec3_length(y) < 1e-6) {
-        himc_vec3 level = {-z.y, z.x, 0};
-        y = himc_vec3_length(level) > 1e-6 ? level : himc_vec3_make(0, 1, 0);
-    }
-    y = himc_vec3_unit(y);
-    return himc_quat_from_mat3(himc_mat3_from_axes(himc_vec3_cross(y, z), y, z));
-}
-
 static himc_vec3 between_points(const reader *r, int from, int to, int frame)
 {
     himc_vec3 d = himc_vec3_sub(r->points->x[to][frame], r->points->x[from][frame]);
@@ -112,7 +99,7 @@ static void align_limb(const reader *r, const limb *l, int hand, limb_frame *f)
     f->node = from;
     f->align = swing(himc_vec3_make(0, 0, -1), zero);
     if (l->is_hand && fabs(zero.y) > SIDEWAYS)
-        f->align = frame_along(zero, himc_vec3_make(hand == HIMC_LEFT ? -1 : 1, 0, 0));
+        f->align = himc_quat_from_limb(zero, himc_vec3_make(hand == HIMC_LEFT ? -1 : 1, 0, 0));
 }
 
 // normal of the plane in which elbow or knee bends, as long as the sine of the angle; 0 elsewhere
@@ -168,10 +155,10 @@ static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
     }
     int beside = POINT_BESIDE + l->segment + hand;
     if (r->points->x[beside])
-        return frame_along(along, between_points(r, (int)l->from + hand, beside, frame));
+        return himc_quat_from_limb(along, between_points(r, (int)l->from + hand, beside, frame));
     if (l->is_hand)
-        return frame_along(along, across_stroke(r, hand, frame));
-    return frame_along(along, himc_vec3_add(bend_plane(r, l, hand, frame), f->plane));
+        return himc_quat_from_limb(along, across_stroke(r, hand, frame));
+    return himc_quat_from_limb(along, himc_vec3_add(bend_plane(r, l, hand, frame), f->plane));
 }
 
 static bool trunk_rotation(const reader *r, int frame, himc_quat *q)
@@ -189,7 +176,7 @@ static bool trunk_rotation(const reader *r, int frame, himc_quat *q)
     if (himc_vec3_length(down) < 1e-6)
         return false;
     down = himc_vec3_unit(down);
-    *q = frame_along(down, himc_vec3_sub(left, right));
+    *q = himc_quat_from_limb(down, himc_vec3_sub(left, right));
     return true;
 }
 

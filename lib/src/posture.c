@@ -107,20 +107,6 @@ himc_bearing himc_bearing_approach(const himc_bearing *now, const himc_bearing *
     return next;
 }
 
-// the frame with z against `along` and y as near to `flexion` as may be
-static himc_quat frame_along(himc_vec3 along, himc_vec3 flexion)
-{
-    himc_vec3 z = himc_vec3_scale(along, -1);
-    himc_vec3 y = himc_vec3_unit(himc_vec3_madd(flexion, -himc_vec3_dot(flexion, z), z));
-    return himc_quat_from_mat3(himc_mat3_from_axes(himc_vec3_cross(y, z), y, z));
-}
-
-static himc_vec3 elevated(double azimuth, double elevation)
-{
-    return himc_vec3_make(cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth),
-                          sin(elevation));
-}
-
 // a slope that flattens towards +-most
 static double rise(double height, double slope, double most)
 {
@@ -167,8 +153,8 @@ static void place_hand(const himc_posture *posture, himc_hand hand, himc_vec3 ti
     double hand_rise = between(HAND_RISE, FRENCH_HAND_RISE, a->french);
     a->tip = tip;
     double stick_rise = between(STICK_RISE, FRENCH_STICK_RISE, a->french);
-    a->stick = elevated(azimuth, rise(height, stick_rise, STICK_MOST));
-    a->hand = elevated(azimuth, HAND_LEVEL + rise(height, hand_rise, HAND_MOST));
+    a->stick = himc_vec3_elevated(azimuth, rise(height, stick_rise, STICK_MOST));
+    a->hand = himc_vec3_elevated(azimuth, HAND_LEVEL + rise(height, hand_rise, HAND_MOST));
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     a->grip = himc_vec3_madd(tip, -himc_vec3_length(posture->skeleton.tip), a->stick);
     double palm = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_STICK + hand].origin);
@@ -206,8 +192,9 @@ static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 
     himc_vec3 upper = himc_vec3_unit(himc_vec3_sub(a.elbow, a.shoulder));
     himc_vec3 lower = himc_vec3_unit(himc_vec3_sub(a.wrist, a.elbow));
     himc_quat frame[HIMC_ARM_JOINTS + 1] = {
-        a.trunk, frame_along(upper, himc_vec3_cross(lower, upper)), frame_along(lower, a.side),
-        frame_along(a.hand, a.side), frame_along(a.stick, a.side)};
+        a.trunk, himc_quat_from_limb(upper, himc_vec3_cross(lower, upper)),
+        himc_quat_from_limb(lower, a.side), himc_quat_from_limb(a.hand, a.side),
+        himc_quat_from_limb(a.stick, a.side)};
     double roll = (hand == HIMC_LEFT ? FRENCH_ROLL : -FRENCH_ROLL) * a.french;
     for (int k = 2; k <= HIMC_ARM_JOINTS; k++)
         frame[k] = himc_quat_mul(frame[k], himc_quat_exp(himc_vec3_make(0, 0, roll)));
