@@ -13,6 +13,8 @@
 /// Invariant: whatever the radii, nothing is divided by less than THINNEST.
 #include "himc/limits.h"
 
+#include "euler.h"
+
 #include <lapacke.h>
 #include <stdlib.h>
 
@@ -23,24 +25,6 @@
 static himc_vec3 at_least(himc_vec3 v, double least)
 {
     return himc_vec3_make(fmax(v.x, least), fmax(v.y, least), fmax(v.z, least));
-}
-
-// angles of Rz Ry Rx (rad); at the singularity, y a quarter turn, x takes all of the turn
-static himc_vec3 euler_angles(himc_quat q)
-{
-    himc_mat3 r = himc_mat3_from_quat(q);
-    double sine = fmin(fmax(-r.m[2][0], -1), 1);
-    if (fabs(sine) > 1 - 1e-12)
-        return himc_vec3_make(atan2(-r.m[1][2], r.m[1][1]), asin(sine), 0);
-    return himc_vec3_make(atan2(r.m[2][1], r.m[2][2]), asin(sine), atan2(r.m[1][0], r.m[0][0]));
-}
-
-static himc_quat from_euler(himc_vec3 angle)
-{
-    himc_quat x = himc_quat_exp(himc_vec3_make(angle.x, 0, 0));
-    himc_quat y = himc_quat_exp(himc_vec3_make(0, angle.y, 0));
-    himc_quat z = himc_quat_exp(himc_vec3_make(0, 0, angle.z));
-    return himc_quat_mul(z, himc_quat_mul(y, x));
 }
 
 // a rotation in the tangent space of the mean, along the ellipsoid's axes
@@ -57,7 +41,7 @@ static himc_vec3 divide(himc_vec3 a, himc_vec3 b)
 
 static double box_measure(const himc_limit *l, himc_quat rotation)
 {
-    himc_vec3 angle = euler_angles(himc_quat_mul(himc_quat_conj(l->mean), rotation));
+    himc_vec3 angle = himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), rotation));
     himc_vec3 middle = himc_vec3_scale(himc_vec3_add(l->lower, l->upper), 0.5);
     himc_vec3 half = at_least(himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5), THINNEST);
     himc_vec3 z = divide(himc_vec3_sub(angle, middle), half);
@@ -111,11 +95,11 @@ static double clamp(double value, double low, double high)
 
 static himc_quat closest_in_box(const himc_limit *l, himc_quat rotation)
 {
-    himc_vec3 angle = euler_angles(himc_quat_mul(himc_quat_conj(l->mean), rotation));
+    himc_vec3 angle = himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), rotation));
     himc_vec3 near = himc_vec3_make(clamp(angle.x, l->lower.x, l->upper.x),
                                     clamp(angle.y, l->lower.y, l->upper.y),
                                     clamp(angle.z, l->lower.z, l->upper.z));
-    return himc_quat_mul(l->mean, from_euler(near));
+    return himc_quat_mul(l->mean, himc_euler_to_quat(near));
 }
 
 himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_quat rotation)
@@ -252,7 +236,8 @@ static bool fit_ellipsoid(himc_limit *l, himc_vec3 *t, const himc_vec3 *kept, in
 static void fit_box(himc_limit *l, const himc_pose *pose, int frames, int joint)
 {
     for (int f = 0; f < frames; f++) {
-        himc_vec3 e = euler_angles(himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]));
+        himc_vec3 e =
+            himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]));
         himc_vec3 low = f ? l->lower : e, high = f ? l->upper : e;
         l->lower = himc_vec3_make(fmin(low.x, e.x), fmin(low.y, e.y), fmin(low.z, e.z));
         l->upper = himc_vec3_make(fmax(high.x, e.x), fmax(high.y, e.y), fmax(high.z, e.z));

@@ -6,6 +6,8 @@
 /// himc_limit_measure is at most 1.
 #include "reach_joint.h"
 
+#include "euler.h"
+
 #define INSIDE (1 - 1e-9) // of the bounds: rounding must not take a joint out
 #define ON_BOUND (1 - 1e-6)
 #define THINNEST 1e-3 // semi-axes and half intervals are at least that, as in limits.h (rad)
@@ -68,10 +70,10 @@ void himc_reach_joint_begin(himc_reach_joint *j, const himc_limits *limits, himc
         }
     } else {
         begin_box(j, l);
-        himc_mat3 r = himc_mat3_from_quat(away);
-        j->x[0] = (atan2(r.m[2][1], r.m[2][2]) - j->middle.x) / j->half.x;
-        j->x[1] = (asin(fmin(fmax(-r.m[2][0], -1), 1)) - j->middle.y) / j->half.y;
-        j->x[2] = (atan2(r.m[1][0], r.m[0][0]) - j->middle.z) / j->half.z;
+        himc_vec3 angle = himc_euler_from_quat(away);
+        j->x[0] = (angle.x - j->middle.x) / j->half.x;
+        j->x[1] = (angle.y - j->middle.y) / j->half.y;
+        j->x[2] = (angle.z - j->middle.z) / j->half.z;
     }
     himc_reach_joint_inside(j);
 }
