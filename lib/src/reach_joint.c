@@ -11,7 +11,7 @@
 #define INSIDE (1 - 1e-9) // of the bounds: rounding must not take a joint out
 #define ON_BOUND (1 - 1e-6)
 #define THINNEST 1e-3 // semi-axes and half intervals are at least that, as in limits.h (rad)
-#define GIMBAL (0.5 * HIMC_PI - 1e-6)
+#define GIMBAL (0.5 * HIMC_PI - 1e-3) // of y: nearer a quarter turn x and z lose digits (rad)
 
 static himc_vec3 column_of(const himc_mat3 *a, int c)
 {
