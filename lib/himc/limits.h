@@ -43,7 +43,7 @@ HIMC_RT void himc_limits_loosen(himc_limits *limits, double least);
 
 /// The mean posture: of each joint the rotation nearest to all of its own (Markley et al. 2007).
 /// `frames` at least 1; rotations of unit length.
-himc_pose himc_limits_mean(const himc_pose *pose, int frames);
+HIMC_RT himc_pose himc_limits_mean(const himc_pose *pose, int frames);
 
 /// How far a joint is within its bounds: at most 1 inside, 1 on them, 0 at the centre; 0 too when
 /// it turns freely.

@@ -1,10 +1,8 @@
-/// habit_meet.c: what takes say of a player: the means about which a habit moves, and the measures.
-///
-/// Means of rotations are the eigenvector of the largest eigenvalue of sum q q' (Markley, Cheng,
-/// Crassidis and Oshman 2007).
+/// habit_meet.c: what takes say of a player: the means about which a habit moves (rotations.h), and
+/// the measures.
 #include "habit_terms.h"
 
-#include <lapacke.h>
+#include "rotations.h"
 
 #define LOW 0.02 // places that near the lowest are strikes (m)
 
@@ -39,20 +37,13 @@ static bool show_arm(const himc_habit_take *take, int count, int hand)
     return all;
 }
 
-static bool mean_rotation(const himc_habit_take *take, int count, int joint, himc_quat *mean)
+static himc_quat mean_rotation(const himc_habit_take *take, int count, int joint)
 {
-    double a[16] = {0}, value[4];
+    himc_rotations all = {{0}};
     for (int n = 0; n < count; n++)
-        for (int i = 0; i < take[n].frames; i++) {
-            himc_quat q = take[n].pose[i].joint[joint];
-            const double v[4] = {q.w, q.x, q.y, q.z};
-            for (int k = 0; k < 16; k++)
-                a[k] += v[k / 4] * v[k % 4];
-        }
-    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 4, a, 4, value) != 0)
-        return false;
-    *mean = himc_quat_unit((himc_quat){a[3], a[7], a[11], a[15]});
-    return true;
+        for (int i = 0; i < take[n].frames; i++)
+            himc_rotations_add(&all, take[n].pose[i].joint[joint]);
+    return himc_rotations_mean(&all);
 }
 
 himc_vec3 himc_habit_tip(const himc_skeleton *skeleton, const himc_pose *pose, himc_hand hand)
@@ -125,8 +116,7 @@ bool himc_habit_meet(himc_habit_player *player, const himc_habit_take *take, int
         if (!himc_habit_check(&take[n], error))
             return false;
     for (int j = 0; j < HIMC_JOINTS; j++)
-        if (!mean_rotation(take, count, j, &player->mean.joint[j]))
-            return himc_error_set(error, "habit: %s: no mean rotation", himc_joint_name(j));
+        player->mean.joint[j] = mean_rotation(take, count, j);
     player->waist = himc_vec3_add(take->skeleton->root, take->skeleton->segment[HIMC_TRUNK].origin);
     player->trunk = true;
     for (int n = 0; n < count; n++)

@@ -14,6 +14,7 @@
 #include "himc/limits.h"
 
 #include "euler.h"
+#include "rotations.h"
 
 #include <lapacke.h>
 #include <stdlib.h>
@@ -188,18 +189,10 @@ himc_limits himc_limits_table_1(const himc_pose *mean)
 
 static himc_quat mean_rotation(const himc_pose *pose, int frames, int joint)
 {
-    double a[4][4] = {{0}}, value[4], work[64];
-    for (int f = 0; f < frames; f++) {
-        himc_quat q = pose[f].joint[joint];
-        const double v[4] = {q.w, q.x, q.y, q.z};
-        for (int i = 0; i < 4; i++)
-            for (int k = 0; k < 4; k++)
-                a[i][k] += v[i] * v[k];
-    }
-    // symmetric, so its rows are its columns: the last row comes back as the largest's vector
-    LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'U', 4, a[0], 4, value, work, 64);
-    himc_quat mean = {a[3][0], a[3][1], a[3][2], a[3][3]};
-    return mean.w < 0 ? himc_quat_scale(mean, -1) : mean;
+    himc_rotations all = {{0}};
+    for (int f = 0; f < frames; f++)
+        himc_rotations_add(&all, pose[f].joint[joint]);
+    return himc_rotations_mean(&all);
 }
 
 himc_pose himc_limits_mean(const himc_pose *pose, int frames)

@@ -292,7 +292,8 @@ static void read_frame(reader *r, int frame)
     }
 }
 
-// the rotation about which the others' logarithms have no mean
+// the rotation about which the others' logarithms have no mean: what a player's posture differs from
+// on average, not the nearest of rotations.h, which wide motion takes up to 2 mrad elsewhere
 static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 {
     himc_quat mean = pose[0].joint[j];

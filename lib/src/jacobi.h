@@ -1,0 +1,59 @@
+/// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix; private.
+///
+/// Cyclic Jacobi: rotations in one plane p, q after the other, each by the smaller angle that zeroes
+/// a_pq, t = tan of it from t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2 a_pq. Always converges, in
+/// the end quadratically (Golub & Van Loan, Matrix Computations, 2013, section 8.5). HIMC_RT: no
+/// memory, at most SWEEPS.
+#ifndef HIMC_JACOBI_H
+#define HIMC_JACOBI_H
+
+#include <math.h>
+
+#define HIMC_JACOBI_SWEEPS 8 // 3 x 3 and 4 x 4 need 4 to 6
+
+// x' = c x - s y, y' = s x + c y for n pairs, the numbers of each `stride` apart
+static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, double c, double s)
+{
+    for (int i = 0; i < n * stride; i += stride) {
+        double a = x[i], b = y[i];
+        x[i] = c * a - s * b;
+        y[i] = s * a + c * b;
+    }
+}
+
+// one rotation that zeroes a[p][q]
+static inline void himc_jacobi_rotate(int n, double *a, double *v, int p, int q)
+{
+    if (a[p * n + q] == 0)
+        return;
+    double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
+    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    double c = 1 / sqrt(t * t + 1), s = t * c;
+    himc_jacobi_mix(n, a + p, a + q, n, c, s);
+    himc_jacobi_mix(n, a + p * n, a + q * n, 1, c, s);
+    himc_jacobi_mix(n, v + p, v + q, n, c, s);
+}
+
+/// Turns `a`, symmetric, n x n by rows, not negative, into the diagonal of its eigenvalues in any
+/// order, and sets the columns of `v`, likewise, to their unit eigenvectors.
+static inline void himc_jacobi(int n, double *a, double *v)
+{
+    double trace = 0;
+    for (int i = 0; i < n * n; i++)
+        v[i] = i % (n + 1) == 0;
+    for (int i = 0; i < n; i++)
+        trace += a[i * n + i];
+    for (int sweep = 0; sweep < HIMC_JACOBI_SWEEPS; sweep++) {
+        double off = 0;
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++)
+                off += fabs(a[p * n + q]);
+        if (!(off > 1e-17 * trace))
+            return;
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++)
+                himc_jacobi_rotate(n, a, v, p, q);
+    }
+}
+
+#endif
