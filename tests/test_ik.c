@@ -145,7 +145,7 @@ static void test_damped_least_squares_is_the_dense_solution(void)
         dense_damped(a, weight, lambda, error, x);
         himc_ik_solve(&j, HIMC_SOLVER_DLS, lambda, e, got);
         for (int c = 0; c < COLUMNS;
-             c++) // 1e-6: the module's floor of 1e-9 m^2 under lambda^2 = 1e-4
+             c++) // 1e-6: the module's floor of 1e-12 m^2 under lambda^2 = 1e-4
             TEST_ASSERT_DOUBLE_WITHIN(1e-6, x[c], component(got[c / 3], c % 3));
     }
 }
