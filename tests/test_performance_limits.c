@@ -54,13 +54,13 @@ static void play(himc_performance *p)
 static void test_limits_are_off_until_asked_for_and_after_reset(void)
 {
     himc_performance *p = piece();
-    TEST_ASSERT_EQUAL_STRING("limits off, hit 0 times, strength as set", info(p, "limits"));
+    TEST_ASSERT_EQUAL_STRING("limits off, hit 0 times, strength off", info(p, "limits"));
     session_do(p, "limits euler");
     session_do(p, "strength human");
     TEST_ASSERT_EQUAL_STRING("limits euler of table 1, hit 0 times, strength human",
                              info(p, "limits"));
     session_do(p, "reset");
-    TEST_ASSERT_EQUAL_STRING("limits off, hit 0 times, strength as set", info(p, "limits"));
+    TEST_ASSERT_EQUAL_STRING("limits off, hit 0 times, strength off", info(p, "limits"));
     play(p);
     TEST_ASSERT_EQUAL_DOUBLE(0, highest);
     himc_performance_free(p);
@@ -99,7 +99,7 @@ static void test_limits_of_a_take_hold_its_own_motion(void)
     session_do(p, "limits ellipsoid");
     session_do(p, "take %s", path);
     unlink(path);
-    TEST_ASSERT_EQUAL_STRING("limits ellipsoid of the take, hit 0 times, strength as set",
+    TEST_ASSERT_EQUAL_STRING("limits ellipsoid of the take, hit 0 times, strength off",
                              info(p, "limits"));
     session_do(p, "mode id");
     session_do(p, "play");

@@ -1,8 +1,10 @@
 /// performance_limits.c: the commands `limits` and `strength`, and what is told of them.
 ///
 /// Limits are those learned from the take that is loaded; else table 1 of the 2012 paper around the
-/// mean of the postures that strokes of all heights over the first drum have. They are off until
-/// asked for: the table is of a player and a drum of its own, and a piece need not keep to it.
+/// mean of the postures that strokes of all heights have where the tips are planned to be just
+/// then, from the first drum's height up. They are made anew when a drum is moved or the body
+/// changes, in the audio callback too. They are off until asked for: the table is of a player and a
+/// drum of its own, and a piece need not keep to it.
 #include "performance_state.h"
 
 #include <stdio.h>
@@ -10,10 +12,10 @@
 
 #define MARGIN 0.05         // beyond what a take shows ...
 #define LEAST 0.05          // ... and this far whatever it shows (rad)
-#define HIGHEST_STROKE 0.35 // tips in the mean posture go from the head up to here (m)
+#define HIGHEST_STROKE 0.35 // tips in the mean posture go from the first head up to here (m)
 #define HEIGHTS 8
 
-// the mean of a stroke's postures, tips over where they are now
+// the mean of a stroke's postures, tips above and below where they are planned to be now
 static himc_pose natural_mean(const himc_performance *p)
 {
     himc_pose pose[HEIGHTS];
@@ -140,6 +142,14 @@ static void describe_strength(const himc_performance *p, void (*line)(void *, co
     }
 }
 
+static const char *strength_word(const himc_performance *p)
+{
+    bool any = false;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        any = any || p->controller.strength[j] > 0;
+    return p->human ? "human" : any ? "as set" : "off";
+}
+
 void himc_performance_describe_limits(const himc_performance *p, void (*line)(void *, const char *),
                                       void *user)
 {
@@ -150,7 +160,7 @@ void himc_performance_describe_limits(const himc_performance *p, void (*line)(vo
              p->limits.kind == HIMC_LIMITS_OFF ? ""
              : p->has_learned                  ? " of the take"
                                                : " of table 1",
-             himc_performance_limit_hits(p), p->human ? "human" : "as set");
+             himc_performance_limit_hits(p), strength_word(p));
     line(user, text);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (s->hits[j] == 0)
