@@ -37,7 +37,6 @@ void himc_mocap_free(himc_mocap *mocap);
 const char *himc_mocap_player_name(int player);
 /// The player's body.
 const himc_skeleton *himc_mocap_skeleton(const himc_mocap *mocap);
-himc_grip himc_mocap_grip(const himc_mocap *mocap);
 /// Centre of the drumhead (m).
 himc_vec3 himc_mocap_drum(const himc_mocap *mocap);
 double himc_mocap_length(const himc_mocap *mocap); ///< (s)

@@ -13,11 +13,6 @@ const himc_skeleton *himc_mocap_skeleton(const himc_mocap *m)
     return &m->skeleton;
 }
 
-himc_grip himc_mocap_grip(const himc_mocap *m)
-{
-    return m->player->french > 0.5 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
-}
-
 himc_vec3 himc_mocap_drum(const himc_mocap *m)
 {
     return himc_vec3_make(m->player->edge + himc_mocap_spot(HIMC_SPOT_CENTER), 0, HIMC_MOCAP_HEAD);

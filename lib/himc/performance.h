@@ -31,7 +31,6 @@ void himc_performance_free(himc_performance *performance);
 /// of the same name. The first drum is the one strokes without a drum go to; a performer without
 /// drums plays on a silent one.
 bool himc_performance_add_drum(himc_performance *performance, himc_drum *drum, himc_error *error);
-void himc_performance_remove_drum(himc_performance *performance, const char *name);
 /// Drum `index`, or NULL past the last. Borrowed.
 HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int index);
 

@@ -7,7 +7,6 @@
 /// where another drum is, which no stick could tell apart.
 #include "performance_state.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define CLEAR 0.02      // between two rims (m)
@@ -114,19 +113,6 @@ bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error 
         return true;
     himc_drum_release(drum);
     return false;
-}
-
-// strokes name their drum by its slot, so a drum that leaves is replaced by a silent one of its
-// name
-void himc_performance_remove_drum(himc_performance *p, const char *name)
-{
-    int i = find_drum(p, name), index;
-    char kept[HIMC_NAME_SIZE];
-    if (i < 0)
-        return;
-    snprintf(kept, sizeof kept, "%s", name);
-    if (!make_drum(p, kept, 23, true, &index, NULL))
-        himc_performance_note(p, "drum %s: out of memory for a silent one", kept);
 }
 
 himc_drum *himc_performance_drum(himc_performance *p, int index)
