@@ -1,9 +1,9 @@
 /// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix; private.
 ///
-/// Cyclic Jacobi: rotations in one plane p, q after the other, each by the smaller angle that zeroes
-/// a_pq, t = tan of it from t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2 a_pq. Always converges, in
-/// the end quadratically (Golub & Van Loan, Matrix Computations, 2013, section 8.5). HIMC_RT: no
-/// memory, at most SWEEPS.
+/// Cyclic Jacobi: rotations in one plane p, q after the other, each by the smaller angle that
+/// zeroes a_pq, t = tan of it from t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2 a_pq. Always
+/// converges, in the end quadratically (Golub & Van Loan, Matrix Computations, 2013, section 8.5).
+/// HIMC_RT: no memory, at most HIMC_JACOBI_SWEEPS.
 #ifndef HIMC_JACOBI_H
 #define HIMC_JACOBI_H
 

@@ -292,8 +292,8 @@ static void read_frame(reader *r, int frame)
     }
 }
 
-// the rotation about which the others' logarithms have no mean: what a player's posture differs from
-// on average, not the nearest of rotations.h, which wide motion takes up to 2 mrad elsewhere
+// the rotation about which the others' logarithms have no mean; the nearest to all of them, that of
+// rotations.h, is another where motion is wide (by up to 2 mrad in the database)
 static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 {
     himc_quat mean = pose[0].joint[j];
