@@ -184,13 +184,6 @@ static void release_acceleration(const himc_skeleton *skeleton, const himc_body_
         }
 }
 
-static himc_vec3 scale_axes(const himc_mat3 *rotation, himc_vec3 axes, himc_vec3 v)
-{
-    himc_vec3 local = himc_mat3_apply_transposed(rotation, v);
-    return himc_mat3_apply(rotation,
-                           himc_vec3_make(local.x * axes.x, local.y * axes.y, local.z * axes.z));
-}
-
 // Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
 // place of the one it begins in: what is known of it. The rest, -(h kd + h^2 ks) q'', is the
 // joint's resistance.
@@ -205,8 +198,8 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
         angle = himc_vec3_madd(angle, h * h, e->acceleration[j]);
     }
     const himc_mat3 *r = &s->rotation[j + 1];
-    return himc_vec3_add(scale_axes(r, c->gain[j].stiffness, angle),
-                         scale_axes(r, c->gain[j].damping, rate));
+    return himc_vec3_add(himc_mat3_scale_along(r, c->gain[j].stiffness, angle),
+                         himc_mat3_scale_along(r, c->gain[j].damping, rate));
 }
 
 // the forces at released tips that stop their acceleration along the normal, m a, where the mass is
@@ -261,8 +254,8 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
     release_forces(skeleton, s, reference, &art, torque, force);
     himc_forward_dynamics(skeleton, s, &art, torque, force, relative);
     for (int j = 0; j < HIMC_JOINTS; j++)
-        torque[j] =
-            himc_vec3_sub(torque[j], scale_axes(&s->rotation[j + 1], resistance[j], relative[j]));
+        torque[j] = himc_vec3_sub(
+            torque[j], himc_mat3_scale_along(&s->rotation[j + 1], resistance[j], relative[j]));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (reference->released[hand])
             add_tip_force(skeleton, s, (himc_hand)hand, force[hand], torque);
@@ -289,8 +282,8 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
     implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
     implicit_rates(ks.y / i.y, kd.y / i.y, c->step, y);
     implicit_rates(ks.z / i.z, kd.z / i.z, c->step, z);
-    return himc_vec3_add(scale_axes(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]),
-                         scale_axes(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
+    return himc_vec3_add(himc_mat3_scale_along(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]),
+                         himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
 }
 
 // what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
