@@ -1,0 +1,218 @@
+/// test_limits_yield.c: what limits make of accelerations: where a stopped joint will be, what the
+/// tips get back, how fast a joint returns, when it has come to its bounds anew; and the table of
+/// strength.
+#include "himc/controller.h"
+
+#include "limit_torque.h"
+
+#include "bodies.h"
+#include "unity.h"
+
+#include <string.h>
+
+#define MOMENT 0.0056 // the time ahead at which a joint shall be within its bounds (s)
+#define NECK (HIMC_NECK - 1)
+#define TRUNK (HIMC_TRUNK - 1)
+#define LEVEL 0.8675
+
+static himc_controller controller;
+static himc_limits limits;
+static himc_strain strain;
+static himc_pose pose;
+static himc_vec3 rate[HIMC_JOINTS];
+static himc_body_state state;
+static himc_arm_jacobian jacobian[HIMC_HANDS];
+static himc_vec3 wanted[HIMC_JOINTS];
+
+void setUp(void)
+{
+    himc_posture posture;
+    himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, LEVEL + 0.1}, {0.48, -0.05, LEVEL + 0.1}};
+    default_skeleton(5);
+    himc_posture_init(&posture, &skeleton, LEVEL);
+    himc_posture_at(&posture, tip, &pose);
+    memset(rate, 0, sizeof rate);
+    memset(wanted, 0, sizeof wanted);
+    memset(&limits, 0, sizeof limits);
+    memset(&strain, 0, sizeof strain);
+    limits.kind = HIMC_LIMITS_ELLIPSOID;
+    himc_pose_to_state(&skeleton, &pose, NULL, &state);
+    himc_controller_init(&controller, &skeleton, &state);
+    controller.limits = &limits;
+    controller.strain = &strain;
+}
+
+void tearDown(void)
+{
+}
+
+// binds a joint to an ellipsoid about where it is; the joint is put `off` its middle
+static void bind(int joint, himc_vec3 radius, himc_vec3 off)
+{
+    limits.joint[joint] = (himc_limit){.bound = true,
+                                       .mean = pose.joint[joint],
+                                       .axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                                       .radius = radius};
+    pose.joint[joint] = himc_quat_mul(pose.joint[joint], himc_quat_exp(off));
+}
+
+static void yield(void)
+{
+    himc_pose_to_state(&skeleton, &pose, rate, &state);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        himc_arm_jacobian_at(&state, (himc_hand)hand, &jacobian[hand]);
+    himc_limits_yield(&controller, &skeleton, &state, jacobian, wanted);
+}
+
+// a joint's acceleration as its parent, which turns, sees it
+static himc_vec3 seen_from_parent(int joint)
+{
+    int p = skeleton.segment[joint + 1].parent;
+    himc_vec3 spin = himc_vec3_sub(state.spin[joint + 1], state.spin[p]);
+    himc_vec3 alpha = himc_vec3_sub(wanted[joint], himc_vec3_cross(state.spin[p], spin));
+    return himc_mat3_apply_transposed(&state.rotation[p], alpha);
+}
+
+// where the joint will be in a moment
+static himc_quat soon(int joint)
+{
+    himc_vec3 turn = himc_vec3_madd(himc_vec3_scale(rate[joint], MOMENT), 0.5 * MOMENT * MOMENT,
+                                    seen_from_parent(joint));
+    return himc_quat_mul(himc_quat_exp(turn), pose.joint[joint]);
+}
+
+static void test_a_joint_that_would_leave_its_bounds_is_on_them_in_a_moment(void)
+{
+    bind(NECK, himc_vec3_make(0.5, 0.3, 0.2), himc_vec3_make(0.2, 0.2, 0.1));
+    rate[NECK] = himc_vec3_make(3, 2, 4);
+    rate[TRUNK] = himc_vec3_make(2, -3, 8);
+    wanted[NECK] = himc_vec3_make(400, 900, 1500);
+    yield();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1, himc_limit_measure(&limits, NECK, soon(NECK)));
+}
+
+// a joint at a constant rate along its bounds stays within; in the world its spin turns with the
+// parent's
+static void test_a_turning_parent_drives_no_joint_out_of_its_bounds(void)
+{
+    bind(NECK, himc_vec3_make(0.5, 0.5, 0.5), himc_vec3_make(0, 0.4995, 0));
+    himc_quat q = pose.joint[NECK], mean = limits.joint[NECK].mean;
+    himc_vec3 outward = himc_quat_rotate(mean, himc_vec3_make(0, 1, 0));
+    himc_vec3 along = himc_quat_rotate(mean, himc_vec3_make(1, 0, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.999, himc_limit_measure(&limits, NECK, q));
+    rate[NECK] = himc_vec3_scale(along, 2);
+    rate[TRUNK] =
+        himc_quat_rotate(pose.joint[TRUNK], himc_vec3_scale(himc_vec3_cross(along, outward), 60));
+    himc_pose_to_state(&skeleton, &pose, rate, &state);
+    int p = skeleton.segment[HIMC_NECK].parent;
+    himc_vec3 spin = himc_vec3_sub(state.spin[HIMC_NECK], state.spin[p]);
+    himc_vec3 carried = himc_vec3_cross(state.spin[p], spin);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 120, himc_vec3_length(carried));
+    wanted[NECK] = carried;
+    yield();
+    TEST_ASSERT_EQUAL_MEMORY(&carried, &wanted[NECK], sizeof carried);
+    TEST_ASSERT_TRUE(himc_limit_measure(&limits, NECK, soon(NECK)) < 1);
+}
+
+static void test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second(void)
+{
+    bind(NECK, himc_vec3_make(0.2, 0.2, 0.2), himc_vec3_make(0, 0.5, 0));
+    yield();
+    himc_quat left = himc_quat_mul(himc_quat_conj(limits.joint[NECK].mean), soon(NECK));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5 - 3 * MOMENT, himc_vec3_length(himc_quat_log(left)));
+}
+
+// the elbow may turn freely about two axes and no farther about the third; `lost` is what the tip
+// would lose by that, `left` what it still does
+static void stop_elbow(himc_vec3 radius, himc_vec3 off, double *lost, double *left)
+{
+    int elbow = himc_arm_joint(HIMC_LEFT, 1);
+    bind(elbow, radius, off);
+    himc_pose_to_state(&skeleton, &pose, rate, &state);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        wanted[himc_arm_joint(HIMC_LEFT, k)] = random_vector(20);
+    himc_vec3 outward = himc_mat3_apply(&state.rotation[elbow + 1], himc_vec3_unit(off));
+    wanted[elbow] = himc_vec3_madd(wanted[elbow], 200, outward);
+    himc_vec3 before = himc_tip_acceleration(&skeleton, &state, HIMC_LEFT, wanted);
+    himc_vec3 asked = wanted[elbow];
+    yield();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1, himc_limit_measure(&limits, elbow, soon(elbow)));
+    himc_vec3 lever = jacobian[HIMC_LEFT].lever[1];
+    himc_vec3 taken = himc_vec3_sub(asked, wanted[elbow]);
+    *lost = himc_vec3_length(himc_vec3_cross(taken, lever));
+    himc_vec3 now = himc_tip_acceleration(&skeleton, &state, HIMC_LEFT, wanted);
+    *left = himc_vec3_length(himc_vec3_sub(before, now));
+}
+
+static void test_a_tip_gets_back_what_a_stopped_elbow_takes(void)
+{
+    for (int i = 0; i < 3; i++) {
+        himc_vec3 axis = himc_vec3_make(i == 0, i == 1, i == 2);
+        himc_vec3 radius = himc_vec3_make(i == 0 ? 0.2 : 3, i == 1 ? 0.2 : 3, i == 2 ? 0.2 : 3);
+        double lost, left;
+        setUp();
+        stop_elbow(radius, himc_vec3_scale(axis, 0.2), &lost, &left);
+        TEST_ASSERT_TRUE(lost > 10);
+        TEST_ASSERT_TRUE(left < 0.02 * lost); // the damping's share: measured .007, .014, .012
+    }
+}
+
+// hits: a joint comes to its bounds, and again once it has been at 0.85 of the way to them
+static void visit(double measure, double outward)
+{
+    himc_quat mean = limits.joint[NECK].mean;
+    pose.joint[NECK] = himc_quat_mul(mean, himc_quat_exp(himc_vec3_make(0, 0.4 * measure, 0)));
+    memset(wanted, 0, sizeof wanted);
+    himc_pose_to_state(&skeleton, &pose, rate, &state);
+    wanted[NECK] = himc_mat3_apply(&state.rotation[HIMC_NECK], himc_vec3_make(0, outward, 0));
+    yield();
+}
+
+static void test_a_joint_hits_its_bounds_again_once_it_has_left_them(void)
+{
+    bind(NECK, himc_vec3_make(0.4, 0.4, 0.4), himc_vec3_make(0, 0, 0));
+    visit(0.99, 1000);
+    TEST_ASSERT_EQUAL_INT(1, strain.hits[NECK]);
+    visit(0.86, 0);
+    TEST_ASSERT_TRUE(strain.held[NECK]);
+    visit(0.99, 1000);
+    TEST_ASSERT_EQUAL_INT(1, strain.hits[NECK]);
+    visit(0.84, 0);
+    TEST_ASSERT_FALSE(strain.held[NECK]);
+    visit(0.99, 1000);
+    TEST_ASSERT_EQUAL_INT(2, strain.hits[NECK]);
+}
+
+// Fice et al. 2014: neck 51 N m; Holzbaur et al. 2007: shoulder 68 +- 28, wrist 10 +- 5; Delp et
+// al. 1996: wrist 12; the rest are round figures (strength.c)
+static void test_strength_of_75_kg_is_that_of_the_table(void)
+{
+    static const struct {
+        const char *joint;
+        double strength; // (N m)
+    } table[] = {
+        {"waist", 250},         {"neck", 50},       {"head", 50},        {"left-shoulder", 80},
+        {"right-shoulder", 80}, {"left-elbow", 70}, {"right-elbow", 70}, {"left-wrist", 12},
+        {"right-wrist", 12},    {"left-grip", 5},   {"right-grip", 5},   {"left-hip", 200},
+        {"right-hip", 200},     {"left-knee", 200}, {"right-knee", 200}, {"left-ankle", 130},
+        {"right-ankle", 130},   {"left-toes", 15},  {"right-toes", 15}};
+    TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, sizeof table / sizeof table[0]);
+    himc_controller_set_human_strength(&controller, 75);
+    for (int i = 0; i < HIMC_JOINTS; i++) {
+        int j = himc_joint_find(table[i].joint);
+        TEST_ASSERT_TRUE_MESSAGE(j >= 0, table[i].joint);
+        TEST_ASSERT_EQUAL_DOUBLE(table[i].strength, controller.strength[j]);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_joint_that_would_leave_its_bounds_is_on_them_in_a_moment);
+    RUN_TEST(test_a_turning_parent_drives_no_joint_out_of_its_bounds);
+    RUN_TEST(test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second);
+    RUN_TEST(test_a_tip_gets_back_what_a_stopped_elbow_takes);
+    RUN_TEST(test_a_joint_hits_its_bounds_again_once_it_has_left_them);
+    RUN_TEST(test_strength_of_75_kg_is_that_of_the_table);
+    return UNITY_END();
+}
