@@ -167,6 +167,56 @@ static void test_a_take_of_the_player_corrects_the_habit_of_others(void)
     TEST_ASSERT_EQUAL_MEMORY(&kept, &habit, sizeof habit);
 }
 
+// at 250 Hz a tap is 7.5 frames
+static himc_vec3 tip_seen(const himc_habit_take *take, double frame, himc_hand hand)
+{
+    const himc_pose *pose = &take->pose[(int)frame];
+    himc_vec3 x = himc_habit_tip(take->skeleton, pose, hand);
+    himc_vec3 next = himc_habit_tip(take->skeleton, pose + (frame > (int)frame), hand);
+    return himc_vec3_madd(x, frame - (int)frame, himc_vec3_sub(next, x));
+}
+
+// where sum |u - (W + D) phi|^2 + |D|^2 is least its slope is nought: sum phi (u - (W + D) phi) = D
+static void test_a_correction_is_by_ridge_regression_with_a_ridge_of_one(void)
+{
+    himc_error error = {""};
+    himc_habit before = without(1), after = before;
+    TEST_ASSERT_TRUE_MESSAGE(himc_habit_correct(&after, &seen[1], &error), error.text);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double slope[ANGLES][TERMS] = {{0}}, most = 0;
+        himc_quat frame[HIMC_ARM_JOINTS];
+        himc_habit_frames(&after.player, (himc_hand)hand, frame);
+        for (int i = 0; i < himc_habit_known_frames(&seen[1]); i++) {
+            const himc_pose *pose = &seen[1].pose[i];
+            himc_vec3 tip[TAPS][HIMC_HANDS];
+            double phi[TERMS];
+            for (int tap = 0; tap < TAPS; tap++)
+                tip[tap][hand] = tip_seen(&seen[1], i + tap * 7.5, (himc_hand)hand);
+            himc_habit_terms(&after.player, (himc_hand)hand, pose->joint[TRUNK],
+                             (const himc_vec3(*)[HIMC_HANDS])tip, phi);
+            for (int c = 0; c < ANGLES; c++) {
+                int j = himc_arm_joint((himc_hand)hand, c / 3);
+                himc_quat mean = himc_quat_conj(after.player.mean.joint[j]);
+                himc_vec3 turned = himc_quat_log(himc_quat_mul(mean, pose->joint[j]));
+                turned = himc_quat_rotate(frame[c / 3], turned);
+                double left = c % 3 == 0 ? turned.x : c % 3 == 1 ? turned.y : turned.z;
+                for (int t = 0; t < TERMS; t++)
+                    left -= after.weight[hand][c / 3][c % 3][t] * phi[t];
+                for (int t = 0; t < TERMS; t++)
+                    slope[c][t] += phi[t] * left;
+            }
+        }
+        for (int c = 0; c < ANGLES; c++)
+            for (int t = 0; t < TERMS; t++) {
+                double d =
+                    after.weight[hand][c / 3][c % 3][t] - before.weight[hand][c / 3][c % 3][t];
+                most = fmax(most, fabs(d));
+                TEST_ASSERT_DOUBLE_WITHIN(1e-9, d, slope[c][t]);
+            }
+        TEST_ASSERT_TRUE(most > 0.01);
+    }
+}
+
 // of a capture of one arm the other, and the trunk, are left as they are given
 static void test_an_arm_that_was_not_seen_stays_as_it_is(void)
 {
@@ -322,6 +372,7 @@ int main(void)
     RUN_TEST(test_rates_are_those_of_the_posture);
     RUN_TEST(test_a_take_of_the_player_corrects_the_habit_of_others);
     RUN_TEST(test_what_is_said_of_an_upper_arm_goes_as_far_as_what_was_seen);
+    RUN_TEST(test_a_correction_is_by_ridge_regression_with_a_ridge_of_one);
     RUN_TEST(test_an_arm_that_was_not_seen_stays_as_it_is);
     RUN_TEST(test_an_arm_that_rests_learns_from_the_other_in_a_mirror);
     RUN_TEST(test_what_determines_nothing_is_refused_with_the_reason);

@@ -2,6 +2,8 @@
 /// and figures tell of them.
 #include "session.h"
 
+#include "performance_state.h"
+
 static char told[64][512];
 static int lines;
 
@@ -111,6 +113,55 @@ static void test_limits_of_a_take_hold_its_own_motion(void)
     himc_performance_free(p);
 }
 
+// joints that a take hardly moves may move by 0.05 rad, others by a twentieth more than they did
+static void test_limits_of_a_take_are_nowhere_narrower_than_0_05(void)
+{
+    enum { FRAMES = 100, ELBOW = HIMC_LEFT_FOREARM - 1 };
+    static himc_pose pose[FRAMES];
+    himc_player player = {.pose = pose, .frames = FRAMES};
+    himc_limits learned, exact;
+    for (int i = 0; i < FRAMES; i++)
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            double most = j == ELBOW ? 0.5 : 0.002, turn = most * (2.0 * i / (FRAMES - 1) - 1);
+            pose[i].joint[j] = himc_quat_exp(himc_vec3_make(0, turn, 0));
+        }
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_learn_limits(&player, &learned, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_limits_learn(&exact, pose, FRAMES, 0, &error), error.text);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const himc_limit *l = &learned.joint[j], *e = &exact.joint[j];
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, j == ELBOW ? 1.05 * e->radius.x : 0.05, l->radius.x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.05, l->radius.z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, j == ELBOW ? 1.05 * 0.5 : 0.05, l->upper.y);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, j == ELBOW ? -1.05 * 0.5 : -0.05, l->lower.y);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.05, l->upper.x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, -0.05, l->lower.z);
+    }
+}
+
+static void test_a_joint_shown_at_its_bounds_does_not_move_on(void)
+{
+    himc_vec3 rate[HIMC_JOINTS], moves = {1, 2, 3}, stands = {0, 0, 0};
+    himc_performance *p = piece();
+    session_do(p, "limits ellipsoid");
+    int elbow = himc_arm_joint(HIMC_LEFT, 1);
+    himc_pose mean, pose;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        mean.joint[j] = p->limits.joint[j].bound ? p->limits.joint[j].mean : himc_quat_identity();
+        rate[j] = moves;
+    }
+    pose = mean;
+    pose.joint[elbow] =
+        himc_quat_mul(mean.joint[elbow], himc_quat_exp(himc_vec3_make(0.5, 0.6, 0.7)));
+    himc_quat near = himc_limit_closest(&p->limits, elbow, pose.joint[elbow]);
+    himc_performance_limit_shown(p, &pose, rate);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const himc_quat *want = j == elbow ? &near : &mean.joint[j];
+        TEST_ASSERT_EQUAL_MEMORY(want, &pose.joint[j], sizeof near);
+        TEST_ASSERT_EQUAL_MEMORY(j == elbow ? &stands : &moves, &rate[j], sizeof moves);
+    }
+    himc_performance_free(p);
+}
+
 static void test_strength_of_a_joint_is_counted_where_it_does_not_suffice(void)
 {
     himc_performance *p = piece();
@@ -141,6 +192,8 @@ int main(void)
     RUN_TEST(test_limits_are_off_until_asked_for_and_after_reset);
     RUN_TEST(test_limits_that_are_hit_show_in_info_in_rows_of_motion_and_in_figures);
     RUN_TEST(test_limits_of_a_take_hold_its_own_motion);
+    RUN_TEST(test_limits_of_a_take_are_nowhere_narrower_than_0_05);
+    RUN_TEST(test_a_joint_shown_at_its_bounds_does_not_move_on);
     RUN_TEST(test_strength_of_a_joint_is_counted_where_it_does_not_suffice);
     RUN_TEST(test_human_strength_plays_accents_and_goes_with_the_players_mass);
     return UNITY_END();

@@ -300,6 +300,22 @@ static void test_left_and_right_mirror_each_other(void)
     }
 }
 
+// a palm down has its thumb on the inner side: -y of the left hand, y of the right
+static void test_thumbs_point_inwards_in_german_and_up_in_french_grip(void)
+{
+    himc_body_state s;
+    himc_vec3 level[HIMC_HANDS] = {{0.5, 0.05, posture.level}, {0.5, -0.05, posture.level}};
+    for (int french = 0; french < 2; french++) {
+        posture.bearing.value[HIMC_BEARING_FRENCH] = french;
+        place_tips(level, &s);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            double up = (hand == HIMC_LEFT ? -1 : 1) * s.rotation[HIMC_LEFT_HAND + hand].m[2][1];
+            // rolled by 1.25, the fingers 0.25 down
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, french ? sin(1.25) * cos(0.25) : 0, up);
+        }
+    }
+}
+
 static void test_feet_of_the_seated_stand_on_the_floor(void)
 {
     himc_body_state s;
@@ -325,6 +341,7 @@ int main(void)
     RUN_TEST(test_reachable_place_is_reached_by_people_of_every_height);
     RUN_TEST(test_no_place_makes_a_posture_that_is_no_number);
     RUN_TEST(test_left_and_right_mirror_each_other);
+    RUN_TEST(test_thumbs_point_inwards_in_german_and_up_in_french_grip);
     RUN_TEST(test_feet_of_the_seated_stand_on_the_floor);
     return UNITY_END();
 }
