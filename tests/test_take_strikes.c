@@ -109,6 +109,45 @@ static void test_strokes_in_the_air_are_no_strikes(void)
     }
 }
 
+static int hidden_from, hidden_to; // frames of 4 ms
+
+static himc_vec3 hidden_bounce(double t)
+{
+    int frame = (int)lround(t * 250);
+    return frame >= hidden_from && frame < hidden_to ? himc_vec3_make(NAN, NAN, NAN) : bounce(t);
+}
+
+static int strikes_hidden(int from, int to, int frames)
+{
+    hidden_from = from;
+    hidden_to = to;
+    himc_take *take = read_motion(hidden_bounce, 250, frames);
+    int count = strikes_of(take, NULL, 0);
+    himc_take_free(take);
+    return count;
+}
+
+// the touch is in frame 125
+static void test_strike_that_lost_one_frame_is_found_and_none_is_across_or_beside_a_longer_gap(void)
+{
+    touch_time = 0.5;
+    for (int frame = 121; frame < 130; frame++)
+        TEST_ASSERT_EQUAL_INT(1, strikes_hidden(frame, frame + 1, 250));
+    TEST_ASSERT_EQUAL_INT(1, strikes_hidden(124, 127, 250)); // 12 ms
+    for (int length = 4; length <= 40; length += 6)
+        for (int from = 126 - length; from <= 126; from++)
+            TEST_ASSERT_EQUAL_INT(0, strikes_hidden(from, from + length, 250));
+}
+
+// a place that is held at an end looks like a fall that ends abruptly
+static void test_no_strike_is_at_an_end_that_is_held(void)
+{
+    touch_time = 0.5;
+    for (int begin = 110; begin <= 126; begin++)
+        for (int lost = 1; lost < 40; lost++)
+            TEST_ASSERT_EQUAL_INT(0, strikes_hidden(begin, begin + lost, begin + lost));
+}
+
 static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
 {
     himc_take *take = read_roll();
@@ -161,6 +200,8 @@ int main(void)
     RUN_TEST(test_low_pass_filtered_strike_is_found_within_3_ms_and_10_percent);
     RUN_TEST(test_half_a_millimetre_of_noise_neither_hides_nor_adds_strikes);
     RUN_TEST(test_strokes_in_the_air_are_no_strikes);
+    RUN_TEST(test_strike_that_lost_one_frame_is_found_and_none_is_across_or_beside_a_longer_gap);
+    RUN_TEST(test_no_strike_is_at_an_end_that_is_held);
     RUN_TEST(test_strikes_of_both_hands_come_in_order_and_place_the_drum);
     RUN_TEST(test_real_stroke_strikes_once_where_and_as_its_source_says);
     return UNITY_END();
