@@ -89,6 +89,33 @@ static void test_faults_are_told_with_file_and_line(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
 }
 
+// room for a path and 256 characters more; a word that long once ended the program
+static void test_a_statement_of_more_than_1280_characters_is_refused_in_one_line(void)
+{
+    char text[3000];
+    for (int length = 1279; length < 2900; length = length < 1290 ? length + 1 : length + 97) {
+        memset(text, 'x', (size_t)length);
+        text[length] = '\0';
+        TEST_ASSERT_NULL(parse(text));
+        TEST_ASSERT_NULL(strchr(error.text, '\n'));
+        if (length > 1279) {
+            TEST_ASSERT_EQUAL_STRING("s.txt:1: more than 1280 characters without a ;", error.text);
+        }
+    }
+    for (size_t i = 0; i + 2 < sizeof text; i += 2) // words enough
+        memcpy(text + i, "\nx", 3);
+    refused(text, "s.txt:2: more than 1280 characters without a ;");
+}
+
+static void test_a_byte_order_mark_is_skipped(void)
+{
+    himc_score *s = parse("\xEF\xBB\xBFtempo 90;\nstroke 1 left legato mf;");
+    TEST_ASSERT_NOT_NULL_MESSAGE(s, error.text);
+    TEST_ASSERT_EQUAL_DOUBLE(90, s->tempi[0].bpm);
+    TEST_ASSERT_EQUAL_INT(1, s->stroke_count);
+    himc_score_free(s);
+}
+
 static void test_seconds_and_beat_are_inverse_through_tempo_changes(void)
 {
     himc_tempo_change map[] = {{0, 120}, {4, 60}, {8, 180}};
@@ -148,6 +175,8 @@ int main(void)
     RUN_TEST(test_score_sorts_strokes_and_keeps_other_lines_in_order);
     RUN_TEST(test_empty_score_has_the_default_tempo);
     RUN_TEST(test_faults_are_told_with_file_and_line);
+    RUN_TEST(test_a_statement_of_more_than_1280_characters_is_refused_in_one_line);
+    RUN_TEST(test_a_byte_order_mark_is_skipped);
     RUN_TEST(test_seconds_and_beat_are_inverse_through_tempo_changes);
     RUN_TEST(test_long_scores_are_read_fast_and_too_long_ones_refused);
     RUN_TEST(test_random_text_never_breaks_the_reader);
