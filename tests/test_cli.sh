@@ -76,6 +76,16 @@ printf 'stroke nan right legato mf;\n' >nan.txt
 printf 'stroke 1 right legato mf;\nstroke 90000 left legato mf;\n' >endless.txt
 : >empty.txt
 printf 'PathFileType\t4\t(X/Y/Z)\tcut.trc\nDataRate\tCameraRate\n' >cut.trc
+printf 'drum kettle;\nkettle shape /dev/zero;\n' >endless-shape.txt
+printf 'loop 1;\ntempo 200;\nstroke 0 right legato mf;\nstroke 1 left legato mf;\n' >round.txt
+# two tips that are held still in the air: metres, y up
+awk 'BEGIN {
+    print "PathFileType\t4\t(X/Y/Z)\tstill.trc"
+    print "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames"
+    print "100\t100\t60\t2\tm\t100\t1\t60"
+    print "Frame#\tTime\tLTIP\t\t\tRTIP\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n"
+    for (i = 0; i < 60; i++) printf "%d\t%.2f\t0.5\t1.2\t-0.15\t0.5\t1.2\t0.15\n", i + 1, i / 100
+}' >still.trc
 
 # what it says of itself
 version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/himc.h")
@@ -117,6 +127,7 @@ refuses test_missing_score_is_refused "none.txt: No such file" render none.txt -
 refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
 refuses test_folder_is_refused "directory" render . -o x.wav
 refuses test_unknown_row_is_refused "--only: magic, allowed: a nuance" evaluate --only legato,magic
+refuses test_a_comma_alone_is_refused "--only: no word, allowed" evaluate --only ,
 refuses test_row_that_is_none_is_refused "--only: ik,printed: no row is all of these" \
     evaluate --only ik,printed
 refuses test_no_trials_are_refused "--trials: 0, allowed 1 .. 10000" evaluate --trials 0
@@ -133,6 +144,10 @@ refuses test_typo_is_refused_with_its_line "typo.txt:2: " render typo.txt -o x.w
 refuses test_nan_in_a_score_is_refused "nan.txt:1: " render nan.txt -o x.wav
 refuses test_typo_is_refused_by_info "typo.txt:2: " info typo.txt
 refuses test_typo_is_refused_by_modes "typo.txt:2: " modes typo.txt
+refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: /dev/zero: not a file" \
+    render endless-shape.txt -o x.wav
+refuses test_unknown_tip_is_refused_by_info 'left tip: no point "nope", allowed: LTIP, RTIP' \
+    info still.trc --left-tip nope
 refuses test_score_too_long_for_a_wav_file_is_refused "endless.txt: lasts" \
     render endless.txt -o x.wav
 refuses test_missing_folder_is_refused "none/x.wav: cannot be written" \
@@ -219,6 +234,11 @@ check test_rate_is_in_the_header [ "$(bytes 24 4 u4 two.wav)" = 44100 ]
 check test_kinematic_body_plays_too [ "$(number played)" = 4 ]
 "$himc" render empty.txt -o two.wav >out
 check test_empty_score_is_silence [ "$(number strokes) $(number peak_force_n)" = "0 0" ]
+"$himc" render round.txt -o two.wav >out
+check test_a_loop_is_rendered_once_and_it_is_said [ "$(number played)$(grep -cx 'note: round.txt: loop: one round is rendered' out)" = 21 ]
+"$himc" render still.trc -o two.wav >out
+check test_percent_of_no_stroke_is_null [ "$(number strokes) $(number tip_rms_percent)" = "0 null" ]
+check test_error_of_a_take_without_strikes_is_a_number true_that "$(number tip_rms_mm) > 0"
 "$himc" render piece.txt -o /dev/null >out
 check test_device_is_written_and_stays [ "$(number played)$(test -c /dev/null && echo device)" = \
     4device ]

@@ -78,6 +78,18 @@ sed '2s/legato/legatto/' whole.log >foreign.log
 refuses test_a_foreign_row_is_refused_with_its_line "foreign.log:2: no row of trials" --trials 2 --log foreign.log
 sed '3s/[^,]*$/nan/' whole.log >nan.log
 refuses test_a_number_not_finite_is_refused_with_its_line "nan.log:3: played: nan" --trials 2 --log nan.log
+refuses test_a_comma_alone_is_refused "--only: no word, allowed" --trials 2 --only ,
+# before the trials: they would take hours
+two_hours="--trials 10000 --csv /nonexistent/x"
+begun=$(date +%s)
+refuses test_a_table_that_cannot_be_written_is_refused "/nonexistent/x: cannot be written" $two_hours
+check test_that_is_told_at_once [ $(($(date +%s) - begun)) -le 2 ]
+for text in 'a letter' 'a letter\nof two lines\n'; do
+    printf "$text" >letter.txt
+    cp letter.txt kept.txt
+    refuses test_what_is_no_log_is_refused "letter.txt:1: no log of trials" --trials 2 --log letter.txt
+    check test_what_is_no_log_stays_as_it_is cmp letter.txt kept.txt
+done
 
 echo "-----------------------"
 echo "$tests Tests $failures Failures 0 Ignored"
