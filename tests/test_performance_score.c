@@ -72,7 +72,7 @@ static void test_a_seek_in_a_score_is_where_it_begins(void)
 static void test_a_take_in_a_score_without_strokes_is_played(void)
 {
     save(made_take(BVH), BVH);
-    heard h = play_score("drum kettle;\ntake " BVH ";\nplay;\n", 2.5);
+    heard h = play_score("drum kettle;\ntake " BVH ";\nplay;\n", 2.1);
     TEST_ASSERT_EQUAL_INT(4, h.strikes);
     heard_free(&h);
 }
