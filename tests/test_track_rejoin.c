@@ -140,6 +140,24 @@ static void test_the_way_back_ends_before_the_next_strike_begins(void)
     }
 }
 
+// one that leaves so late that nothing can be bridged any more changes nothing
+static void test_a_stick_that_leaves_too_late_leaves_the_way_as_it_is(void)
+{
+    make_take(rolled, 1000, 1000);
+    double time = contact_after(0.2);
+    for (double late = 0.035; late < 0.040; late += 0.001) {
+        himc_vec3 before[20];
+        himc_track_rewind(track);
+        himc_target s = as_measured(time + late);
+        for (int i = 0; i < 20; i++)
+            before[i] = at(time + late + 1e-3 * i).x;
+        himc_track_separated(track, HIMC_RIGHT, time + late, &s);
+        for (int i = 0; i < 20; i++)
+            TEST_ASSERT_EQUAL_DOUBLE(before[i].z, at(time + late + 1e-3 * i).x.z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, time + 0.06, contact_after(time + late));
+    }
+}
+
 static double beaten_softly(double t)
 {
     return beaten_height(t, 2).x.z;
@@ -177,6 +195,7 @@ int main(void)
     RUN_TEST(test_the_approach_ends_on_the_head_without_acceleration);
     RUN_TEST(test_near_its_end_the_take_goes_on_as_the_stick_does_though_time_slows_down);
     RUN_TEST(test_the_way_back_ends_before_the_next_strike_begins);
+    RUN_TEST(test_a_stick_that_leaves_too_late_leaves_the_way_as_it_is);
     RUN_TEST(test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_second);
     return UNITY_END();
 }

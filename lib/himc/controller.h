@@ -90,4 +90,11 @@ HIMC_RT void himc_controller_torques(const himc_controller *controller,
                                      const himc_reference *reference,
                                      himc_vec3 torque[HIMC_JOINTS]);
 
+/// Inverse kinematics without dynamics (2012, pipeline 1): from the state at the last step to the
+/// posture and its rates (in the parents' frames, rad/s) that are to be shown `controller->step`
+/// later, for a reference of then; `state` is left somewhere between.
+HIMC_RT void himc_controller_show(const himc_controller *controller, const himc_skeleton *skeleton,
+                                  const himc_reference *reference, himc_body_state *state,
+                                  himc_pose *pose, himc_vec3 rate[HIMC_JOINTS]);
+
 #endif

@@ -1,12 +1,10 @@
-/// controller.c: two stages. Errors: for each joint what is missing in angle and rate, and the
-/// acceleration fed forward. Law: what torque that makes.
+/// controller.c: two stages. Errors (errors.c): for each joint what is missing in angle and rate,
+/// and the acceleration fed forward. Law: what torque that makes.
 ///
-/// In `id` the errors are those to the joint targets. In `himc` an arm's come from its tip alone,
-///     dq = J+ (X_t - X),  q'_t = J+ X'_t,  q''_t = J+ (X''_t - J' q') (equation 3, differentiated)
-/// plus what the natural posture asks, in the null space of J. `printed` is tau = ks dq - kd q',
-/// `feedforward` tau = g(q) + ks dq + kd (q'_t - q'), `computed-torque` alpha = q''_t + 2 w (q'_t
-/// - q') + w^2 dq through inverse dynamics. While a stick touches the head all three let go of
-/// the normal: the rebound is the physics'. Joint limits win over all of it (limit_torque.c).
+/// `printed` is tau = ks dq - kd q', `feedforward` tau = g(q) + ks dq + kd (q'_t - q'),
+/// `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse dynamics. While a
+/// stick touches the head all three let go of the normal: the rebound is the physics'. Joint limits
+/// win over all of it (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
 /// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
@@ -15,160 +13,19 @@
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "himc/controller.h"
 
+#include "errors.h"
 #include "limit_torque.h"
 #include "strength.h"
-#include "stretch.h"
 
-#define PD_STIFFER 3.0    // the default gains' frequencies above the table's
-#define LARGEST_STEP 0.20 // of the tip, one step of inverse kinematics (m)
-#define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
-#define LEFT 0.40         // ... and so far does so wholly (m)
-
-typedef struct errors {
-    himc_vec3 angle[HIMC_JOINTS];        // dq (rad)
-    himc_vec3 rate[HIMC_JOINTS];         // q'_t - q' (rad/s)
-    himc_vec3 acceleration[HIMC_JOINTS]; // q''_t (rad/s^2)
-} errors;
-
-static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
-{
-    return himc_vec3_madd(a, share, himc_vec3_sub(b, a));
-}
-
-static himc_vec3 relative_spin(const himc_skeleton *skeleton, const himc_body_state *s, int j)
-{
-    return himc_vec3_sub(s->spin[j + 1], s->spin[skeleton->segment[j + 1].parent]);
-}
-
-// errors to the joint targets, turned from the parent's frame into the world
-static void joint_errors(const himc_skeleton *skeleton, const himc_body_state *s,
-                         const himc_posture_motion *target, errors *e)
-{
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        int p = skeleton->segment[j + 1].parent;
-        himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
-        himc_vec3 missing = himc_quat_log(himc_quat_mul(target->joint[j], himc_quat_conj(q)));
-        himc_vec3 wanted = himc_mat3_apply(&s->rotation[p], target->rate[j]);
-        e->angle[j] = himc_mat3_apply(&s->rotation[p], missing);
-        e->rate[j] = himc_vec3_sub(wanted, relative_spin(skeleton, s, j));
-        e->acceleration[j] =
-            himc_vec3_add(himc_mat3_apply(&s->rotation[p], target->acceleration[j]),
-                          himc_vec3_cross(s->spin[p], wanted));
-    }
-}
-
-static himc_vec3 clamp_length(himc_vec3 v, double most)
-{
-    double length = himc_vec3_length(v);
-    return length > most ? himc_vec3_scale(v, most / length) : v;
-}
-
-static void gather_arm(const himc_vec3 *all, himc_hand hand, himc_vec3 arm[HIMC_ARM_JOINTS])
-{
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        arm[k] = all[himc_arm_joint(hand, k)];
-}
-
-static void scatter_arm(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand, himc_vec3 *all)
-{
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        all[himc_arm_joint(hand, k)] = arm[k];
-}
-
-typedef struct arm_tasks {
-    const himc_controller *controller;
-    const himc_arm_jacobian *jacobian;
-    himc_mat3 inverse; // of J W J', as the solver has it
-    himc_elbow_task elbow;
-    himc_hand hand;
-} arm_tasks;
-
-static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
-{
-    const himc_controller *c = tasks->controller;
-    int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
-    himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
-    tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
-    if (c->elbow)
-        himc_elbow_task_at(tasks->jacobian, upper_arm, c->damping, &tasks->elbow);
-}
-
-// the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
-// for the elbow's place comes first; `demand` is linear in all of it
-static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
-{
-    const himc_controller *c = tasks->controller;
-    himc_mat3 inverse = tasks->inverse;
-    himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
-    gather_arm(all, tasks->hand, posture);
-    for (int k = 0; c->aimless && k < HIMC_ARM_JOINTS; k++)
-        posture[k] = himc_vec3_make(0, 0, 0);
-    if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
-        inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
-    himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
-    himc_ik_add_null(tasks->jacobian, posture, solution);
-    if (c->elbow)
-        himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,
-                          himc_vec3_cross(posture[0], tasks->elbow.lever), solution);
-    scatter_arm(solution, tasks->hand, all);
-}
-
-// tip acceleration that the arm's joints must make: what is wanted less what the state's spins and
-// the trunk, accelerating as in `relative`, make already
-static himc_vec3 acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
-                                   himc_hand hand, const himc_vec3 *relative, himc_vec3 wanted)
-{
-    himc_vec3 others[HIMC_JOINTS];
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        others[j] = relative[j];
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        others[himc_arm_joint(hand, k)] = himc_vec3_make(0, 0, 0);
-    return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
-}
-
-// The Jacobian is the truth near the target only: pushed far away, an arm that follows it turns in
-// circles. So it goes home by its joints, to the posture whose tip is the target.
-static void go_home(const errors *joints, double away, himc_hand hand, errors *e)
-{
-    double share = fmin((away - LEAVES) / (LEFT - LEAVES), 1);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        e->angle[j] = mix(e->angle[j], joints->angle[j], share);
-        e->rate[j] = mix(e->rate[j], joints->rate[j], share);
-        e->acceleration[j] = mix(e->acceleration[j], joints->acceleration[j], share);
-    }
-}
-
-// equation 3: replaces the arm's joint errors by those that its tip asks for, or the nearest place
-// in reach
-static void tip_errors(const himc_controller *c, const himc_skeleton *skeleton,
-                       const himc_body_state *s, const himc_target *asked, himc_hand hand,
-                       const himc_arm_jacobian *jacobian, errors *e)
-{
-    errors joints = *e;
-    himc_vec3 shoulder = s->origin[himc_arm_joint(hand, 0) + 1];
-    himc_target target = himc_stretch_towards(asked, shoulder, himc_stretch(skeleton, hand));
-    himc_vec3 way = himc_vec3_sub(target.x, s->tip[hand]);
-    himc_vec3 missing = clamp_length(way, LARGEST_STEP);
-    himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
-    himc_vec3 a = acceleration_left(skeleton, s, hand, e->acceleration, target.a);
-    arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
-    begin_tasks(&tasks, s, missing);
-    solve_demand(&tasks, missing, e->angle);
-    solve_demand(&tasks, slower, e->rate);
-    solve_demand(&tasks, a, e->acceleration);
-    double away = himc_vec3_length(way);
-    if (away > LEAVES)
-        go_home(&joints, away, hand, e);
-}
+#define PD_STIFFER 3.0 // the default gains' frequencies above the table's
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
                     himc_vec3 normal, double remain)
 {
     himc_vec3 arm[HIMC_ARM_JOINTS];
-    gather_arm(all, hand, arm);
+    himc_arm_gather(all, hand, arm);
     himc_ik_release(jacobian, normal, remain, arm);
-    scatter_arm(arm, hand, all);
+    himc_arm_scatter(arm, hand, all);
 }
 
 // in contact the tip is not accelerated along the normal, whatever the gains of the joints are
@@ -179,7 +36,7 @@ static void release_acceleration(const himc_skeleton *skeleton, const himc_body_
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (reference->released[hand]) {
             himc_vec3 n = reference->normal[hand], zero = {0, 0, 0};
-            himc_vec3 left = acceleration_left(skeleton, s, (himc_hand)hand, wanted, zero);
+            himc_vec3 left = himc_acceleration_left(skeleton, s, (himc_hand)hand, wanted, zero);
             release(wanted, (himc_hand)hand, &jacobian[hand], n, himc_vec3_dot(n, left));
         }
 }
@@ -187,8 +44,8 @@ static void release_acceleration(const himc_skeleton *skeleton, const himc_body_
 // Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
 // place of the one it begins in: what is known of it. The rest, -(h kd + h^2 ks) q'', is the
 // joint's resistance.
-static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s, const errors *e,
-                             himc_vec3 spin, int j)
+static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
+                             const joint_errors *e, himc_vec3 spin, int j)
 {
     double h = c->step;
     himc_vec3 angle = himc_vec3_madd(e->angle[j], h, e->rate[j]);
@@ -235,7 +92,7 @@ static void add_tip_force(const himc_skeleton *skeleton, const himc_body_state *
 // equation 2, with the target's velocity and gravity fed forward or not, implicitly over the step
 static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *s, const himc_reference *reference,
-                          const errors *e, himc_vec3 torque[HIMC_JOINTS])
+                          const joint_errors *e, himc_vec3 torque[HIMC_JOINTS])
 {
     himc_articulation art;
     himc_vec3 resistance[HIMC_JOINTS], relative[HIMC_JOINTS], force[HIMC_HANDS] = {{0, 0, 0}};
@@ -244,7 +101,7 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
     if (c->law == HIMC_LAW_FEEDFORWARD)
         himc_inverse_dynamics(skeleton, s, NULL, true, torque);
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_vec3 known = servo_known(c, s, e, relative_spin(skeleton, s, j), j);
+        himc_vec3 known = servo_known(c, s, e, himc_relative_spin(skeleton, s, j), j);
         torque[j] = himc_vec3_add(torque[j], known);
         resistance[j] = himc_vec3_madd(himc_vec3_scale(c->gain[j].damping, c->step),
                                        c->step * c->step, c->gain[j].stiffness);
@@ -272,7 +129,7 @@ static void implicit_rates(double ks, double kd, double step, double rate[2])
 // w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
 // the inertia; the bandwidth is always slow beside the step, gains need not be
 static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
-                          const errors *e)
+                          const joint_errors *e)
 {
     double w = 2 * HIMC_PI * c->bandwidth, x[2], y[2], z[2];
     if (!c->gain_set[j])
@@ -288,7 +145,7 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
 
 // what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
 static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
-                                 const errors *e, himc_vec3 wanted[HIMC_JOINTS])
+                                 const joint_errors *e, himc_vec3 wanted[HIMC_JOINTS])
 {
     for (int j = 0; j < HIMC_JOINTS; j++)
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
@@ -298,13 +155,14 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
                              const himc_body_state *s, const himc_reference *reference,
                              himc_vec3 torque[HIMC_JOINTS])
 {
-    errors e;
+    joint_errors e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
-    joint_errors(skeleton, s, &reference->posture, &e);
+    himc_joint_errors(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
         if (c->mode == HIMC_PIPELINE_HIMC)
-            tip_errors(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian[hand], &e);
+            himc_tip_errors(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian[hand],
+                            &e);
     }
     if (c->law == HIMC_LAW_COMPUTED_TORQUE) {
         himc_vec3 wanted[HIMC_JOINTS];

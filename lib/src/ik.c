@@ -1,13 +1,15 @@
 /// ik.c: everything is a force f at the tip, three numbers, put through W J': rotation_j = w_j
 /// lever_j x f. A solver is what it takes for (J W J')^-1 in f = (J W J')^-1 e.
 ///
-/// With the eigenvalues s_i^2 and eigenvectors u_i of J W J' (Jacobi rotations, always converging
-/// for 3 x 3) each is sum g_i u_i u_i' / s_i^2 with its own g_i: the pseudo-inverse 1 or, for s_i
-/// below a share of the largest, 0; damped least squares s_i^2 / (s_i^2 + lambda^2), where
-/// Nakamura's lambda = lambda_0 (1 - w / w_0) for the manipulability w = s_1 s_2 s_3 < w_0;
-/// selectively damped least squares whatever keeps the turn of every joint below gamma_i, which
-/// shrinks where joints would move the tip much more than they bring it nearer.
+/// With the eigenvalues s_i^2 and eigenvectors u_i of J W J' (jacobi.h) each is sum g_i u_i u_i' /
+/// s_i^2 with its own g_i: the pseudo-inverse 1 or, for s_i below a share of the largest, 0; damped
+/// least squares s_i^2 / (s_i^2 + lambda^2), where Nakamura's lambda = lambda_0 (1 - w / w_0) for
+/// the manipulability w = s_1 s_2 s_3 < w_0; selectively damped least squares whatever keeps the
+/// turn of every joint below gamma_i, which shrinks where joints would move the tip much more than
+/// they bring it nearer.
 #include "himc/ik.h"
+
+#include "jacobi.h"
 
 #define PINV_TOLERANCE 0.02 // singular values below this share of the largest are left out
 #define NULL_FLOOR 1e-12    // keeps the null space projector finite when the arm is straight (m^2)
@@ -64,30 +66,6 @@ static himc_mat3 damped(const himc_mat3 *gram, double damping)
     return himc_mat3_inverse_symmetric(&g);
 }
 
-// one Jacobi rotation that zeroes a[p][q]
-static void jacobi_rotate(double a[3][3], double v[3][3], int p, int q)
-{
-    if (a[p][q] == 0)
-        return;
-    double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
-    double c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int i = 0; i < 3; i++) {
-        double x = a[i][p], y = a[i][q];
-        a[i][p] = c * x - s * y;
-        a[i][q] = s * x + c * y;
-    }
-    for (int i = 0; i < 3; i++) {
-        double x = a[p][i], y = a[q][i];
-        a[p][i] = c * x - s * y;
-        a[q][i] = s * x + c * y;
-        x = v[i][p];
-        y = v[i][q];
-        v[i][p] = c * x - s * y;
-        v[i][q] = s * x + c * y;
-    }
-}
-
 typedef struct spectrum {
     double square[3];  // singular values, squared (m^2)
     himc_vec3 axis[3]; // unit vectors
@@ -95,20 +73,14 @@ typedef struct spectrum {
 
 static spectrum spectrum_of(const himc_mat3 *gram)
 {
-    double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double a[9], v[9];
     spectrum s;
     for (int i = 0; i < 9; i++)
-        a[i / 3][i % 3] = gram->m[i / 3][i % 3];
-    double trace = a[0][0] + a[1][1] + a[2][2];
-    for (int sweep = 0; sweep < 8 && fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]) > 1e-17 * trace;
-         sweep++) {
-        jacobi_rotate(a, v, 0, 1);
-        jacobi_rotate(a, v, 0, 2);
-        jacobi_rotate(a, v, 1, 2);
-    }
+        a[i] = gram->m[i / 3][i % 3];
+    himc_jacobi(3, a, v);
     for (int i = 0; i < 3; i++) {
-        s.square[i] = a[i][i];
-        s.axis[i] = himc_vec3_make(v[0][i], v[1][i], v[2][i]);
+        s.square[i] = a[4 * i];
+        s.axis[i] = himc_vec3_make(v[i], v[3 + i], v[6 + i]);
     }
     return s;
 }

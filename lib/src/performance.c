@@ -256,16 +256,18 @@ static void step_dynamics(himc_performance *p, int n, double h, bool tick)
         recover(p);
 }
 
-// the body shown as the joint targets have it; only the sticks' ends meet the head
-static void step_kinematics(himc_performance *p, int n)
+// the body shown as inverse kinematics has it; only the sticks' ends meet the head
+static void step_kinematics(himc_performance *p, int n, double h)
 {
     himc_pose pose;
     himc_vec3 unused[HIMC_HANDS];
     himc_vec3 rate[HIMC_JOINTS];
-    memcpy(pose.joint, p->reference.posture.joint, sizeof pose.joint);
-    memcpy(rate, p->reference.posture.rate, sizeof rate);
+    p->controller.step = h;
+    himc_controller_show(&p->controller, &p->skeleton, &p->reference, &p->state, &pose, rate);
     himc_performance_limit_shown(p, &pose, rate);
     himc_pose_to_state(&p->skeleton, &pose, rate, &p->state);
+    if (!himc_body_state_finite(&p->state))
+        recover(p);
     himc_performance_after_contact(p, step_time(p));
     himc_performance_contact(p, n, unused);
     himc_performance_measure_step(p);
@@ -283,7 +285,7 @@ static void performance_step(himc_performance *p)
     himc_task_between(&p->from, &p->to, t, &p->reference);
     himc_performance_release(p, t);
     if (p->controller.mode == HIMC_PIPELINE_IK)
-        step_kinematics(p, n);
+        step_kinematics(p, n, n / p->config.sample_rate);
     else
         step_dynamics(p, n, n / p->config.sample_rate, tick);
     if (tick)

@@ -388,12 +388,13 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
         i--; // separated after the bridge's end: it is lengthened
     }
     bridge *b = &h->bridges[i];
-    b->to = fmax(t + REJOIN, b->next / track->rate); // between last and next nothing is known
+    double to = fmax(t + REJOIN, b->next / track->rate); // between last and next nothing is known
     if (i + 1 < h->bridge_count)
-        b->to = fmin(b->to, h->bridges[i + 1].from - 1e-3);
-    b->to = fmin(b->to, (track->frames - 1) / track->rate);
-    if (b->to < t + TOO_LATE)
+        to = fmin(to, h->bridges[i + 1].from - 1e-3);
+    to = fmin(to, (track->frames - 1) / track->rate);
+    if (to < t + TOO_LATE)
         return;
+    b->to = to;
     himc_target back = captured_at(track, h, b->to), from = *measured;
     from.v = himc_vec3_scale(from.v, 1 / at[1]);
     from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
