@@ -144,7 +144,7 @@ refuses test_typo_is_refused_with_its_line "typo.txt:2: " render typo.txt -o x.w
 refuses test_nan_in_a_score_is_refused "nan.txt:1: " render nan.txt -o x.wav
 refuses test_typo_is_refused_by_info "typo.txt:2: " info typo.txt
 refuses test_typo_is_refused_by_modes "typo.txt:2: " modes typo.txt
-refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: /dev/zero: not a file" \
+refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: kettle: /dev/zero: not a file" \
     render endless-shape.txt -o x.wav
 refuses test_unknown_tip_is_refused_by_info 'left tip: no point "nope", allowed: LTIP, RTIP' \
     info still.trc --left-tip nope

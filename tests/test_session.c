@@ -187,7 +187,7 @@ static void test_score_with_a_fault_anywhere_changes_nothing(void)
         {"listen 9000;", ":5: listen: allowed as a message"},
         {"units /no/such/take.bvh legato;", ":5: /no/such/take.bvh"},
         {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
-        {"kettle shape /no/such/grid.txt;", ":5: /no/such/grid.txt"},
+        {"kettle shape /no/such/grid.txt;", ":5: kettle: /no/such/grid.txt"},
         {"record /no/such/folder/x.bvh;", ":5: record: /no/such/folder/x.bvh"},
         {"stroke 1 left legato loud;", ":5: stroke: DYNAMIC: loud"},
         {"kettle modes 0;", ":5: kettle: modes: COUNT: 0"}};

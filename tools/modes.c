@@ -21,7 +21,7 @@ static bool tune(himc_drum *drum, const himc_score *score, const char *path, him
         if (strcmp(line->drum, himc_drum_name(drum)))
             continue;
         if (!himc_drum_command(drum, &line->command, error))
-            return himc_error_prefix(error, "%s:%d", path, line->line);
+            return himc_error_prefix(error, "%s:%d: %s", path, line->line, line->drum);
     }
     return true;
 }

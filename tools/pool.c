@@ -90,20 +90,22 @@ bool pool_run(const pool *p, himc_error *error)
 {
     int ends[2];
     pid_t worker[JOBS_MAX];
-    atomic_int *next =
-        mmap(NULL, sizeof *next, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (p->items == 0)
         return true;
+    atomic_int *next =
+        mmap(NULL, sizeof *next, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (next == MAP_FAILED || pipe(ends))
         return himc_error_set(error, "no workers: %s", strerror(errno));
     atomic_init(next, 0);
     int workers = start_workers(p, next, ends, worker);
     close(ends[1]);
-    int done = workers ? collect(p, next, ends[0], error) : 0;
+    int why = errno, done = workers ? collect(p, next, ends[0], error) : 0;
     close(ends[0]);
     for (int i = 0; i < workers; i++)
         waitpid(worker[i], NULL, 0);
     munmap(next, sizeof *next);
+    if (workers == 0)
+        return himc_error_set(error, "no workers: %s", strerror(why));
     if (done >= 0 && done < p->items)
         return himc_error_set(error, "a worker died: %d of %d trials done", done, p->items);
     return done == p->items;

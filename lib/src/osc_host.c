@@ -192,12 +192,18 @@ static void answer(void *object, const char *line)
 static bool carry_out(himc_performance *performance, const osc_order *order, himc_error *error)
 {
     himc_drum *drum;
+    char names[120] = "";
     if (order->receiver == HIMC_PERFORMER)
         return himc_performance_command(performance, &order->command, 0, error);
-    for (int i = 0; (drum = himc_performance_drum(performance, i)); i++)
+    for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
         if (strcmp(himc_drum_name(drum), order->drum) == 0)
-            return himc_drum_command(drum, &order->command, error);
-    return himc_error_set(error, "%s: no drum of that name", order->drum);
+            return himc_drum_command(drum, &order->command, error) ||
+                   himc_error_prefix(error, "%s", order->drum);
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, " %s", himc_drum_name(drum));
+    }
+    return himc_error_set(error, "%s: no drum of that name, allowed:%s", order->drum,
+                          names[0] ? names : " none, make one with drum");
 }
 
 // commands may take a tenth of the time: a head of 2000 modes takes 25 ms to make anew, and who

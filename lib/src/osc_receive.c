@@ -180,8 +180,11 @@ static void take_message(himc_osc *osc, const osc_address *from, const char *pat
         take_command(osc, &order);
     else if (is_ours(order.receiver, name))
         osc_counted(osc, COUNT_FOREIGN, 1);
-    else
+    else {
+        if (order.receiver == HIMC_DRUM)
+            himc_error_prefix(&error, "%s", order.drum);
         refuse(osc, from, error.text);
+    }
 }
 
 static void take_element(himc_osc *osc, const osc_address *from, char *data, size_t size, int depth)

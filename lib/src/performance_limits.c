@@ -53,12 +53,21 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
     return true;
 }
 
+// what has been counted was of other limits
+static void forget_hits(himc_performance *p)
+{
+    memset(p->strain.held, 0, sizeof p->strain.held);
+    memset(p->strain.hits, 0, sizeof p->strain.hits);
+    memset(p->strain.farthest, 0, sizeof p->strain.farthest);
+}
+
 bool himc_performance_do_limits(himc_performance *p, const himc_command *c, himc_error *error)
 {
     static const char *const words[] = {"off", "ellipsoid", "euler"};
     (void)error;
     p->limits.kind = (himc_limits_kind)himc_performance_word(c->atom[0].symbol, words, 3);
     himc_performance_renew_limits(p);
+    forget_hits(p);
     return true;
 }
 

@@ -97,7 +97,8 @@ static bool rehearse_line(rehearsal *r, const himc_score_line *line, himc_error 
     if (!line->drum[0])
         return rehearse_command(r, &line->command, error);
     himc_drum *drum = trial_drum(r, line->drum, 23, error);
-    return drum && himc_drum_command(drum, &line->command, error);
+    return drum && (himc_drum_command(drum, &line->command, error) ||
+                    himc_error_prefix(error, "%s", line->drum));
 }
 
 /// Drums there would be: those there are, those of the lines, those the strokes name.
@@ -147,7 +148,8 @@ static bool run_line(himc_performance *p, const himc_score_line *line, himc_erro
     if (!line->drum[0])
         return himc_performance_command(p, &line->command, 0, error);
     return himc_performance_ensure_drum(p, line->drum, &index, error) &&
-           himc_drum_command(p->drum[index].drum, &line->command, error);
+           (himc_drum_command(p->drum[index].drum, &line->command, error) ||
+            himc_error_prefix(error, "%s", line->drum));
 }
 
 // what acts on the strokes or on what plays has its turn when they are there

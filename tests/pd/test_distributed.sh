@@ -8,7 +8,7 @@ cd "$(dirname "$0")/../.." || exit 1
 dir=$HIMC_BUILD/tests/distributed
 port=$((20000 + $$ % 20000)) # and the two after it; ours, should two of these run at once
 # a machine that tests several things at once keeps processes waiting longer than the network does
-seconds=12 latency=250
+seconds=12 latency=500
 [ -n "$HIMC_LONG" ] && seconds=60 latency=50
 mkdir -p "$dir"
 tests=0 failures=0
