@@ -168,7 +168,7 @@ report technique_clip_in_a_score_sounds_a_performance \
     "$(numbers performed | awk '{ a = $1 < 0 ? -$1 : $1; if (a > m) m = a } END { if (!(m > 0.05 && m < 1)) print "peak " m }')"
 report technique_of_patches_is_refused_where_there_are_none \
     "$("$build/bin/himc" render technique.txt -o "$work/none.wav" >"$work/log" 2>&1 && echo "not refused"
-    lines "himc render: technique.txt:2: technique: clip, allowed modal here: signal and clip are patches, [technique~ NAME] in Pure Data")"
+    lines "himc render: technique.txt:2: kettle: technique: clip, allowed modal here: signal and clip are patches, [technique~ NAME] in Pure Data")"
 
 # --- bad input
 
