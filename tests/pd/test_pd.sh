@@ -222,10 +222,10 @@ done
 pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$build/externals/himc" \
     -send "himc-test $PWD" -open reopen.pd >"$work/log" 2>&1 </dev/null &
 pd=$!
-memory() { # memory COUNT: of Pd once so many patches have been opened (kB)
+memory() { # memory COUNT: the most Pd has held until so many patches have been opened (kB)
     for ((wait = 0; wait < 400; wait++)); do
         if grep -q "^opened: $1\$" "$work/log"; then
-            awk '/VmRSS/ { print $2 }' /proc/$pd/status
+            awk '/VmHWM/ { print $2 }' /proc/$pd/status
             return
         fi
         sleep 0.05
