@@ -14,7 +14,8 @@
 #define PIECE                                                                     \
     "tempo 120; drum kettle; "                                                    \
     "stroke 2 right legato mf; stroke 3 left tenuto f; stroke 4 right accent f; " \
-    "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; stroke 7 left legato pp;"
+    "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; "   \
+    "stroke 7 left legato pp;"
 
 #define PARTED 1e-3 // of the stick in micro-contact from the body (m)
 
