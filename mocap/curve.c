@@ -31,8 +31,12 @@ void himc_mocap_curve_free(mocap_curve *curve)
 
 void himc_mocap_curve_add(mocap_curve *curve, mocap_knot knot)
 {
-    if (curve->count < curve->room)
-        curve->knot[curve->count++] = knot;
+    if (curve->count == curve->room)
+        return;
+    // a lift that would end after the next fall begins delays that fall
+    if (curve->count > 0)
+        knot.t = fmax(knot.t, curve->knot[curve->count - 1].t);
+    curve->knot[curve->count++] = knot;
 }
 
 static double between(const mocap_knot *a, const mocap_knot *b, double t)

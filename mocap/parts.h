@@ -75,6 +75,7 @@ typedef struct mocap_curve {
 
 bool himc_mocap_curve_init(mocap_curve *curve, int room);
 void himc_mocap_curve_free(mocap_curve *curve);
+/// Appends a knot; one that would stand before the last is put at the last one's time.
 void himc_mocap_curve_add(mocap_curve *curve, mocap_knot knot);
 HIMC_RT double himc_mocap_curve_at(const mocap_curve *curve, double t);
 

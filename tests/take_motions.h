@@ -109,12 +109,12 @@ static inline himc_vec3 left_roll(double t)
     return himc_vec3_make(0.7, 0.3, x.z);
 }
 
-static inline himc_take *read_roll(void)
+static inline himc_take *read_roll(int frames)
 {
     const char *const names[2] = {"Anna:R_Stick_Tip", "Anna:L_Stick_Tip"};
     motion *const motions[2] = {right_roll, left_roll};
     himc_take_options options = z_up();
-    char *text = write_motion(names, motions, 250, 600);
+    char *text = write_motion(names, motions, 250, frames);
     himc_take *take = read_text(text, "roll.trc", &options, &error);
     free(text);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);

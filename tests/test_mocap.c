@@ -2,6 +2,7 @@
 /// bodies do, files that read back.
 #include "mocap_sequences.h"
 
+#include "../mocap/parts.h"
 #include "himc/take.h"
 
 #include <string.h>
@@ -145,6 +146,27 @@ static void test_joints_move_as_fast_as_joints_do(void)
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         TEST_ASSERT_TRUE(fastest[k] < most[k] && fastest[k] > 1);
     TEST_ASSERT_TRUE(trunk < 1);
+}
+
+// a stroke whose lift would end 5 ms after the next fall begins
+static void test_strokes_that_overlap_follow_each_other_without_a_jump(void)
+{
+    mocap_curve curve;
+    TEST_ASSERT_TRUE(himc_mocap_curve_init(&curve, 8));
+    mocap_share stroke = {0.3, 15, 8, {0.008, 0.014}, 0.2, 0.15, 1};
+    himc_mocap_curve_stroke(&curve, &stroke);
+    stroke.touch += 0.15 - 0.005 + 0.2;
+    himc_mocap_curve_stroke(&curve, &stroke);
+    for (int i = 1; i < curve.count; i++)
+        TEST_ASSERT_TRUE(curve.knot[i - 1].t <= curve.knot[i].t);
+    double last = himc_mocap_curve_at(&curve, 0), largest = 0;
+    for (double t = 0; t < 1; t += 1e-5) {
+        double now = himc_mocap_curve_at(&curve, t);
+        largest = fmax(largest, fabs(now - last));
+        last = now;
+    }
+    himc_mocap_curve_free(&curve);
+    TEST_ASSERT_DOUBLE_WITHIN(4e-5, 1.5e-4, largest); // the rate of arrival
 }
 
 static void test_the_same_seed_is_the_same_motion_and_another_is_another(void)
@@ -369,6 +391,7 @@ int main(void)
     RUN_TEST(test_no_stick_goes_through_the_head);
     RUN_TEST(test_a_mallet_turns_within_its_contact);
     RUN_TEST(test_joints_move_as_fast_as_joints_do);
+    RUN_TEST(test_strokes_that_overlap_follow_each_other_without_a_jump);
     RUN_TEST(test_the_same_seed_is_the_same_motion_and_another_is_another);
     RUN_TEST(test_what_cannot_be_played_is_refused_in_a_line);
     RUN_TEST(test_each_stroke_is_found_in_each_of_the_45_files);

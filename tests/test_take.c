@@ -107,7 +107,7 @@ static void test_tips_are_found_by_the_names_laboratories_use(void)
 
 static void test_tips_can_be_named_and_a_wrong_name_is_refused(void)
 {
-    himc_take *take = read_roll();
+    himc_take *take = read_roll(600);
     himc_take_tip tips[HIMC_HANDS];
     himc_take_options options = himc_take_default();
     options.left_tip = "r stick tip";
@@ -208,7 +208,7 @@ static void hear(void *user, const char *line)
 
 static void test_describe_tells_what_was_found_and_how_it_was_read(void)
 {
-    himc_take *take = read_roll();
+    himc_take *take = read_roll(600);
     told[0] = 0;
     himc_take_describe(take, NULL, hear, NULL);
     static const char *const lines[] = {
@@ -229,7 +229,7 @@ static void test_describe_tells_what_was_found_and_how_it_was_read(void)
 
 static void test_two_readings_of_a_file_are_equal_bit_by_bit(void)
 {
-    himc_take *a = read_roll(), *b = read_roll();
+    himc_take *a = read_roll(600), *b = read_roll(600);
     for (int i = 0; i < 600; i++)
         for (int k = 0; k < 2; k++) {
             himc_vec3 p = himc_take_point(a, i, k), q = himc_take_point(b, i, k);

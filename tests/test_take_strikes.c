@@ -2,6 +2,9 @@
 /// stroke.
 #include "take_motions.h"
 
+#include "himc/track.h"
+#include "himc/units.h"
+
 void setUp(void)
 {
 }
@@ -150,7 +153,7 @@ static void test_no_strike_is_at_an_end_that_is_held(void)
 
 static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
 {
-    himc_take *take = read_roll();
+    himc_take *take = read_roll(600);
     himc_take_strike s[32];
     int count = strikes_of(take, s, 32);
     TEST_ASSERT_EQUAL_INT(15, count);
@@ -167,6 +170,31 @@ static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
     TEST_ASSERT_FALSE(himc_take_strike_place(s, 0, &place));
     // fewer places than strikes: the first ones, and how many there are
     TEST_ASSERT_EQUAL_INT(15, strikes_of(take, s, 3));
+    himc_take_free(take);
+}
+
+// ten minutes of a roll: no strike is lost on the way to the track or to the units
+static void test_each_of_4200_strikes_is_found_tracked_and_cut(void)
+{
+    himc_take *take = read_roll(630 * 250 + 50);
+    himc_take_tip tips[HIMC_HANDS];
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_tips(take, NULL, tips, &error), error.text);
+    int count;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
+    TEST_ASSERT_EQUAL_INT(4200, count);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 630 - 0.1, strikes[2 * 2099].time);
+    free(strikes);
+
+    himc_place place = {.center = himc_vec3_make(0.6, 0, 0.8), .radius = 0.3};
+    himc_track *track = himc_track_new(take, NULL, &place, 0.02, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
+    TEST_ASSERT_EQUAL_INT(4200, himc_track_strikes(track, HIMC_LEFT) +
+                                    himc_track_strikes(track, HIMC_RIGHT));
+    himc_track_free(track);
+
+    himc_unit units[3] = {{.height = 0}, {.height = 0}, {.height = -1}};
+    TEST_ASSERT_INT_WITHIN(4, 4200, himc_units_cut(take, NULL, units, 2, &error));
+    TEST_ASSERT_TRUE(units[0].height > 0 && units[1].height > 0 && units[2].height == -1);
     himc_take_free(take);
 }
 
@@ -203,6 +231,7 @@ int main(void)
     RUN_TEST(test_strike_that_lost_one_frame_is_found_and_none_is_across_or_beside_a_longer_gap);
     RUN_TEST(test_no_strike_is_at_an_end_that_is_held);
     RUN_TEST(test_strikes_of_both_hands_come_in_order_and_place_the_drum);
+    RUN_TEST(test_each_of_4200_strikes_is_found_tracked_and_cut);
     RUN_TEST(test_real_stroke_strikes_once_where_and_as_its_source_says);
     return UNITY_END();
 }

@@ -108,6 +108,9 @@ typedef struct himc_take_strike {
 /// are.
 int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                       himc_take_strike *strikes, int capacity);
+/// All of them, owned by the caller (free); NULL with a count of 0 without memory.
+himc_take_strike *himc_take_find_strikes(const himc_take *take,
+                                         const himc_take_tip tips[HIMC_HANDS], int *count);
 
 /// Where a tip touches the drumhead that belongs under these strikes: the middle of both hands'
 /// median places (m). Where a fall and its rebound meet is below that: on the simulated head a

@@ -25,9 +25,9 @@ typedef struct himc_unit {
     double bend[3]; ///< the fall's own shape (unit.c)
 } himc_unit;
 
-/// Cuts the strokes of both hands out of a take into `units`, at most `capacity`; nuance, spot and
-/// grip are for the caller to say. Strokes that are not one clear fall are left out. Returns how
-/// many, or -1 with the reason: no tips, no strokes.
+/// Cuts the strokes of both hands out of a take; nuance, spot and grip are for the caller to say.
+/// Strokes that are not one clear fall are left out. Writes at most `capacity` into `units`,
+/// returns how many there are, or -1 with the reason: no tips, no strokes.
 int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit *units,
                    int capacity, himc_error *error);
 

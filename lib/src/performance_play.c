@@ -179,7 +179,7 @@ static bool add_units(himc_performance *p, himc_take *take, const himc_command *
     static const char *const spots[] = {"center", "normal", "rim"};
     himc_unit units[HIMC_UNITS];
     int count = himc_units_cut(take, &p->take_options, units, HIMC_UNITS, error);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count && i < HIMC_UNITS; i++) {
         units[i].nuance =
             (himc_nuance)himc_performance_word(c->atom[1].symbol, nuances, HIMC_NUANCES);
         units[i].grip = p->grip;

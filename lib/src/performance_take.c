@@ -124,9 +124,8 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
     const himc_place *place = himc_drum_place(drum);
     if (!himc_take_tips(take, &p->take_options, tips, &ignored))
         return;
-    int count = himc_take_strikes(take, tips, NULL, 0), outside = 0;
-    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
-    count = strikes ? himc_take_strikes(take, tips, strikes, count) : 0;
+    int count, outside = 0;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
     for (int i = 0; i < count; i++) {
         himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(track));
         himc_vec3 local = himc_place_from_world(place, at);

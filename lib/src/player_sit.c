@@ -29,10 +29,9 @@
 static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                          himc_vec3 *place)
 {
-    int count = himc_take_strikes(take, tips, NULL, 0);
-    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
-    bool found = strikes && himc_take_strikes(take, tips, strikes, count) > 0 &&
-                 himc_take_strike_place(strikes, count, place);
+    int count;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
+    bool found = count > 0 && himc_take_strike_place(strikes, count, place);
     free(strikes);
     return found;
 }

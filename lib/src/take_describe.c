@@ -66,11 +66,10 @@ static void tell_gaps(const himc_take *take, const teller *to)
 static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                          const teller *to)
 {
-    int count = himc_take_strikes(take, tips, NULL, 0);
-    himc_take_strike *strikes = calloc((size_t)count + 1, sizeof *strikes);
+    int count;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
     if (!strikes)
         return;
-    count = himc_take_strikes(take, tips, strikes, count);
     himc_tell(to, "strikes: %d", count);
     for (int i = 0; i < count && i < STRIKE_LINES; i++)
         himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", strikes[i].time,

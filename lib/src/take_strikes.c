@@ -298,6 +298,15 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
     return count;
 }
 
+himc_take_strike *himc_take_find_strikes(const himc_take *take,
+                                         const himc_take_tip tips[HIMC_HANDS], int *count)
+{
+    int all = himc_take_strikes(take, tips, NULL, 0);
+    himc_take_strike *strikes = calloc((size_t)all + 1, sizeof *strikes);
+    *count = strikes ? himc_take_strikes(take, tips, strikes, all) : 0;
+    return strikes;
+}
+
 // how far the head is above where fall and rebound meet: v t down and u (CONTACT - t) up again
 static double above_meeting(const himc_take_strike *s)
 {

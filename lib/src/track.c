@@ -20,7 +20,6 @@
 #define HOVER 0.08        // of a tip at rest above the head (m)
 #define IN_THE_AIR 0.05   // a strike's tip is not so high above the head (m)
 #define LEAST_FRAMES 8
-#define MAX_STRIKES 4096
 
 // frames lo..hi: one stretch between strikes
 static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
@@ -137,22 +136,12 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     return h->present;
 }
 
-// what is there of the take's strikes, to be freed; NULL without memory
-static himc_take_strike *find_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                                      int *count)
-{
-    himc_take_strike *strikes = calloc(MAX_STRIKES, sizeof *strikes);
-    *count = strikes ? himc_take_strikes(take, tips, strikes, MAX_STRIKES) : 0;
-    *count = *count > MAX_STRIKES ? MAX_STRIKES : *count;
-    return strikes;
-}
-
 static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                          const himc_place *place, const himc_player *player, double mallet_radius)
 {
     int count;
     himc_track *track = calloc(1, sizeof *track);
-    himc_take_strike *strikes = find_strikes(take, tips, &count);
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
     bool ok = track && strikes;
     if (ok) {
         track->rate = himc_take_rate(take);

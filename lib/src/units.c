@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_STRIKES 4096
 #define LONGEST_FALL 0.5    // (s)
 #define SHORTEST_FALL 0.03  // (s)
 #define LONGEST_REBOUND 0.4 // (s)
@@ -186,17 +185,21 @@ int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit 
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))
         return -1;
-    himc_take_strike *strikes = calloc(MOST_STRIKES, sizeof *strikes);
-    int found = strikes ? himc_take_strikes(take, tips, strikes, MOST_STRIKES) : 0, count = 0;
-    found = found < MOST_STRIKES ? found : MOST_STRIKES;
-    for (int i = 0; i < found && count < capacity; i++) {
+    int found, count = 0;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &found);
+    for (int i = 0; i < found; i++) {
         cut c = {.x = tips[strikes[i].hand].x,
                  .frames = himc_take_frames(take),
                  .rate = himc_take_rate(take),
                  .strike = &strikes[i],
                  .before = touch_of_hand(strikes, found, i, -1),
                  .after = touch_of_hand(strikes, found, i, 1)};
-        count += cut_unit(&c, &units[count]);
+        himc_unit unit;
+        if (!cut_unit(&c, &unit))
+            continue;
+        if (count < capacity)
+            units[count] = unit;
+        count++;
     }
     free(strikes);
     if (count == 0) {
