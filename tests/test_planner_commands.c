@@ -238,6 +238,20 @@ static double storm(unsigned seed, int commands)
     return digest;
 }
 
+static void test_tip_thrown_off_a_head_is_halted_within_15_cm(void)
+{
+    for (double speed = 1; speed <= 16; speed *= 2) {
+        himc_target off = {{0.45, 0.1, PLANE}, {-speed, 0, 1}, {0, 0, 0}};
+        himc_planner_separated(planner, HIMC_LEFT, 1, &off);
+        for (double t = 1; t < 3; t += 0.004) {
+            himc_vec3 x = at(planner, HIMC_LEFT, t).x;
+            TEST_ASSERT_TRUE(x.x > 0.45 - 0.15 - 0.02 * speed - 0.01);
+        }
+        TEST_ASSERT_TRUE(himc_vec3_length(at(planner, HIMC_LEFT, 3).v) < 0.5);
+        use(120);
+    }
+}
+
 static void test_ten_thousand_random_commands_keep_the_motion_finite_and_near(void)
 {
     storm(1, 10000);
@@ -302,6 +316,7 @@ int main(void)
     RUN_TEST(test_strokes_that_nobody_can_play_are_refused);
     RUN_TEST(test_stroke_added_while_playing_is_played);
     RUN_TEST(test_state_is_continuous_through_every_command);
+    RUN_TEST(test_tip_thrown_off_a_head_is_halted_within_15_cm);
     RUN_TEST(test_ten_thousand_random_commands_keep_the_motion_finite_and_near);
     RUN_TEST(test_the_same_commands_give_the_same_bits);
     RUN_TEST(test_values_that_are_not_finite_change_nothing);

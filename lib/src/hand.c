@@ -19,7 +19,8 @@
 #define ABSORB 0.02        // in which the acceleration a contact left dies out (s)
 #define KNOTS 5            // of a unit's fall
 #define MOST_PIECES 16     // of a chunk
-#define LONGEST_COAST 0.3  // way a tip would go by its speed before it is halted (m)
+#define LONGEST_COAST 0.3  // way a tip would go by its speed before it is halted (m) ...
+#define LONGEST_HALT 0.15  // ... and goes meanwhile (m)
 #define SWING_PEAK 60.0    // acceleration of the swing behind the spot (m/s^2)
 
 static himc_target sum(himc_target a, himc_target b)
@@ -60,8 +61,9 @@ static void ground_to(chunk *c, double t, himc_vec3 x)
     double T = t - c->ground_end;
     if (T <= 0)
         return;
-    if (himc_vec3_length(c->on.v) * T > LONGEST_COAST) {
-        double halt = fmin(0.12, 0.4 * T);
+    double speed = himc_vec3_length(c->on.v);
+    if (speed * T > LONGEST_COAST) {
+        double halt = fmin(fmin(0.12, 0.4 * T), 2 * LONGEST_HALT / speed);
         ground_piece(c, c->ground_end + halt, himc_vec3_madd(c->on.x, 0.5 * halt, c->on.v));
     }
     ground_piece(c, t, x);
