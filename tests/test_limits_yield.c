@@ -8,6 +8,7 @@
 #include "bodies.h"
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define MOMENT 0.0056 // the time ahead at which a joint shall be within its bounds (s)
@@ -144,6 +145,43 @@ static void stop_elbow(himc_vec3 radius, himc_vec3 off, double *lost, double *le
     *left = himc_vec3_length(himc_vec3_sub(before, now));
 }
 
+static himc_vec3 limit_torque(int joint)
+{
+    himc_vec3 torque[HIMC_JOINTS], resistance[HIMC_JOINTS];
+    memset(torque, 0, sizeof torque);
+    memset(resistance, 0, sizeof resistance);
+    himc_pose_to_state(&skeleton, &pose, rate, &state);
+    himc_limits_resist(&controller, &skeleton, &state, torque, resistance);
+    return torque[joint];
+}
+
+// a stick turned anywhere by anything: where the nearest orientation within jumps, too
+static void test_what_damps_beside_servos_never_drives(void)
+{
+    int joint = himc_arm_joint(HIMC_RIGHT, 3), against = 0;
+    srand(7);
+    for (int i = 0; i < 20000; i++) {
+        limits.kind = i % 2 ? HIMC_LIMITS_EULER : HIMC_LIMITS_ELLIPSOID;
+        limits.joint[joint] = (himc_limit){.bound = true,
+                                           .mean = himc_quat_exp(random_vector(1)),
+                                           .axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                                           .radius = {0.3, 0.1, 0.5},
+                                           .lower = {-0.2, -0.3, -0.1},
+                                           .upper = {0.1, 0.3, 0.4}};
+        pose.joint[joint] = himc_quat_exp(random_vector(3));
+        rate[joint] = himc_vec3_make(0, 0, 0);
+        himc_vec3 pulls = limit_torque(joint);
+        rate[joint] = random_vector(pow(10, i % 4));
+        himc_vec3 damps = himc_vec3_sub(limit_torque(joint), pulls);
+        himc_vec3 spin =
+            himc_vec3_sub(state.spin[joint + 1], state.spin[skeleton.segment[joint + 1].parent]);
+        double power = himc_vec3_dot(damps, spin);
+        TEST_ASSERT_TRUE(power <= 1e-9 * himc_vec3_length(damps) * himc_vec3_length(spin));
+        against += power < 0;
+    }
+    TEST_ASSERT_TRUE(against > 15000);
+}
+
 static void test_a_tip_gets_back_what_a_stopped_elbow_takes(void)
 {
     for (int i = 0; i < 3; i++) {
@@ -211,6 +249,7 @@ int main(void)
     RUN_TEST(test_a_joint_that_would_leave_its_bounds_is_on_them_in_a_moment);
     RUN_TEST(test_a_turning_parent_drives_no_joint_out_of_its_bounds);
     RUN_TEST(test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second);
+    RUN_TEST(test_what_damps_beside_servos_never_drives);
     RUN_TEST(test_a_tip_gets_back_what_a_stopped_elbow_takes);
     RUN_TEST(test_a_joint_hits_its_bounds_again_once_it_has_left_them);
     RUN_TEST(test_strength_of_75_kg_is_that_of_the_table);

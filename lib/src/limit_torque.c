@@ -11,8 +11,8 @@
 ///
 /// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion
 /// of that orientation, so that nothing damps the way along the limit; implicit over the step like
-/// the servos themselves, which drive no joint further out. It is a spring and a damper: it pumps
-/// no energy.
+/// the servos themselves, which drive no joint further out. It is a spring and a damper: omega_lim
+/// has no more energy than omega, omega' I omega_lim <= omega' I omega, so it pumps none.
 #include "limit_torque.h"
 
 #define MOMENT 0.0056   // T: a spring of 40 Hz (s)
@@ -170,16 +170,26 @@ void himc_limits_yield(const himc_controller *c, const himc_skeleton *skeleton,
     }
 }
 
+// twice the energy of a turn in the parent's frame
+static double energy(const place *at, himc_vec3 inertia, himc_vec3 spin)
+{
+    himc_vec3 v = himc_quat_rotate(himc_quat_conj(at->q), spin);
+    return inertia.x * v.x * v.x + inertia.y * v.y * v.y + inertia.z * v.z * v.z;
+}
+
 // the way to the nearest orientation within, and how fast that is left, in the parent's frame
-static void find_way(const himc_limits *limits, int j, const place *at, himc_vec3 *way,
-                     himc_vec3 *rate)
+static void find_way(const himc_limits *limits, int j, const place *at, himc_vec3 inertia,
+                     himc_vec3 *way, himc_vec3 *rate)
 {
     himc_quat near = himc_limit_closest(limits, j, at->q);
     himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(at->spin, SOON)), at->q);
     himc_quat moved = himc_quat_mul(himc_limit_closest(limits, j, next), himc_quat_conj(near));
     *way = himc_quat_log(himc_quat_mul(near, himc_quat_conj(at->q)));
     *way = himc_vec3_scale(*way, fmin(1, FARTHEST / himc_vec3_length(*way)));
-    *rate = himc_vec3_madd(at->spin, -1 / SOON, himc_quat_log(moved));
+    // far outside, the nearest orientation may run away or jump to the other side
+    himc_vec3 along = himc_vec3_scale(himc_quat_log(moved), 1 / SOON);
+    double most = energy(at, inertia, at->spin), has = energy(at, inertia, along);
+    *rate = himc_vec3_madd(at->spin, has > most ? -sqrt(most / has) : -1, along);
 }
 
 void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
@@ -196,7 +206,7 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
         if (at[j].beyond < NEGLIGIBLE)
             continue;
         count_hit(c->strain, j);
-        find_way(c->limits, j, &at[j], &way, &rate);
+        find_way(c->limits, j, &at[j], c->inertia[j], &way, &rate);
         const himc_mat3 *parent = &s->rotation[skeleton->segment[j + 1].parent];
         const himc_mat3 *child = &s->rotation[j + 1];
         himc_vec3 i = c->inertia[j], light = himc_vec3_make(1 / i.x, 1 / i.y, 1 / i.z);
