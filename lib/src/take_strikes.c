@@ -301,7 +301,8 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
 himc_take_strike *himc_take_find_strikes(const himc_take *take,
                                          const himc_take_tip tips[HIMC_HANDS], int *count)
 {
-    int all = himc_take_strikes(take, tips, NULL, 0);
+    himc_take_strike none;
+    int all = himc_take_strikes(take, tips, &none, 0);
     himc_take_strike *strikes = calloc((size_t)all + 1, sizeof *strikes);
     *count = strikes ? himc_take_strikes(take, tips, strikes, all) : 0;
     return strikes;
