@@ -3,17 +3,21 @@
 /// Limits are those learned from the take that is loaded; else table 1 of the 2012 paper around the
 /// mean of the postures that strokes of all heights have where the tips are planned to be just
 /// then, from the first drum's height up. They are made anew when a drum is moved or the body
-/// changes, in the audio callback too. They are off until asked for: the table is of a player and a
+/// changes, in the audio callback too. An arm that a take shows without a stick was held otherwise
+/// than one with a stick is: its limits are of the postures that its tips ask for, in `himc` and, bent
+/// from the captured ones, in `id`. They are off until asked for: the table is of a player and a
 /// drum of its own, and a piece need not keep to it.
 #include "performance_state.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define MARGIN 0.05         // beyond what a take shows ...
 #define LEAST 0.05          // ... and this far whatever it shows (rad)
 #define HIGHEST_STROKE 0.35 // tips in the mean posture go from the first head up to here (m)
 #define HEIGHTS 8
+#define LOOKED_AT 1000 // frames of a take, at most
 
 // the mean of a stroke's postures, tips above and below where they are planned to be now
 static himc_pose natural_mean(const himc_performance *p)
@@ -45,11 +49,62 @@ void himc_performance_renew_limits(himc_performance *p)
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error)
 {
-    if (!player->pose)
-        return true;
     if (!himc_limits_learn(learned, player->pose, player->frames, MARGIN, error))
         return false;
     himc_limits_loosen(learned, LEAST);
+    return true;
+}
+
+static bool lacks_stick(const himc_player *player, const himc_track *track, himc_hand hand)
+{
+    int known = 0;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        known += player->known[himc_arm_joint(hand, k)];
+    return himc_track_present(track, hand) && known > 0 && known < HIMC_ARM_JOINTS;
+}
+
+// the natural posture of the take's tips at `t`, and the captured one bent to them
+static void postures_at(const himc_posture *posture, const himc_track *track, double t,
+                        himc_pose pose[2])
+{
+    himc_posture_motion motion;
+    himc_target tip[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int seen = himc_track_present(track, (himc_hand)hand) ? hand : !hand;
+        tip[hand] = himc_track_target(track, (himc_hand)seen, t);
+    }
+    himc_posture_moving(posture, tip, &motion);
+    memcpy(pose[0].joint, motion.joint, sizeof motion.joint);
+    himc_track_posture(track, &posture->skeleton, t, tip, &motion);
+    memcpy(pose[1].joint, motion.joint, sizeof motion.joint);
+}
+
+bool himc_performance_learn_bent(const himc_player *player, const himc_track *track,
+                                 const himc_posture *posture, himc_limits *learned,
+                                 himc_error *error)
+{
+    bool lacks[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        lacks[hand] = lacks_stick(player, track, (himc_hand)hand);
+    if (!lacks[HIMC_LEFT] && !lacks[HIMC_RIGHT])
+        return true;
+    himc_limits bent;
+    himc_pose *pose = malloc(2 * LOOKED_AT * sizeof *pose);
+    for (int i = 0; pose && i < LOOKED_AT; i++)
+        postures_at(posture, track, himc_track_length(track) * i / LOOKED_AT, &pose[2 * i]);
+    if (!pose)
+        himc_error_set(error, "limits: out of memory");
+    bool fitted = pose && himc_limits_learn(&bent, pose, 2 * LOOKED_AT, MARGIN, error);
+    free(pose);
+    if (!fitted)
+        return false;
+    himc_limits_loosen(&bent, LEAST);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; lacks[hand] && k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            if (player->known[j])
+                learned->joint[j] = bent.joint[j];
+        }
     return true;
 }
 

@@ -229,6 +229,10 @@ bool himc_performance_find_joint(const himc_command *c, const char *command, int
 void himc_performance_renew_limits(himc_performance *p);
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error);
+/// Those of arms without sticks anew, from what the tips ask of a body in that posture.
+bool himc_performance_learn_bent(const himc_player *player, const himc_track *track,
+                                 const himc_posture *posture, himc_limits *learned,
+                                 himc_error *error);
 void himc_performance_keep_strength(himc_performance *p, const himc_controller *old);
 /// Takes a posture that is only shown into the limits, and stops the joints that it moves.
 void himc_performance_limit_shown(himc_performance *p, himc_pose *pose,

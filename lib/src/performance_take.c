@@ -1,7 +1,7 @@
 /// performance_take.c: the command `take`: a capture's player becomes the performer, and sits where
 /// the capture has it, before a drum that stands under the strikes.
 ///
-/// In `id` and `ik` the joints follow the capture's postures; in `himc` only the tips are known,
+/// In `id` and `ik` the joints follow the capture's postures, but for arms that hold no stick; in `himc` only the tips are known,
 /// and the null space has the natural posture, with neck, head, legs and the trunk's mean as this
 /// player holds them. Of an arm that the take shows it has the player's own way instead: the mean
 /// and the habit, the usual one corrected by this take's postures.
@@ -78,6 +78,34 @@ static bool move_drum(himc_performance *p, int index, const himc_place *place,
     return true;
 }
 
+static himc_bearing trunk_bearing(const himc_player *player)
+{
+    himc_bearing b = {.value = {0}};
+    himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
+    himc_vec3 up = himc_quat_rotate(q, himc_vec3_make(0, 0, 1)),
+              left = himc_quat_rotate(q, himc_vec3_make(0, 1, 0));
+    double turn = atan2(-left.x, left.y);
+    b.value[HIMC_BEARING_TURN] = turn;
+    b.value[HIMC_BEARING_LEAN] = asin(fmin(fmax(cos(turn) * up.x + sin(turn) * up.y, -1), 1));
+    return b;
+}
+
+// the limits of the take's player, whose sticks strike a head at that place
+static bool learn_limits(const himc_player *player, const himc_track *track,
+                         const himc_place *place, himc_limits *learned, himc_error *error)
+{
+    himc_skeleton skeleton;
+    himc_posture posture;
+    if (!player->pose)
+        return true;
+    if (!himc_performance_learn_limits(player, learned, error) ||
+        !himc_skeleton_init(&skeleton, &player->config, error))
+        return false;
+    himc_posture_init(&posture, &skeleton, place->center.z + skeleton.mallet_radius);
+    posture.bearing = trunk_bearing(player);
+    return himc_performance_learn_bent(player, track, &posture, learned, error);
+}
+
 // trunk, neck, head and legs as this player holds them
 static void adopt_manner(himc_performance *p, const himc_player *player)
 {
@@ -85,13 +113,7 @@ static void adopt_manner(himc_performance *p, const himc_player *player)
     p->manner = player->mean;
     // one seated by the shoulders has them where they were seen with this trunk only
     p->manner_known[HIMC_TRUNK - 1] = player->known[HIMC_TRUNK - 1] || player->placed;
-    himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
-    himc_vec3 up = himc_quat_rotate(q, himc_vec3_make(0, 0, 1)),
-              left = himc_quat_rotate(q, himc_vec3_make(0, 1, 0));
-    double turn = atan2(-left.x, left.y);
-    p->bearing.value[HIMC_BEARING_TURN] = turn;
-    p->bearing.value[HIMC_BEARING_LEAN] =
-        asin(fmin(fmax(cos(turn) * up.x + sin(turn) * up.y, -1), 1));
+    p->bearing = trunk_bearing(player);
 }
 
 // the body of the take's player, if it shows one
@@ -178,8 +200,6 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
         return false;
     himc_limits learned;
     himc_place place = *himc_drum_place(p->drum[drum].drum);
-    if (!himc_performance_learn_limits(player, &learned, error))
-        return false;
     himc_player_sit(player, take, &p->take_options, &place);
     if (player->placed && !player->walks && place.center.x < 0)
         return himc_error_set(
@@ -190,7 +210,8 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
     if (!track)
         return false;
-    if (!move_drum(p, drum, &place, track, path, error) || !adopt_player(p, player, path, error)) {
+    if (!learn_limits(player, track, &place, &learned, error) ||
+        !move_drum(p, drum, &place, track, path, error) || !adopt_player(p, player, path, error)) {
         himc_track_free(track);
         return false;
     }
