@@ -18,6 +18,8 @@ static const char *notes_of(himc_performance *p, char *text, size_t size)
     return text;
 }
 
+static const char *limits = "off";
+
 static himc_performance_stats play(const char *mode, const char *file, const char *left,
                                    const char *right, double seconds, char *notes, size_t size)
 {
@@ -27,6 +29,7 @@ static himc_performance_stats play(const char *mode, const char *file, const cha
     options.right_tip = right;
     himc_performance_take_options(p, &options);
     session_do(p, "mode %s", mode);
+    session_do(p, "limits %s", limits);
     session_do(p, "take %s", file);
     notes_of(p, notes, size);
     session_do(p, "play");
@@ -69,6 +72,28 @@ static void test_one_who_hops_through_the_room_does_so_on_the_spot(void)
     s = play("himc", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
     TEST_ASSERT_TRUE(s.tip_rms < 0.05); // the head is where a hand goes down, and holds it up
     TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    s = play("id", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
+    TEST_ASSERT_TRUE(s.tip_rms < 0.05); // flew apart: bent to hold a stick, the arms went wild
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+}
+
+// no stick is in these hands: their limits are those of arms that hold one
+static void test_limits_of_a_take_without_sticks_let_it_be_played(void)
+{
+    static const char *const kinds[] = {"ellipsoid", "euler"}, *const modes[] = {"himc", "id"};
+    char path[512], notes[1024];
+    const char *shared = shared_capture("upperlimb_pyomeca_100hz/markers_analogs.c3d");
+    if (!shared)
+        TEST_IGNORE_MESSAGE("no ../shared/mocap");
+    snprintf(path, sizeof path, "%s", shared);
+    for (int i = 0; i < 4; i++) {
+        limits = kinds[i / 2];
+        himc_performance_stats s =
+            play(modes[i % 2], path, NULL, "Daphnee:INDEX", 7.5, notes, sizeof notes);
+        limits = "off";
+        TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.003, notes); // was .4 m
+        TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    }
 }
 
 // markers of two tips that swing 1.2 m to each side, wherever a player stands; y is up
@@ -141,6 +166,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_an_arm_that_reaches_about_is_followed_in_every_mode);
     RUN_TEST(test_one_who_hops_through_the_room_does_so_on_the_spot);
+    RUN_TEST(test_limits_of_a_take_without_sticks_let_it_be_played);
     RUN_TEST(test_an_arm_is_stretched_after_what_no_arm_can_follow);
     return UNITY_END();
 }

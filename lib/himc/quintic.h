@@ -39,6 +39,14 @@ HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, co
     return q;
 }
 
+/// Duration (s) of a quintic from rest to rest over `distance` (m) whose acceleration peaks at
+/// `peak` (m/s^2): 10 / sqrt(3) D / T^2 (Flash & Hogan 1985).
+#define HIMC_MOVE_PEAK 5.774
+HIMC_RT static inline double himc_move_time(double distance, double peak)
+{
+    return sqrt(HIMC_MOVE_PEAK * distance / peak);
+}
+
 /// Its state at time `t` (s from its start).
 HIMC_RT static inline himc_target himc_quintic_at(const himc_quintic *q, double t)
 {

@@ -57,7 +57,8 @@ HIMC_RT void himc_track_posture(const himc_track *track, const himc_skeleton *sk
 /// is none ahead.
 HIMC_RT bool himc_track_current(const himc_track *track, himc_hand hand, double t,
                                 double *contact_time, double *x, double *y);
-/// The tip left the head at `t` in this state: a quintic of 20 ms leads back to the capture.
+/// The tip left the head at `t` in this state: a quintic of 20 ms, from far off a longer one, leads
+/// back to the capture.
 HIMC_RT void himc_track_separated(himc_track *track, himc_hand hand, double t,
                                   const himc_target *measured);
 

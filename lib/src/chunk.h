@@ -4,10 +4,9 @@
 
 #include "hand.h"
 
-#define LOW 0.12            // where it waits (m)
-#define SWAY 0.008          // (m)
-#define SLOWEST_FALL 0.9    // speed of a touch over the mean speed of its fall, at the least
-#define MIN_JERK_PEAK 5.774 // peak acceleration of a minimum-jerk move, in D/T^2
+#define LOW 0.12         // where it waits (m)
+#define SWAY 0.008       // (m)
+#define SLOWEST_FALL 0.9 // speed of a touch over the mean speed of its fall, at the least
 
 /// Height and its derivatives along a normal.
 typedef struct chunk_height {
@@ -37,12 +36,6 @@ static inline himc_target still(himc_vec3 x)
 static inline himc_target difference(himc_target a, himc_target b)
 {
     return (himc_target){himc_vec3_sub(a.x, b.x), himc_vec3_sub(a.v, b.v), himc_vec3_sub(a.a, b.a)};
-}
-
-/// Of a move from rest to rest (s).
-static inline double move_time(double distance, double acceleration)
-{
-    return sqrt(MIN_JERK_PEAK * distance / acceleration);
 }
 
 /// On to a height at t.

@@ -38,7 +38,7 @@ void himc_hand_follow(himc_hand_plan *plan, double t, const himc_target *aim, do
     himc_target from = himc_hand_at(plan, t), nothing = {0}, held = *aim, rest = {0};
     double brake = fmax(SHORT_BRAKE, himc_vec3_length(aim->v) / BRAKING);
     double coast = himc_vec3_length(himc_vec3_sub(aim->x, himc_vec3_madd(from.x, blend, from.v)));
-    blend = fmax(blend, move_time(coast, HARDEST));
+    blend = fmax(blend, himc_move_time(coast, HARDEST));
     held.x = himc_vec3_madd(aim->x, hold, aim->v);
     rest.x = himc_vec3_madd(held.x, 0.5 * brake, held.v);
     plan->end = t + blend + hold + brake;

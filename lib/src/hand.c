@@ -86,7 +86,7 @@ static void swing(chunk *c, const himc_goal *goal, const himc_gesture *g, double
     double back_at = goal->time - forward, quiet = fmin(STANDSTILL, 0.3 * forward);
     himc_vec3 spot = goal->spot;
     double shorter = fmin(forward - quiet, back_at - c->ground_end);
-    double depth = fmin(g->depth, SWING_PEAK / MIN_JERK_PEAK * shorter * shorter);
+    double depth = fmin(g->depth, SWING_PEAK / HIMC_MOVE_PEAK * shorter * shorter);
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
     double off = himc_vec3_length(himc_vec3_sub(c->on.x, spot));
     // with no time to go back and forth, straight there
@@ -157,7 +157,7 @@ double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
     chunk c = frame(plan, goal->spot, goal->normal);
     double T = himc_gesture_time(&goal->gesture, c.at.h);
-    double move = move_time(distance_to(&c, goal), GENTLE_MOVE) + goal->gesture.down;
+    double move = himc_move_time(distance_to(&c, goal), GENTLE_MOVE) + goal->gesture.down;
     return fmax(T, fmax(move, plan->away ? 0.4 : 0));
 }
 
@@ -168,7 +168,7 @@ double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
     if (c.at.h >= 0.6 * goal->gesture.height)
         T = fmin(T, RAISED_TIME);
     T = fmax(T, SLOWEST_FALL * c.at.h / goal->gesture.speed); // a soft stroke does not fall fast
-    return fmax(fmax(T, RAISED_TIME), 1.4 * move_time(distance_to(&c, goal), QUICK_MOVE));
+    return fmax(fmax(T, RAISED_TIME), 1.4 * himc_move_time(distance_to(&c, goal), QUICK_MOVE));
 }
 
 /// Whether anyone could be there in time.
@@ -177,7 +177,7 @@ static bool playable(const chunk *c, const himc_goal *goal)
     double T = goal->time - c->lift_end;
     if (!(T >= LEAST_CHUNK) || c->at.h / T > FASTEST_FALL)
         return false;
-    return 1.4 * move_time(distance_to(c, goal), HARDEST_MOVE) <= T;
+    return 1.4 * himc_move_time(distance_to(c, goal), HARDEST_MOVE) <= T;
 }
 
 bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
@@ -220,7 +220,7 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
         return false;
     himc_gesture g = goal->gesture;
     double begin = c.lift_end;
-    c.approach = fmax(0.5, move_time(distance_to(&c, goal), GENTLE_MOVE));
+    c.approach = fmax(0.5, himc_move_time(distance_to(&c, goal), GENTLE_MOVE));
     bool from_top = !himc_chunk_falls(&c, goal->time, &g);
     if (from_top) {
         g = himc_gesture_squeeze(goal->gesture, goal->time - plan->end, c.at.h);
@@ -249,7 +249,7 @@ static void go(chunk *c, himc_vec3 x, double gentle)
     himc_vec3 n = c->n;
     chunk_height to = {himc_vec3_dot(n, himc_vec3_sub(x, c->plan->last.spot)), 0, 0};
     double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(c->plan, c->plan->end).x));
-    double T = fmax(move_time(distance, gentle), 0.06);
+    double T = fmax(himc_move_time(distance, gentle), 0.06);
     if (c->at.v < -0.3 &&
         !himc_chunk_stays(c, c->lift_end + T, to, fmin(to.h, 0.5 * c->at.h), HUGE_VAL))
         himc_chunk_brake(c, c->lift_end + 1);

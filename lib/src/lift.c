@@ -108,7 +108,7 @@ static double single_rise(const chunk *c, double next)
     if (!c->plan->struck)
         return longest;
     double high = last->rebound * last->height, T = last->pull * high / c->at.v;
-    return fmin(longest, fmax(1.5 * T, T + move_time(fmax(next - high, 0), BRISK_MOVE)));
+    return fmin(longest, fmax(1.5 * T, T + himc_move_time(fmax(next - high, 0), BRISK_MOVE)));
 }
 
 /// From the chunk's start to the apex of the stroke at time `top`; returns when the preparation

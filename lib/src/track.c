@@ -14,7 +14,10 @@
 
 #define CUT 0.0125        // of the capture around a strike's lowest point (s)
 #define TOO_LATE 0.015    // with less of the take left, its bridge is left as it is (s)
-#define REJOIN 0.020      // from separation back to the capture (s)
+#define REJOIN 0.020      // from separation back to the capture (s) ...
+#define ASTRAY 0.02       // ... but from farther off than the fastest stick goes, by this (m) ...
+#define GENTLY 250.0      // ... as long as this peak acceleration takes (m/s^2)
+#define FASTEST 12.0      // a stick that leaves the head faster has been thrown (m/s)
 #define LONGEST_FALL 0.03 // the approach is carried on at most so long (s)
 #define SLOWEST 0.2       // pace of a take's time from which on nothing is replanned
 #define HOVER 0.08        // of a tip at rest above the head (m)
@@ -378,6 +381,9 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     }
     bridge *b = &h->bridges[i];
     double to = fmax(t + REJOIN, b->next / track->rate); // between last and next nothing is known
+    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, measured->x);
+    if (himc_vec3_length(way) > ASTRAY + FASTEST * (to - t))
+        to = t + himc_move_time(himc_vec3_length(way), GENTLY);
     if (i + 1 < h->bridge_count)
         to = fmin(to, h->bridges[i + 1].from - 1e-3);
     to = fmin(to, (track->frames - 1) / track->rate);
@@ -385,7 +391,8 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
         return;
     b->to = to;
     himc_target back = captured_at(track, h, b->to), from = *measured;
-    from.v = himc_vec3_scale(from.v, 1 / at[1]);
+    double speed = himc_vec3_length(from.v);
+    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST / speed) / at[1]);
     from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
     b->restart = t;
     b->path = himc_quintic_make(&from, &back, b->to - t);

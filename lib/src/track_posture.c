@@ -10,7 +10,9 @@
 ///     (sum w_k (|r_k|^2 1 - r_k r_k')) l = e,
 /// r_k the levers from the joints to the tip, w_k larger towards the stick, as a hand corrects;
 /// repeated, since it is the linear part of the way. Rates come from differences of that map.
-/// As published, joints are neither cut nor bent: a second fit, of all frames.
+/// As published, joints are neither cut nor bent: a second fit, of all frames. An arm whose tip is
+/// a finger's end is no arm with a stick: bent, it would be bent out of shape, and has the natural
+/// posture instead.
 #include "track_state.h"
 
 #include "stretch.h"
@@ -23,6 +25,8 @@
 #define LARGEST_BEND 0.1   // of the tip, one step (m)
 #define DAMPING 1e-8       // of a straight arm (m^2)
 #define DIFFERENCE 5e-4    // step of the differences (s)
+#define EMPTY 0.15         // so far from its tip, mostly, a stick is none of the take's (m)
+#define LOOKED_AT 201      // of its frames
 #define LARGEST_WINDOW 512 // frames of one fit: 50 ms at 10 kHz
 
 static int hand_of(int joint)
@@ -73,6 +77,56 @@ static void fit_frames(himc_track *track, const himc_pose *pose, int j)
         fit_stretch(track, pose, j, 0, track->frames - 1, track->uncut[j]);
 }
 
+// an arm's joints in the world
+typedef struct arm {
+    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of what the joint hangs on
+    himc_vec3 lever[HIMC_ARM_JOINTS];  // from the joint to the tip (m)
+    himc_vec3 tip;                     // (m)
+} arm;
+
+static arm arm_of(const himc_skeleton *skeleton, const himc_pose *pose, himc_hand hand)
+{
+    arm a;
+    himc_quat turned = pose->joint[HIMC_TRUNK - 1];
+    himc_vec3 at = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        at = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->segment[j + 1].origin));
+        a.lever[k] = at;
+        a.parent[k] = turned;
+        turned = himc_quat_mul(turned, pose->joint[j]);
+    }
+    a.tip = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->tip));
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        a.lever[k] = himc_vec3_sub(a.tip, a.lever[k]);
+    return a;
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// whether an arm that is not all known ends elsewhere than its tip in most frames
+static bool is_empty(const himc_track *track, const himc_player *player,
+                     const himc_skeleton *skeleton, himc_hand hand)
+{
+    int known = 0;
+    double off[LOOKED_AT];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        known += track->known[himc_arm_joint(hand, k)];
+    if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
+        return false;
+    for (int i = 0; i < LOOKED_AT; i++) {
+        int f = (int)((double)(track->frames - 1) * i / (LOOKED_AT - 1));
+        himc_vec3 tip = arm_of(skeleton, &player->pose[f], hand).tip;
+        off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
+    }
+    qsort(off, LOOKED_AT, sizeof *off, compare);
+    return off[LOOKED_AT / 2] > EMPTY;
+}
+
 bool himc_track_fit_postures(himc_track *track, const himc_player *player)
 {
     for (int j = 0; j < TRACK_JOINTS; j++) {
@@ -87,6 +141,11 @@ bool himc_track_fit_postures(himc_track *track, const himc_player *player)
         fit_frames(track, player->pose, j);
         track->before[j] = (joint_state){.q = track->joint[j][0].q};
     }
+    himc_skeleton skeleton;
+    if (!player->pose || !himc_skeleton_init(&skeleton, &player->config, NULL))
+        return !player->pose;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        track->empty[hand] = is_empty(track, player, &skeleton, (himc_hand)hand);
     return true;
 }
 
@@ -170,31 +229,6 @@ void himc_track_approach_posture(himc_track *track, const himc_posture_motion *n
         track->before[j] = (joint_state){now->joint[j], now->rate[j], now->acceleration[j]};
 }
 
-// an arm's joints in the world
-typedef struct arm {
-    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of what the joint hangs on
-    himc_vec3 lever[HIMC_ARM_JOINTS];  // from the joint to the tip (m)
-    himc_vec3 tip;                     // (m)
-} arm;
-
-static arm arm_of(const himc_skeleton *skeleton, const himc_pose *pose, himc_hand hand)
-{
-    arm a;
-    himc_quat turned = pose->joint[HIMC_TRUNK - 1];
-    himc_vec3 at = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        at = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->segment[j + 1].origin));
-        a.lever[k] = at;
-        a.parent[k] = turned;
-        turned = himc_quat_mul(turned, pose->joint[j]);
-    }
-    a.tip = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->tip));
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        a.lever[k] = himc_vec3_sub(a.tip, a.lever[k]);
-    return a;
-}
-
 // one step; how far the tip was from its place before it (m)
 static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip,
                         himc_pose *pose)
@@ -275,7 +309,7 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
                         const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
     for (int j = 0; j < TRACK_JOINTS; j++) {
-        if (!track->known[j])
+        if (!track->known[j] || (tip && is_arm(j) && track->empty[hand_of(j)]))
             continue;
         joint_state s = played_joint(track, j, t, tip != NULL);
         motion->joint[j] = s.q;

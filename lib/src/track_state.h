@@ -43,6 +43,7 @@ struct himc_track {
     joint_state *joint[TRACK_JOINTS]; ///< (frames), owned; NULL where not known
     joint_state *uncut[TRACK_JOINTS]; ///< of an arm, its strikes included (frames), owned
     joint_state before[TRACK_JOINTS]; ///< where the approach begins
+    bool empty[HIMC_HANDS];           ///< the take's arm holds no stick that ends at its tip
 };
 
 /// Fits and keeps the postures; false without memory.
