@@ -4,6 +4,7 @@
 
 #include "unity.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -162,6 +163,24 @@ static himc_target later(const himc_target *t, double h)
 }
 
 // rates are central differences over 1 ms: their own error is near 1e-6 of the third derivatives
+// the wrist comes from the front to under its shoulder and a little behind it
+static void test_an_elbow_stays_behind_while_its_wrist_goes_under_the_shoulder(void)
+{
+    double fastest = 0;
+    for (double y = 0.05; y < 0.3; y += 0.01)
+        for (double x = 0.6; x > 0.33; x -= 0.001) {
+            himc_target tip[HIMC_HANDS] = {{{x, y, LEVEL + 0.05}, {-1, 0, 0}, {0, 0, 0}},
+                                           {{x, -y, LEVEL + 0.05}, {-1, 0, 0}, {0, 0, 0}}};
+            himc_posture_motion motion;
+            himc_posture_moving(&posture, tip, &motion);
+            for (int k = 0; k < 2; k++)
+                fastest =
+                    fmax(fastest, himc_vec3_length(motion.rate[himc_arm_joint(HIMC_LEFT, k)]));
+        }
+    printf("fastest joint at 1 m/s: %.1f rad/s\n", fastest);
+    TEST_ASSERT_TRUE(fastest < 35); // 122, had it to hang straight down
+}
+
 static void test_rates_carry_the_tips_at_the_velocity_asked(void)
 {
     for (int n = 0; n < 500; n++) {
@@ -334,6 +353,7 @@ int main(void)
     RUN_TEST(test_arms_have_their_lengths_and_elbows_hang_below_and_outside);
     RUN_TEST(test_stick_lies_level_at_impact_and_rises_with_the_tip);
     RUN_TEST(test_joints_follow_the_tip_without_jumps);
+    RUN_TEST(test_an_elbow_stays_behind_while_its_wrist_goes_under_the_shoulder);
     RUN_TEST(test_rates_carry_the_tips_at_the_velocity_asked);
     RUN_TEST(test_acceleration_is_the_difference_of_the_rate);
     RUN_TEST(test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that);

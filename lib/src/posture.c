@@ -4,10 +4,10 @@
 /// Built from the far end inwards: the stick lies level at impact and rises with the tip, the
 /// hand follows less, both in the vertical plane from the elbow's place through the tip; the
 /// wrist is then known, and shoulder, elbow and wrist make a triangle that hangs below its long
-/// side, turned outwards a little. Axes are set as in the zero pose: each segment's z points back
-/// to its joint, its y is the axis of flexion. The slopes are choices that give the raised stick
-/// and wrist seen in players; everything is a smooth function of the tip, so rates come from
-/// differences of the map.
+/// side, turned outwards a little, and behind where the wrist is under the shoulder. Axes are set
+/// as in the zero pose: each segment's z points back to its joint, its y is the axis of flexion. The
+/// slopes are choices that give the raised stick and wrist seen in players; everything is a smooth
+/// function of the tip, so rates come from differences of the map.
 ///
 /// Palms down (german) the hand is lifted by the wrist's flexion; thumbs up (french) forearm,
 /// hand and stick are rolled about their lengths, the hand follows the forearm and the fingers
@@ -29,17 +29,20 @@
 #define FRENCH_ELBOW_OUT 0.15 // (rad)
 #define ELBOW_BEHIND 0.08     // where the stick's plane begins: behind the shoulder (m) ...
 #define ELBOW_BESIDE 0.05     // ... and outside it (m)
-#define REACH 0.985           // of the straight arm
-#define TRUNK_LEAN 0.09       // (rad)
-#define NEAR_ENOUGH 0.60      // farther strokes make the trunk lean (m)
-#define LEAN_MORE 1.4         // by so much (rad/m)
-#define LEAN_MOST 0.55        // (rad)
-#define TURN_SHARE 0.85       // of the azimuth of what is struck
-#define TURN_MOST 1.05        // (rad)
-#define BEARING_SPEED 11.0    // of the trunk's motion (rad/s)
-#define LOOK_DOWN 0.22        // of neck and head together (rad)
-#define ANKLE_HEIGHT 0.075    // (m)
-#define KNEES_APART 0.45      // each, from straight ahead (rad)
+#define AHEAD 0.12         // a wrist less than this ahead of its shoulder, of their distance, ...
+#define BEHIND (-0.35)     // ... and that far behind it ...
+#define MOST_BACK 2.0      // ... has its elbow not below but so far behind
+#define REACH 0.985        // of the straight arm
+#define TRUNK_LEAN 0.09    // (rad)
+#define NEAR_ENOUGH 0.60   // farther strokes make the trunk lean (m)
+#define LEAN_MORE 1.4      // by so much (rad/m)
+#define LEAN_MOST 0.55     // (rad)
+#define TURN_SHARE 0.85    // of the azimuth of what is struck
+#define TURN_MOST 1.05     // (rad)
+#define BEARING_SPEED 11.0 // of the trunk's motion (rad/s)
+#define LOOK_DOWN 0.22     // of neck and head together (rad)
+#define ANKLE_HEIGHT 0.075 // (m)
+#define KNEES_APART 0.45   // each, from straight ahead (rad)
 
 // thighs down to where the lower legs stand upright on the floor, knees apart; standing straight
 // if the seat is high
@@ -161,6 +164,16 @@ static void place_hand(const himc_posture *posture, himc_hand hand, himc_vec3 ti
     a->wrist = himc_vec3_madd(a->grip, -palm, a->hand);
 }
 
+// where the elbow hangs: down, but back too when the wrist, in the direction u from the shoulder,
+// comes under or behind it, where nothing else would tell front from back
+static himc_vec3 downward(himc_vec3 u, double turn)
+{
+    double ahead = u.x * cos(turn) + u.y * sin(turn);
+    double x = fmin(fmax((AHEAD - ahead) / (AHEAD - BEHIND), 0), 1);
+    double back = MOST_BACK * x * x * x * (10 + x * (-15 + x * 6));
+    return himc_vec3_make(-back * cos(turn), -back * sin(turn), -1);
+}
+
 // the triangle shoulder - elbow - wrist; moves the wrist into reach and returns by how much
 static double place_elbow(const himc_posture *posture, himc_hand hand, arm *a)
 {
@@ -172,7 +185,7 @@ static double place_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     himc_vec3 u = distance > 0 ? himc_vec3_scale(d, 1 / distance) : himc_vec3_make(1, 0, 0);
     double along = (used * used + upper * upper - lower * lower) / (2 * used);
     double away = sqrt(fmax(upper * upper - along * along, 0));
-    himc_vec3 down = {0, 0, -1};
+    himc_vec3 down = downward(u, a->turn);
     down = himc_vec3_unit(himc_vec3_madd(down, -himc_vec3_dot(down, u), u));
     himc_vec3 out = himc_vec3_cross(down, u);
     double elbow_out = between(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french);
