@@ -56,16 +56,22 @@ static inline himc_take_options z_up(void)
     return options;
 }
 
+static inline himc_take *read_motions(const char *file, const char *const names[2],
+                                      motion *const motions[2], double rate, int frames)
+{
+    himc_take_options options = z_up();
+    char *text = write_motion(names, motions, rate, frames);
+    himc_take *take = read_text(text, file, &options, &error);
+    free(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    return take;
+}
+
 static inline himc_take *read_motion(motion *one, double rate, int frames)
 {
     const char *const names[2] = {"RTIP", NULL};
     motion *const motions[2] = {one, NULL};
-    himc_take_options options = z_up();
-    char *text = write_motion(names, motions, rate, frames);
-    himc_take *take = read_text(text, "motion.trc", &options, &error);
-    free(text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
-    return take;
+    return read_motions("motion.trc", names, motions, rate, frames);
 }
 
 static inline int strikes_of(himc_take *take, himc_take_strike *strikes, int capacity)
@@ -113,12 +119,7 @@ static inline himc_take *read_roll(int frames)
 {
     const char *const names[2] = {"Anna:R_Stick_Tip", "Anna:L_Stick_Tip"};
     motion *const motions[2] = {right_roll, left_roll};
-    himc_take_options options = z_up();
-    char *text = write_motion(names, motions, 250, frames);
-    himc_take *take = read_text(text, "roll.trc", &options, &error);
-    free(text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
-    return take;
+    return read_motions("roll.trc", names, motions, 250, frames);
 }
 
 #endif

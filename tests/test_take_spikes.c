@@ -97,12 +97,7 @@ static himc_take *read_two(const char *first, const char *second)
 {
     const char *const names[2] = {first, second};
     motion *const motions[2] = {calm, restless};
-    himc_take_options options = z_up();
-    char *text = write_motion(names, motions, RATE, FRAMES);
-    himc_take *take = read_text(text, "two.trc", &options, &error);
-    free(text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
-    return take;
+    return read_motions("two.trc", names, motions, RATE, FRAMES);
 }
 
 static void test_a_name_that_two_points_have_is_noted_and_the_first_is_read(void)

@@ -1,32 +1,10 @@
 /// test_track.c: a take's tips as targets: impacts kept sharp, smooth everywhere else, rejoined
 /// from the measured state.
 #include "allocations.h"
-#include "take_players.h"
-
-#include "himc/track.h"
-
-#include "unity.h"
+#include "tracks.h"
 
 #define RATE 250
 #define RADIUS 0.0175
-
-static const himc_place place = {{0.5, 0, 0.85}, 0, 0.3};
-static himc_error error;
-static himc_take *take;
-static himc_track *track;
-
-void setUp(void)
-{
-    error.text[0] = 0;
-    take = NULL;
-    track = NULL;
-}
-
-void tearDown(void)
-{
-    himc_track_free(track);
-    himc_take_free(take);
-}
 
 // right tip alone, in millimetres with y up as TRC has it; the third strike `raised` (m)
 static void make_take_with(double speed, double noise, double raised)

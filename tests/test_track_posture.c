@@ -238,6 +238,39 @@ static void test_joints_that_the_take_does_not_show_are_left_alone(void)
     }
 }
 
+// a hand that the take shows without a stick: its tip is where no stick of it ends
+static void test_an_arm_without_a_stick_is_bent_from_where_it_is_and_captured_as_it_was(void)
+{
+    int shoulder = himc_arm_joint(HIMC_RIGHT, 0), grip = himc_arm_joint(HIMC_RIGHT, 3);
+    himc_posture_motion m;
+    himc_body_state s;
+    himc_pose pose;
+    make_played(250);
+    himc_track_free(track);
+    for (int f = 0; f < player->frames; f++)
+        player->pose[f].joint[grip] = himc_quat_exp(himc_vec3_make(0, 1.5, 0));
+    for (int shown = 0; shown < 2; shown++) {
+        player->known[grip] = shown;
+        himc_place drum = usual_drum;
+        track = himc_track_new_played(take, NULL, &drum, player, &error);
+        TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
+        m = posture_at(1);
+        memcpy(pose.joint, m.joint, sizeof pose.joint);
+        himc_quat turned = himc_quat_exp(himc_vec3_make(0, 0.3, 0));
+        m.joint[shoulder] = pose.joint[shoulder] = himc_quat_mul(turned, pose.joint[shoulder]);
+        himc_pose_to_state(&skeleton, &pose, NULL, &s);
+        himc_target tip[HIMC_HANDS] = {{.x = s.tip[HIMC_LEFT]}, {.x = s.tip[HIMC_RIGHT]}};
+        himc_track_posture(track, &skeleton, 1, tip, &m);
+        double off = fabs(himc_quat_dot(m.joint[shoulder], pose.joint[shoulder]));
+        TEST_ASSERT_TRUE(shown ? off < 0.9999 : off > 1 - 1e-9);
+        himc_track_posture(track, &skeleton, 1, NULL, &m);
+        off = fabs(himc_quat_dot(m.joint[shoulder], player->pose[250].joint[shoulder]));
+        TEST_ASSERT_TRUE(off > 0.9999);
+        himc_track_free(track);
+        track = NULL;
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -249,5 +282,6 @@ int main(void)
     RUN_TEST(test_joints_come_in_from_where_they_are_and_come_to_rest_after_a_stop);
     RUN_TEST(test_postures_allocate_nothing);
     RUN_TEST(test_joints_that_the_take_does_not_show_are_left_alone);
+    RUN_TEST(test_an_arm_without_a_stick_is_bent_from_where_it_is_and_captured_as_it_was);
     return UNITY_END();
 }

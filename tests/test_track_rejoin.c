@@ -1,31 +1,8 @@
 /// test_track_rejoin.c: strikes at close quarters: when the head is reached, what is left near a
 /// take's end, before the next strike, and at low rates.
-#include "take_players.h"
-
-#include "himc/track.h"
-
-#include "unity.h"
+#include "tracks.h"
 
 #define RADIUS 0.0175
-#define LEVEL 0.85
-
-static const himc_place place = {{0.5, 0, LEVEL}, 0, 0.3};
-static himc_error error;
-static himc_take *take;
-static himc_track *track;
-
-void setUp(void)
-{
-    error.text[0] = 0;
-    take = NULL;
-    track = NULL;
-}
-
-void tearDown(void)
-{
-    himc_track_free(track);
-    himc_take_free(take);
-}
 
 typedef double height_at(double t); // of the tip above where it strikes (m)
 
@@ -108,6 +85,25 @@ static void test_near_its_end_the_take_goes_on_as_the_stick_does_though_time_slo
     himc_target s = as_measured(time + 0.008);
     himc_track_separated(track, HIMC_RIGHT, time + 0.008, &s);
     goes_on_from(&s, time + 0.008);
+}
+
+// a stick that was pushed away, up by 0.4 m, or thrown at 40 m/s
+static void test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed(void)
+{
+    make_take(beaten, 250, 250);
+    double time = contact_after(0.2) + 0.008, hardest = 0, fastest = 0;
+    himc_target s = as_measured(time), off = s, thrown = s;
+    off.x.z += 0.4;
+    himc_track_separated(track, HIMC_RIGHT, time, &off);
+    for (double t = time; t < time + 0.09; t += 0.0005)
+        hardest = fmax(hardest, himc_vec3_length(at(t).a));
+    himc_track_rewind(track);
+    thrown.v = himc_vec3_make(-40, 0, 0);
+    himc_track_separated(track, HIMC_RIGHT, time, &thrown);
+    for (double t = time; t < time + 0.02; t += 0.0005)
+        fastest = fmax(fastest, himc_vec3_length(at(t).v));
+    printf("at most %.0f m/s^2, %.1f m/s\n", hardest, fastest);
+    TEST_ASSERT_TRUE(hardest < 1500 && fastest < 13);
 }
 
 // blows every 60 ms, from 4 cm: the next one is near when the stick has left
@@ -196,6 +192,7 @@ int main(void)
     RUN_TEST(test_near_its_end_the_take_goes_on_as_the_stick_does_though_time_slows_down);
     RUN_TEST(test_the_way_back_ends_before_the_next_strike_begins);
     RUN_TEST(test_a_stick_that_leaves_too_late_leaves_the_way_as_it_is);
+    RUN_TEST(test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed);
     RUN_TEST(test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_second);
     return UNITY_END();
 }

@@ -42,6 +42,15 @@ himc_player *himc_player_new(himc_take *take, const himc_take_options *options,
                              const himc_skeleton_config *given, himc_error *error);
 void himc_player_free(himc_player *player);
 
+/// How many of an arm's joints the take shows: HIMC_ARM_JOINTS with its stick, 0 without the arm.
+HIMC_RT static inline int himc_player_known_arm(const himc_player *player, himc_hand hand)
+{
+    int known = 0;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        known += player->known[himc_arm_joint(hand, k)];
+    return known;
+}
+
 /// Puts the player over the world's origin. One that the take places has the seat raised or lowered
 /// so that the take's strikes meet a head at the drum's height; `drum` is moved under the strikes
 /// where they would miss the head, or where no seat (0.3 .. 1.3 m) would do. One that it does not

@@ -39,9 +39,12 @@ HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, co
     return q;
 }
 
-/// Duration (s) of a quintic from rest to rest over `distance` (m) whose acceleration peaks at
-/// `peak` (m/s^2): 10 / sqrt(3) D / T^2 (Flash & Hogan 1985).
+/// 10 / sqrt(3): peak acceleration of a quintic from rest to rest over D in T, in D / T^2 (Flash &
+/// Hogan 1985).
 #define HIMC_MOVE_PEAK 5.774
+
+/// How long such a move over `distance` (m, not negative) takes (s) if its acceleration is to peak
+/// at `peak` (m/s^2, > 0).
 HIMC_RT static inline double himc_move_time(double distance, double peak)
 {
     return sqrt(HIMC_MOVE_PEAK * distance / peak);

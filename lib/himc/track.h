@@ -49,8 +49,9 @@ HIMC_RT himc_target himc_track_target(const himc_track *track, himc_hand hand, d
 bool himc_track_has_posture(const himc_track *track);
 /// Replaces in `motion` the joints that the take shows (the others, and the arms of hands without
 /// tips, stay as they are) by those it has at `t`, the arms then bent by the least that brings the
-/// tips to `tip`: so the joints meet the strikes, and leave them, as the tips do. With `tip` NULL
-/// they go as they were captured, bounces included.
+/// tips to `tip`: so the joints meet the strikes, and leave them, as the tips do. An arm whose tip
+/// is no stick's end (mostly 0.15 m off) is bent from where it is in `motion`. With `tip` NULL all
+/// go as they were captured, bounces included.
 HIMC_RT void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, double t,
                                 const himc_target tip[HIMC_HANDS], himc_posture_motion *motion);
 /// Time of the strike that hand is on or comes to at `t`, and where on the head; false if there

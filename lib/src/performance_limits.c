@@ -4,9 +4,9 @@
 /// mean of the postures that strokes of all heights have where the tips are planned to be just
 /// then, from the first drum's height up. They are made anew when a drum is moved or the body
 /// changes, in the audio callback too. An arm that a take shows without a stick was held otherwise
-/// than one with a stick is: its limits are of the postures that its tips ask for, in `himc` and, bent
-/// from the captured ones, in `id`. They are off until asked for: the table is of a player and a
-/// drum of its own, and a piece need not keep to it.
+/// than one with a stick is: its limits are of the postures that its tips ask for, in `himc` and,
+/// bent from the captured ones, in `id`. They are off until asked for: the table is of a player and
+/// a drum of its own, and a piece need not keep to it.
 #include "performance_state.h"
 
 #include <stdio.h>
@@ -57,9 +57,7 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
 
 static bool lacks_stick(const himc_player *player, const himc_track *track, himc_hand hand)
 {
-    int known = 0;
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        known += player->known[himc_arm_joint(hand, k)];
+    int known = himc_player_known_arm(player, hand);
     return himc_track_present(track, hand) && known > 0 && known < HIMC_ARM_JOINTS;
 }
 

@@ -1,9 +1,9 @@
 /// performance_state.h: what a performance holds, shared by the files that are its rooms:
 /// performance.c (the step), performance_touch.c (sticks on heads), performance_drums.c (what is
 /// struck), performance_command.c, performance_play.c, performance_score.c and performance_take.c
-/// (what is asked), performance_hands.c (of the planner or of the take), performance_habit.c (how the arms go with it), performance_limits.c (how far
-/// joints turn and how strong they are), performance_push.c (who pushes), performance_report.c
-/// (what is told).
+/// (what is asked), performance_hands.c (of the planner or of the take), performance_habit.c (how
+/// the arms go with it), performance_limits.c (how far joints turn and how strong they are),
+/// performance_push.c (who pushes), performance_report.c (what is told).
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
@@ -212,7 +212,9 @@ bool himc_performance_tracks(const himc_performance *p, himc_hand hand);
 void himc_performance_take_hands_back(himc_performance *p);
 /// The hand for a hit or a live target, if its take is over; false while that plays.
 bool himc_performance_lend_hand(himc_performance *p, himc_hand hand);
+/// Joint targets are as their source has them, from now on.
 void himc_performance_forget_ease(himc_performance *p);
+/// Eases a tick's joint targets from the source before to this one, while that is due.
 void himc_performance_ease(himc_performance *p, himc_task_tick *tick);
 
 // performance_take.c
@@ -227,6 +229,7 @@ bool himc_performance_find_joint(const himc_command *c, const char *command, int
                                  himc_error *error);
 /// Whose limits they are may have changed: the body, the drum's place, the take.
 void himc_performance_renew_limits(himc_performance *p);
+/// Those of a player with postures, as captured.
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error);
 /// Those of arms without sticks anew, from what the tips ask of a body in that posture.

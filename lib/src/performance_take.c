@@ -1,10 +1,11 @@
 /// performance_take.c: the command `take`: a capture's player becomes the performer, and sits where
 /// the capture has it, before a drum that stands under the strikes.
 ///
-/// In `id` and `ik` the joints follow the capture's postures, but for arms that hold no stick; in `himc` only the tips are known,
-/// and the null space has the natural posture, with neck, head, legs and the trunk's mean as this
-/// player holds them. Of an arm that the take shows it has the player's own way instead: the mean
-/// and the habit, the usual one corrected by this take's postures.
+/// In `id` and `ik` the joints follow the capture's postures, but for arms that hold no stick; in
+/// `himc` only the tips are known, and the null space has the natural posture, with neck, head,
+/// legs and the trunk's mean as this player holds them. Of an arm that the take shows it has the
+/// player's own way instead: the mean and the habit, the usual one corrected by this take's
+/// postures.
 #include "performance_state.h"
 #include "take_data.h"
 
@@ -162,10 +163,7 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
 // an arm, its hand and stick included
 static bool shows_arm(const himc_player *player, himc_hand hand)
 {
-    bool all = player->pose && !player->walks;
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        all = all && player->known[himc_arm_joint(hand, k)];
-    return all;
+    return player->pose && !player->walks && himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
 }
 
 // the usual habit, corrected by what the take shows of this player's, unless another has been set

@@ -5,9 +5,9 @@
 /// hand follows less, both in the vertical plane from the elbow's place through the tip; the
 /// wrist is then known, and shoulder, elbow and wrist make a triangle that hangs below its long
 /// side, turned outwards a little, and behind where the wrist is under the shoulder. Axes are set
-/// as in the zero pose: each segment's z points back to its joint, its y is the axis of flexion. The
-/// slopes are choices that give the raised stick and wrist seen in players; everything is a smooth
-/// function of the tip, so rates come from differences of the map.
+/// as in the zero pose: each segment's z points back to its joint, its y is the axis of flexion.
+/// The slopes are choices that give the raised stick and wrist seen in players; everything is a
+/// smooth function of the tip, so rates come from differences of the map.
 ///
 /// Palms down (german) the hand is lifted by the wrist's flexion; thumbs up (french) forearm,
 /// hand and stick are rolled about their lengths, the hand follows the forearm and the fingers
@@ -29,20 +29,20 @@
 #define FRENCH_ELBOW_OUT 0.15 // (rad)
 #define ELBOW_BEHIND 0.08     // where the stick's plane begins: behind the shoulder (m) ...
 #define ELBOW_BESIDE 0.05     // ... and outside it (m)
-#define AHEAD 0.12         // a wrist less than this ahead of its shoulder, of their distance, ...
-#define BEHIND (-0.35)     // ... and that far behind it ...
-#define MOST_BACK 2.0      // ... has its elbow not below but so far behind
-#define REACH 0.985        // of the straight arm
-#define TRUNK_LEAN 0.09    // (rad)
-#define NEAR_ENOUGH 0.60   // farther strokes make the trunk lean (m)
-#define LEAN_MORE 1.4      // by so much (rad/m)
-#define LEAN_MOST 0.55     // (rad)
-#define TURN_SHARE 0.85    // of the azimuth of what is struck
-#define TURN_MOST 1.05     // (rad)
-#define BEARING_SPEED 11.0 // of the trunk's motion (rad/s)
-#define LOOK_DOWN 0.22     // of neck and head together (rad)
-#define ANKLE_HEIGHT 0.075 // (m)
-#define KNEES_APART 0.45   // each, from straight ahead (rad)
+#define AHEAD 0.12            // ahead of the shoulder, of their distance: from here a wrist ...
+#define BEHIND (-0.35)        // ... (at most from here)
+#define MOST_BACK 2.0         // ... has its elbow so far behind, not just below
+#define REACH 0.985           // of the straight arm
+#define TRUNK_LEAN 0.09       // (rad)
+#define NEAR_ENOUGH 0.60      // farther strokes make the trunk lean (m)
+#define LEAN_MORE 1.4         // by so much (rad/m)
+#define LEAN_MOST 0.55        // (rad)
+#define TURN_SHARE 0.85       // of the azimuth of what is struck
+#define TURN_MOST 1.05        // (rad)
+#define BEARING_SPEED 11.0    // of the trunk's motion (rad/s)
+#define LOOK_DOWN 0.22        // of neck and head together (rad)
+#define ANKLE_HEIGHT 0.075    // (m)
+#define KNEES_APART 0.45      // each, from straight ahead (rad)
 
 // thighs down to where the lower legs stand upright on the floor, knees apart; standing straight
 // if the seat is high

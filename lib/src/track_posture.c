@@ -112,10 +112,8 @@ static int compare(const void *a, const void *b)
 static bool is_empty(const himc_track *track, const himc_player *player,
                      const himc_skeleton *skeleton, himc_hand hand)
 {
-    int known = 0;
+    int known = himc_player_known_arm(player, hand);
     double off[LOOKED_AT];
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        known += track->known[himc_arm_joint(hand, k)];
     if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
         return false;
     for (int i = 0; i < LOOKED_AT; i++) {
