@@ -17,7 +17,7 @@ endif
 OPTIMIZE = -O2 -g $(ARCH)
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wmissing-prototypes
 COMPILE  = $(CC) -std=c17 $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -ffp-contract=off -fPIC $(SANITIZE) \
-           -Ilib -MMD -MP $(CPPFLAGS) $(CFLAGS)
+           -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 LIBS     = -Wl,--as-needed -lode -llo -lsndfile -llapacke -llapack -lblas -lpthread -lm
@@ -27,7 +27,9 @@ LIBRARY   := $(BUILD)/libhimc.a
 PROGRAM   := $(BUILD)/bin/himc
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
-LIB_O     := $(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/*.c))
+# the rooms of the library, in the order of the data flow
+ROOMS     := base body capture plan control drum performance osc
+LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/$(room)/*.c)))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
@@ -38,7 +40,7 @@ SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
@@ -134,15 +136,15 @@ figures: deps ## the pictures and sounds in docs, as far as they are out of date
 	@tools/deps.sh tools/deps-figures.txt
 	@$(MAKE) check-figures
 
-air-table: ## lib/src/air_table.c anew (half a minute): the modes of four timpani in air
+air-table: ## lib/src/drum/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
-	cmp -s $(BUILD)/air_table.c lib/src/air_table.c || mv $(BUILD)/air_table.c lib/src/air_table.c
+	cmp -s $(BUILD)/air_table.c lib/src/drum/air_table.c || mv $(BUILD)/air_table.c lib/src/drum/air_table.c
 
-habit-table: ## lib/src/habit_table.c anew: how arms move with their sticks, from the database
-	@$(MAKE) $(BUILD)/tools/habit/table
-	$(BUILD)/tools/habit/table >$(BUILD)/habit_table.c
-	mv $(BUILD)/habit_table.c lib/src/habit_table.c
+regression-table: ## lib/src/control/posture_regression_table.c anew: how arms move with their sticks, from the database
+	@$(MAKE) $(BUILD)/tools/regression/table
+	$(BUILD)/tools/regression/table >$(BUILD)/posture_regression_table.c
+	mv $(BUILD)/posture_regression_table.c lib/src/control/posture_regression_table.c
 
 ##@ Style
 manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/manual.md
@@ -160,7 +162,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still habit-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
         figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -201,7 +203,7 @@ $(VIEWER): $(VIEWER_O)
 
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )
-	$(Q)$(COMPILE) -Ilib/src $(UNITY) -c $< -o $@
+	$(Q)$(COMPILE) $(UNITY) -c $< -o $@
 
 $(UNITY_O): $(UNITY_DIR)/unity.c
 	$(call say,cc  )
@@ -215,9 +217,11 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
-$(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/habit/table: $(MOCAP_O)
+$(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/regression/table: $(MOCAP_O)
 
 $(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+
+$(BUILD)/tools/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerkin: $(BUILD)/tools/air/galerkin.o
 
 $(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
 

@@ -7,6 +7,7 @@
 /// thumbs are up. Frames are those of skeleton.h: z points back to the joint, y is the axis of
 /// flexion.
 #include "parts.h"
+#include "himc/body.h"
 
 #define THUMBS_UP 1.25 // roll of a french grip (rad)
 #define BEHIND 0.08    // where the stick's plane begins: behind the shoulder (m) ...

@@ -9,6 +9,7 @@
 /// at the touch the mallet is where it was aimed: each stroke's grip is shifted by what the arm's
 /// motion leaves over (a degree at most).
 #include "motion.h"
+#include "himc/body.h"
 
 #define POINT 0.15     // of the stick that is measured, behind the mallet (m)
 #define READY 0.45     // share of the first apex in which the hands wait

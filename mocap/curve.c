@@ -9,7 +9,7 @@
 /// as `turn` says; it is shifted so that it passes 0 at the impact.
 #include "parts.h"
 
-#include "himc/quintic.h"
+#include "base/quintic.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -6,6 +6,7 @@
 /// between, its rebound the 0.15 s after it. The mallet's speed at impact is the fastest of its
 /// last 20 ms.
 #include "mocap.h"
+#include "himc/body.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,11 +4,12 @@
 /// sticks, at any time and so at any rate. Tips follow from the joints by forward kinematics. The
 /// same config gives the same motion, bit by bit; another seed gives another trial by the same
 /// player.
-#ifndef HIMC_MOCAP_H
-#define HIMC_MOCAP_H
+#ifndef HIMC_DATABASE_H
+#define HIMC_DATABASE_H
 
 #include "himc/command.h"
-#include "himc/posture.h"
+#include "body/posture.h"
+#include "himc/body.h"
 
 #define HIMC_MOCAP_PLAYERS 3
 #define HIMC_MOCAP_RATE 250.0   ///< of the files (Hz)

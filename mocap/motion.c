@@ -8,6 +8,7 @@
 /// where the tips are is forward kinematics. Invariant: at an impact all shares are 0 and nothing
 /// is added, so the tip is where the stroke was aimed, on the head.
 #include "motion.h"
+#include "body/posture.h"
 
 #include <stdlib.h>
 
@@ -37,7 +38,7 @@ himc_mocap_config himc_mocap_default(void)
         .nuance = HIMC_LEGATO, .spot = HIMC_SPOT_NORMAL, .seed = 1, .strokes = 16, .pace = 1};
 }
 
-static himc_quat bearing(double turn, double lean)
+static himc_quat trunk_posture(double turn, double lean)
 {
     return himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, turn)),
                          himc_quat_exp(himc_vec3_make(0, lean, 0)));
@@ -57,9 +58,9 @@ himc_quat himc_mocap_trunk(const himc_mocap *m, double t)
         left = himc_mocap_curve_at(&m->arm[HIMC_LEFT].effort, t);
         right = himc_mocap_curve_at(&m->arm[HIMC_RIGHT].effort, t);
     }
-    return bearing(sway * (left - right) + loose * himc_mocap_wander_at(&m->turn, t),
-                   mean_lean(m) - 0.5 * sway * (left + right - 1) +
-                       0.5 * loose * himc_mocap_wander_at(&m->lean, t));
+    return trunk_posture(sway * (left - right) + loose * himc_mocap_wander_at(&m->turn, t),
+                         mean_lean(m) - 0.5 * sway * (left + right - 1) +
+                             0.5 * loose * himc_mocap_wander_at(&m->lean, t));
 }
 
 // variations of one hand's strokes
@@ -124,7 +125,7 @@ static void flex(const mocap_gesture *g, const himc_vec3 axis[], double elbow,
 static double rise_of(const himc_mocap *m, himc_hand hand, const himc_quat low[],
                       const himc_vec3 way[])
 {
-    himc_quat trunk = bearing(0, mean_lean(m)), high[HIMC_ARM_JOINTS];
+    himc_quat trunk = trunk_posture(0, mean_lean(m)), high[HIMC_ARM_JOINTS];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         high[k] = himc_quat_mul(low[k], himc_quat_exp(way[k]));
     return himc_mocap_stick_point(&m->skeleton, trunk, hand, high, POINT).z -
@@ -161,7 +162,7 @@ static double find_flexion(const himc_mocap *m, himc_hand hand, const mocap_gest
 static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, const himc_quat low[])
 {
     himc_vec3 axis[HIMC_ARM_JOINTS], way[HIMC_ARM_JOINTS];
-    himc_mocap_flexion(bearing(0, mean_lean(m)), low, axis);
+    himc_mocap_flexion(trunk_posture(0, mean_lean(m)), low, axis);
     flex(&s->gesture, axis, find_flexion(m, hand, &s->gesture, low, axis), way);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_quat high = himc_quat_mul(low[k], himc_quat_exp(way[k]));
@@ -177,7 +178,8 @@ static void carry_aim(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
     const himc_quat *mean = m->arm[hand].mean;
     himc_vec3 there =
         himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, mean, 0);
-    himc_vec3 usual = himc_mocap_stick_point(&m->skeleton, bearing(0, mean_lean(m)), hand, mean, 0);
+    himc_vec3 usual =
+        himc_mocap_stick_point(&m->skeleton, trunk_posture(0, mean_lean(m)), hand, mean, 0);
     s->aim.x += there.x - usual.x;
     s->aim.y += there.y - usual.y;
     s->low.tip = s->aim;
@@ -239,7 +241,7 @@ static bool find_mean(himc_mocap *m, himc_hand hand)
     mood none = {0};
     mocap_stroke usual;
     draw_stroke(m, hand, &none, &usual);
-    return himc_mocap_arm(&m->skeleton, bearing(0, mean_lean(m)), hand, &usual.low,
+    return himc_mocap_arm(&m->skeleton, trunk_posture(0, mean_lean(m)), hand, &usual.low,
                           m->arm[hand].mean);
 }
 

@@ -1,7 +1,7 @@
 /// sequence.c: what a sequence says of itself, and its file: the frames at 250 Hz.
 #include "motion.h"
 
-#include "himc/recording.h"
+#include "himc/mocap.h"
 
 const char *himc_mocap_player_name(int player)
 {

@@ -3,6 +3,7 @@
 A message becomes a command of the library's vocabulary. Here is only what the library leaves to its
 host: names of files are looked for as Pd does it, the network is opened, `info` is answered. */
 #include "himc-tilde.h"
+#include "himc/osc.h"
 
 #define LOOK 2.0          /* how often the network's commands are taken (ms) */
 #define COMMANDS_A_LOOK 8 /* and how many, so that no block is late for them */

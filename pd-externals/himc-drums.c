@@ -2,6 +2,7 @@
 together with the performance, whoever of them comes first in a tick of Pd's. */
 #define _POSIX_C_SOURCE 200809L
 #include "himc-tilde.h"
+#include "himc/osc.h"
 
 #include <time.h>
 

@@ -4,6 +4,7 @@ himc-drums.c (the drums it finds by name), himc-command.c (what it is told). */
 #define HIMC_TILDE_H
 
 #include "drum-link.h"
+#include "himc/osc.h"
 
 #define FORCE_RING HIMC_DRUM_RING
 #define COORDINATES 6 /* of both tips: left x y z, right x y z */

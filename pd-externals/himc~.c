@@ -13,6 +13,7 @@ brings it forward and puts out what the sticks felt. A [membrane~] that comes ea
 asks for its sound first and so brings the performance forward itself (himc_tilde_advance); so the
 forces wait in a ring. Nothing is sent from perform: a clock does, at the start of the next tick. */
 #include "himc-tilde.h"
+#include "himc/vec.h"
 
 static t_class *himc_tilde_class;
 

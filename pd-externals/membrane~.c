@@ -358,7 +358,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
     himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
     double spot_x, spot_y;
-    himc_stroke_spot(&normal, himc_drum_place(drum)->radius, &spot_x, &spot_y);
+    himc_stroke_spot(&normal, himc_drum_head_frame(drum)->radius, &spot_x, &spot_y);
     signalinlet_new(&x->x_obj, (t_float)spot_x);
     signalinlet_new(&x->x_obj, 0);
     for (int k = 0; k <= x->x_channels; k++)

@@ -2,7 +2,7 @@
 #ifndef HIMC_TESTS_BODIES_H
 #define HIMC_TESTS_BODIES_H
 
-#include "himc/skeleton.h"
+#include "himc/body.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #ifndef HIMC_TESTS_C3D_FILES_H
 #define HIMC_TESTS_C3D_FILES_H
 
-#include "c3d_parameters.h"
+#include "capture/c3d_parameters.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 #ifndef HIMC_TESTS_CHRISTIAN_DRUM_H
 #define HIMC_TESTS_CHRISTIAN_DRUM_H
 
-#include "himc/air.h"
+#include "drum/air.h"
 
-#include "../lib/src/air_galerkin.h"
-#include "../lib/src/air_table.h"
+#include "../tools/air/galerkin.h"
+#include "drum/air_table.h"
 
 #include "unity.h"
 

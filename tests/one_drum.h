@@ -6,6 +6,7 @@
 #include "himc/drum.h"
 
 #include "unity.h"
+#include "himc/membrane.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
 
 #define _GNU_SOURCE
 #include "himc/osc.h"
-#include "osc_state.h"
+#include "osc/osc_state.h"
 
 #include <arpa/inet.h>
 #include <lo/lo.h>

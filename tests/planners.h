@@ -3,7 +3,7 @@
 #ifndef HIMC_TESTS_PLANNERS_H
 #define HIMC_TESTS_PLANNERS_H
 
-#include "himc/planner.h"
+#include "plan/planner.h"
 
 #include "unity.h"
 
@@ -19,8 +19,8 @@ static inline himc_planner *make(double bpm)
     himc_tempo_change tempo = {0, bpm};
     TEST_ASSERT_NOT_NULL(p);
     TEST_ASSERT_TRUE(himc_planner_set_tempi(p, &tempo, 1, &error));
-    himc_planner_set_drum(p, 0, &(himc_place){{0.75, 0, 0.85}, 0, 0.3});
-    himc_planner_set_drum(p, 1, &(himc_place){{0.7, 0.65, 0.8}, 0.15, 0.33});
+    himc_planner_set_drum(p, 0, &(himc_head_frame){{0.75, 0, 0.85}, 0, 0.3});
+    himc_planner_set_drum(p, 1, &(himc_head_frame){{0.7, 0.65, 0.8}, 0.15, 0.33});
     return p;
 }
 

@@ -5,8 +5,8 @@
 #ifndef HIMC_TESTS_PLAYERS_H
 #define HIMC_TESTS_PLAYERS_H
 
-#include "himc/habit.h"
-#include "himc/posture.h"
+#include "control/posture_regression.h"
+#include "body/posture.h"
 
 #include <stdlib.h>
 
@@ -79,13 +79,13 @@ static inline himc_pose player_at(const player *p, double t)
 }
 
 /// A take of `seconds`; free its pose.
-static inline himc_habit_take player_take(const player *p, double seconds)
+static inline himc_posture_regression_take player_take(const player *p, double seconds)
 {
     int frames = (int)(seconds * PLAYER_RATE);
     himc_pose *pose = malloc((size_t)frames * sizeof *pose);
     for (int i = 0; i < frames; i++)
         pose[i] = player_at(p, 1 + i / PLAYER_RATE);
-    return (himc_habit_take){
+    return (himc_posture_regression_take){
         .skeleton = &p->skeleton, .pose = pose, .frames = frames, .rate = PLAYER_RATE};
 }
 

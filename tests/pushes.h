@@ -6,6 +6,8 @@
 #include "take_files.h"
 
 #include "session.h"
+#include "body/posture.h"
+#include "control/controller.h"
 
 #define PUSH_FORCE 200.0
 #define PUSH_TIME 0.1

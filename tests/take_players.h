@@ -5,10 +5,10 @@
 
 #include "take_files.h"
 
-#include "himc/player.h"
-#include "himc/recording.h"
+#include "himc/mocap.h"
+#include "body/posture.h"
 
-static const himc_place usual_drum = {{0.70, 0, 0.85}, 0, 0.2921};
+static const himc_head_frame usual_drum = {{0.70, 0, 0.85}, 0, 0.2921};
 
 /// Height above the head at `t`: blows every 0.5 s at 0.5 k - 0.1 s, quintics between.
 static inline himc_target beaten_height(double t, double speed)
@@ -41,7 +41,7 @@ static inline himc_pose beaten_pose(const himc_skeleton *skeleton, double t)
     himc_target tip[HIMC_HANDS];
     himc_pose pose;
     himc_posture_init(&posture, skeleton, 0.85 + 0.0175);
-    posture.bearing.value[HIMC_BEARING_TURN] = 0.1 * sin(2 * t);
+    posture.trunk_posture.value[HIMC_TRUNK_POSTURE_TURN] = 0.1 * sin(2 * t);
     beaten_tips(t, tip);
     himc_vec3 x[HIMC_HANDS] = {tip[0].x, tip[1].x};
     himc_posture_at(&posture, x, &pose);

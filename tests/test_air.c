@@ -2,7 +2,7 @@
 /// closed forms around it, the kettle, any head.
 #include "christian_drum.h"
 
-#include "../lib/src/bessel.h"
+#include "drum/bessel.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /// radiation, and the modes of a 26 inch timpano.
 #include "christian_drum.h"
 
-#include "../lib/src/bessel.h"
+#include "drum/bessel.h"
 
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-#include "himc/bank.h"
+#include "drum/bank.h"
 
 #include "unity.h"
 
@@ -13,15 +13,15 @@ static himc_bank *bank;
 static himc_oscillator o[COUNT];
 static _Alignas(64) double memory[6][8];
 static double heard[4096], seen[4096];
-static himc_tap sound = {memory[0], memory[1]}, place = {memory[2], memory[3]};
+static himc_readout sound = {memory[0], memory[1]}, place = {memory[2], memory[3]};
 static double *shape = memory[4], *none = memory[5];
 
 static void aim(void)
 {
     for (int i = 0; i < COUNT; i++)
         shape[i] = 0.3 + 0.1 * i;
-    himc_bank_tap(bank, none, shape, &sound);
-    himc_bank_tap(bank, shape, NULL, &place);
+    himc_bank_readout(bank, none, shape, &sound);
+    himc_bank_readout(bank, shape, NULL, &place);
 }
 
 void setUp(void)
@@ -40,7 +40,7 @@ void tearDown(void)
 
 static void run(int n, int at)
 {
-    const himc_tap *const taps[] = {&sound, &place};
+    const himc_readout *const taps[] = {&sound, &place};
     double *const read[] = {heard + at, seen + at};
     himc_bank_run(bank, n, taps, 2, read);
 }
@@ -144,7 +144,7 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
 static void test_bank_reads_as_many_taps_as_asked_and_each_as_if_alone(void)
 {
     static double read[5][500], alone[2][500];
-    const himc_tap *const taps[] = {&place, &sound, &place, &sound, &sound};
+    const himc_readout *const taps[] = {&place, &sound, &place, &sound, &sound};
     double *const out[] = {read[0], read[1], read[2], read[3], read[4]};
     himc_bank_push(bank, shape, 100);
     himc_bank_run(bank, 500, taps, 5, out);
@@ -164,14 +164,14 @@ static void test_bank_tells_what_a_spring_on_the_sum_of_squares_meets(void)
 {
     static _Alignas(64) double a[8], weight[8], g[8];
     double q0[COUNT], q1[COUNT], v, climb = 0, compliance = 0;
-    himc_pull pull = {.shape = g};
+    himc_tension_coupling pull = {.shape = g};
     for (int i = 0; i < COUNT; i++) {
         a[i] = 1 + i * i;
         himc_bank_excite(bank, i, 1e-3 * (i + 1), 0.2 * i - 0.5);
         himc_bank_state(bank, i, &q0[i], &v);
     }
     himc_bank_weigh(bank, a, weight);
-    himc_bank_run_pulled(bank, weight, &pull);
+    himc_bank_run_coupled(bank, weight, &pull);
     for (int i = 0; i < COUNT; i++) {
         double slope = 0, before, after;
         himc_bank_state(bank, i, &q1[i], &v);

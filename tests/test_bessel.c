@@ -1,5 +1,5 @@
 #define _XOPEN_SOURCE 700 // jn
-#include "src/bessel.h"
+#include "drum/bessel.h"
 
 #include "himc/base.h"
 #include "unity.h"

@@ -1,7 +1,7 @@
 /// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte
 /// from the format's description, and a real one beside the same trial exported as text.
 #include "c3d_files.h"
-#include "take_data.h"
+#include "capture/take_data.h"
 #include "take_files.h"
 #include "unity.h"
 

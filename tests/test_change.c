@@ -3,6 +3,7 @@
 #include "himc/drum.h"
 
 #include "unity.h"
+#include "himc/membrane.h"
 
 #include <math.h>
 #include <stdio.h>

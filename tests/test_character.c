@@ -7,10 +7,10 @@
 /// thin stick (3e-6 kg m^2 about its length, a hundred times more across), so spins here are those
 /// of strokes.
 #define _POSIX_C_SOURCE 200809L
-#include "himc/character.h"
-#include "himc/controller.h"
-#include "himc/invdyn.h"
-#include "himc/posture.h"
+#include "body/character.h"
+#include "control/controller.h"
+#include "himc/body.h"
+#include "body/posture.h"
 
 #include "unity.h"
 

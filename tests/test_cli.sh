@@ -88,7 +88,7 @@ awk 'BEGIN {
 }' >still.trc
 
 # what it says of itself
-version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/himc.h")
+version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/base.h")
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \

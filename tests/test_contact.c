@@ -1,4 +1,4 @@
-#include "himc/contact.h"
+#include "himc/membrane.h"
 
 #include "unity.h"
 

@@ -3,8 +3,8 @@
 ///
 /// Bounds of tracking stand some 30 % above what was measured (computed torque: twice), the figure
 /// beside each.
-#include "himc/character.h"
-#include "himc/controller.h"
+#include "body/character.h"
+#include "control/controller.h"
 
 #include "unity.h"
 
@@ -376,7 +376,7 @@ static void test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm(v
 {
     himc_vec3 near[HIMC_JOINTS], far[HIMC_JOINTS], rest = reference.tip[HIMC_LEFT].x;
     controller.law = HIMC_LAW_PRINTED;
-    controller.aimless = true;
+    controller.null_space_off = true;
     controller.step = 0;
     memset(state.spin, 0, sizeof state.spin);
     himc_body_state_complete(&skeleton, &state);

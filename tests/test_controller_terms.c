@@ -1,6 +1,6 @@
 /// test_controller_terms.c: single terms of the laws against the equations: what is asked of a tip
 /// by the transpose, gains of the user axis by axis, servos at the step's end.
-#include "himc/controller.h"
+#include "control/controller.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -71,7 +71,7 @@ static void test_transpose_has_a_step_length_for_each_demand(void)
     himc_arm_jacobian jacobian;
     controller.law = HIMC_LAW_FEEDFORWARD;
     controller.solver = HIMC_SOLVER_TRANSPOSE;
-    controller.aimless = true;
+    controller.null_space_off = true;
     controller.step = 0;
     find_torques();
     memcpy(without, torque, sizeof torque);

@@ -7,6 +7,7 @@
 #include "../tools/trial.h"
 
 #include "unity.h"
+#include "control/controller.h"
 
 #include <stdio.h>
 #include <stdlib.h>

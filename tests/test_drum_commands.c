@@ -40,7 +40,7 @@ static void test_drum_commands_set_what_they_say(void)
     himc_membrane *membrane = himc_drum_membrane(drum);
     unsigned revision = himc_drum_revision(drum);
     says("radius 0.33");
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.33, himc_drum_place(drum)->radius);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.33, himc_drum_head_frame(drum)->radius);
     TEST_ASSERT_EQUAL_UINT(revision + 1, himc_drum_revision(drum));
     says("tension 4000");
     says("density 0.3");
@@ -52,9 +52,9 @@ static void test_drum_commands_set_what_they_say(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-7, himc_membrane_head(membrane)->decay_square);
     TEST_ASSERT_EQUAL_INT(2000, himc_membrane_head(membrane)->modes);
     says("place 0.8 0.1 0.9 0.2");
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.2, himc_drum_place(drum)->tilt);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.2, himc_drum_head_frame(drum)->tilt);
     says("place 0.7 0 0.8");
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.8, himc_drum_place(drum)->center.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.8, himc_drum_head_frame(drum)->center.z);
     says("mallet wood");
     TEST_ASSERT_EQUAL_DOUBLE(1e10, himc_drum_mallet(drum)->stiffness);
     TEST_ASSERT_EQUAL_DOUBLE(2.5, himc_drum_mallet(drum)->exponent);

@@ -1,6 +1,7 @@
 /// test_figures.c: what the figures of a performance count: strokes on time and on place, tips
 /// outside contact, recoveries.
 #include "session.h"
+#include "himc/vec.h"
 
 // One stroke at 2 s whose drum is moved just before, when nobody can take it back; how many are
 // said to be played.

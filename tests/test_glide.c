@@ -1,5 +1,5 @@
 /// test_glide.c: the film's stretching: what it does to pitch, and that it makes no energy.
-#include "himc/contact.h"
+#include "himc/membrane.h"
 
 #include "unity.h"
 

@@ -1,10 +1,11 @@
 /// test_grid.c: heads of other outlines: a rectangle, and masses and springs.
 #define _DEFAULT_SOURCE // mkdtemp
-#include "himc/contact.h"
+#include "himc/membrane.h"
 #include "himc/drum.h"
 
 #include "disc_mesh.h"
-#include "bessel.h"
+#include "drum/bessel.h"
+#include "drum/modes.h"
 
 #define RADIUS 0.3
 #define TENSION 3000.0

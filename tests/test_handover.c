@@ -4,7 +4,7 @@
 
 #include "session.h"
 
-#include "performance_state.h"
+#include "performance/performance_state.h"
 
 #define FILE_NAME "build/handover.bvh"
 #define SECONDS 2.5

@@ -2,7 +2,7 @@
 /// counted.
 #include "session.h"
 
-#include "himc/posture.h"
+#include "body/posture.h"
 
 static himc_performance *with_two_drums(double x, double y)
 {

@@ -1,6 +1,6 @@
 /// test_ik.c: the Jacobian by differences, solvers against a dense 3 x 12 reference, null space,
 /// release.
-#include "himc/ik.h"
+#include "himc/body.h"
 
 #include "bodies.h"
 #include "unity.h"

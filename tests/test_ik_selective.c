@@ -1,6 +1,6 @@
 /// test_ik_selective.c: selectively damped least squares against the paper's own recipe with the
 /// whole Jacobian (Buss & Kim 2005, section 4).
-#include "himc/ik.h"
+#include "himc/body.h"
 
 #include "bodies.h"
 #include "unity.h"

@@ -1,8 +1,8 @@
 /// test_invdyn.c: inverse and forward dynamics are mirrors; both against statics by hand and
 /// differences of motion.
-#include "himc/character.h"
-#include "himc/invdyn.h"
-#include "himc/posture.h"
+#include "body/character.h"
+#include "himc/body.h"
+#include "body/posture.h"
 
 #include "bodies.h"
 #include "unity.h"

@@ -1,9 +1,9 @@
 /// test_limit_torque.c: joints sent beyond their bounds come back under every law and mode,
 /// whatever the bounds; and the strength of muscles.
-#include "himc/character.h"
-#include "himc/controller.h"
+#include "body/character.h"
+#include "control/controller.h"
 
-#include "../lib/src/limit_torque.h"
+#include "control/limit_torque.h"
 
 #include "unity.h"
 
@@ -23,7 +23,7 @@ static himc_character *character;
 static himc_reference reference;
 static himc_body_state state;
 static himc_limits limits;
-static himc_strain strain;
+static himc_saturation_counts saturation;
 static himc_error error;
 static const himc_vec3 no_force[HIMC_HANDS];
 
@@ -77,12 +77,12 @@ void setUp(void)
     himc_posture_init(&posture, &skeleton, LEVEL);
     character = himc_character_new(&skeleton, NULL);
     memset(&reference, 0, sizeof reference);
-    memset(&strain, 0, sizeof strain);
+    memset(&saturation, 0, sizeof saturation);
     aim(0);
     himc_pose pose = pose_of(&reference.posture);
     place(&pose, reference.posture.rate);
     himc_controller_init(&controller, &skeleton, &state);
-    controller.strain = &strain;
+    controller.saturation = &saturation;
     srand(12);
 }
 
@@ -135,7 +135,7 @@ static result play(bool with_posture)
     aim(0);
     himc_pose start = pose_of(&reference.posture);
     place(&start, reference.posture.rate);
-    memset(&strain, 0, sizeof strain);
+    memset(&saturation, 0, sizeof saturation);
     for (int n = 0; n < 15000; n++) {
         aim(n * STEP);
         himc_pose natural = pose_of(&reference.posture);
@@ -158,7 +158,7 @@ static result play(bool with_posture)
             r.measure = fmax(r.measure, measure_now());
     }
     for (int j = 0; j < HIMC_JOINTS; j++)
-        r.farthest = fmax(r.farthest, strain.farthest[j]);
+        r.farthest = fmax(r.farthest, saturation.farthest[j]);
     r.joints = sqrt(square / (double)count);
     r.rms = sqrt(sum / (double)count) / HEIGHT;
     return r;
@@ -199,7 +199,7 @@ static void test_limits_learned_from_a_motion_leave_that_motion_alone(void)
         TEST_ASSERT_TRUE(r.rms < 0.0001); // measured .000043 as without limits
         TEST_ASSERT_TRUE(r.measure < 1);
         for (int j = 0; j < HIMC_JOINTS; j++)
-            TEST_ASSERT_EQUAL_INT(0, strain.hits[j]);
+            TEST_ASSERT_EQUAL_INT(0, saturation.hits[j]);
     }
 }
 
@@ -245,8 +245,8 @@ static void comes_back(himc_law law, himc_pipeline mode, himc_limits_kind kind)
         himc_quat beyond = himc_quat_mul(himc_quat_conj(near), pose.joint[j]);
         TEST_ASSERT_TRUE(himc_vec3_length(himc_quat_log(beyond)) < 0.2 * DEGREE);
     }
-    TEST_ASSERT_TRUE(strain.hits[elbow] > 0 && strain.hits[wrist] > 0);
-    TEST_ASSERT_TRUE(strain.farthest[elbow] > 5 * DEGREE);
+    TEST_ASSERT_TRUE(saturation.hits[elbow] > 0 && saturation.hits[wrist] > 0);
+    TEST_ASSERT_TRUE(saturation.farthest[elbow] > 5 * DEGREE);
 }
 
 static void test_joint_beyond_its_bounds_comes_back_under_every_law_and_mode(void)
@@ -263,7 +263,7 @@ static void test_target_out_of_the_bounds_is_not_followed_beyond_them(void)
         controller.law = (himc_law)law;
         learn(0);
         controller.limits = &limits;
-        memset(&strain, 0, sizeof strain);
+        memset(&saturation, 0, sizeof saturation);
         aim(0);
         himc_pose start = pose_of(&reference.posture);
         place(&start, NULL);
@@ -273,7 +273,7 @@ static void test_target_out_of_the_bounds_is_not_followed_beyond_them(void)
         }
         double farthest = 0;
         for (int j = 0; j < HIMC_JOINTS; j++)
-            farthest = fmax(farthest, strain.farthest[j]);
+            farthest = fmax(farthest, saturation.farthest[j]);
         TEST_ASSERT_TRUE(farthest < 1.5 * DEGREE);
     }
 }
@@ -292,13 +292,13 @@ static void test_bounds_of_no_width_hold_every_joint_and_nothing_flies_apart(voi
         }
         controller.limits = &limits;
         place(&pose, NULL);
-        memset(&strain, 0, sizeof strain);
+        memset(&saturation, 0, sizeof saturation);
         for (int n = 0; n < 3000; n++) {
             aim(0.125 + n * STEP);
             step();
         }
         for (int j = 0; j < HIMC_JOINTS; j++)
-            TEST_ASSERT_TRUE(strain.farthest[j] < 1.5 * DEGREE);
+            TEST_ASSERT_TRUE(saturation.farthest[j] < 1.5 * DEGREE);
     }
 }
 
@@ -339,7 +339,7 @@ static void test_limits_pump_no_energy_into_a_body_that_falls_into_them(void)
     }
     long hits = 0;
     for (int j = 0; j < HIMC_JOINTS; j++)
-        hits += strain.hits[j];
+        hits += saturation.hits[j];
     TEST_ASSERT_TRUE(hits > 4);
     TEST_ASSERT_TRUE(most < start + 0.005); // of some 470 J
     TEST_ASSERT_TRUE(energy() < start - 1);
@@ -352,15 +352,15 @@ static void test_strength_shortens_a_torque_keeps_its_direction_and_counts(void)
     aim(0.2);
     himc_controller_torques(&controller, &skeleton, &state, &reference, free);
     double asked = himc_vec3_length(free[elbow]);
-    memset(&strain, 0, sizeof strain);
+    memset(&saturation, 0, sizeof saturation);
     controller.strength[elbow] = 0.25 * asked;
     himc_controller_torques(&controller, &skeleton, &state, &reference, weak);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * asked, 0.25 * asked, himc_vec3_length(weak[elbow]));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * asked * asked, 0.25 * asked * asked,
                               himc_vec3_dot(weak[elbow], free[elbow]));
-    TEST_ASSERT_EQUAL_INT(1, strain.weak[elbow]);
-    TEST_ASSERT_EQUAL_INT(0, strain.weak[elbow + 1]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * asked, asked, strain.torque[elbow]);
+    TEST_ASSERT_EQUAL_INT(1, saturation.weak[elbow]);
+    TEST_ASSERT_EQUAL_INT(0, saturation.weak[elbow + 1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * asked, asked, saturation.torque[elbow]);
     TEST_ASSERT_EQUAL_MEMORY(&free[elbow + 1], &weak[elbow + 1], sizeof free[0]);
 }
 
@@ -381,7 +381,7 @@ static void test_strokes_of_375_mm_are_within_human_strength(void)
     result r = play(true);
     TEST_ASSERT_TRUE(r.rms < 0.0001);
     for (int j = 0; j < HIMC_JOINTS; j++)
-        TEST_ASSERT_EQUAL_INT(0, strain.weak[j]);
+        TEST_ASSERT_EQUAL_INT(0, saturation.weak[j]);
 }
 
 int main(void)

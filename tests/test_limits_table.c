@@ -1,6 +1,6 @@
 /// test_limits_table.c: the bounds of table 1 against the paper's own figures, their boxes, and
 /// Euler angles where two axes fall together.
-#include "himc/limits.h"
+#include "himc/body.h"
 
 #include "bodies.h"
 #include "unity.h"

@@ -1,9 +1,9 @@
 /// test_limits_yield.c: what limits make of accelerations: where a stopped joint will be, what the
 /// tips get back, how fast a joint returns, when it has come to its bounds anew; and the table of
 /// strength.
-#include "himc/controller.h"
+#include "control/controller.h"
 
-#include "limit_torque.h"
+#include "control/limit_torque.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -18,7 +18,7 @@
 
 static himc_controller controller;
 static himc_limits limits;
-static himc_strain strain;
+static himc_saturation_counts saturation;
 static himc_pose pose;
 static himc_vec3 rate[HIMC_JOINTS];
 static himc_body_state state;
@@ -35,12 +35,12 @@ void setUp(void)
     memset(rate, 0, sizeof rate);
     memset(wanted, 0, sizeof wanted);
     memset(&limits, 0, sizeof limits);
-    memset(&strain, 0, sizeof strain);
+    memset(&saturation, 0, sizeof saturation);
     limits.kind = HIMC_LIMITS_ELLIPSOID;
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
     himc_controller_init(&controller, &skeleton, &state);
     controller.limits = &limits;
-    controller.strain = &strain;
+    controller.saturation = &saturation;
 }
 
 void tearDown(void)
@@ -62,7 +62,7 @@ static void yield(void)
     himc_pose_to_state(&skeleton, &pose, rate, &state);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_arm_jacobian_at(&state, (himc_hand)hand, &jacobian[hand]);
-    himc_limits_yield(&controller, &skeleton, &state, jacobian, wanted);
+    himc_limits_compliance(&controller, &skeleton, &state, jacobian, wanted);
 }
 
 // a joint's acceleration as its parent, which turns, sees it
@@ -210,15 +210,15 @@ static void test_a_joint_hits_its_bounds_again_once_it_has_left_them(void)
 {
     bind(NECK, himc_vec3_make(0.4, 0.4, 0.4), himc_vec3_make(0, 0, 0));
     visit(0.99, 1000);
-    TEST_ASSERT_EQUAL_INT(1, strain.hits[NECK]);
+    TEST_ASSERT_EQUAL_INT(1, saturation.hits[NECK]);
     visit(0.86, 0);
-    TEST_ASSERT_TRUE(strain.held[NECK]);
+    TEST_ASSERT_TRUE(saturation.held[NECK]);
     visit(0.99, 1000);
-    TEST_ASSERT_EQUAL_INT(1, strain.hits[NECK]);
+    TEST_ASSERT_EQUAL_INT(1, saturation.hits[NECK]);
     visit(0.84, 0);
-    TEST_ASSERT_FALSE(strain.held[NECK]);
+    TEST_ASSERT_FALSE(saturation.held[NECK]);
     visit(0.99, 1000);
-    TEST_ASSERT_EQUAL_INT(2, strain.hits[NECK]);
+    TEST_ASSERT_EQUAL_INT(2, saturation.hits[NECK]);
 }
 
 // Fice et al. 2014: neck 51 N m; Holzbaur et al. 2007: shoulder 68 +- 28, wrist 10 +- 5; Delp et

@@ -1,5 +1,7 @@
 /// test_live.c: hits, streams of targets, several drums and players, grips, and storms of commands.
 #include "session.h"
+#include "base/head_frame.h"
+#include "body/posture.h"
 
 static himc_performance *with_kettle(void)
 {
@@ -162,8 +164,8 @@ static void test_drums_that_nobody_placed_stand_beside_each_other_in_reach(void)
     }
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < i; k++) {
-            const himc_place *a = himc_drum_place(himc_performance_drum(p, i));
-            const himc_place *b = himc_drum_place(himc_performance_drum(p, k));
+            const himc_head_frame *a = himc_drum_head_frame(himc_performance_drum(p, i));
+            const himc_head_frame *b = himc_drum_head_frame(himc_performance_drum(p, k));
             TEST_ASSERT_TRUE(hypot(a->center.x - b->center.x, a->center.y - b->center.y) >
                              a->radius + b->radius);
         }
@@ -188,10 +190,10 @@ static void test_no_timpano_is_out_of_reach_of_either_hand(void)
     for (int i = 0; i < 4; i++)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             himc_stroke s = {.hand = (himc_hand)hand, .spot = HIMC_SPOT_NORMAL};
-            const himc_place *place = himc_drum_place(himc_performance_drum(p, i));
+            const himc_head_frame *place = himc_drum_head_frame(himc_performance_drum(p, i));
             double x, y;
             himc_stroke_spot(&s, place->radius, &x, &y);
-            himc_vec3 spot = himc_place_to_world(place, x, y);
+            himc_vec3 spot = himc_head_frame_to_world(place, x, y);
             himc_vec3 reached = himc_posture_reachable(&posture, (himc_hand)hand, spot);
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_vec3_length(himc_vec3_sub(spot, reached)));
         }
@@ -295,7 +297,7 @@ static double back_up(double french, himc_hand hand)
     himc_vec3 tip[HIMC_HANDS] = {{0.53, 0.015, 0.95}, {0.53, -0.015, 0.95}};
     TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
     himc_posture_init(&posture, &skeleton, 0.8675);
-    posture.bearing.value[HIMC_BEARING_FRENCH] = french;
+    posture.trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP] = french;
     himc_posture_at(&posture, tip, &pose);
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
     return himc_quat_rotate(state.orientation[HIMC_LEFT_HAND + hand], himc_vec3_make(1, 0, 0)).z;

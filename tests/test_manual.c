@@ -2,7 +2,7 @@
 ///
 /// With HIMC_WRITE_MANUAL set the test writes them (`make manual`), else it compares.
 #define _GNU_SOURCE
-#include "argument.h"
+#include "base/argument.h"
 #include "himc/command.h"
 
 #include "unity.h"

@@ -1,6 +1,7 @@
 #include "himc/membrane.h"
 
 #include "unity.h"
+#include "drum/modes.h"
 
 #include <math.h>
 #include <stdio.h>

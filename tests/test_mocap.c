@@ -3,7 +3,7 @@
 #include "mocap_sequences.h"
 
 #include "../mocap/parts.h"
-#include "himc/take.h"
+#include "himc/mocap.h"
 
 #include <string.h>
 #include <unistd.h>

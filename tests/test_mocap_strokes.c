@@ -5,7 +5,7 @@
 /// generator writes: heights and speeds of a point 0.15 m behind the mallet.
 #include "mocap_sequences.h"
 
-#include "himc/habit.h"
+#include "control/posture_regression.h"
 
 #include <string.h>
 
@@ -146,32 +146,33 @@ static void test_the_elbow_falls_before_the_stick_does(void)
 }
 
 // a habit's take of a sequence; its postures are the caller's to free
-static himc_habit_take postures(const himc_mocap *m)
+static himc_posture_regression_take postures(const himc_mocap *m)
 {
     int frames = himc_mocap_frames(m);
     himc_pose *pose = calloc((size_t)frames, sizeof *pose);
     TEST_ASSERT_NOT_NULL(pose);
     for (int f = 0; f < frames; f++)
         pose[f] = himc_mocap_pose(m, f / HIMC_MOCAP_RATE);
-    return (himc_habit_take){.skeleton = himc_mocap_skeleton(m),
-                             .pose = pose,
-                             .frames = frames,
-                             .rate = HIMC_MOCAP_RATE};
+    return (himc_posture_regression_take){.skeleton = himc_mocap_skeleton(m),
+                                          .pose = pose,
+                                          .frames = frames,
+                                          .rate = HIMC_MOCAP_RATE};
 }
 
 // adds the squared angles between a sequence's joints and those its tips alone give; returns how
 // many
-static int add_errors(const himc_habit *habit, const himc_mocap *m, double sum[HIMC_ARM_JOINTS])
+static int add_errors(const himc_posture_regression *regression, const himc_mocap *m,
+                      double sum[HIMC_ARM_JOINTS])
 {
     int count = 0;
     for (int f = 0; f < himc_mocap_frames(m); f += 2) {
-        himc_vec3 tip[HIMC_HABIT_TAPS][HIMC_HANDS];
-        for (int tap = 0; tap < HIMC_HABIT_TAPS; tap++) {
-            himc_body_state s = sequence_state(m, f / HIMC_MOCAP_RATE + tap * HIMC_HABIT_STEP);
+        himc_vec3 tip[HIMC_REGRESSION_TAPS][HIMC_HANDS];
+        for (int tap = 0; tap < HIMC_REGRESSION_TAPS; tap++) {
+            himc_body_state s = sequence_state(m, f / HIMC_MOCAP_RATE + tap * HIMC_REGRESSION_STEP);
             memcpy(tip[tap], s.tip, sizeof tip[tap]);
         }
         himc_pose captured = himc_mocap_pose(m, f / HIMC_MOCAP_RATE), guess = captured;
-        himc_habit_at(habit, (const himc_vec3(*)[HIMC_HANDS])tip, &guess);
+        himc_posture_regression_at(regression, (const himc_vec3(*)[HIMC_HANDS])tip, &guess);
         for (int hand = 0; hand < HIMC_HANDS; hand++, count++)
             for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
                 int j = himc_arm_joint((himc_hand)hand, k);
@@ -184,10 +185,10 @@ static int add_errors(const himc_habit *habit, const himc_mocap *m, double sum[H
 }
 
 // the other players' habit in a nuance, all spots
-static void learn(int unseen, int nuance, himc_habit *habit)
+static void learn(int unseen, int nuance, himc_posture_regression *regression)
 {
     himc_mocap *m[MOCAP_SEQUENCES];
-    himc_habit_take take[MOCAP_SEQUENCES];
+    himc_posture_regression_take take[MOCAP_SEQUENCES];
     int count = 0;
     for (int i = 0; i < MOCAP_SEQUENCES; i++) {
         himc_mocap_config c = sequence_config(i);
@@ -197,7 +198,8 @@ static void learn(int unseen, int nuance, himc_habit *habit)
         take[count] = postures(m[count]);
         count++;
     }
-    TEST_ASSERT_TRUE_MESSAGE(himc_habit_learn(habit, take, count, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_posture_regression_learn(regression, take, count, &error),
+                             error.text);
     for (int i = 0; i < count; i++) {
         free((void *)(uintptr_t)take[i].pose);
         himc_mocap_free(m[i]);
@@ -211,16 +213,16 @@ static void test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree
         double sum[HIMC_ARM_JOINTS] = {0};
         int count = 0;
         for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
-            himc_habit habit;
-            learn(unseen, nuance, &habit);
+            himc_posture_regression regression;
+            learn(unseen, nuance, &regression);
             for (int i = 0; i < MOCAP_SEQUENCES; i++) {
                 himc_mocap_config c = sequence_config(i);
                 if (c.player != unseen || (int)c.nuance != nuance)
                     continue;
                 himc_mocap *m = sequence(i);
-                himc_habit_take own = postures(m);
-                TEST_ASSERT_TRUE(himc_habit_meet(&habit.player, &own, 1, &error));
-                count += add_errors(&habit, m, sum);
+                himc_posture_regression_take own = postures(m);
+                TEST_ASSERT_TRUE(himc_posture_regression_fit(&regression.player, &own, 1, &error));
+                count += add_errors(&regression, m, sum);
                 free((void *)(uintptr_t)own.pose);
                 himc_mocap_free(m);
             }

@@ -1,5 +1,5 @@
 #define _XOPEN_SOURCE 700 // jn
-#include "himc/modes.h"
+#include "drum/modes.h"
 
 #include "unity.h"
 

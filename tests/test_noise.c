@@ -2,16 +2,16 @@
 /// hardly shows in the accelerations asked for.
 #include "take_files.h"
 
-#include "himc/planner.h"
-#include "himc/track.h"
-#include "noise.h"
+#include "plan/planner.h"
+#include "plan/track.h"
+#include "base/noise.h"
 
 #include "take_motions.h"
 
 #define RADIUS 0.0175
 #define FRAMES 1500
 
-static const himc_place place = {{0.5, 0, 0.85}, 0, 0.3};
+static const himc_head_frame place = {{0.5, 0, 0.85}, 0, 0.3};
 
 void setUp(void)
 {

@@ -1,5 +1,6 @@
 // OSC over loopback: commands in, poses, strikes and heads out.
 #include "osc_ear.h"
+#include "himc/membrane.h"
 
 static void test_pose_comes_33_times_a_second_with_20_bodies(void)
 {

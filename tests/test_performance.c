@@ -2,7 +2,7 @@
 #define _GNU_SOURCE
 #include "allocations.h"
 #include "himc/himc.h"
-#include "performance_state.h"
+#include "performance/performance_state.h"
 
 #include "unity.h"
 

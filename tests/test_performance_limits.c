@@ -2,7 +2,7 @@
 /// and figures tell of them.
 #include "session.h"
 
-#include "performance_state.h"
+#include "performance/performance_state.h"
 
 static char told[64][512];
 static int lines;
@@ -153,7 +153,7 @@ static void test_a_joint_shown_at_its_bounds_does_not_move_on(void)
     pose.joint[elbow] =
         himc_quat_mul(mean.joint[elbow], himc_quat_exp(himc_vec3_make(0.5, 0.6, 0.7)));
     himc_quat near = himc_limit_closest(&p->limits, elbow, pose.joint[elbow]);
-    himc_performance_limit_shown(p, &pose, rate);
+    himc_performance_clamp_kinematic_pose(p, &pose, rate);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const himc_quat *want = j == elbow ? &near : &mean.joint[j];
         TEST_ASSERT_EQUAL_MEMORY(want, &pose.joint[j], sizeof near);

@@ -1,5 +1,6 @@
 /// test_planner.c: tips' trajectories: on time, smooth, as the nuances ask.
 #include "planners.h"
+#include "base/head_frame.h"
 
 #include <stdlib.h>
 
@@ -244,14 +245,14 @@ static void test_plan_goes_on_from_the_measured_state_at_separation(void)
 
 static void test_tip_lands_on_the_other_drum_along_its_normal(void)
 {
-    himc_place place = {{0.7, 0.65, 0.8}, 0.15, 0.33};
+    himc_head_frame place = {{0.7, 0.65, 0.8}, 0.15, 0.33};
     himc_stroke s = {.beat = 3, .hand = HIMC_LEFT, .dynamic = 0.7, .spot = HIMC_SPOT_XY, .x = -0.1};
     add(planner, 2, HIMC_LEFT, HIMC_LEGATO, 0.7);
     TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 1, &error));
     himc_planner_play(planner, 0);
     himc_planner_advance(planner, 1.4);
     himc_target x = at(planner, HIMC_LEFT, 1.5 - 1e-10);
-    himc_vec3 p = himc_place_from_world(&place, x.x), n = himc_place_normal(&place);
+    himc_vec3 p = himc_head_frame_from_world(&place, x.x), n = himc_head_frame_normal(&place);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.1, p.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0, p.y);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.02, p.z);

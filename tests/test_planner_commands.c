@@ -217,7 +217,7 @@ static double storm(unsigned seed, int commands)
         case 7: himc_planner_separated(planner, s.hand, t, &m); break;
         case 8:
             himc_planner_set_drum(planner, 0,
-                                  &(himc_place){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3});
+                                  &(himc_head_frame){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3});
             break;
         case 9:
             if (rand() % 40 == 0)
@@ -271,7 +271,7 @@ static void test_values_that_are_not_finite_change_nothing(void)
     himc_planner_reach(planner, 1, HIMC_LEFT, bad.x);
     himc_planner_tempo(planner, 1, NAN);
     himc_planner_seek(planner, 1, NAN);
-    TEST_ASSERT_FALSE(himc_planner_set_drum(planner, 0, &(himc_place){{NAN, 0, 0}, 0, 0.3}));
+    TEST_ASSERT_FALSE(himc_planner_set_drum(planner, 0, &(himc_head_frame){{NAN, 0, 0}, 0, 0.3}));
     same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
 }
 

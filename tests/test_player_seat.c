@@ -1,10 +1,11 @@
 /// test_player_seat.c: where a take's player sits and where its drum stands, wherever its room was,
 /// and what is said of both.
 #include "read_players.h"
+#include "base/head_frame.h"
 
 static void test_a_seated_player_keeps_the_place_it_has_in_our_world(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     make_take(&given);
     read_player();
     TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
@@ -21,7 +22,7 @@ static void move_take(himc_vec3 by)
 
 static void test_a_player_far_off_is_brought_before_the_drum(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     make_take(&given);
     move_take(himc_vec3_make(12, -5, 0.3));
     read_player();
@@ -35,7 +36,7 @@ static void test_a_player_far_off_is_brought_before_the_drum(void)
 
 static void test_a_drum_that_would_be_missed_is_moved_under_the_strikes(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     drum.center = himc_vec3_make(0.9, 0.6, 0.85);
     make_take(&given);
     read_player();
@@ -48,7 +49,7 @@ static void test_a_drum_that_would_be_missed_is_moved_under_the_strikes(void)
 
 static void test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     make_take(&given);
     move_take(himc_vec3_make(-3, 7, 2));
     forget_skeleton();
@@ -70,7 +71,7 @@ static void test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot
 
 static void test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     make_take(&given);
     move_take(himc_vec3_make(2, 3, 0.1));
     for (int i = 1; i < take->frames; i++)
@@ -110,7 +111,7 @@ static himc_vec3 wide_circle(double u)
 
 static void test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_out_of_the_way(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     himc_take_tip tips[HIMC_HANDS];
     himc_posture posture;
     make_tips(wide_circle);
@@ -122,7 +123,7 @@ static void test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_ou
             himc_vec3 x = himc_vec3_add(tips[hand].x[i], player->offset), local;
             himc_vec3 near = himc_posture_reachable(&posture, (himc_hand)hand, x);
             TEST_ASSERT_DOUBLE_WITHIN(1.1e-3, 0, himc_vec3_length(himc_vec3_sub(near, x)));
-            local = himc_place_from_world(&drum, x);
+            local = himc_head_frame_from_world(&drum, x);
             TEST_ASSERT_TRUE(hypot(local.x, local.y) > drum.radius || local.z > 0.0499);
         }
     TEST_ASSERT_TRUE(drum.center.z < usual_drum.center.z);
@@ -131,7 +132,7 @@ static void test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_ou
 
 static void test_a_walking_player_is_told_from_a_swaying_one_and_held(void)
 {
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     make_take(&given);
     himc_vec3 before = *himc_take_at(take, 100, take->points - 1);
     for (int i = 0; i < take->frames; i++)
@@ -158,7 +159,7 @@ static void hear(void *user, const char *line)
 static void test_description_says_how_tall_how_heavy_and_where_the_head_goes(void)
 {
     char all[4096] = "";
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     make_take(&given);
     read_player();
     himc_player_sit(player, take, NULL, &drum);

@@ -1,5 +1,5 @@
 /// test_pose.c: forward kinematics against hand-made places and against its own differences.
-#include "himc/pose.h"
+#include "himc/body.h"
 
 #include "bodies.h"
 #include "unity.h"

@@ -1,6 +1,6 @@
 /// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and
 /// right.
-#include "himc/posture.h"
+#include "body/posture.h"
 
 #include "unity.h"
 
@@ -247,7 +247,7 @@ static double turned_to(himc_vec3 tip, himc_hand hand)
     himc_posture before = posture;
     himc_vec3 both[HIMC_HANDS] = {tip, tip};
     himc_body_state s;
-    posture.bearing = himc_posture_bearing(both, HIMC_GRIP_GERMAN);
+    posture.trunk_posture = himc_posture_trunk(both, HIMC_GRIP_GERMAN);
     place_tips(both, &s);
     posture = before;
     return distance(s.tip[hand], tip);
@@ -325,7 +325,7 @@ static void test_thumbs_point_inwards_in_german_and_up_in_french_grip(void)
     himc_body_state s;
     himc_vec3 level[HIMC_HANDS] = {{0.5, 0.05, posture.level}, {0.5, -0.05, posture.level}};
     for (int french = 0; french < 2; french++) {
-        posture.bearing.value[HIMC_BEARING_FRENCH] = french;
+        posture.trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP] = french;
         place_tips(level, &s);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             double up = (hand == HIMC_LEFT ? -1 : 1) * s.rotation[HIMC_LEFT_HAND + hand].m[2][1];

@@ -1,6 +1,7 @@
 /// test_push.c: pushed with 200 N for 100 ms, a performer never loses its body and is back within a
 /// second, whatever the law, the gains and the rate. tests/long has all combinations.
 #include "pushes.h"
+#include "body/character.h"
 
 static void pushed(int which, push_case c)
 {

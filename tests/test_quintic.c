@@ -1,5 +1,5 @@
 /// test_quintic.c: both ends are met, minimum jerk is the known one, any quintic is recovered.
-#include "himc/quintic.h"
+#include "base/quintic.h"
 
 #include "unity.h"
 

@@ -7,9 +7,9 @@
 /// of them than 8 mm at the elbow.
 #include "take_files.h"
 
-#include "performance_state.h"
+#include "performance/performance_state.h"
 #include "session.h"
-#include "track_state.h"
+#include "plan/track_state.h"
 
 #define CAPTURE "drumstroke_pearl_240hz/stroke.trc"
 #define NEAR 0.02 // RMS (m)

@@ -1,5 +1,5 @@
 /// test_skeleton.c: the table of the body: its shape, masses, de Leva's numbers, what it refuses.
-#include "himc/skeleton.h"
+#include "himc/body.h"
 
 #include "unity.h"
 

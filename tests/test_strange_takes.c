@@ -4,7 +4,7 @@
 
 #include "session.h"
 
-#include "stretch.h"
+#include "body/stretch.h"
 
 #define SECONDS 3.0 // of the swings
 

@@ -1,8 +1,8 @@
 /// test_stretch.c: places out of an arm's reach: where the arm is stretched to instead, how that
 /// place moves, and that control asks for nothing else.
-#include "stretch.h"
+#include "body/stretch.h"
 
-#include "himc/controller.h"
+#include "control/controller.h"
 
 #include "unity.h"
 

@@ -2,7 +2,7 @@
 /// take says of itself: spikes, names, rates.
 #include "take_motions.h"
 
-#include "take_data.h"
+#include "capture/take_data.h"
 
 #define RATE 250
 #define FRAMES 400

@@ -2,8 +2,8 @@
 /// stroke.
 #include "take_motions.h"
 
-#include "himc/track.h"
-#include "himc/units.h"
+#include "plan/track.h"
+#include "capture/units.h"
 
 void setUp(void)
 {
@@ -185,7 +185,7 @@ static void test_each_of_4200_strikes_is_found_tracked_and_cut(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.002, 630 - 0.1, strikes[2 * 2099].time);
     free(strikes);
 
-    himc_place place = {.center = himc_vec3_make(0.6, 0, 0.8), .radius = 0.3};
+    himc_head_frame place = {.center = himc_vec3_make(0.6, 0, 0.8), .radius = 0.3};
     himc_track *track = himc_track_new(take, NULL, &place, 0.02, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     TEST_ASSERT_EQUAL_INT(4200, himc_track_strikes(track, HIMC_LEFT) +

@@ -1,5 +1,5 @@
 /// test_timpano.c: a drum in air: its pitch, its decays, its pedal, its hand, its ears.
-#include "himc/air.h"
+#include "drum/air.h"
 #include "himc/drum.h"
 
 #include "unity.h"

@@ -2,9 +2,10 @@
 /// tip, as heavy, as fast, and where it was left; and the blows that a drum tells of.
 #define _GNU_SOURCE
 #include "himc/himc.h"
-#include "performance_state.h"
+#include "performance/performance_state.h"
 
 #include "unity.h"
+#include "base/head_frame.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,7 +67,7 @@ static double step(void)
 static double along_normal(himc_vec3 v, const touch *c)
 {
     himc_drum *drum = performance->drum[c->drum].drum;
-    return himc_vec3_dot(himc_place_normal(himc_drum_place(drum)), v);
+    return himc_vec3_dot(himc_head_frame_normal(himc_drum_head_frame(drum)), v);
 }
 
 static void test_touch_point_moves_as_the_bodys_tip_does(void)

@@ -1,9 +1,9 @@
 /// test_track_fit.c: how sure a rate beside a strike is, and the angular velocity of fitted joints.
 #include "take_players.h"
 
-#include "himc/track.h"
+#include "plan/track.h"
 
-#include "track_fit.h"
+#include "plan/track_fit.h"
 
 #include "unity.h"
 
@@ -77,7 +77,7 @@ static void test_the_rate_of_a_joint_that_shakes_is_the_angular_velocity_of_its_
     himc_error error = {""};
     himc_skeleton skeleton;
     himc_skeleton_config config = himc_skeleton_default();
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     double most = 0;
     TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
     himc_take *take = beaten_take(&skeleton, RATE, 2, &error);

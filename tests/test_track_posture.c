@@ -3,7 +3,7 @@
 #include "allocations.h"
 #include "take_players.h"
 
-#include "himc/track.h"
+#include "plan/track.h"
 
 #include "unity.h"
 
@@ -39,7 +39,7 @@ static double distance(himc_vec3 a, himc_vec3 b)
 static void make_played(double rate)
 {
     himc_skeleton_config given = himc_skeleton_default();
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &given, &error));
     take = beaten_take(&skeleton, rate, 3, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
@@ -251,7 +251,7 @@ static void test_an_arm_without_a_stick_is_bent_from_where_it_is_and_captured_as
         player->pose[f].joint[grip] = himc_quat_exp(himc_vec3_make(0, 1.5, 0));
     for (int shown = 0; shown < 2; shown++) {
         player->known[grip] = shown;
-        himc_place drum = usual_drum;
+        himc_head_frame drum = usual_drum;
         track = himc_track_new_played(take, NULL, &drum, player, &error);
         TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
         m = posture_at(1);

@@ -6,6 +6,9 @@
 #include "himc/himc.h"
 
 #include "unity.h"
+#include "body/posture.h"
+#include "body/character.h"
+#include "himc/membrane.h"
 
 #include <stdio.h>
 

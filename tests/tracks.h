@@ -4,13 +4,13 @@
 
 #include "take_players.h"
 
-#include "himc/track.h"
+#include "plan/track.h"
 
 #include "unity.h"
 
 #define LEVEL 0.85 // of the head (m)
 
-static const himc_place place = {{0.5, 0, LEVEL}, 0, 0.3};
+static const himc_head_frame place = {{0.5, 0, LEVEL}, 0, 0.3};
 static himc_error error;
 static himc_take *take;
 static himc_track *track;

@@ -7,6 +7,11 @@
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "himc/himc.h"
+#include "body/posture.h"
+#include "control/controller.h"
+#include "control/setpoint.h"
+#include "body/character.h"
+#include "himc/membrane.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -107,7 +112,7 @@ static double time_performance(himc_error *error)
 typedef struct bench_body {
     himc_skeleton skeleton;
     himc_posture posture;
-    himc_task_tick from, to;
+    himc_setpoint from, to;
     himc_body_state state;
     himc_controller controller;
     himc_reference reference;
@@ -125,8 +130,8 @@ static bool make_body(bench_body *b, himc_error *error)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         b->from.tip[hand].x = himc_vec3_make(0.48, hand == HIMC_LEFT ? 0.1 : -0.1, 1.0);
     memcpy(b->to.tip, b->from.tip, sizeof b->to.tip);
-    himc_task_tick_complete(&b->from, &b->posture);
-    himc_task_tick_complete(&b->to, &b->posture);
+    himc_setpoint_complete(&b->from, &b->posture);
+    himc_setpoint_complete(&b->to, &b->posture);
     memcpy(pose.joint, b->from.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
     himc_controller_init(&b->controller, &b->skeleton, &b->state);
@@ -142,9 +147,9 @@ static void do_part(bench_body *b, int part, int i)
     himc_articulation articulation;
     himc_vec3 torque[HIMC_JOINTS] = {{0, 0, 0}}, relative[HIMC_JOINTS];
     if (part == 0)
-        himc_task_between(&b->from, &b->to, 0.001 + 1e-9 * i, &b->reference);
+        himc_setpoint_interpolate(&b->from, &b->to, 0.001 + 1e-9 * i, &b->reference);
     else if (part == 1)
-        himc_task_tick_complete(&b->to, &b->posture);
+        himc_setpoint_complete(&b->to, &b->posture);
     else if (part == 2)
         himc_controller_torques(&b->controller, &b->skeleton, &b->state, &b->reference, torque);
     else if (part == 3) {

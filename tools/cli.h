@@ -4,7 +4,7 @@
 #define CLI_H
 
 #include "himc/score.h"
-#include "himc/take.h"
+#include "himc/mocap.h"
 
 #include <stdio.h>
 

@@ -2,6 +2,7 @@
 /// written with enough digits to come back the same to 1e-9 of their size.
 #define _POSIX_C_SOURCE 200809L
 #include "evaluate_log.h"
+#include "control/controller.h"
 
 #include <errno.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "cli.h"
 
 #include "himc/drum.h"
-#include "himc/player.h"
+#include "himc/mocap.h"
 
 static void print_line(void *user, const char *line)
 {
@@ -102,7 +102,7 @@ static bool describe_player(himc_take *take, const himc_take_options *take_optio
         return false;
     himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, 48000, error);
     if (drum) {
-        himc_place place = *himc_drum_place(drum);
+        himc_head_frame place = *himc_drum_head_frame(drum);
         bool seated = himc_player_sit(player, take, take_options, &place);
         himc_player_describe(player, seated ? &place : NULL, print_line, NULL);
     }

@@ -5,6 +5,7 @@
 /// which a mode falls by 60 dB: ln(1000) over its decay rate.
 #include "cli.h"
 #include "himc/drum.h"
+#include "himc/membrane.h"
 
 #include <math.h>
 #include <string.h>

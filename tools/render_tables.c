@@ -1,6 +1,7 @@
 /// render_tables.c: rows and numbers as text. Columns carry their unit; a number that is not known
 /// is `nan` in a table and `null` in JSON, which has no word for it.
 #include "render_tables.h"
+#include "himc/body.h"
 
 #include <math.h>
 #include <string.h>

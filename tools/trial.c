@@ -12,7 +12,10 @@
 
 #include "../mocap/parts.h"
 #include "himc/performance.h"
-#include "himc/player.h"
+#include "himc/mocap.h"
+#include "control/posture_regression.h"
+#include "control/controller.h"
+#include "performance/research.h"
 
 #include <errno.h>
 #include <math.h>
@@ -98,7 +101,7 @@ static uint64_t seed_of(const trial_config *config)
 }
 
 /// A clean sequence: postures of all frames, `take` to be freed by drop_sequence.
-static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take,
+static bool make_sequence(const himc_mocap_config *config, himc_posture_regression_take *take,
                           himc_mocap **mocap, himc_error *error)
 {
     *mocap = himc_mocap_new(config, error);
@@ -106,20 +109,21 @@ static bool make_sequence(const himc_mocap_config *config, himc_habit_take *take
         return false;
     int frames = himc_mocap_frames(*mocap);
     himc_pose *pose = malloc((size_t)frames * sizeof *pose);
-    *take = (himc_habit_take){.skeleton = himc_mocap_skeleton(*mocap),
-                              .pose = pose,
-                              .frames = frames,
-                              .rate = HIMC_MOCAP_RATE};
+    *take = (himc_posture_regression_take){.skeleton = himc_mocap_skeleton(*mocap),
+                                           .pose = pose,
+                                           .frames = frames,
+                                           .rate = HIMC_MOCAP_RATE};
     for (int frame = 0; pose && frame < frames; frame++)
         pose[frame] = himc_mocap_pose(*mocap, frame / HIMC_MOCAP_RATE);
     return pose || himc_error_set(error, "out of memory");
 }
 
 /// How the other players' arms go with their sticks in this nuance, all spots.
-static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_error *error)
+static bool learn_from_others(himc_mocap_config config, himc_posture_regression *regression,
+                              himc_error *error)
 {
     enum { TAKES = (HIMC_MOCAP_PLAYERS - 1) * TRIAL_SPOTS };
-    himc_habit_take take[TAKES] = {{0}};
+    himc_posture_regression_take take[TAKES] = {{0}};
     himc_mocap *mocap[TAKES] = {NULL};
     int unseen = config.player, count = 0;
     config.pace = 1; // how an arm lies with its stick, not how fast
@@ -129,7 +133,7 @@ static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_
             config.spot = (himc_spot)spot;
             good = make_sequence(&config, &take[count], &mocap[count], error);
         }
-    good = good && himc_habit_learn(habit, take, TAKES, error);
+    good = good && himc_posture_regression_learn(regression, take, TAKES, error);
     for (int i = 0; i < TAKES; i++) {
         free((void *)(uintptr_t)take[i].pose);
         himc_mocap_free(mocap[i]);
@@ -138,11 +142,12 @@ static bool learn_from_others(himc_mocap_config config, himc_habit *habit, himc_
 }
 
 /// Learned once for each player left out and each nuance, in each process.
-static const himc_habit *habit_without(const himc_mocap_config *config, himc_error *error)
+static const himc_posture_regression *habit_without(const himc_mocap_config *config,
+                                                    himc_error *error)
 {
-    static himc_habit habit[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
+    static himc_posture_regression regression[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
     static bool known[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
-    himc_habit *h = &habit[config->player][config->nuance];
+    himc_posture_regression *h = &regression[config->player][config->nuance];
     bool *k = &known[config->player][config->nuance];
     if (!*k)
         *k = learn_from_others(*config, h, error);
@@ -177,16 +182,16 @@ static bool tell(himc_performance *p, himc_error *error, const char *text)
 static bool adopt_habit(himc_performance *p, const himc_player *seen, double rate,
                         const himc_mocap_config *config, himc_error *error)
 {
-    const himc_habit *learned = habit_without(config, error);
+    const himc_posture_regression *learned = habit_without(config, error);
     himc_skeleton skeleton;
     if (!learned || !himc_skeleton_init(&skeleton, &seen->config, error))
         return false;
-    himc_habit habit = *learned;
-    himc_habit_take one = {
+    himc_posture_regression regression = *learned;
+    himc_posture_regression_take one = {
         .skeleton = &skeleton, .pose = seen->pose, .frames = seen->frames, .rate = rate};
-    if (!himc_habit_meet(&habit.player, &one, 1, error))
+    if (!himc_posture_regression_fit(&regression.player, &one, 1, error))
         return false;
-    himc_performance_set_habit(p, &habit);
+    himc_performance_set_posture_regression(p, &regression);
     return true;
 }
 
@@ -195,7 +200,7 @@ static double near_one(mocap_dice *dice, double deviation)
     return fmax(1 + deviation * himc_mocap_normal(dice), LEAST_SHARE);
 }
 
-static bool weigh(himc_performance *p, const trial_config *config, himc_error *error)
+static bool make_plant(himc_performance *p, const trial_config *config, himc_error *error)
 {
     double weight[HIMC_SEGMENTS];
     mocap_dice dice = himc_mocap_dice(seed_of(config), NULL, 0);
@@ -238,7 +243,7 @@ static bool play_as(himc_performance *p, const trial_config *config, himc_take *
     himc_mocap_config sequence = trial_sequence(config);
     mismeasure(&player->config, config);
     return himc_performance_play_player(p, take, player, "take", error) &&
-           weigh(p, config, error) && set_control(p, config, error) &&
+           make_plant(p, config, error) && set_control(p, config, error) &&
            (config->kind.controller != HIMC_PIPELINE_HIMC ||
             adopt_habit(p, player, himc_take_rate(take), &sequence, error)) &&
            tell(p, error, "play");

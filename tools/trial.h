@@ -4,6 +4,7 @@
 
 #include "../mocap/mocap.h"
 #include "himc/performance.h"
+#include "control/controller.h"
 
 /// What is compared: one row of the published table.
 typedef struct trial_kind {

@@ -17,6 +17,8 @@
 /// that.
 #define HIMC_RT
 
+#define HIMC_VERSION "0.1.0"
+
 #define HIMC_PI 3.14159265358979323846
 
 /// One line that says what was wrong, the value, what is allowed, and in a file `file:line`.
@@ -42,5 +44,22 @@ typedef enum himc_hand { HIMC_LEFT, HIMC_RIGHT, HIMC_HANDS } himc_hand;
 
 /// "left" or "right".
 const char *himc_hand_name(himc_hand hand);
+
+typedef struct himc_vec3 {
+    double x, y, z;
+} himc_vec3;
+
+/// Where a drumhead stands.
+typedef struct himc_head_frame {
+    himc_vec3 center; ///< centre of the head at rest (m)
+    double tilt;      ///< positive lifts the side away from the performer (rad)
+    double radius;    ///< of the head (m)
+} himc_head_frame;
+
+#define HIMC_DRUMS 16 ///< most that one performer plays on
+
+/// The body's rigid segments and the ball joints between them (body.h names them).
+#define HIMC_SEGMENTS 20
+#define HIMC_JOINTS (HIMC_SEGMENTS - 1)
 
 #endif

@@ -48,6 +48,11 @@ typedef struct himc_stroke {
     char drum[HIMC_NAME_SIZE]; ///< "" is the performer's first drum
 } himc_stroke;
 
+/// (x, y) on the head of a named spot: center (0), normal (0.75 of the radius towards the
+/// performer), rim (0.92), each hand 1.5 cm to its own side; a stroke with HIMC_SPOT_XY gives its
+/// own x, y.
+HIMC_RT void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y);
+
 /// Who a command is for.
 typedef enum himc_receiver { HIMC_PERFORMER, HIMC_DRUM } himc_receiver;
 

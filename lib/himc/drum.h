@@ -8,11 +8,21 @@
 #define HIMC_DRUM_H
 
 #include "himc/command.h"
-#include "himc/contact.h"
-#include "himc/membrane.h"
-#include "himc/planner.h"
 
 typedef struct himc_drum himc_drum;
+typedef struct himc_membrane himc_membrane;       ///< membrane.h
+typedef struct himc_mallet_head himc_mallet_head; ///< membrane.h
+typedef struct himc_stick himc_stick;             ///< membrane.h
+
+/// What a finished contact was.
+typedef struct himc_contact_report {
+    double time;     ///< of the first touch (s since the drum's realign)
+    double x, y;     ///< place on the head (m)
+    double velocity; ///< of impact, downward positive (m/s)
+    double force;    ///< peak (N)
+    double impulse;  ///< (N s)
+    double duration; ///< (s)
+} himc_contact_report;
 
 /// A drum of the given diameter (inches, 12 .. 60; the timpani are 23, 26, 29, 32) at `sample_rate`
 /// (Hz, 8000 .. 192000). One reference belongs to the caller.
@@ -21,7 +31,7 @@ himc_drum *himc_drum_retain(himc_drum *drum);
 void himc_drum_release(himc_drum *drum);
 
 const char *himc_drum_name(const himc_drum *drum);
-HIMC_RT const himc_place *himc_drum_place(const himc_drum *drum);
+HIMC_RT const himc_head_frame *himc_drum_head_frame(const himc_drum *drum);
 /// Whether `place` has said where it stands.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 /// Puts a drum there until `place` says where.

@@ -1,65 +1,34 @@
-/// himc.h: the whole of libhimc, in the order in which a stroke becomes sound.
+/// himc.h: a virtual timpanist: the core of libhimc, all that a program needs to play.
 ///
 ///     score ┐
-///     take ─┴→ planner, track → task → controller (ik → invdyn) → character (ODE)
-///                                                                     ⇅
-///     samples ←──────────────────────────── drum (membrane ⇄ contact) ┘
-///     command (Pd, OSC, file) → performance: the clock of it all → osc: what others see of it
+///     take ─┴→ planner → controller (inverse kinematics → inverse dynamics) → character (ODE)
+///                                                                               ⇅
+///     samples ←───────────────────────────────── drum (membrane ⇄ contact) ─────┘
+///     command (Pd, OSC, file) → performance: the sample clock and the physics step → osc
 ///
-/// Beside the way: player finds in a take whose body it is, habit how that player's arms go with
-/// the sticks, limits how far the joints turn; reach finds a posture for tips anywhere.
+/// A percussionist of 20 rigid segments and 57 degrees of freedom is driven, from the trajectories
+/// of its two drumstick tips alone, by Hybrid Inverse Motion Control (Bouënard, Gibet and
+/// Wanderley, The Visual Computer 28(4), 2012) inside every physics step. Sticks and drumheads
+/// exchange forces sample by sample. To play: make a himc_performance and a himc_drum, send
+/// commands, ask for samples.
 ///
-/// A percussionist of 20 segments and 57 degrees of freedom is driven, from nothing but the
-/// trajectories of its two drumstick tips, by Hybrid Inverse Motion Control (Bouënard, Gibet and
-/// Wanderley, The Visual Computer 28(4), 2012) inside every physics step; sticks and drumheads
-/// exchange forces sample by sample. To play, make a himc_performance, give it commands and ask it
-/// for samples; the headers below are its parts, each usable alone.
+/// Beside the core there is a second tier, one header for each concept, included where needed:
+///
+///     himc/vec.h        vectors, quaternions, rotation matrices
+///     himc/body.h       skeleton, pose, joint limits, inverse kinematics, dynamics
+///     himc/mocap.h      takes (BVH, C3D, TRC), the player in them, recordings
+///     himc/membrane.h   drumhead, pickups, contact
+///     himc/osc.h        commands in and poses, strikes, states out over the network
+///
+/// docs/api.md states what each tier promises. The sources in lib/src stand in folders in the order
+/// of the data flow: base, body, capture, plan, control, drum, performance, osc.
 #ifndef HIMC_H
 #define HIMC_H
 
-#define HIMC_VERSION "0.1.0"
-
-// what everything shares
 #include "himc/base.h"
-#include "himc/vec.h"
-#include "himc/quintic.h"
-
-// the body
-#include "himc/skeleton.h"
-#include "himc/pose.h"
-#include "himc/limits.h"
-#include "himc/reach.h"
-
-// what to play: written or captured
 #include "himc/command.h"
 #include "himc/score.h"
-#include "himc/take.h"
-#include "himc/recording.h"
-#include "himc/units.h"
-#include "himc/planner.h"
-#include "himc/posture.h"
-#include "himc/player.h"
-#include "himc/track.h"
-
-// how the body is made to do it: algorithm 2
-#include "himc/habit.h"
-#include "himc/ik.h"
-#include "himc/invdyn.h"
-#include "himc/controller.h"
-#include "himc/task.h"
-#include "himc/character.h"
-
-// what is struck
-#include "himc/grid.h"
-#include "himc/modes.h"
-#include "himc/air.h"
-#include "himc/bank.h"
-#include "himc/membrane.h"
-#include "himc/contact.h"
 #include "himc/drum.h"
-
-// all of it together
 #include "himc/performance.h"
-#include "himc/osc.h"
 
 #endif

@@ -7,11 +7,8 @@
 #ifndef HIMC_PERFORMANCE_H
 #define HIMC_PERFORMANCE_H
 
-#include "himc/controller.h"
 #include "himc/drum.h"
-#include "himc/habit.h"
-#include "himc/player.h"
-#include "himc/take.h"
+#include "himc/score.h"
 
 typedef struct himc_performance_config {
     double sample_rate;  ///< (Hz) 8000 .. 192000, default 48000
@@ -42,34 +39,8 @@ HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int inde
 bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
                               himc_error *error);
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
-/// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
-void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
-
 #define HIMC_APPROACH \
     1.0 ///< from wherever the sticks are to the beginning of a take, at `play` (s)
-
-/// What the `take` command does, with a take that is in memory (borrowed); `name` begins notes and
-/// errors.
-bool himc_performance_play_take(himc_performance *performance, himc_take *take, const char *name,
-                                himc_error *error);
-/// The same with a body that the take does not show: `player`, made from the take by
-/// himc_player_new, its measures since changed (within the ranges of himc_skeleton_config), is
-/// seated and played; its joints' rotations stay as captured. Borrowed.
-bool himc_performance_play_player(himc_performance *performance, himc_take *take,
-                                  himc_player *player, const char *name, himc_error *error);
-/// Added to the coordinates of the take being played to make ours (m).
-himc_vec3 himc_performance_take_offset(const himc_performance *performance);
-
-/// From now on the simulated segments weigh `factor` (HIMC_SEGMENTS, 0.2 .. 5; NULL for 1) times
-/// what control believes, inertia included: what an uncertain body does to control. The body is
-/// put anew where the targets have it.
-bool himc_performance_set_weights(himc_performance *performance, const double *factor,
-                                  himc_error *error);
-
-/// From now on, in mode `himc`, the null space of the tips is for a player's habit (copied) rather
-/// than for the natural posture; NULL for the latter again. The habit's player should be the
-/// performer's body.
-HIMC_RT void himc_performance_set_habit(himc_performance *performance, const himc_habit *habit);
 
 /// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a
 /// block, with the block's last sample of each coordinate: a stream of blocks of 64 samples comes
@@ -134,6 +105,9 @@ typedef struct himc_motion_row {
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it.
 void himc_performance_on_motion(himc_performance *performance,
                                 void (*row)(void *, const himc_motion_row *), void *user);
+
+/// The moving body (body.h).
+typedef struct himc_body_state himc_body_state;
 
 /// What moves, at a task tick; borrowed for the call.
 typedef struct himc_tick {

@@ -10,10 +10,6 @@
 
 #include <math.h>
 
-typedef struct himc_vec3 {
-    double x, y, z;
-} himc_vec3;
-
 typedef struct himc_quat {
     double w, x, y, z;
 } himc_quat;

@@ -12,7 +12,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "../c3d_files.h"
 #include "../take_players.h"
-#include "himc/track.h"
+#include "plan/track.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -83,7 +83,7 @@ static void check_quats(const himc_quat *q)
 }
 
 static void check_track(himc_take *take, const himc_take_options *options,
-                        const himc_player *player, const himc_place *drum)
+                        const himc_player *player, const himc_head_frame *drum)
 {
     himc_skeleton skeleton;
     himc_error error = {""};
@@ -115,7 +115,7 @@ static void check_track(himc_take *take, const himc_take_options *options,
 static void check_player(himc_take *take, const himc_take_options *options)
 {
     himc_skeleton_config given = himc_skeleton_default();
-    himc_place drum = usual_drum;
+    himc_head_frame drum = usual_drum;
     himc_error error = {""};
     himc_player *player = himc_player_new(take, options, &given, &error);
     if (!player) {

@@ -1,5 +1,6 @@
 /// test_session_long.c: the figures of a session at full length.
 #include "../session.h"
+#include "base/head_frame.h"
 
 #include <time.h>
 
@@ -143,9 +144,9 @@ typedef struct watch {
 static void keep_row(void *user, const himc_motion_row *row)
 {
     watch *w = user;
-    himc_place place = {{0.75, 0, 0.85}, 0, 0.2921};
+    himc_head_frame place = {{0.75, 0, 0.85}, 0, 0.2921};
     for (int hand = 0; hand < HIMC_HANDS && w->count < w->room; hand++) {
-        himc_vec3 at = himc_place_from_world(&place, row->tip[hand]);
+        himc_vec3 at = himc_head_frame_from_world(&place, row->tip[hand]);
         w->height[w->count][hand] = at.z;
         w->away[w->count][hand] = at.x;
     }

@@ -9,7 +9,7 @@
 /// each. Strikes carry the wall clock (s) as their time, so that the page can tell the latency.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/membrane.h"
-#include "himc/pose.h"
+#include "himc/body.h"
 
 #include <lo/lo.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /// skeleton_table.c: prints viewer/page/skeleton.js, the default performer's segments, from the
 /// library's own table. The page needs them to draw limbs and to play a motion.csv; a test compares
 /// the file with what this prints.
-#include "himc/skeleton.h"
+#include "himc/body.h"
 
 #include <stdio.h>
 

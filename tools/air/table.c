@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "himc/air.h"
+#include "drum/air.h"
 
 static const double RADIUS[HIMC_AIR_DRUMS] = {0.292, 0.328, 0.368, 0.406};
 

@@ -55,7 +55,7 @@ static void play(double place, double velocity)
 {
     himc_error error;
     himc_drum *drum = timpano();
-    double x = -place * himc_drum_place(drum)->radius;
+    double x = -place * himc_drum_head_frame(drum)->radius;
     if (!himc_drum_strike_at(drum, 0, x, 0, velocity, &error))
         fail(error.text);
     for (int at = 0; at < LENGTH; at += BLOCK) {

@@ -13,6 +13,7 @@
 /// Trials are spread over the cores.
 #include "../pool.h"
 #include "../trial.h"
+#include "control/controller.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,6 +9,7 @@
 /// (degrees), strokes and those of them that landed.
 #include "../pool.h"
 #include "../trial.h"
+#include "control/controller.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -10,6 +10,7 @@
 /// upper arm and forearm, of the shoulder the upper arm's from hanging, in the sagittal plane, of
 /// the wrist the hand's elevation over the forearm's.
 #include "../trial.h"
+#include "control/controller.h"
 
 #include <stdio.h>
 #include <stdlib.h>

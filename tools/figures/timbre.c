@@ -4,6 +4,7 @@
 /// Prints one block for each panel: frequency (Hz), then the spectrum of each sound (dB re 1 s of
 /// full scale) over its first second, by a Hann window's falling half, so that the attack counts.
 #include "himc/himc.h"
+#include "himc/membrane.h"
 
 #include <stdio.h>
 

@@ -1,0 +1,25 @@
+/// himc_line_sink.h: facts told line by line to whoever asked.
+#ifndef HIMC_LINE_SINK_H
+#define HIMC_LINE_SINK_H
+
+#include <stdarg.h>
+#include <stdio.h>
+
+typedef struct himc_line_sink {
+    void (*line)(void *, const char *);
+    void *user;
+} himc_line_sink;
+
+/// One line, cut at 255 characters.
+__attribute__((format(printf, 2, 3))) static inline void himc_tell(const himc_line_sink *to,
+                                                                   const char *format, ...)
+{
+    char text[256];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    to->line(to->user, text);
+}
+
+#endif

@@ -1,0 +1,134 @@
+/// text.c: Pure Data text: words between white space, `;` ends a statement, `\` quotes a character.
+///
+/// Numbers are read by hand and not by strtod, which obeys the host program's locale: in half of
+/// Europe it stops at the point of "0.5". Digits are gathered in an integer and scaled once by a
+/// power of ten, exact to the last place of single precision, in which Pure Data would hold them.
+#include "base/text.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct decimal {
+    uint64_t digits;
+    int exponent;
+    int seen;
+} decimal;
+
+static const char *read_digits(const char *s, decimal *d, bool fraction)
+{
+    for (; isdigit((unsigned char)*s); s++) {
+        d->seen++;
+        if (d->digits < UINT64_C(100000000000000000)) {
+            d->digits = d->digits * 10 + (uint64_t)(*s - '0');
+            d->exponent -= fraction;
+        } else {
+            d->exponent += !fraction;
+        }
+    }
+    return s;
+}
+
+static const char *read_exponent(const char *s, decimal *d)
+{
+    if (*s != 'e' && *s != 'E')
+        return s;
+    const char *p = s + 1;
+    int sign = *p == '-' ? -1 : 1;
+    p += *p == '-' || *p == '+';
+    if (!isdigit((unsigned char)*p))
+        return s;
+    int value = 0;
+    for (; isdigit((unsigned char)*p); p++)
+        value = value < 10000 ? value * 10 + (*p - '0') : value;
+    d->exponent += sign * value;
+    return p;
+}
+
+bool himc_text_number(const char *word, double *number)
+{
+    decimal d = {0};
+    const char *s = word + (*word == '-' || *word == '+');
+    s = read_digits(s, &d, false);
+    if (*s == '.')
+        s = read_digits(s + 1, &d, true);
+    if (d.seen == 0)
+        return false;
+    s = read_exponent(s, &d);
+    if (*s)
+        return false;
+    double scale = pow(10, abs(d.exponent));
+    double value = d.digits == 0    ? 0
+                   : d.exponent < 0 ? (double)d.digits / scale
+                                    : (double)d.digits * scale;
+    *number = *word == '-' ? -value : value;
+    return true;
+}
+
+/// One word, backslashes resolved, into the statement's storage; NULL if it does not fit.
+static const char *read_word(const char **text, int *line, himc_text_statement *statement,
+                             size_t *used)
+{
+    const char *s = *text;
+    size_t start = *used, length = 0;
+    for (; *s && *s != ';' && !isspace((unsigned char)*s); s++) {
+        if (*s == '\\' && s[1])
+            s++;
+        *line += *s == '\n';
+        if (start + length + 1 < statement->size)
+            statement->storage[start + length] = *s;
+        length++;
+    }
+    *text = s;
+    if (start + length + 1 > statement->size)
+        return NULL;
+    statement->storage[start + length] = '\0';
+    *used = start + length + 1;
+    return statement->storage + start;
+}
+
+static void skip_space(const char **text, int *line)
+{
+    for (; isspace((unsigned char)**text); (*text)++)
+        *line += **text == '\n';
+}
+
+static void add_word(himc_text_statement *statement, const char *word)
+{
+    statement->overflow = statement->overflow || !word;
+    if (statement->count < statement->capacity) {
+        himc_atom *atom = &statement->atom[statement->count];
+        *atom = (himc_atom){HIMC_ATOM_SYMBOL, 0, word ? word : ""};
+        if (himc_text_number(atom->symbol, &atom->number))
+            atom->kind = HIMC_ATOM_NUMBER;
+    }
+    statement->count++;
+}
+
+bool himc_text_next(const char **text, int *line, himc_text_statement *statement)
+{
+    size_t used = 0;
+    statement->count = 0;
+    statement->overflow = false;
+    skip_space(text, line);
+    statement->line = *line;
+    if (!**text)
+        return false;
+    while (**text && **text != ';') {
+        add_word(statement, read_word(text, line, statement, &used));
+        skip_space(text, line);
+    }
+    *text += **text == ';';
+    return true;
+}
+
+void himc_text_printable(char *out, size_t size, const char *word)
+{
+    size_t i = 0;
+    for (; word[i] && i + 1 < size; i++)
+        out[i] = iscntrl((unsigned char)word[i]) ? '?' : word[i];
+    out[i] = '\0';
+    if (word[i] && size > 4)
+        snprintf(out + size - 4, 4, "...");
+}

@@ -1,0 +1,266 @@
+/// fwdyn.c: articulated bodies joined by ball joints, in world coordinates.
+///
+/// Seen from its parent, a segment that hangs on a ball joint is just a 3 x 3 mass matrix at the
+/// joint, since a ball passes forces and, here, a known torque. With J the rotational inertia
+/// about the joint, H = m [c]x the moment for a unit acceleration of the joint and M the mass
+/// (each with the children's mass matrices A_c moved here),
+///     J alpha + H a = -n,   f = M a + H' alpha + p   =>   A = M - H' J^-1 H,   b = p - H' J^-1 n,
+/// where n and p gather centripetal terms, gravity, torques and forces (Featherstone 2008,
+/// chapter 7, for joints with three rotational freedoms). The legs hang on the held pelvis and
+/// never feel the arms, so they are left out.
+///
+/// A joint that resists its own relative acceleration with D (alpha - alpha_p) (a servo taken
+/// implicitly, D = h Kd + h^2 Kp) passes moments too. With K = (J + D)^-1
+///     alpha = K (-n - H a + D alpha_p),
+/// so the parent feels, beside A and b, the inertia E = D - D K D, the coupling G = D K H and the
+/// moment D K n. Then all segments take part, since the legs have servos as well.
+#include "himc/body.h"
+
+#define UPPER_END HIMC_LEFT_UPPER_LEG // segments 1 .. UPPER_END - 1 are trunk, neck, head and arms
+
+typedef struct bias {
+    himc_vec3 moment, force; // n and p
+} bias;
+
+static himc_mat3 cross_matrix(himc_vec3 v)
+{
+    return (himc_mat3){{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}}};
+}
+
+static void add_to(himc_mat3 *a, const himc_mat3 *b, double scale)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            a->m[i][j] += scale * b->m[i][j];
+}
+
+// a b', the transpose taken on the fly
+static himc_mat3 mul_transposed(const himc_mat3 *a, const himc_mat3 *b)
+{
+    himc_mat3 c;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            c.m[i][j] = a->m[i][0] * b->m[j][0] + a->m[i][1] * b->m[j][1] + a->m[i][2] * b->m[j][2];
+    return c;
+}
+
+static himc_mat3 transpose(const himc_mat3 *a)
+{
+    himc_mat3 t;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            t.m[i][j] = a->m[j][i];
+    return t;
+}
+
+// a' b
+static himc_mat3 transposed_mul(const himc_mat3 *a, const himc_mat3 *b)
+{
+    himc_mat3 c;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            c.m[i][j] = a->m[0][i] * b->m[0][j] + a->m[1][i] * b->m[1][j] + a->m[2][i] * b->m[2][j];
+    return c;
+}
+
+// a tensor given about a segment's axes, seen in the world
+static himc_mat3 turned_axes(const himc_mat3 *rotation, himc_vec3 axes)
+{
+    himc_mat3 scaled = *rotation;
+    for (int i = 0; i < 3; i++) {
+        scaled.m[i][0] *= axes.x;
+        scaled.m[i][1] *= axes.y;
+        scaled.m[i][2] *= axes.z;
+    }
+    return mul_transposed(&scaled, rotation);
+}
+
+// a segment's own J, H and M about its joint
+static void own_inertia(const himc_segment *segment, const himc_mat3 *rotation, himc_mat3 *j,
+                        himc_mat3 *h, himc_mat3 *m)
+{
+    himc_vec3 c = himc_mat3_apply(rotation, segment->center);
+    himc_mat3 cx = cross_matrix(c), steiner = mul_transposed(&cx, &cx);
+    *j = turned_axes(rotation, segment->inertia);
+    add_to(j, &steiner, segment->mass);
+    *h = (himc_mat3){0};
+    add_to(h, &cx, segment->mass);
+    *m = (himc_mat3){{{segment->mass, 0, 0}, {0, segment->mass, 0}, {0, 0, segment->mass}}};
+}
+
+// what a joint with inertia of its own adds to its parent's J and H; `j` becomes J + D
+static void resist(himc_articulation *art, int i, const himc_mat3 *d, const himc_mat3 *h,
+                   himc_mat3 *j)
+{
+    add_to(j, d, 1);
+    art->inverse[i] = himc_mat3_inverse_symmetric(j);
+    art->resist[i] = *d;
+    art->share[i] = himc_mat3_mul(d, &art->inverse[i]);
+    art->turn[i] = himc_mat3_mul(&art->share[i], h);
+}
+
+// E and G of segment `i`, moved to its parent's joint at -rx
+static void pass_moments(const himc_articulation *art, int i, const himc_mat3 *rx, himc_mat3 *j,
+                         himc_mat3 *h)
+{
+    himc_mat3 e = himc_mat3_mul(&art->share[i], &art->resist[i]);
+    himc_mat3 moved = mul_transposed(&art->turn[i], rx), back = transpose(&moved);
+    add_to(j, &art->resist[i], 1);
+    add_to(j, &e, -1);
+    add_to(j, &moved, 1);
+    add_to(j, &back, 1);
+    add_to(h, &art->turn[i], 1);
+}
+
+static void articulate(const himc_skeleton *skeleton, const himc_body_state *s,
+                       const himc_vec3 *resistance, himc_articulation *art)
+{
+    himc_mat3 j[HIMC_SEGMENTS], h[HIMC_SEGMENTS], m[HIMC_SEGMENTS];
+    art->end = resistance ? HIMC_SEGMENTS : UPPER_END;
+    art->resists = resistance;
+    for (int i = 1; i < art->end; i++)
+        own_inertia(&skeleton->segment[i], &s->rotation[i], &j[i], &h[i], &m[i]);
+    for (int i = art->end - 1; i > 0; i--) {
+        if (resistance) {
+            himc_mat3 d = turned_axes(&s->rotation[i], resistance[i - 1]);
+            resist(art, i, &d, &h[i], &j[i]);
+        } else {
+            art->inverse[i] = himc_mat3_inverse_symmetric(&j[i]);
+        }
+        art->couple[i] = h[i];
+        himc_mat3 inverse_h = himc_mat3_mul(&art->inverse[i], &h[i]);
+        himc_mat3 turned = transposed_mul(&h[i], &inverse_h);
+        art->mass[i] = m[i];
+        add_to(&art->mass[i], &turned, -1);
+        int p = skeleton->segment[i].parent;
+        if (p == HIMC_PELVIS)
+            continue;
+        himc_mat3 rx = cross_matrix(himc_vec3_sub(s->origin[i], s->origin[p]));
+        himc_mat3 rx_a = himc_mat3_mul(&rx, &art->mass[i]), rx_a_rx = mul_transposed(&rx_a, &rx);
+        add_to(&m[p], &art->mass[i], 1);
+        add_to(&h[p], &rx_a, 1);
+        add_to(&j[p], &rx_a_rx, 1);
+        if (resistance)
+            pass_moments(art, i, &rx, &j[p], &h[p]);
+    }
+}
+
+void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *s,
+                     himc_articulation *art)
+{
+    articulate(skeleton, s, NULL, art);
+}
+
+void himc_articulate_resisting(const himc_skeleton *skeleton, const himc_body_state *s,
+                               const himc_vec3 resistance[HIMC_JOINTS], himc_articulation *art)
+{
+    articulate(skeleton, s, resistance, art);
+}
+
+static himc_vec3 centripetal(himc_vec3 spin, himc_vec3 r)
+{
+    return himc_vec3_cross(spin, himc_vec3_cross(spin, r));
+}
+
+// n and p of a segment alone: gyroscopic moment, centripetal force, weight
+static bias own_bias(const himc_segment *segment, const himc_mat3 *rotation, himc_vec3 spin)
+{
+    himc_vec3 c = himc_mat3_apply(rotation, segment->center);
+    himc_vec3 local = himc_mat3_apply_transposed(rotation, spin);
+    local = himc_vec3_make(local.x * segment->inertia.x, local.y * segment->inertia.y,
+                           local.z * segment->inertia.z);
+    bias b;
+    b.force = centripetal(spin, c);
+    b.force.z += HIMC_GRAVITY;
+    b.force = himc_vec3_scale(b.force, segment->mass);
+    b.moment = himc_vec3_cross(spin, himc_mat3_apply(rotation, local));
+    b.moment = himc_vec3_add(b.moment, himc_vec3_cross(c, b.force));
+    return b;
+}
+
+// inwards: what each segment asks of its joint; `alpha_free` is its angular acceleration if the
+// joint stood still
+static void gather(const himc_skeleton *skeleton, const himc_body_state *s,
+                   const himc_articulation *art, const himc_vec3 *torque, bias b[],
+                   himc_vec3 alpha_free[])
+{
+    for (int i = art->end - 1; i > 0; i--) {
+        int p = skeleton->segment[i].parent;
+        b[i].moment = himc_vec3_sub(b[i].moment, torque[i - 1]);
+        alpha_free[i] = himc_vec3_scale(himc_mat3_apply(&art->inverse[i], b[i].moment), -1);
+        if (p == HIMC_PELVIS)
+            continue;
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
+        himc_vec3 force =
+            himc_vec3_add(b[i].force, himc_mat3_apply_transposed(&art->couple[i], alpha_free[i]));
+        b[p].moment = himc_vec3_add(b[p].moment, torque[i - 1]);
+        force = himc_vec3_add(force, himc_mat3_apply(&art->mass[i], centripetal(s->spin[p], r)));
+        b[p].force = himc_vec3_add(b[p].force, force);
+        b[p].moment = himc_vec3_add(b[p].moment, himc_vec3_cross(r, force));
+        if (art->resists) {
+            himc_vec3 turned = himc_mat3_apply(&art->turn[i], centripetal(s->spin[p], r));
+            turned = himc_vec3_add(turned, himc_mat3_apply(&art->share[i], b[i].moment));
+            b[p].moment = himc_vec3_add(b[p].moment, turned);
+        }
+    }
+}
+
+void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_articulation *art, const himc_vec3 *torque,
+                           const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS])
+{
+    bias b[HIMC_SEGMENTS];
+    himc_vec3 alpha[HIMC_SEGMENTS], a[HIMC_SEGMENTS], zero = {0, 0, 0};
+    alpha[0] = zero;
+    for (int i = 1; i < art->end; i++)
+        b[i] = own_bias(&skeleton->segment[i], &s->rotation[i], s->spin[i]);
+    for (int hand = 0; tip_force && hand < HIMC_HANDS; hand++) {
+        int stick = himc_stick_segment((himc_hand)hand);
+        himc_vec3 r = himc_vec3_sub(s->tip[hand], s->origin[stick]);
+        b[stick].force = himc_vec3_sub(b[stick].force, tip_force[hand]);
+        b[stick].moment = himc_vec3_sub(b[stick].moment, himc_vec3_cross(r, tip_force[hand]));
+    }
+    gather(skeleton, s, art, torque, b, alpha);
+    for (int i = 1; i < art->end; i++) {
+        int p = skeleton->segment[i].parent;
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
+        a[i] = zero;
+        if (p != HIMC_PELVIS) {
+            a[i] = himc_vec3_add(a[p], himc_vec3_cross(alpha[p], r));
+            a[i] = himc_vec3_add(a[i], centripetal(s->spin[p], r));
+        }
+        himc_vec3 pulled =
+            himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->couple[i], a[i]));
+        alpha[i] = himc_vec3_sub(alpha[i], pulled);
+        if (art->resists) // K D alpha_p, K D being the transpose of D K
+            alpha[i] =
+                himc_vec3_add(alpha[i], himc_mat3_apply_transposed(&art->share[i], alpha[p]));
+        relative[i - 1] = himc_vec3_sub(alpha[i], alpha[p]);
+    }
+}
+
+// the answer of the arm's chain to a unit force alone: same sweep, nothing but the force in it
+double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_articulation *art, himc_hand hand, himc_vec3 n)
+{
+    int chain[HIMC_SEGMENTS], count = 0;
+    himc_vec3 alpha[HIMC_SEGMENTS], force = n, end = s->tip[hand], moment = {0, 0, 0};
+    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent) {
+        // `force` acts at `end`; nothing but it turns the segment about its joint, and the rest
+        // goes to the parent
+        moment = himc_vec3_cross(himc_vec3_sub(end, s->origin[i]), force);
+        alpha[i] = himc_mat3_apply(&art->inverse[i], moment);
+        force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->couple[i], alpha[i]));
+        end = s->origin[i];
+        chain[count++] = i;
+    }
+    himc_vec3 a = {0, 0, 0};
+    while (count-- > 0) {
+        int i = chain[count];
+        himc_vec3 to = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];
+        himc_vec3 pulled = himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->couple[i], a));
+        himc_vec3 turn = himc_vec3_sub(alpha[i], pulled);
+        a = himc_vec3_add(a, himc_vec3_cross(turn, himc_vec3_sub(to, s->origin[i])));
+    }
+    return 1 / himc_vec3_dot(n, a);
+}

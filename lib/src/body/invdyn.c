@@ -1,0 +1,73 @@
+/// invdyn.c: recursive Newton-Euler for a tree of ball joints, in world coordinates.
+///
+/// Outwards: alpha_c = alpha_p + relative_c, a_c = a_p + alpha_p x r + w_p x (w_p x r) for each
+/// joint; inwards: the force m (a_com - g) and moment I alpha + w x I w of each segment, and what
+/// its children ask, give the moment that its joint must pass. Three components a joint, so no
+/// axes: the torque is a vector in the world frame. Fwdyn.c is the mirror; a test puts the
+/// torques of one into the other and gets the accelerations back.
+#include "himc/body.h"
+
+typedef struct motion {
+    himc_vec3 angular, linear; // acceleration of the segment, and of its joint
+} motion;
+
+static himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_vec3 spin, himc_vec3 r)
+{
+    base = himc_vec3_add(base, himc_vec3_cross(alpha, r));
+    return himc_vec3_add(base, himc_vec3_cross(spin, himc_vec3_cross(spin, r)));
+}
+
+static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
+                     const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
+{
+    // gravity as an upward acceleration of the pelvis
+    m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        int p = skeleton->segment[i].parent;
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
+        m[i].angular = relative ? himc_vec3_add(m[p].angular, relative[i - 1]) : m[p].angular;
+        m[i].linear = add_centripetal(m[p].linear, m[p].angular, spin[p], r);
+    }
+}
+
+void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
+{
+    static const himc_vec3 no_spin[HIMC_SEGMENTS];
+    const himc_vec3 *spin = still ? no_spin : s->spin;
+    motion m[HIMC_SEGMENTS];
+    himc_vec3 force[HIMC_SEGMENTS] = {{0, 0, 0}}, moment[HIMC_SEGMENTS] = {{0, 0, 0}};
+    outwards(skeleton, s, relative, spin, m);
+    for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 c = himc_mat3_apply(&s->rotation[i], segment->center);
+        himc_vec3 a = add_centripetal(m[i].linear, m[i].angular, spin[i], c);
+        himc_vec3 own = himc_vec3_scale(a, segment->mass);
+        himc_vec3 l = himc_mat3_scale_along(&s->rotation[i], segment->inertia, spin[i]);
+        himc_vec3 turn = himc_mat3_scale_along(&s->rotation[i], segment->inertia, m[i].angular);
+        turn = himc_vec3_add(turn, himc_vec3_cross(spin[i], l));
+        moment[i] = himc_vec3_add(moment[i], himc_vec3_add(turn, himc_vec3_cross(c, own)));
+        force[i] = himc_vec3_add(force[i], own);
+        torque[i - 1] = moment[i];
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[segment->parent]);
+        force[segment->parent] = himc_vec3_add(force[segment->parent], force[i]);
+        moment[segment->parent] = himc_vec3_add(
+            moment[segment->parent], himc_vec3_add(moment[i], himc_vec3_cross(r, force[i])));
+    }
+}
+
+himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                himc_hand hand, const himc_vec3 *relative)
+{
+    int chain[HIMC_SEGMENTS], count = 0;
+    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
+        chain[count++] = i;
+    himc_vec3 alpha = {0, 0, 0}, a = {0, 0, 0};
+    while (count-- > 0) {
+        int i = chain[count];
+        himc_vec3 end = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];
+        alpha = relative ? himc_vec3_add(alpha, relative[i - 1]) : alpha;
+        a = add_centripetal(a, alpha, s->spin[i], himc_vec3_sub(end, s->origin[i]));
+    }
+    return a;
+}

@@ -1,0 +1,309 @@
+/// limits.c: joint limits from motion (2012 paper, algorithm 1; Johnson 2003; Baerlocher & Boulic
+/// 2001 for the formulation by angles).
+///
+///     q_mean = the largest eigenvector of sum q q'               (Markley et al. 2007)
+///     t_i = log(q_mean^-1 q_i),  T = U S V'                      (singular values)
+///     x = axes' t,  sum (x_k / radius_k)^2 <= 1                  (bounding ellipsoid)
+///
+/// The paper prints log(q_mean q), which is not about the mean; the inverse is meant. The axes are
+/// those of the singular value decomposition, the radii in its proportions, as large as the
+/// farthest sample needs. The nearest point y to an x outside is y_k = r_k^2 x_k / (t + r_k^2),
+/// where t > 0 makes it lie on the surface: one root of a function that falls, by bisection
+/// (Eberly, Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid, 2013).
+/// Invariant: whatever the radii, nothing is divided by less than THINNEST.
+#include "himc/body.h"
+
+#include "base/euler.h"
+#include "base/rotations.h"
+
+#include <lapacke.h>
+#include <stdlib.h>
+
+#define THINNEST 1e-3  // semi-axes and half intervals (rad)
+#define BISECTIONS 128 // doubles hold no more than a few over 60
+#define DEGREE (HIMC_PI / 180)
+
+static himc_vec3 at_least(himc_vec3 v, double least)
+{
+    return himc_vec3_make(fmax(v.x, least), fmax(v.y, least), fmax(v.z, least));
+}
+
+// a rotation in the tangent space of the mean, along the ellipsoid's axes
+static himc_vec3 along_axes(const himc_limit *l, himc_quat rotation)
+{
+    himc_vec3 t = himc_quat_log(himc_quat_mul(himc_quat_conj(l->mean), rotation));
+    return himc_mat3_apply_transposed(&l->axes, t);
+}
+
+static himc_vec3 divide(himc_vec3 a, himc_vec3 b)
+{
+    return himc_vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
+}
+
+static double box_measure(const himc_limit *l, himc_quat rotation)
+{
+    himc_vec3 angle = himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), rotation));
+    himc_vec3 middle = himc_vec3_scale(himc_vec3_add(l->lower, l->upper), 0.5);
+    himc_vec3 half = at_least(himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5), THINNEST);
+    himc_vec3 z = divide(himc_vec3_sub(angle, middle), half);
+    return fmax(fabs(z.x), fmax(fabs(z.y), fabs(z.z)));
+}
+
+double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotation)
+{
+    const himc_limit *l = &limits->joint[joint];
+    if (limits->kind == HIMC_LIMITS_OFF || !l->bound)
+        return 0;
+    if (limits->kind == HIMC_LIMITS_EULER)
+        return box_measure(l, rotation);
+    return himc_vec3_length(divide(along_axes(l, rotation), at_least(l->radius, THINNEST)));
+}
+
+// with everything in units of the thinnest semi-axis squared: r = radius^2, s = t, and
+// sum (r z / (s + r))^2 - 1 falls from above zero at s = 0 to below at |r z| - 1, where z = x /
+// radius
+static double excess(himc_vec3 r, himc_vec3 rz, double s)
+{
+    himc_vec3 y = himc_vec3_make(rz.x / (s + r.x), rz.y / (s + r.y), rz.z / (s + r.z));
+    return himc_vec3_dot(y, y) - 1;
+}
+
+himc_vec3 himc_limit_closest_on_ellipsoid(himc_vec3 radius, himc_vec3 x)
+{
+    double thin = fmin(radius.x, fmin(radius.y, radius.z));
+    himc_vec3 a = himc_vec3_scale(radius, 1 / thin);
+    himc_vec3 r = himc_vec3_make(a.x * a.x, a.y * a.y, a.z * a.z);
+    himc_vec3 z = divide(x, radius);
+    himc_vec3 rz = himc_vec3_make(r.x * z.x, r.y * z.y, r.z * z.z);
+    double low = 0, high = fmax(himc_vec3_length(rz) - 1, 0), s = 0;
+    for (int i = 0; i < BISECTIONS; i++) {
+        s = 0.5 * (low + high);
+        if (s == low || s == high)
+            break;
+        if (excess(r, rz, s) > 0)
+            low = s;
+        else
+            high = s;
+    }
+    return himc_vec3_make(r.x * x.x / (s + r.x), r.y * x.y / (s + r.y), r.z * x.z / (s + r.z));
+}
+
+static double clamp(double value, double low, double high)
+{
+    double middle = 0.5 * (low + high), half = fmax(0.5 * (high - low), THINNEST);
+    return fmin(fmax(value, middle - half), middle + half);
+}
+
+static himc_quat closest_in_box(const himc_limit *l, himc_quat rotation)
+{
+    himc_vec3 angle = himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), rotation));
+    himc_vec3 near = himc_vec3_make(clamp(angle.x, l->lower.x, l->upper.x),
+                                    clamp(angle.y, l->lower.y, l->upper.y),
+                                    clamp(angle.z, l->lower.z, l->upper.z));
+    return himc_quat_mul(l->mean, himc_euler_to_quat(near));
+}
+
+himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_quat rotation)
+{
+    const himc_limit *l = &limits->joint[joint];
+    if (himc_limit_measure(limits, joint, rotation) <= 1)
+        return rotation;
+    if (limits->kind == HIMC_LIMITS_EULER)
+        return closest_in_box(l, rotation);
+    himc_vec3 near =
+        himc_limit_closest_on_ellipsoid(at_least(l->radius, THINNEST), along_axes(l, rotation));
+    return himc_quat_mul(l->mean, himc_quat_exp(himc_mat3_apply(&l->axes, near)));
+}
+
+// the box around an ellipsoid
+static void enclose(himc_limit *l)
+{
+    double half[3];
+    const double r[3] = {l->radius.x, l->radius.y, l->radius.z};
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += l->axes.m[i][k] * l->axes.m[i][k] * r[k] * r[k];
+        half[i] = sqrt(sum);
+    }
+    l->upper = himc_vec3_make(half[0], half[1], half[2]);
+    l->lower = himc_vec3_scale(l->upper, -1);
+}
+
+/// A joint of the table: eigen values, and their axes as printed.
+typedef struct printed {
+    double lambda[3];  // half the angle (degrees)
+    double axis[3][3]; // a row each, the captures' frame
+} printed;
+
+// clang-format off
+static const printed neck = {{5.7, 2.9, 2.3},
+    {{0.111, 0.993, 0.045}, {-0.978, 0.117, -0.173}, {0.177, 0.025, -0.984}}};
+static const printed arm[3] = {
+    {{4.4, 2.7, 0.1}, {{0.291, 0.018, -0.957}, {-0.955, -0.062, -0.291}, {0.064, -0.998, 0.001}}},
+    {{14.6, 8.9, 4.4}, {{0.337, -0.684, 0.647}, {-0.889, -0.004, 0.458}, {-0.311, -0.729, -0.609}}},
+    {{19.9, 9.1, 2.1}, {{0.231, -0.932, 0.278}, {0.003, -0.285, -0.958}, {-0.973, -0.222, 0.063}}},
+};
+// clang-format on
+
+// the paper does not say its frames. With y up and z forward the neck's longest axis is the turn
+// of the head; with the arms sideways the wrist's shortest is its own length, its longest the
+// flexion. Here arms hang at zero: the left one's length, x, points down, its y stays the axis of
+// flexion
+static himc_vec3 from_capture(const double v[3], bool is_arm)
+{
+    return is_arm ? himc_vec3_make(v[2], v[1], -v[0]) : himc_vec3_make(v[2], v[0], v[1]);
+}
+
+static himc_limit printed_limit(const printed *p, bool is_arm, bool right, himc_quat mean)
+{
+    himc_vec3 e[3];
+    for (int k = 0; k < 3; k++) {
+        e[k] = from_capture(p->axis[k], is_arm);
+        if (right) // mirrored; a rotation's axis keeps its y and turns x and z
+            e[k].y = -e[k].y;
+        // three digits are not quite orthonormal
+        for (int i = 0; i < k; i++)
+            e[k] = himc_vec3_madd(e[k], -himc_vec3_dot(e[k], e[i]), e[i]);
+        e[k] = himc_vec3_unit(e[k]);
+    }
+    himc_limit l = {.bound = true, .mean = mean, .axes = himc_mat3_from_axes(e[0], e[1], e[2])};
+    l.radius =
+        himc_vec3_scale(himc_vec3_make(p->lambda[0], p->lambda[1], p->lambda[2]), 2 * DEGREE);
+    enclose(&l);
+    return l;
+}
+
+himc_limits himc_limits_table_1(const himc_pose *mean)
+{
+    himc_limits limits = {.kind = HIMC_LIMITS_ELLIPSOID};
+    int j = HIMC_NECK - 1;
+    limits.joint[j] = printed_limit(&neck, false, false, mean->joint[j]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; k < 3; k++) {
+            j = himc_arm_joint((himc_hand)hand, k);
+            limits.joint[j] = printed_limit(&arm[k], true, hand == HIMC_RIGHT, mean->joint[j]);
+        }
+    return limits;
+}
+
+static himc_quat mean_rotation(const himc_pose *pose, int frames, int joint)
+{
+    himc_rotations all = {{0}};
+    for (int f = 0; f < frames; f++)
+        himc_rotations_add(&all, pose[f].joint[joint]);
+    return himc_rotations_mean(&all);
+}
+
+himc_pose himc_limits_mean(const himc_pose *pose, int frames)
+{
+    himc_pose mean;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        mean.joint[j] = mean_rotation(pose, frames, j);
+    return mean;
+}
+
+// axes and radii around `t` (count), which is lost: the singular values' proportions, none taken
+// thinner than THINNEST, as large as the farthest needs
+static bool fit_ellipsoid(himc_limit *l, himc_vec3 *t, const himc_vec3 *kept, int count)
+{
+    double axis[3][3], value[3] = {0, 0, 0}, none[3], super[3], farthest = 0;
+    int failed = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', 3, count, &t[0].x, 3, value, axis[0], 3,
+                                none, 1, super);
+    if (failed)
+        return false;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            l->axes.m[i][k] = axis[k][i];
+    double root = sqrt(count);
+    himc_vec3 sigma = himc_vec3_make(value[0] / root, value[1] / root, value[2] / root);
+    sigma = at_least(sigma, THINNEST);
+    for (int f = 0; f < count; f++) {
+        himc_vec3 z = divide(himc_mat3_apply_transposed(&l->axes, kept[f]), sigma);
+        farthest = fmax(farthest, himc_vec3_length(z));
+    }
+    l->radius = himc_vec3_scale(sigma, farthest);
+    return true;
+}
+
+static void fit_box(himc_limit *l, const himc_pose *pose, int frames, int joint)
+{
+    for (int f = 0; f < frames; f++) {
+        himc_vec3 e =
+            himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]));
+        himc_vec3 low = f ? l->lower : e, high = f ? l->upper : e;
+        l->lower = himc_vec3_make(fmin(low.x, e.x), fmin(low.y, e.y), fmin(low.z, e.z));
+        l->upper = himc_vec3_make(fmax(high.x, e.x), fmax(high.y, e.y), fmax(high.z, e.z));
+    }
+}
+
+static void widen(himc_limit *l, double margin)
+{
+    himc_vec3 more = himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5 * margin);
+    l->lower = himc_vec3_sub(l->lower, more);
+    l->upper = himc_vec3_add(l->upper, more);
+    l->radius = at_least(himc_vec3_scale(l->radius, 1 + margin), THINNEST);
+}
+
+void himc_limits_loosen(himc_limits *limits, double least)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_limit *l = &limits->joint[j];
+        l->radius = at_least(l->radius, least);
+        l->upper = at_least(l->upper, least);
+        l->lower = himc_vec3_scale(at_least(himc_vec3_scale(l->lower, -1), least), -1);
+    }
+}
+
+static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int joint,
+                        himc_vec3 *tangent)
+{
+    double most = 0;
+    *l = (himc_limit){.mean = mean_rotation(pose, frames, joint)};
+    for (int f = 0; f < frames; f++) {
+        himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]);
+        tangent[f] = tangent[frames + f] = himc_quat_log(away);
+        most = fmax(most, himc_vec3_length(tangent[f]));
+    }
+    l->bound = most > THINNEST;
+    if (!fit_ellipsoid(l, tangent, tangent + frames, frames))
+        return false;
+    fit_box(l, pose, frames, joint);
+    return true;
+}
+
+static bool poses_valid(const himc_pose *pose, int frames, himc_error *error)
+{
+    for (int f = 0; f < frames; f++)
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            double square = himc_quat_dot(pose[f].joint[j], pose[f].joint[j]);
+            if (!(fabs(square - 1) < 1e-6))
+                return himc_error_set(error,
+                                      "limits: frame %d: %s: a quaternion of length %g, "
+                                      "allowed 1",
+                                      f + 1, himc_joint_name(j), sqrt(square));
+        }
+    return true;
+}
+
+bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, double margin,
+                       himc_error *error)
+{
+    himc_limits learned = {.kind = HIMC_LIMITS_ELLIPSOID};
+    if (frames < 1)
+        return himc_error_set(error, "limits: %d frames, allowed at least 1", frames);
+    if (!himc_check_range("limits: margin", margin, 0, 1, "", error) ||
+        !poses_valid(pose, frames, error))
+        return false;
+    himc_vec3 *tangent = malloc(2 * sizeof *tangent * (size_t)frames);
+    bool fitted = tangent != NULL;
+    for (int j = 0; fitted && j < HIMC_JOINTS; j++) {
+        fitted = learn_joint(&learned.joint[j], pose, frames, j, tangent);
+        widen(&learned.joint[j], margin);
+    }
+    free(tangent);
+    if (!fitted)
+        return himc_error_set(error, "limits: out of memory for %d frames", frames);
+    *limits = learned;
+    return true;
+}

@@ -1,0 +1,353 @@
+/// bvh.c: reads Biovision's BVH: a skeleton of offsets, and a row of channels per frame.
+///
+/// A node's channels are applied in the file's order, the first outermost: R = R_1(c_1) R_2(c_2)
+/// R_3(c_3), whatever axes they are and however nodes differ. Position channels replace the offset
+/// component by component, as in the files of motion capture systems that write them for every
+/// joint. Forward kinematics, for node i with parent p:
+///     Q_i = Q_p R_i,  x_i = x_p + Q_p o_i
+/// Every node becomes a point, end sites as "PARENT_end". The text is read line by line and word by
+/// word, so any indentation and any line ends will do; a row must have exactly the hierarchy's
+/// channels.
+#include "capture/take_data.h"
+#include "capture/take_text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_NODES 4096
+#define MOST_DEPTH 256
+
+typedef struct node {
+    char name[TAKE_NAME];
+    int parent;
+    himc_vec3 offset;
+    bool has_offset, has_channels, is_end;
+    int count;              // channels
+    unsigned char kinds[6]; // 0..2 position x y z, 3..5 rotation x y z
+} node;
+
+typedef struct bvh {
+    himc_take *take;
+    himc_text text;
+    himc_span line; // what is left of the current line
+    node *nodes;
+    int count, channels;
+    himc_error *error;
+} bvh;
+
+static bool refuse(const bvh *r, const char *what, himc_span found, const char *allowed)
+{
+    char text[44];
+    return himc_error_set(r->error, "%s:%d: %s \"%s\", allowed %s", r->take->file, r->text.line,
+                          what, himc_span_text(found, text), allowed);
+}
+
+static bool refuse_end(const bvh *r, const char *where)
+{
+    return himc_error_set(r->error, "%s:%d: the file ends in %s", r->take->file, r->text.line,
+                          where);
+}
+
+// the next word, going on to further lines
+static bool word(bvh *r, himc_span *w)
+{
+    while (!himc_span_word(&r->line, w))
+        if (!himc_text_line(&r->text, &r->line))
+            return false;
+    return true;
+}
+
+static bool expect(bvh *r, const char *wanted, const char *where)
+{
+    himc_span w;
+    if (!word(r, &w))
+        return refuse_end(r, where);
+    return himc_span_is(w, wanted) || refuse(r, where, w, wanted);
+}
+
+static bool number(bvh *r, const char *what, double *value)
+{
+    himc_span w;
+    if (!word(r, &w))
+        return refuse_end(r, what);
+    if (himc_span_number(w, value) && fabs(*value) <= TAKE_FAR)
+        return true;
+    return refuse(r, what, w, "a number up to 1e8");
+}
+
+static bool add_node(bvh *r, int parent, bool is_end)
+{
+    if (r->count >= MOST_NODES)
+        return himc_error_set(r->error, "%s:%d: too many joints, allowed %d", r->take->file,
+                              r->text.line, MOST_NODES);
+    // grown by doubling
+    if ((r->count & (r->count - 1)) == 0) {
+        node *grown = realloc(r->nodes, (size_t)(r->count ? 2 * r->count : 1) * sizeof *grown);
+        if (!grown)
+            return himc_error_set(r->error, "%s: no memory", r->take->file);
+        r->nodes = grown;
+    }
+    node *n = &r->nodes[r->count++];
+    *n = (node){.parent = parent, .is_end = is_end};
+    return true;
+}
+
+// a name is the rest of its line, for some have blanks; a brace at its end begins the block
+static bool read_name(bvh *r, node *n)
+{
+    himc_span rest = himc_span_trim(r->line);
+    const char *brace = rest.length ? memchr(rest.at, '{', rest.length) : NULL;
+    size_t length = brace ? (size_t)(brace - rest.at) : rest.length;
+    himc_span name = himc_span_trim((himc_span){rest.at, length});
+    if (name.length == 0)
+        return refuse(r, "joint's name", rest, "a name on the same line");
+    r->line = (himc_span){rest.at + length, rest.length - length};
+    snprintf(n->name, sizeof n->name, "%.*s",
+             (int)(name.length < TAKE_NAME ? name.length : TAKE_NAME - 1), name.at);
+    return expect(r, "{", "before the joint's block");
+}
+
+static bool read_end_site(bvh *r, int parent)
+{
+    if (!add_node(r, parent, true) || !expect(r, "Site", "after End"))
+        return false;
+    node *n = &r->nodes[r->count - 1];
+    char of[TAKE_NAME];
+    memcpy(of, r->nodes[parent].name, sizeof of);
+    // a second end site of the same joint must not have the same name
+    int before = 0;
+    for (int i = 0; i < r->count - 1; i++)
+        before += r->nodes[i].parent == parent && r->nodes[i].is_end;
+    if (before)
+        snprintf(n->name, sizeof n->name, "%.48s_end%d", of, before + 1);
+    else
+        snprintf(n->name, sizeof n->name, "%.59s_end", of);
+    return expect(r, "{", "before the end site's block");
+}
+
+static bool read_offset(bvh *r, node *n)
+{
+    double v[3];
+    for (int axis = 0; axis < 3; axis++)
+        if (!number(r, "OFFSET", &v[axis]))
+            return false;
+    n->offset = himc_vec3_make(v[0], v[1], v[2]);
+    n->has_offset = true;
+    return true;
+}
+
+static bool read_channels(bvh *r, node *n)
+{
+    static const char *const kinds[6] = {"Xposition", "Yposition", "Zposition",
+                                         "Xrotation", "Yrotation", "Zrotation"};
+    himc_span w;
+    long count;
+    if (!word(r, &w))
+        return refuse_end(r, "CHANNELS");
+    if (n->is_end || n->has_channels || !himc_span_integer(w, 0, 6, &count))
+        return refuse(r, "CHANNELS", w, "0 .. 6, once for each joint");
+    n->has_channels = true;
+    unsigned seen = 0;
+    for (; n->count < count; n->count++) {
+        unsigned kind = 0;
+        if (!word(r, &w))
+            return refuse_end(r, "CHANNELS");
+        while (kind < 6 && !himc_span_is(w, kinds[kind]))
+            kind++;
+        if (kind == 6 || seen & 1u << kind)
+            return refuse(r, "channel", w, "X, Y, Z position or rotation, each once");
+        seen |= 1u << kind;
+        n->kinds[n->count] = (unsigned char)kind;
+    }
+    r->channels += n->count;
+    return true;
+}
+
+static bool close_node(bvh *r, int *current, int *depth)
+{
+    node *n = &r->nodes[*current];
+    if (!n->has_offset)
+        return himc_error_set(r->error, "%s:%d: %s has no OFFSET", r->take->file, r->text.line,
+                              n->name);
+    *current = n->parent;
+    --*depth;
+    return true;
+}
+
+// opens ROOT, JOINT or End Site
+static bool open_node(bvh *r, int *current, int *depth, bool is_end)
+{
+    if (++*depth > MOST_DEPTH)
+        return himc_error_set(r->error, "%s:%d: joints nested too deeply, allowed %d",
+                              r->take->file, r->text.line, MOST_DEPTH);
+    if (is_end ? !read_end_site(r, *current)
+               : !add_node(r, *current, false) || !read_name(r, &r->nodes[r->count - 1]))
+        return false;
+    *current = r->count - 1;
+    return true;
+}
+
+static bool read_hierarchy(bvh *r)
+{
+    int current = -1, depth = 0;
+    himc_span w;
+    if (!expect(r, "HIERARCHY", "the first line"))
+        return false;
+    for (;;) {
+        if (!word(r, &w))
+            return refuse_end(r, "the hierarchy");
+        bool joint = current >= 0 && !r->nodes[current].is_end, ok;
+        if (himc_span_is(w, "MOTION") && current < 0)
+            return r->count > 0 || refuse(r, "before any joint", w, "ROOT");
+        if ((himc_span_is(w, "ROOT") && current < 0) || (himc_span_is(w, "JOINT") && joint))
+            ok = open_node(r, &current, &depth, false);
+        else if (himc_span_is(w, "End") && joint)
+            ok = open_node(r, &current, &depth, true);
+        else if (himc_span_is(w, "OFFSET") && current >= 0 && !r->nodes[current].has_offset)
+            ok = read_offset(r, &r->nodes[current]);
+        else if (himc_span_is(w, "CHANNELS") && joint)
+            ok = read_channels(r, &r->nodes[current]);
+        else if (himc_span_is(w, "}") && current >= 0)
+            ok = close_node(r, &current, &depth);
+        else
+            ok = refuse(r, current < 0 ? "between joints" : "in a joint", w,
+                        current < 0 ? "ROOT or MOTION"
+                                    : "one OFFSET, one CHANNELS, JOINT, End Site or }");
+        if (!ok)
+            return false;
+    }
+}
+
+static int count_rows(const bvh *r)
+{
+    himc_text text = r->text;
+    himc_span row;
+    int rows = himc_span_trim(r->line).length > 0;
+    while (himc_text_filled_line(&text, &row))
+        rows++;
+    return rows;
+}
+
+static bool read_motion_header(bvh *r, int *frames, double *rate)
+{
+    himc_span w;
+    long count;
+    double time;
+    if (!expect(r, "Frames:", "after MOTION"))
+        return false;
+    if (!word(r, &w))
+        return refuse_end(r, "Frames:");
+    if (!himc_span_integer(w, 1, 1000000, &count))
+        return refuse(r, "Frames:", w, "1 .. 1000000");
+    if (!expect(r, "Frame", "after Frames:") || !expect(r, "Time:", "after Frame"))
+        return false;
+    if (!number(r, "Frame Time:", &time))
+        return false;
+    if (!(time >= 1e-4 && time <= 0.05))
+        return himc_error_set(r->error, "%s:%d: Frame Time: %g s, allowed 0.0001 .. 0.05 s",
+                              r->take->file, r->text.line, time);
+    int rows = count_rows(r);
+    if (rows != count)
+        return himc_error_set(r->error, "%s: the header says %ld frames, the file has %d rows",
+                              r->take->file, count, rows);
+    // every joint that moves has numbers in every row, so counts beyond the file's size are not
+    // those of a body
+    if (r->channels == 0 || (size_t)(r->text.end - r->text.at) < (size_t)rows * (size_t)r->count)
+        return himc_error_set(r->error,
+                              "%s: %d channels for %d joints, allowed are bodies that move",
+                              r->take->file, r->channels, r->count);
+    *frames = rows;
+    *rate = 1 / time;
+    return true;
+}
+
+static himc_quat about(int axis, double degrees)
+{
+    double half = degrees * HIMC_PI / 360, s = sin(half);
+    return (himc_quat){cos(half), axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0};
+}
+
+// reads node i's channels from the row; gives its rotation and its place in the parent's frame
+static bool read_node(bvh *r, const node *n, himc_quat *rotation, himc_vec3 *place)
+{
+    himc_span w;
+    double v[6] = {n->offset.x, n->offset.y, n->offset.z, 0, 0, 0};
+    *rotation = himc_quat_identity();
+    for (int k = 0; k < n->count; k++) {
+        int kind = n->kinds[k];
+        if (!himc_span_word(&r->line, &w))
+            return himc_error_set(
+                r->error,
+                "%s:%d: the row ends before channel %d of %s, allowed are rows of %d numbers",
+                r->take->file, r->text.line, k + 1, n->name, r->channels);
+        if (!himc_span_number(w, &v[kind]) || !(fabs(v[kind]) <= TAKE_FAR))
+            return refuse(r, n->name, w, "a number up to 1e8");
+        if (kind >= 3)
+            *rotation = himc_quat_mul(*rotation, about(kind - 3, v[kind]));
+    }
+    *place = himc_vec3_make(v[0], v[1], v[2]);
+    return true;
+}
+
+static bool read_row(bvh *r, int frame, himc_quat *world)
+{
+    himc_span w;
+    if (himc_span_trim(r->line).length == 0 && !himc_text_filled_line(&r->text, &r->line))
+        return refuse_end(r, "its rows");
+    himc_take *take = r->take;
+    himc_quat *local = take->rotations + (size_t)frame * (size_t)take->points;
+    for (int i = 0; i < r->count; i++) {
+        const node *n = &r->nodes[i];
+        himc_vec3 place;
+        if (!read_node(r, n, &local[i], &place))
+            return false;
+        bool root = n->parent < 0;
+        world[i] = root ? local[i] : himc_quat_unit(himc_quat_mul(world[n->parent], local[i]));
+        *himc_take_at(take, frame, i) =
+            root ? place
+                 : himc_vec3_add(*himc_take_at(take, frame, n->parent),
+                                 himc_quat_rotate(world[n->parent], place));
+    }
+    return !himc_span_word(&r->line, &w) ||
+           refuse(r, "after the row's last channel", w, "a new line");
+}
+
+static bool read_rows(bvh *r)
+{
+    himc_quat *world = calloc((size_t)r->count, sizeof *world);
+    if (!world)
+        return himc_error_set(r->error, "%s: no memory", r->take->file);
+    bool ok = true;
+    for (int frame = 0; frame < r->take->frames && ok; frame++)
+        ok = read_row(r, frame, world);
+    free(world);
+    return ok;
+}
+
+static bool read_all(bvh *r)
+{
+    int frames = 0;
+    double rate = 0;
+    if (!read_hierarchy(r) || !read_motion_header(r, &frames, &rate) ||
+        !himc_take_allocate(r->take, rate, frames, r->count, true, r->error))
+        return false;
+    for (int i = 0; i < r->count; i++) {
+        himc_take_set_name(r->take, i, r->nodes[i].name, strlen(r->nodes[i].name));
+        r->take->parents[i] = r->nodes[i].parent;
+        // where a root stands in the zero pose is the capture room's business
+        r->take->offsets[i] = r->nodes[i].parent < 0 ? himc_vec3_make(0, 0, 0) : r->nodes[i].offset;
+    }
+    return read_rows(r);
+}
+
+bool himc_bvh_read(himc_take *take, const char *bytes, size_t size, himc_error *error)
+{
+    bvh r = {.take = take, .text = himc_text_open(bytes, size), .error = error};
+    memcpy(take->format, "BVH", 4);
+    take->first_frame = 1;
+    take->habit_up = himc_vec3_make(0, 1, 0);
+    bool ok = read_all(&r);
+    free(r.nodes);
+    return ok;
+}

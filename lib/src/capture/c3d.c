@@ -1,0 +1,342 @@
+/// c3d.c: reads C3D, the binary file of optical motion capture: a header, parameters, then per
+/// frame every point's x, y, z and a residual, and the analog samples taken during the frame, which
+/// are stepped over.
+///
+/// Points are floats if POINT:SCALE is negative, else 16-bit integers times it; numbers are those
+/// of three processors (c3d_parameters.c). A negative residual, or a coordinate that is not finite,
+/// is a gap. Counts beyond 65535 frames come from TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD
+/// (two words each) or POINT:LONG_FRAMES. Values that Vicon's models file among the points (angles,
+/// forces, moments, powers, scalars) are not places and are left out. Event times count from frame
+/// 1, so a file that begins later subtracts its start. Reference: the C3D file format user guide,
+/// Motion Lab Systems 2008.
+#include "capture/c3d_parameters.h"
+#include "capture/take_data.h"
+#include "capture/take_text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK 512
+#define HEADER_EVENTS 18
+
+typedef struct c3d {
+    himc_take *take;
+    const unsigned char *bytes;
+    size_t size;
+    c3d_parameters parameters;
+    int points; // in the file
+    int analog; // samples per frame
+    double scale;
+    bool is_float;
+    size_t data, stride; // where frames begin, bytes of one
+    int *kept;           // (points) index in the take, or -1
+    himc_error *error;
+} c3d;
+
+static unsigned header_word(const c3d *r, int number)
+{
+    return himc_c3d_word(r->parameters.processor, r->bytes + 2 * (number - 1));
+}
+
+static double parameter(const c3d *r, const char *group, const char *name, int index,
+                        double fallback)
+{
+    return himc_c3d_number(&r->parameters, himc_c3d_find(&r->parameters, group, name), index,
+                           fallback);
+}
+
+static bool read_layout(c3d *r)
+{
+    r->points = (int)header_word(r, 2);
+    r->analog = (int)header_word(r, 3);
+    r->scale =
+        parameter(r, "POINT", "SCALE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 12));
+    double used = parameter(r, "POINT", "USED", 0, r->points);
+    if (r->points < 1)
+        return himc_error_set(r->error, "%s: the header says 0 points, allowed 1 .. 65535",
+                              r->take->file);
+    if (used != r->points)
+        return himc_error_set(r->error,
+                              "%s: the header says %d points, POINT:USED %g, allowed is the same",
+                              r->take->file, r->points, used);
+    if (!isfinite(r->scale) || r->scale == 0)
+        return himc_error_set(
+            r->error,
+            "%s: POINT:SCALE is %g, allowed: negative for floats, a positive factor for "
+            "integers",
+            r->take->file, r->scale);
+    r->is_float = r->scale < 0;
+    size_t value = r->is_float ? 4 : 2;
+    r->stride = value * (4 * (size_t)r->points + (size_t)r->analog);
+    unsigned block = header_word(r, 9);
+    if (block < 2)
+        block = (unsigned)fmin(65535, fmax(0, parameter(r, "POINT", "DATA_START", 0, 0)));
+    r->data = (size_t)(block - 1) * BLOCK;
+    if (block < 2 || r->data >= r->size)
+        return himc_error_set(r->error, "%s: its frames begin at block %u, the file has %zu",
+                              r->take->file, block, (r->size + BLOCK - 1) / BLOCK);
+    return true;
+}
+
+// frames by the two words of a field number of TRIAL; 0 if there is none
+static double field(const c3d *r, const char *name)
+{
+    double low = parameter(r, "TRIAL", name, 0, 0), high = parameter(r, "TRIAL", name, 1, 0);
+    return low + 65536 * high;
+}
+
+// the number of frames, as the most far-sighted of the counts that the file's length allows says
+static bool count_frames(const c3d *r, int *frames)
+{
+    int first = (int)header_word(r, 4), last = (int)header_word(r, 5);
+    double start = field(r, "ACTUAL_START_FIELD"), end = field(r, "ACTUAL_END_FIELD");
+    double said[] = {start > 0 && end >= start ? end - start + 1 : 0,
+                     parameter(r, "POINT", "LONG_FRAMES", 0, 0),
+                     last >= first ? last - first + 1 : 0, parameter(r, "POINT", "FRAMES", 0, 0)};
+    double there = floor((double)(r->size - r->data) / (double)r->stride), most = 0;
+    for (int i = 0; i < 4; i++) {
+        most = said[i] >= 1 && most == 0 ? said[i] : most;
+        if (said[i] >= 1 && said[i] <= there && said[i] <= 1e6) {
+            *frames = (int)said[i];
+            if (said[i] < most)
+                himc_take_note(r->take,
+                               "frames: the file is said to have %.0f and holds %.0f: %d are read",
+                               most, there, *frames);
+            r->take->first_frame = start > 0 && start < 1e9 ? (int)start : first;
+            return true;
+        }
+    }
+    if (most < 1)
+        return himc_error_set(r->error, "%s: 0 frames, allowed 1 .. 1000000", r->take->file);
+    return himc_error_set(r->error,
+                          "%s: the header says %.0f frames of %zu bytes, the file has %.0f",
+                          r->take->file, most, r->stride, there);
+}
+
+static bool same(const char *a, size_t n, const char *b, size_t m)
+{
+    himc_span x = himc_span_trim((himc_span){a, n}), y = himc_span_trim((himc_span){b, m});
+    return x.length > 0 && x.length == y.length && memcmp(x.at, y.at, x.length) == 0;
+}
+
+static bool is_model_output(const c3d *r, const char *label, size_t length)
+{
+    static const char *const lists[] = {"ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS"};
+    for (int k = 0; k < 5; k++) {
+        const c3d_parameter *list = himc_c3d_find(&r->parameters, "POINT", lists[k]);
+        const char *other;
+        size_t n;
+        for (int i = 0; himc_c3d_string(list, i, &other, &n); i++)
+            if (same(label, length, other, n))
+                return true;
+    }
+    return false;
+}
+
+// label of a point from POINT:LABELS, LABELS2, ...; false if it has none
+static bool find_label(const c3d *r, int point, const char **text, size_t *length)
+{
+    char name[24] = "LABELS";
+    for (int k = 2; k < 256; k++) {
+        const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
+        if (!labels || labels->dimensions == 0 || labels->size[0] == 0)
+            return false;
+        if (himc_c3d_string(labels, point, text, length))
+            return true;
+        point -= labels->count / labels->size[0];
+        snprintf(name, sizeof name, "LABELS%d", k);
+    }
+    return false;
+}
+
+static bool choose_points(c3d *r, int *count)
+{
+    const char *label;
+    size_t length;
+    r->kept = malloc((size_t)r->points * sizeof *r->kept);
+    if (!r->kept)
+        return himc_error_set(r->error, "%s: no memory", r->take->file);
+    *count = 0;
+    for (int i = 0; i < r->points; i++)
+        r->kept[i] = find_label(r, i, &label, &length) && is_model_output(r, label, length)
+                         ? -1
+                         : (*count)++;
+    if (*count < r->points)
+        himc_take_note(r->take, "points: %d values of a model (angles, forces, ...) are left out",
+                       r->points - *count);
+    return *count > 0 ||
+           himc_error_set(r->error, "%s: none of its points is a place", r->take->file);
+}
+
+static void name_points(const c3d *r)
+{
+    const char *label;
+    size_t length;
+    for (int i = 0; i < r->points; i++)
+        if (r->kept[i] >= 0) {
+            bool labelled = find_label(r, i, &label, &length);
+            himc_take_set_name(r->take, r->kept[i], labelled ? label : "", labelled ? length : 0);
+        }
+}
+
+static himc_vec3 read_point(const c3d *r, const unsigned char *at)
+{
+    double v[4];
+    for (int k = 0; k < 4; k++)
+        v[k] = r->is_float
+                   ? himc_c3d_real(r->parameters.processor, at + 4 * k)
+                   : himc_c3d_integer(r->parameters.processor, at + 2 * k) * (k < 3 ? r->scale : 1);
+    bool seen = v[3] >= 0;
+    for (int k = 0; k < 3; k++)
+        seen = seen && fabs(v[k]) <= TAKE_FAR;
+    return seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
+}
+
+static void read_points(const c3d *r)
+{
+    size_t step = r->is_float ? 16 : 8;
+    for (int frame = 0; frame < r->take->frames; frame++) {
+        const unsigned char *row = r->bytes + r->data + (size_t)frame * r->stride;
+        for (int i = 0; i < r->points; i++)
+            if (r->kept[i] >= 0)
+                *himc_take_at(r->take, frame, r->kept[i]) = read_point(r, row + step * (size_t)i);
+    }
+}
+
+static bool read_unit(const c3d *r)
+{
+    const char *at;
+    size_t length;
+    char text[44];
+    if (!himc_c3d_string(himc_c3d_find(&r->parameters, "POINT", "UNITS"), 0, &at, &length))
+        return true;
+    himc_span span = himc_span_trim((himc_span){at, length});
+    r->take->file_unit = himc_take_unit(himc_span_text(span, text));
+    return span.length == 0 || r->take->file_unit > 0 ||
+           himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", allowed mm, cm, m, in or ft",
+                          r->take->file, text);
+}
+
+// "+X", "-Z", "Y" as a unit vector; 0 for anything else
+static himc_vec3 read_axis(const c3d *r, const char *name)
+{
+    const char *at;
+    size_t length;
+    if (!himc_c3d_string(himc_c3d_find(&r->parameters, "POINT", name), 0, &at, &length))
+        return himc_vec3_make(0, 0, 0);
+    himc_span s = himc_span_trim((himc_span){at, length});
+    double sign = s.length > 1 && s.at[0] == '-' ? -1 : 1;
+    char axis = s.length ? s.at[s.length - 1] : 0;
+    if (s.length > 2 || (s.length == 2 && s.at[0] != '+' && s.at[0] != '-'))
+        axis = 0;
+    return himc_vec3_make(axis == 'X' || axis == 'x' ? sign : 0,
+                          axis == 'Y' || axis == 'y' ? sign : 0,
+                          axis == 'Z' || axis == 'z' ? sign : 0);
+}
+
+// the player's mass and height, where the file has them: Vicon writes them in kg and mm
+static void read_subject(c3d *r)
+{
+    static const char *const groups[] = {"SUBJECT", "SUBJECTS", "PROCESSING"};
+    static const char *const masses[] = {"MASS", "BODYMASS", "WEIGHT"};
+    double mass = 0, height = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3 && mass <= 0; k++)
+            mass = parameter(r, groups[i], masses[k], 0, 0);
+        if (height <= 0)
+            height = parameter(r, groups[i], "HEIGHT", 0, 0);
+    }
+    height *= height > 100 ? 0.001 : 1;
+    r->take->mass = mass >= 30 && mass <= 200 ? mass : 0;
+    r->take->height = height >= 1.19 && height <= 2.21 ? height : 0;
+    if ((mass > 0 && r->take->mass == 0) || (height > 0 && r->take->height == 0))
+        himc_take_note(r->take,
+                       "player: the file says %g kg and %g m, of which 30 .. 200 kg and 1.19 .. "
+                       "2.21 m are believed",
+                       mass, height);
+}
+
+static void add_event(c3d *r, double time, himc_span context, himc_span label)
+{
+    himc_take *take = r->take;
+    time -= (take->first_frame - 1) / take->rate;
+    if (!isfinite(time) || fabs(time) > 1e6)
+        return;
+    char a[44], b[44];
+    context = himc_span_trim(context);
+    himc_span_text(context, a);
+    himc_span_text(himc_span_trim(label), b);
+    himc_take_event *event = &take->events[take->event_count++];
+    event->time = time;
+    snprintf(event->label, sizeof event->label, "%.12s%s%.18s", a, context.length ? " " : "", b);
+}
+
+// a string of EVENT, or an empty one
+static himc_span event_text(const c3d *r, const char *name, int index)
+{
+    himc_span span = {"", 0};
+    himc_c3d_string(himc_c3d_find(&r->parameters, "EVENT", name), index, &span.at, &span.length);
+    return span;
+}
+
+static bool read_events(c3d *r)
+{
+    const c3d_parameter *times = himc_c3d_find(&r->parameters, "EVENT", "TIMES");
+    int group = times && times->dimensions == 2 && times->size[0] == 2 ? times->size[1] : 0;
+    group = (int)fmin(group, fmax(0, parameter(r, "EVENT", "USED", 0, 0)));
+    // header events are used where there is no group of them; the key says that labels are there
+    int header = group == 0 && header_word(r, 150) == 12345 ? (int)header_word(r, 151) : 0;
+    header = header < HEADER_EVENTS ? header : HEADER_EVENTS;
+    r->take->events = calloc((size_t)(group + header + 1), sizeof *r->take->events);
+    if (!r->take->events)
+        return himc_error_set(r->error, "%s: no memory", r->take->file);
+    for (int i = 0; i < group; i++)
+        add_event(r,
+                  60 * himc_c3d_number(&r->parameters, times, 2 * i, 0) +
+                      himc_c3d_number(&r->parameters, times, 2 * i + 1, 0),
+                  event_text(r, "CONTEXTS", i), event_text(r, "LABELS", i));
+    for (int i = 0; i < header; i++)
+        add_event(r, himc_c3d_real(r->parameters.processor, r->bytes + 304 + 4 * i),
+                  (himc_span){"", 0}, (himc_span){(const char *)r->bytes + 396 + 4 * i, 4});
+    return true;
+}
+
+static bool read_all(c3d *r)
+{
+    int frames = 0, points = 0;
+    if (!himc_c3d_parameters_read(&r->parameters, r->bytes, r->size,
+                                  (size_t)(r->bytes[0] - 1) * BLOCK, r->error))
+        return himc_error_prefix(r->error, "%s", r->take->file);
+    double rate =
+        parameter(r, "POINT", "RATE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 20));
+    if (!read_layout(r) || !count_frames(r, &frames) || !choose_points(r, &points) ||
+        !himc_take_allocate(r->take, rate, frames, points, false, r->error) || !read_unit(r))
+        return false;
+    static const char *const processors[] = {"Intel", "DEC", "MIPS"};
+    snprintf(r->take->format, sizeof r->take->format, "C3D (%s, %s)",
+             processors[r->parameters.processor - C3D_INTEL], r->is_float ? "floats" : "integers");
+    read_subject(r);
+    r->take->file_up = read_axis(r, "Y_SCREEN");
+    r->take->file_right = read_axis(r, "X_SCREEN");
+    name_points(r);
+    read_points(r);
+    return read_events(r);
+}
+
+bool himc_c3d_read(himc_take *take, const unsigned char *bytes, size_t size, himc_error *error)
+{
+    c3d r = {.take = take, .bytes = bytes, .size = size, .error = error};
+    take->habit_up = himc_vec3_make(0, 0, 1);
+    if (size < BLOCK)
+        return himc_error_set(error, "%s: %zu bytes, allowed at least a header of %d", take->file,
+                              size, BLOCK);
+    if (bytes[1] != 0x50 || bytes[0] < 2)
+        return himc_error_set(error,
+                              "%s: begins with bytes %d %d, allowed for C3D: 2 .. 255 and 80",
+                              take->file, bytes[0], bytes[1]);
+    bool ok = read_all(&r);
+    free(r.kept);
+    himc_c3d_parameters_free(&r.parameters);
+    return ok;
+}

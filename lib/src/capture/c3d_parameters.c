@@ -1,0 +1,214 @@
+/// c3d_parameters.c: C3D's parameter section is a chain of records, groups (negative number) and
+/// parameters (positive), in any order; each says how far it is to the next, from where it says so.
+///
+///     name length, +-group, name, distance to next, [type, dimensions, sizes..., data], text
+///
+/// Numbers are Intel's (little endian, IEEE), MIPS's (big endian, IEEE) or DEC's: little-endian
+/// words, high word first, sign, 8 bits of exponent e and 23 of mantissa m with value (1/2 + m /
+/// 2^24) 2^(e - 128) and no infinities; e = 0 is zero, or reserved if the sign is set. Reference:
+/// the C3D file format user guide, Motion Lab Systems 2008. Invariant: whatever the file says,
+/// nothing outside [bytes, bytes + size) is read; the walk always moves forward.
+#include "capture/c3d_parameters.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+unsigned himc_c3d_word(c3d_processor processor, const unsigned char *at)
+{
+    return processor == C3D_MIPS ? (unsigned)(at[0] << 8 | at[1]) : (unsigned)(at[1] << 8 | at[0]);
+}
+
+int himc_c3d_integer(c3d_processor processor, const unsigned char *at)
+{
+    int word = (int)himc_c3d_word(processor, at);
+    return word < 32768 ? word : word - 65536;
+}
+
+static double dec_real(uint32_t bits)
+{
+    int exponent = (int)(bits >> 23 & 255);
+    double mantissa = 0.5 + (double)(bits & 0x7FFFFF) / 16777216.0;
+    if (exponent == 0)
+        return bits >> 31 ? NAN : 0;
+    return ldexp(bits >> 31 ? -mantissa : mantissa, exponent - 128);
+}
+
+double himc_c3d_real(c3d_processor processor, const unsigned char *at)
+{
+    uint32_t first = himc_c3d_word(processor, at), second = himc_c3d_word(processor, at + 2);
+    if (processor == C3D_DEC)
+        return dec_real(first << 16 | second);
+    uint32_t bits = processor == C3D_MIPS ? first << 16 | second : second << 16 | first;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static uint32_t dec_bits(double value)
+{
+    int exponent;
+    double mantissa = frexp(fabs(value), &exponent);
+    uint32_t m = (uint32_t)lround(mantissa * 16777216.0);
+    // rounding may carry into the next power of two
+    if (m == 16777216u) {
+        m = 8388608u;
+        exponent++;
+    }
+    if (value == 0 || exponent < -127)
+        return 0;
+    if (!isfinite(value) || exponent > 127)
+        return 0x80000000u;
+    return (value < 0 ? 0x80000000u : 0) | (uint32_t)(exponent + 128) << 23 | (m - 8388608u);
+}
+
+void himc_c3d_put_real(c3d_processor processor, double value, unsigned char *at)
+{
+    uint32_t bits;
+    float narrow = (float)value;
+    memcpy(&bits, &narrow, sizeof bits);
+    if (processor == C3D_DEC)
+        bits = dec_bits(value);
+    // byte k of the file is this one of the number, counted from the highest
+    static const int order[3][4] = {{3, 2, 1, 0}, {1, 0, 3, 2}, {0, 1, 2, 3}};
+    for (int k = 0; k < 4; k++)
+        at[k] = (unsigned char)(bits >> (24 - 8 * order[processor - C3D_INTEL][k]));
+}
+
+// letters in upper case, cut to 23, for names are compared so
+static void copy_name(char name[24], const unsigned char *at, size_t length)
+{
+    size_t n = 0;
+    for (; n < length && n < 23; n++)
+        name[n] = at[n] >= 'a' && at[n] <= 'z' ? (char)(at[n] - 'a' + 'A') : (char)at[n];
+    name[n] = 0;
+}
+
+static bool add(c3d_parameters *p, const c3d_parameter *parameter)
+{
+    if ((p->count & (p->count - 1)) == 0) {
+        c3d_parameter *grown =
+            realloc(p->list, (size_t)(p->count ? 2 * p->count : 1) * sizeof *grown);
+        if (!grown)
+            return false;
+        p->list = grown;
+    }
+    p->list[p->count++] = *parameter;
+    return true;
+}
+
+// the value at `at`; false if it reaches beyond the file's end
+static bool read_value(c3d_parameter *q, const unsigned char *at, const unsigned char *end)
+{
+    if (end - at < 2)
+        return false;
+    q->type = at[0] < 128 ? at[0] : at[0] - 256;
+    q->dimensions = at[1];
+    at += 2;
+    if ((q->type != -1 && q->type != 1 && q->type != 2 && q->type != 4) || q->dimensions > 7 ||
+        end - at < q->dimensions)
+        return false;
+    int64_t count = 1;
+    for (int i = 0; i < q->dimensions; i++) {
+        q->size[i] = *at++;
+        count *= q->size[i];
+        if (count > end - at)
+            return false;
+    }
+    if (count * abs(q->type) > end - at)
+        return false;
+    q->count = (int)count;
+    q->data = at;
+    return true;
+}
+
+// one record at *at, which moves on to the next, or to NULL after the last
+static bool read_record(c3d_parameters *p, const unsigned char **at, const unsigned char *end,
+                        himc_error *error)
+{
+    if (end - *at < 2)
+        return himc_error_set(error, "its parameters end beyond the end of the file");
+    const unsigned char *a = *at;
+    int length = abs(a[0] < 128 ? a[0] : a[0] - 256), group = a[1] < 128 ? a[1] : a[1] - 256;
+    if (length == 0 || group == 0) {
+        *at = NULL;
+        return true;
+    }
+    if (end - a < length + 4)
+        return himc_error_set(error, "its parameters end beyond the end of the file");
+    c3d_parameter q = {.group = abs(group)};
+    copy_name(q.name, a + 2, (size_t)length);
+    const unsigned char *link = a + 2 + length;
+    unsigned distance = himc_c3d_word(p->processor, link);
+    if (group < 0 && q.group < C3D_GROUPS)
+        memcpy(p->groups[q.group], q.name, sizeof q.name);
+    else if (group > 0 && !read_value(&q, link + 2, end))
+        return himc_error_set(error, "parameter %.23s does not fit into the file", q.name);
+    else if (group > 0 && !add(p, &q))
+        return himc_error_set(error, "no memory");
+    if (distance != 0 && (distance < 2 || distance >= (size_t)(end - link)))
+        return himc_error_set(error, "after parameter %.23s the next is beyond the end of the file",
+                              q.name);
+    *at = distance ? link + distance : NULL;
+    return true;
+}
+
+bool himc_c3d_parameters_read(c3d_parameters *p, const unsigned char *bytes, size_t size,
+                              size_t offset, himc_error *error)
+{
+    *p = (c3d_parameters){.processor = C3D_INTEL};
+    if (offset + 4 > size)
+        return himc_error_set(error, "its parameters begin at byte %zu, the file has %zu", offset,
+                              size);
+    int processor = bytes[offset + 3];
+    if (processor < C3D_INTEL || processor > C3D_MIPS)
+        return himc_error_set(error, "processor is %d, allowed 84 (Intel), 85 (DEC), 86 (MIPS)",
+                              processor);
+    p->processor = (c3d_processor)processor;
+    const unsigned char *at = bytes + offset + 4;
+    while (at)
+        if (!read_record(p, &at, bytes + size, error))
+            return false;
+    return true;
+}
+
+void himc_c3d_parameters_free(c3d_parameters *p)
+{
+    free(p->list);
+    p->list = NULL;
+    p->count = 0;
+}
+
+const c3d_parameter *himc_c3d_find(const c3d_parameters *p, const char *group, const char *name)
+{
+    for (int i = 0; i < p->count; i++) {
+        const c3d_parameter *q = &p->list[i];
+        if (q->group < C3D_GROUPS && strcmp(p->groups[q->group], group) == 0 &&
+            strcmp(q->name, name) == 0)
+            return q;
+    }
+    return NULL;
+}
+
+double himc_c3d_number(const c3d_parameters *p, const c3d_parameter *q, int index, double fallback)
+{
+    if (!q || index >= q->count || q->type == -1)
+        return fallback;
+    if (q->type == 1)
+        return q->data[index];
+    if (q->type == 2)
+        return himc_c3d_word(p->processor, q->data + 2 * index);
+    return himc_c3d_real(p->processor, q->data + 4 * index);
+}
+
+bool himc_c3d_string(const c3d_parameter *q, int index, const char **text, size_t *length)
+{
+    if (!q || q->type != -1 || q->dimensions == 0)
+        return false;
+    int width = q->size[0], rows = width ? q->count / width : 0;
+    if (index >= rows)
+        return false;
+    *text = (const char *)q->data + (size_t)index * (size_t)width;
+    *length = (size_t)width;
+    return true;
+}

@@ -1,0 +1,280 @@
+/// player_points.c: which of a take's points are joint centres.
+///
+/// Each row of the table names a centre by one marker or by several of which it is the middle; the
+/// first row all of whose markers the take has is used. Names are tried with the side before and
+/// behind ("LeftElbow", "LELB", "Elbow_L"); those without a side belong to the hand of a lone tip,
+/// else to the right one. Upper arms are called "Arm" where forearms are called "ForeArm"
+/// ("LeftShoulder" is a clavicle then), knees "Leg" where thighs are "UpLeg". A marker on the
+/// acromion lies above the shoulder's centre by 10.4 % of the upper arm (de Leva, J. Biomech.
+/// 29(9), 1996, joint centre positions): 3 cm.
+#include "capture/player_points.h"
+
+#include "capture/take_data.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MARKERS 4
+
+typedef struct row {
+    int point; // a player_point
+    bool sided;
+    const char *name[MARKERS];
+    const char *beside; // another name that the take must have for this one to mean the centre
+    double below;       // the markers (m)
+} row;
+
+static const row rows[] = {
+    {POINT_HIPS, false, {"Hips"}, NULL, 0},
+    {POINT_HIPS, false, {"Pelvis"}, NULL, 0},
+    {POINT_HIPS, false, {"MidHip"}, NULL, 0},
+    {POINT_HIPS, false, {"LeftHip", "RightHip"}, NULL, 0},
+    {POINT_HIPS, false, {"LHip", "RHip"}, NULL, 0},
+    {POINT_HIPS, false, {"ASISl", "ASISr", "PSISl", "PSISr"}, NULL, 0.08},
+    {POINT_HIPS, false, {"LASI", "RASI", "LPSI", "RPSI"}, NULL, 0.08},
+    {POINT_WAIST, false, {"Waist"}, NULL, 0},
+    {POINT_WAIST, false, {"Spine"}, NULL, 0},
+    {POINT_WAIST, false, {"LowerBack"}, NULL, 0},
+    {POINT_WAIST, false, {"Abdomen"}, NULL, 0},
+    {POINT_NECK, false, {"Neck"}, NULL, 0},
+    {POINT_NECK, false, {"STER", "C7"}, NULL, 0},
+    {POINT_NECK, false, {"STER", "T1"}, NULL, 0},
+    {POINT_NECK, false, {"CLAV", "C7"}, NULL, 0},
+    {POINT_HEAD, false, {"Head"}, NULL, 0},
+    {POINT_HEAD, false, {"Neck_end"}, NULL, 0},
+    {POINT_SHOULDER, true, {"UpperArm"}, NULL, 0},
+    {POINT_SHOULDER, true, {"Arm"}, "ForeArm", 0},
+    {POINT_SHOULDER, true, {"ShoulderJoint"}, NULL, 0},
+    {POINT_SHOULDER, true, {"Shoulder"}, NULL, 0},
+    {POINT_SHOULDER, true, {"SJC"}, NULL, 0},
+    {POINT_SHOULDER, true, {"SHO"}, NULL, 0.03},
+    {POINT_SHOULDER, true, {"Acromion"}, NULL, 0.03},
+    {POINT_SHOULDER, true, {"ACRO_tip"}, NULL, 0.03},
+    {POINT_ELBOW, true, {"Elbow"}, NULL, 0},
+    {POINT_ELBOW, true, {"ForeArm"}, NULL, 0},
+    {POINT_ELBOW, true, {"LowerArm"}, NULL, 0},
+    {POINT_ELBOW, true, {"EJC"}, NULL, 0},
+    {POINT_ELBOW, true, {"ELBL", "ELBM"}, NULL, 0},
+    {POINT_ELBOW, true, {"EPICl", "EPICm"}, NULL, 0},
+    {POINT_ELBOW, true, {"ELB"}, NULL, 0},
+    {POINT_WRIST, true, {"Wrist"}, NULL, 0},
+    {POINT_WRIST, true, {"Hand"}, NULL, 0},
+    {POINT_WRIST, true, {"WJC"}, NULL, 0},
+    {POINT_WRIST, true, {"WRA", "WRB"}, NULL, 0},
+    {POINT_WRIST, true, {"STYLr", "STYLu"}, NULL, 0},
+    {POINT_GRIP, true, {"Grip"}, NULL, 0},
+    {POINT_GRIP, true, {"Stick"}, NULL, 0},
+    {POINT_GRIP, true, {"Mallet"}, NULL, 0},
+    {POINT_GRIP, true, {"Finger"}, NULL, 0},
+    {POINT_GRIP, true, {"FIN"}, NULL, 0},
+    {POINT_GRIP, true, {"Knuckle"}, NULL, 0},
+    {POINT_GRIP, true, {"MEDH", "LATH"}, NULL, 0},
+    {POINT_HIP, true, {"UpLeg"}, NULL, 0},
+    {POINT_HIP, true, {"UpperLeg"}, NULL, 0},
+    {POINT_HIP, true, {"Thigh"}, NULL, 0},
+    {POINT_HIP, true, {"Hip"}, NULL, 0},
+    {POINT_HIP, true, {"HJC"}, NULL, 0},
+    {POINT_KNEE, true, {"Knee"}, NULL, 0},
+    {POINT_KNEE, true, {"Leg"}, "UpLeg", 0},
+    {POINT_KNEE, true, {"LowerLeg"}, NULL, 0},
+    {POINT_KNEE, true, {"Shin"}, NULL, 0},
+    {POINT_KNEE, true, {"KJC"}, NULL, 0},
+    {POINT_KNEE, true, {"KNE"}, NULL, 0},
+    {POINT_ANKLE, true, {"Ankle"}, NULL, 0},
+    {POINT_ANKLE, true, {"Foot"}, NULL, 0},
+    {POINT_ANKLE, true, {"AJC"}, NULL, 0},
+    {POINT_ANKLE, true, {"ANK"}, NULL, 0},
+    {POINT_TOE, true, {"ToeBase"}, NULL, 0},
+    {POINT_TOE, true, {"Toe"}, NULL, 0},
+    {POINT_TOE, true, {"Toes"}, NULL, 0},
+    {POINT_TOE, true, {"Foot_end"}, NULL, 0},
+    {POINT_TOE_END, true, {"ToeBase_end"}, NULL, 0},
+    {POINT_HEAD_END, false, {"Head_end"}, NULL, 0},
+    {POINT_HEAD_END, false, {"HeadTop"}, NULL, 0},
+    {POINT_BESIDE + HIMC_NECK, false, {"Neck_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_HEAD, false, {"Head_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_UPPER_ARM, true, {"Arm_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_FOREARM, true, {"ForeArm_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_HAND, true, {"Hand_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_STICK, true, {"Stick_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_UPPER_LEG, true, {"UpLeg_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_LOWER_LEG, true, {"Leg_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_FOOT, true, {"Foot_side"}, NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_TOES, true, {"ToeBase_side"}, NULL, 0},
+};
+#define ROWS (sizeof rows / sizeof rows[0])
+
+static const char *const words[POINT_BESIDE] = {
+    "hips",           "waist",          "neck",           "head",
+    "left shoulder",  "right shoulder", "left elbow",     "right elbow",
+    "left wrist",     "right wrist",    "left grip",      "right grip",
+    "left tip",       "right tip",      "left hip",       "right hip",
+    "left knee",      "right knee",     "left ankle",     "right ankle",
+    "left toes",      "right toes",     "left toes' end", "right toes' end",
+    "top of the head"};
+
+static const char *word_of(int point)
+{
+    const char *segment = point >= POINT_BESIDE ? himc_segment_name(point - POINT_BESIDE) : "";
+    return point >= POINT_BESIDE ? segment : words[point];
+}
+
+void himc_player_note(himc_player *player, const char *format, ...)
+{
+    int most = sizeof player->notes / sizeof player->notes[0];
+    if (player->note_count >= most)
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(player->notes[player->note_count++], sizeof player->notes[0], format, args);
+    va_end(args);
+}
+
+static int find_sided(const himc_take *take, const char *name, int hand)
+{
+    static const char *const forms[HIMC_HANDS][4] = {{"Left%s", "L%s", "%sLeft", "%sL"},
+                                                     {"Right%s", "R%s", "%sRight", "%sR"}};
+    char text[TAKE_NAME];
+    int found = -1;
+    for (int i = 0; i < 4 && found < 0; i++) {
+        const char *form = forms[hand][i], *at = strchr(form, '%');
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - form), form, name, at + 2);
+        found = himc_take_find(take, text);
+    }
+    return found;
+}
+
+// the points of a row, how many; 0 unless all are there. Hand HIMC_HANDS: without side
+static int find_row(const himc_take *take, const row *r, int hand, int point[MARKERS])
+{
+    bool sided = hand < HIMC_HANDS;
+    int count = 0;
+    for (; count < MARKERS && r->name[count]; count++) {
+        point[count] =
+            sided ? find_sided(take, r->name[count], hand) : himc_take_find(take, r->name[count]);
+        if (point[count] < 0)
+            return 0;
+    }
+    if (r->beside &&
+        (sided ? find_sided(take, r->beside, hand) : himc_take_find(take, r->beside)) < 0)
+        return 0;
+    return count;
+}
+
+// the middle of the markers, gaps filled; false without memory
+static bool add_centre(player_points *p, int which, const int *point, int count, double below,
+                       const himc_take_options *options, himc_player *player)
+{
+    size_t frames = (size_t)p->frames;
+    himc_vec3 *sum = calloc(frames, sizeof *sum), *one = malloc(frames * sizeof *one);
+    bool shown = sum && one;
+    for (int i = 0; shown && i < count; i++) {
+        himc_take_gap gap;
+        if (himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) < 0) {
+            himc_player_note(player,
+                             "%s: %s is missing in frames %d .. %d, allowed are gaps of %g s",
+                             word_of(which), himc_take_point_name(p->take, point[i]),
+                             himc_take_first_frame(p->take) + gap.begin,
+                             himc_take_first_frame(p->take) + gap.end - 1, options->longest_gap);
+            shown = false;
+        }
+        for (size_t k = 0; shown && k < frames; k++)
+            sum[k] = himc_vec3_madd(sum[k], 1.0 / count, one[k]);
+    }
+    bool memory = sum && one;
+    for (size_t k = 0; shown && k < frames; k++)
+        sum[k].z -= below;
+    p->x[which] = shown ? sum : NULL;
+    p->node[which] = shown && count == 1 ? point[0] : -1;
+    if (!shown)
+        free(sum);
+    free(one);
+    return memory;
+}
+
+// one centre by the first row that the take has
+static bool find_centre(player_points *p, int which, int hand, const himc_take_options *options,
+                        himc_player *player)
+{
+    for (size_t i = 0; i < ROWS; i++) {
+        int point[MARKERS];
+        const row *r = &rows[i];
+        if (which != r->point && !(r->sided && which == r->point + 1))
+            continue;
+        int count = find_row(p->take, r, hand, point);
+        if (count > 0)
+            return add_centre(p, which, point, count, r->below, options, player);
+    }
+    return true;
+}
+
+// the tips as they are played
+static bool find_tips(player_points *p, himc_take *take, const himc_take_options *options,
+                      bool present[HIMC_HANDS])
+{
+    himc_take_tip tips[HIMC_HANDS] = {{.present = false}, {.present = false}};
+    bool found = himc_take_tips(take, options, tips, NULL);
+    size_t size = (size_t)p->frames * sizeof(himc_vec3);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        present[hand] = found && tips[hand].present;
+        if (!present[hand])
+            continue;
+        p->x[POINT_TIP + hand] = malloc(size);
+        if (!p->x[POINT_TIP + hand])
+            return false;
+        memcpy(p->x[POINT_TIP + hand], tips[hand].x, size);
+        p->node[POINT_TIP + hand] = himc_take_find(take, tips[hand].name);
+    }
+    return true;
+}
+
+bool himc_player_points_find(player_points *p, himc_take *take, const himc_take_options *options,
+                             himc_player *player)
+{
+    bool present[HIMC_HANDS];
+    *p = (player_points){.take = take, .frames = himc_take_frames(take)};
+    for (int i = 0; i < POINT_COUNT; i++)
+        p->node[i] = -1;
+    if (!find_tips(p, take, options, present))
+        return false;
+    int lone = present[HIMC_LEFT] && !present[HIMC_RIGHT] ? HIMC_LEFT : HIMC_RIGHT;
+    for (int i = 0; i < POINT_COUNT; i++) {
+        bool paired =
+            i >= POINT_BESIDE + HIMC_LEFT_UPPER_ARM || (i >= POINT_SHOULDER && i < POINT_HEAD_END);
+        int hand = paired ? (i - POINT_SHOULDER) % 2 : HIMC_HANDS;
+        if (i / 2 == POINT_TIP / 2)
+            continue;
+        if (!find_centre(p, i, hand, options, player))
+            return false;
+        if (paired && hand == lone && !p->x[i] && !find_centre(p, i, HIMC_HANDS, options, player))
+            return false;
+    }
+    return true;
+}
+
+void himc_player_points_free(player_points *p)
+{
+    for (int i = 0; i < POINT_COUNT; i++)
+        free(p->x[i]);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double himc_player_distance(const player_points *p, int from, int to, double quantile)
+{
+    const himc_vec3 *a = p->x[from], *b = p->x[to];
+    double *distance = a && b ? malloc((size_t)p->frames * sizeof *distance) : NULL;
+    if (!distance)
+        return 0;
+    for (int i = 0; i < p->frames; i++)
+        distance[i] = himc_vec3_length(himc_vec3_sub(b[i], a[i]));
+    qsort(distance, (size_t)p->frames, sizeof *distance, by_size);
+    double length = distance[(int)(quantile * p->frames)];
+    free(distance);
+    return length;
+}

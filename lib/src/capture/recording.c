@@ -1,0 +1,217 @@
+/// recording.c: postures in memory, made into a take when they are written.
+///
+/// A frame is the rotation of each joint in its parent's frame, in single precision: 1e-7 rad over
+/// an arm is a tenth of a micrometre. All memory is taken in advance, so that keeping a frame is
+/// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the two
+/// tips, then the ends of head and toes, without which a BVH would not have their rotations. A file
+/// of markers knows no rotations; there each segment has another marker beside its joint, which
+/// with the one at its far end holds them.
+#define _POSIX_C_SOURCE 200809L
+#include "himc/mocap.h"
+
+#include "capture/take_data.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define ENDS 3
+#define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
+#define MARKERS (POINTS + HIMC_SEGMENTS)
+#define BESIDE 0.05 // of a marker beside a joint, along the segment's y (m)
+
+typedef struct frame {
+    float q[HIMC_JOINTS][4];
+} frame;
+
+struct himc_recording {
+    char *path; ///< owned
+    himc_skeleton skeleton;
+    double rate;
+    int count, room;
+    frame *frames; ///< owned (room)
+};
+
+// clang-format off
+static const char *const names[POINTS] = {
+    "Hips", "Spine", "Neck", "Head", "LeftArm", "RightArm", "LeftForeArm", "RightForeArm",
+    "LeftHand", "RightHand", "LeftStick", "RightStick", "LeftUpLeg", "RightUpLeg", "LeftLeg",
+    "RightLeg", "LeftFoot", "RightFoot", "LeftToeBase", "RightToeBase", "LeftStick_end",
+    "RightStick_end", "Head_end", "LeftToeBase_end", "RightToeBase_end",
+};
+// clang-format on
+
+// what nothing is joined to, sticks apart
+static const int ends[ENDS] = {HIMC_HEAD, HIMC_LEFT_TOES, HIMC_RIGHT_TOES};
+
+// the far end of a segment, in its frame
+static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
+{
+    return himc_vec3_scale(skeleton->segment[segment].axis, skeleton->segment[segment].length);
+}
+
+// opened as if to append: what is there stays until there is something to write
+static bool check_path(const char *path, himc_error *error)
+{
+    if (!himc_take_is_writable(path, error))
+        return false;
+    FILE *there = fopen(path, "rb"), *file = fopen(path, "ab");
+    if (!file)
+        himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
+    if (file)
+        fclose(file);
+    if (there)
+        fclose(there);
+    else if (file)
+        remove(path);
+    return file != NULL;
+}
+
+himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,
+                                   double longest, himc_error *error)
+{
+    if (!himc_check_range("rate", rate, 20, 10000, "Hz", error) || !check_path(path, error))
+        return NULL;
+    himc_recording *r = calloc(1, sizeof *r);
+    if (r) {
+        r->skeleton = *skeleton;
+        r->rate = rate;
+        r->room = (int)fmin(longest * rate, 1e6);
+        r->path = strdup(path);
+        r->frames = calloc((size_t)r->room, sizeof *r->frames);
+    }
+    if (r && r->path && r->frames)
+        return r;
+    himc_recording_free(r);
+    himc_error_set(error, "%s: no memory for %g s", path, longest);
+    return NULL;
+}
+
+void himc_recording_free(himc_recording *r)
+{
+    if (!r)
+        return;
+    free(r->path);
+    free(r->frames);
+    free(r);
+}
+
+bool himc_recording_add(himc_recording *r, const himc_body_state *state)
+{
+    if (r->count == r->room)
+        return false;
+    himc_pose pose = himc_pose_from_state(&r->skeleton, state);
+    frame *f = &r->frames[r->count++];
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_quat q = pose.joint[j];
+        memcpy(f->q[j], (float[4]){(float)q.w, (float)q.x, (float)q.y, (float)q.z}, sizeof f->q[j]);
+    }
+    return true;
+}
+
+int himc_recording_frames(const himc_recording *r)
+{
+    return r->count;
+}
+
+const char *himc_recording_path(const himc_recording *r)
+{
+    return r->path;
+}
+
+static void fill_skeleton(himc_take *take, const himc_skeleton *skeleton)
+{
+    for (int i = 0; i < POINTS; i++) {
+        int tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
+        himc_take_set_name(take, i, names[i], strlen(names[i]));
+        take->parents[i] = end >= 0   ? ends[end]
+                           : tip >= 0 ? HIMC_LEFT_STICK + tip
+                                      : skeleton->segment[i].parent;
+        take->offsets[i] = end >= 0   ? far_end(skeleton, ends[end])
+                           : tip >= 0 ? skeleton->tip
+                                      : skeleton->segment[i].origin;
+    }
+    take->offsets[0] = himc_vec3_make(0, 0, 0);
+}
+
+static bool has_skeleton(const himc_recording *r)
+{
+    const char *dot = strrchr(r->path, '.');
+    return dot && strcasecmp(dot, ".bvh") == 0;
+}
+
+static void name_markers(himc_take *take)
+{
+    for (int i = 0; i < POINTS; i++)
+        himc_take_set_name(take, i, names[i], strlen(names[i]));
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        char side[32];
+        int n = snprintf(side, sizeof side, "%s_side", names[i]);
+        himc_take_set_name(take, POINTS + i, side, (size_t)n);
+    }
+}
+
+static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
+{
+    return himc_vec3_add(state->origin[i], himc_mat3_apply(&state->rotation[i], x));
+}
+
+static void fill_markers(himc_take *take, int index, const himc_body_state *state)
+{
+    himc_vec3 *x = himc_take_at(take, index, POINTS);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        x[i] = on_segment(state, i, himc_vec3_make(0, BESIDE, 0));
+}
+
+static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton, const frame *f)
+{
+    himc_pose pose;
+    himc_body_state state;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        pose.joint[j] = himc_quat_unit((himc_quat){f->q[j][0], f->q[j][1], f->q[j][2], f->q[j][3]});
+    himc_pose_to_state(skeleton, &pose, NULL, &state);
+    himc_quat *rotation = take->rotations ? take->rotations + (size_t)index * POINTS : NULL;
+    for (int i = 0; rotation && i < POINTS; i++)
+        rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
+    if (!rotation)
+        fill_markers(take, index, &state);
+    memcpy(himc_take_at(take, index, 0), state.origin, sizeof state.origin);
+    memcpy(himc_take_at(take, index, HIMC_SEGMENTS), state.tip, sizeof state.tip);
+    for (int i = 0; i < ENDS; i++)
+        *himc_take_at(take, index, HIMC_SEGMENTS + HIMC_HANDS + i) =
+            on_segment(&state, ends[i], far_end(skeleton, ends[i]));
+}
+
+himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
+{
+    himc_take *take = calloc(1, sizeof *take);
+    if (!take) {
+        himc_error_set(error, "%s: no memory", r->path);
+        return NULL;
+    }
+    snprintf(take->file, sizeof take->file, "%.180s", r->path);
+    snprintf(take->format, sizeof take->format, "recording");
+    bool skeleton = has_skeleton(r);
+    if (!himc_take_allocate(take, r->rate, r->count, skeleton ? POINTS : MARKERS, skeleton,
+                            error)) {
+        himc_take_free(take);
+        return NULL;
+    }
+    if (skeleton)
+        fill_skeleton(take, &r->skeleton);
+    else
+        name_markers(take);
+    for (int i = 0; i < r->count; i++)
+        fill_frame(take, i, &r->skeleton, &r->frames[i]);
+    return take;
+}
+
+bool himc_recording_write(const himc_recording *r, himc_error *error)
+{
+    himc_take *take = himc_recording_take(r, error);
+    bool written = take && himc_take_save(take, r->path, error);
+    himc_take_free(take);
+    return written;
+}

@@ -1,0 +1,236 @@
+/// trc.c: reads TRC, the text table of marker trajectories of Motion Analysis and OpenSim.
+///
+/// Line 1 names the format; lines 2 and 3 are keys and values (DataRate, NumFrames, NumMarkers,
+/// Units); line 4 is "Frame#", "Time" and a marker's name over every third column; line 5 (X1 Y1 Z1
+/// ...) says nothing new; then one row per frame. Cells are split by tabs, else semicolons, else
+/// commas, whichever the row of names has. An empty cell, "nan" or 9999999 (Motion Analysis's own
+/// mark) is a gap; a point of which only some coordinates are there is refused, for then columns
+/// have slipped. The header's counts must be what is in the file.
+#include "capture/take_data.h"
+#include "capture/take_text.h"
+
+#include <string.h>
+
+typedef struct trc {
+    himc_take *take;
+    himc_text text;
+    char separator;
+    double rate;
+    long frames, markers;
+    himc_span names; // line 4
+    himc_error *error;
+} trc;
+
+static bool refuse_line(const trc *r, const char *what)
+{
+    return himc_error_set(r->error, "%s:%d: %s", r->take->file, r->text.line, what);
+}
+
+static char find_separator(himc_span line)
+{
+    const char *candidates = "\t;,";
+    for (; *candidates; candidates++)
+        if (memchr(line.at, *candidates, line.length))
+            break;
+    return *candidates ? *candidates : '\t';
+}
+
+// the value under a key of line 2, in line 3; empty if there is none
+static himc_span header_value(himc_span keys, himc_span values, char separator, const char *key)
+{
+    while (keys.at && values.at) {
+        himc_span k = himc_span_cell(&keys, separator), v = himc_span_cell(&values, separator);
+        if (himc_span_is(k, key))
+            return v;
+    }
+    return (himc_span){"", 0};
+}
+
+static bool refuse_value(const trc *r, const char *key, himc_span value, const char *allowed)
+{
+    char text[44];
+    return himc_error_set(r->error, "%s:%d: %s is \"%s\", allowed %s", r->take->file, r->text.line,
+                          key, himc_span_text(value, text), allowed);
+}
+
+static bool read_header(trc *r)
+{
+    himc_span keys, values;
+    if (!himc_text_line(&r->text, &keys) || !himc_text_line(&r->text, &keys) ||
+        !himc_text_line(&r->text, &values))
+        return refuse_line(r, "the file ends in its header");
+    char separator = find_separator(keys);
+    himc_span rate = header_value(keys, values, separator, "DataRate");
+    himc_span frames = header_value(keys, values, separator, "NumFrames");
+    himc_span markers = header_value(keys, values, separator, "NumMarkers");
+    himc_span units = header_value(keys, values, separator, "Units");
+    if (!himc_span_number(rate, &r->rate))
+        return refuse_value(r, "DataRate", rate, "a number (Hz)");
+    if (!himc_span_integer(frames, 1, 1000000, &r->frames))
+        return refuse_value(r, "NumFrames", frames, "1 .. 1000000");
+    if (!himc_span_integer(markers, 1, 65536, &r->markers))
+        return refuse_value(r, "NumMarkers", markers, "1 .. 65536");
+    char unit[44];
+    r->take->file_unit = himc_take_unit(himc_span_text(units, unit));
+    if (units.length > 0 && r->take->file_unit == 0)
+        return refuse_value(r, "Units", units, "mm, cm, m, in or ft");
+    if (!himc_text_line(&r->text, &r->names))
+        return refuse_line(r, "the file ends before the markers' names");
+    r->separator = find_separator(r->names);
+    return true;
+}
+
+// rows that are not blank from here on; the text stays where it is
+static int count_rows(const trc *r, himc_span *first)
+{
+    himc_text text = r->text;
+    himc_span row;
+    int rows = 0;
+    while (himc_text_line(&text, &row)) {
+        himc_span rest = row;
+        bool filled = false;
+        while (rest.at && !filled)
+            filled = himc_span_cell(&rest, r->separator).length > 0;
+        if (filled && rows++ == 0)
+            *first = row;
+    }
+    return rows;
+}
+
+// the name of marker i stands over its first column, 2 + 3 i
+static bool read_names(trc *r)
+{
+    himc_span rest = r->names;
+    int given = 0;
+    for (long column = 0; rest.at; column++) {
+        himc_span cell = himc_span_cell(&rest, r->separator);
+        if (cell.length == 0 || column < 2)
+            continue;
+        char text[44];
+        if ((column - 2) % 3 != 0 || (column - 2) / 3 >= r->markers)
+            return himc_error_set(
+                r->error,
+                "%s:4: marker \"%s\" stands over column %ld, allowed: every third from 3 on, "
+                "for %ld markers",
+                r->take->file, himc_span_text(cell, text), column + 1, r->markers);
+        himc_take_set_name(r->take, (int)((column - 2) / 3), cell.at, cell.length);
+        given++;
+    }
+    if (given == r->markers)
+        return true;
+    return himc_error_set(r->error, "%s:4: the header says %ld markers, the file names %d",
+                          r->take->file, r->markers, given);
+}
+
+static bool refuse_cell(const trc *r, int point, int axis, himc_span cell)
+{
+    char text[44];
+    return himc_error_set(
+        r->error, "%s:%d: %s %c is \"%s\", allowed: a number, or nothing for a gap", r->take->file,
+        r->text.line, r->take->names[point], "XYZ"[axis], himc_span_text(cell, text));
+}
+
+static bool is_gap_mark(himc_span cell, double value)
+{
+    return cell.length == 0 || himc_span_is(cell, "nan") || himc_span_is(cell, "-nan") ||
+           value == 9999999;
+}
+
+static bool read_point(trc *r, himc_span *rest, int frame, int point)
+{
+    double v[3] = {0, 0, 0};
+    int seen = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        himc_span cell = rest->at ? himc_span_cell(rest, r->separator) : (himc_span){"", 0};
+        bool number = himc_span_number(cell, &v[axis]);
+        if (is_gap_mark(cell, v[axis]))
+            continue;
+        if (!number || !(fabs(v[axis]) <= TAKE_FAR))
+            return refuse_cell(r, point, axis, cell);
+        seen++;
+    }
+    if (seen != 0 && seen != 3)
+        return himc_error_set(r->error,
+                              "%s:%d: %s has %d of its 3 coordinates, allowed all or none",
+                              r->take->file, r->text.line, r->take->names[point], seen);
+    *himc_take_at(r->take, frame, point) =
+        seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
+    return true;
+}
+
+static bool read_row(trc *r, himc_span row, int frame, double *time)
+{
+    himc_span number = himc_span_cell(&row, r->separator), second = {"", 0};
+    if (row.at)
+        second = himc_span_cell(&row, r->separator);
+    long label;
+    if (!himc_span_integer(number, -2000000000, 2000000000, &label))
+        return refuse_value(r, "Frame#", number, "a whole number");
+    if (frame == 0)
+        r->take->first_frame = (int)label;
+    if (!himc_span_number(second, time))
+        *time = NAN;
+    for (int point = 0; point < r->take->points; point++)
+        if (!read_point(r, &row, frame, point))
+            return false;
+    while (row.at) {
+        himc_span cell = himc_span_cell(&row, r->separator);
+        if (cell.length > 0)
+            return refuse_value(r, "a cell beyond the last marker", cell, "nothing");
+    }
+    return true;
+}
+
+// rows with at least one filled cell
+static bool read_rows(trc *r, double *first, double *last)
+{
+    himc_span row;
+    for (int frame = 0; frame < r->take->frames && himc_text_line(&r->text, &row);) {
+        himc_span rest = row;
+        bool filled = false;
+        while (rest.at && !filled)
+            filled = himc_span_cell(&rest, r->separator).length > 0;
+        if (!filled)
+            continue;
+        if (!read_row(r, row, frame, frame ? last : first))
+            return false;
+        frame++;
+    }
+    return true;
+}
+
+// the Time column is not used, but if it disagrees someone should know
+static void check_time(trc *r, double first, double last)
+{
+    double step = (last - first) / (r->take->frames - 1), said = 1 / r->rate;
+    if (r->take->frames > 1 && isfinite(step) && fabs(step - said) > 0.01 * said)
+        himc_take_note(
+            r->take, "rate: the Time column steps by %.6g s, DataRate says %.6g s and is followed",
+            step, said);
+}
+
+bool himc_trc_read(himc_take *take, const char *bytes, size_t size, himc_error *error)
+{
+    trc r = {.take = take, .text = himc_text_open(bytes, size), .error = error};
+    memcpy(take->format, "TRC", 4);
+    take->habit_up = himc_vec3_make(0, 1, 0);
+    himc_span axes, row = {"", 0};
+    if (!read_header(&r))
+        return false;
+    if (!himc_text_line(&r.text, &axes))
+        return refuse_line(&r, "the file ends before its rows");
+    int rows = count_rows(&r, &row);
+    if (rows != r.frames)
+        return himc_error_set(error, "%s: the header says %ld frames, the file has %d rows",
+                              take->file, r.frames, rows);
+    // rows may end early, but not so early that the file is shorter than a byte for each point
+    if (size / (size_t)r.markers < (size_t)rows)
+        return himc_error_set(error, "%s:3: NumMarkers is %ld, more than the rows have cells for",
+                              take->file, r.markers);
+    double first = NAN, last = NAN;
+    if (!himc_take_allocate(take, r.rate, rows, (int)r.markers, false, error) || !read_names(&r) ||
+        !read_rows(&r, &first, &last))
+        return false;
+    check_time(&r, first, last);
+    return true;
+}

@@ -1,0 +1,239 @@
+/// controller.c: two stages. Errors (errors.c): for each joint what is missing in angle and rate,
+/// and the acceleration fed forward. Law: what torque that makes.
+///
+/// `printed` is tau = ks dq - kd q', `feedforward` tau = g(q) + ks dq + kd (q'_t - q'),
+/// `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse dynamics. While a
+/// stick touches the head all three let go of the normal: the rebound is the physics'. Joint limits
+/// win over all of it (limit_torque.c).
+///
+/// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
+/// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
+/// step's end, as Tan, Liu & Turk's stable PD does (2011): with D = h kd + h^2 ks at each joint,
+///     (M + D) q'' = tau_known - C,   tau = tau_known - D q'',
+/// which holds at any gain and, as h goes to 0, is equation 2.
+#include "control/controller.h"
+
+#include "control/tracking_error.h"
+#include "control/limit_torque.h"
+#include "control/strength.h"
+
+#define PD_STIFFER 3.0 // the default gains' frequencies above the table's
+
+static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
+                    himc_vec3 normal, double remain)
+{
+    himc_vec3 arm[HIMC_ARM_JOINTS];
+    himc_arm_gather(all, hand, arm);
+    himc_ik_release(jacobian, normal, remain, arm);
+    himc_arm_scatter(arm, hand, all);
+}
+
+// in contact the tip is not accelerated along the normal, whatever the gains of the joints are
+static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                 const himc_reference *reference, const himc_arm_jacobian *jacobian,
+                                 himc_vec3 wanted[HIMC_JOINTS])
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (reference->released[hand]) {
+            himc_vec3 n = reference->normal[hand], zero = {0, 0, 0};
+            himc_vec3 left = himc_acceleration_left(skeleton, s, (himc_hand)hand, wanted, zero);
+            release(wanted, (himc_hand)hand, &jacobian[hand], n, himc_vec3_dot(n, left));
+        }
+}
+
+// Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
+// place of the one it begins in: what is known of it. The rest, -(h kd + h^2 ks) q'', is the
+// joint's resistance.
+static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
+                             const tracking_error *e, himc_vec3 spin, int j)
+{
+    double h = c->step;
+    himc_vec3 angle = himc_vec3_madd(e->angle[j], h, e->rate[j]);
+    himc_vec3 rate = himc_vec3_scale(spin, -1);
+    if (c->law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
+        rate = himc_vec3_madd(e->rate[j], h, e->acceleration[j]);
+        angle = himc_vec3_madd(angle, h * h, e->acceleration[j]);
+    }
+    const himc_mat3 *r = &s->rotation[j + 1];
+    return himc_vec3_add(himc_mat3_scale_along(r, c->gain[j].stiffness, angle),
+                         himc_mat3_scale_along(r, c->gain[j].damping, rate));
+}
+
+// the forces at released tips that stop their acceleration along the normal, m a, where the mass is
+// that of joints with servos
+static void release_forces(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_reference *reference, const himc_articulation *art,
+                           const himc_vec3 *known, himc_vec3 force[HIMC_HANDS])
+{
+    himc_vec3 relative[HIMC_JOINTS];
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        himc_vec3 n = reference->normal[i], without = force[i];
+        double a[2];
+        for (int unit = 0; reference->released[i] && unit < 2; unit++) {
+            force[i] = himc_vec3_madd(without, unit, n);
+            himc_forward_dynamics(skeleton, s, art, known, force, relative);
+            a[unit] = himc_vec3_dot(n, himc_tip_acceleration(skeleton, s, hand, relative));
+        }
+        if (reference->released[i])
+            force[i] = himc_vec3_madd(without, -a[0] / (a[1] - a[0]), n);
+    }
+}
+
+// a force at the tip as torques down the arm and the trunk
+static void add_tip_force(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
+                          himc_vec3 force, himc_vec3 torque[HIMC_JOINTS])
+{
+    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
+        torque[i - 1] = himc_vec3_add(
+            torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
+}
+
+// equation 2, with the target's velocity and gravity fed forward or not, implicitly over the step
+static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *s, const himc_reference *reference,
+                          const tracking_error *e, himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_articulation art;
+    himc_vec3 resistance[HIMC_JOINTS], relative[HIMC_JOINTS], force[HIMC_HANDS] = {{0, 0, 0}};
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        torque[j] = himc_vec3_make(0, 0, 0);
+    if (c->law == HIMC_LAW_FEEDFORWARD)
+        himc_inverse_dynamics(skeleton, s, NULL, true, torque);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 known = servo_known(c, s, e, himc_relative_spin(skeleton, s, j), j);
+        torque[j] = himc_vec3_add(torque[j], known);
+        resistance[j] = himc_vec3_madd(himc_vec3_scale(c->gain[j].damping, c->step),
+                                       c->step * c->step, c->gain[j].stiffness);
+    }
+    himc_limits_resist(c, skeleton, s, torque, resistance);
+    himc_articulate_resisting(skeleton, s, resistance, &art);
+    release_forces(skeleton, s, reference, &art, torque, force);
+    himc_forward_dynamics(skeleton, s, &art, torque, force, relative);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        torque[j] = himc_vec3_sub(
+            torque[j], himc_mat3_scale_along(&s->rotation[j + 1], resistance[j], relative[j]));
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (reference->released[hand])
+            add_tip_force(skeleton, s, (himc_hand)hand, force[hand], torque);
+}
+
+// stiffness and damping over inertia of one axis, as far as an implicit step lets them act
+static void implicit_rates(double ks, double kd, double step, double rate[2])
+{
+    double all = 1 + step * kd + step * step * ks;
+    rate[0] = ks / all;
+    rate[1] = (kd + step * ks) / all;
+}
+
+// w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
+// the inertia; the bandwidth is always slow beside the step, gains need not be
+static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
+                          const tracking_error *e)
+{
+    double w = 2 * HIMC_PI * c->bandwidth, x[2], y[2], z[2];
+    if (!c->gain_set[j])
+        return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
+    himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
+    const himc_mat3 *r = &s->rotation[j + 1];
+    implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
+    implicit_rates(ks.y / i.y, kd.y / i.y, c->step, y);
+    implicit_rates(ks.z / i.z, kd.z / i.z, c->step, z);
+    return himc_vec3_add(himc_mat3_scale_along(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]),
+                         himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
+}
+
+// what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
+static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
+                                 const tracking_error *e, himc_vec3 wanted[HIMC_JOINTS])
+{
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
+}
+
+void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                             const himc_body_state *s, const himc_reference *reference,
+                             himc_vec3 torque[HIMC_JOINTS])
+{
+    tracking_error e;
+    himc_arm_jacobian jacobian[HIMC_HANDS];
+    himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
+        if (c->mode == HIMC_PIPELINE_HIMC)
+            himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand,
+                                    &jacobian[hand], &e);
+    }
+    if (c->law == HIMC_LAW_COMPUTED_TORQUE) {
+        himc_vec3 wanted[HIMC_JOINTS];
+        wanted_accelerations(c, s, &e, wanted);
+        release_acceleration(skeleton, s, reference, jacobian, wanted);
+        himc_limits_compliance(c, skeleton, s, jacobian, wanted);
+        himc_inverse_dynamics(skeleton, s, wanted, false, torque);
+    } else {
+        servo_torques(c, skeleton, s, reference, &e, torque);
+    }
+    himc_strength_apply(c, torque);
+}
+
+// inertia about a joint of everything that hangs on it, about the child's axes
+static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_state *s, int joint)
+{
+    double sum[3] = {0, 0, 0};
+    const himc_mat3 *axes = &s->rotation[joint + 1];
+    for (int i = joint + 1; i < HIMC_SEGMENTS; i++) {
+        int up = i;
+        while (up > joint + 1)
+            up = skeleton->segment[up].parent;
+        if (up != joint + 1)
+            continue;
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 c =
+            himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], segment->center));
+        himc_vec3 r = himc_vec3_sub(c, s->origin[joint + 1]);
+        for (int k = 0; k < 3; k++) {
+            himc_vec3 axis = {axes->m[0][k], axes->m[1][k], axes->m[2][k]};
+            himc_vec3 own = himc_mat3_apply_transposed(&s->rotation[i], axis);
+            himc_vec3 arm = himc_vec3_cross(axis, r);
+            sum[k] += segment->mass * himc_vec3_dot(arm, arm) + segment->inertia.x * own.x * own.x +
+                      segment->inertia.y * own.y * own.y + segment->inertia.z * own.z * own.z;
+        }
+    }
+    return himc_vec3_make(sum[0], sum[1], sum[2]);
+}
+
+static double servo_frequency(int joint)
+{
+    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18};
+    int k = (joint - (HIMC_LEFT_UPPER_ARM - 1)) / 2;
+    bool is_arm = joint >= HIMC_LEFT_UPPER_ARM - 1 && k < HIMC_ARM_JOINTS;
+    return PD_STIFFER * (is_arm ? arm[k] : 5);
+}
+
+void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *posture)
+{
+    *c = (himc_controller){
+        .law = HIMC_LAW_COMPUTED_TORQUE,
+        .damping = 0.01,
+        .weight = {1, 1, 1, 1},
+        .bandwidth = 20,
+        .step = 1e-4,
+    };
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 i = hanging_inertia(skeleton, posture, j);
+        double w = 2 * HIMC_PI * servo_frequency(j);
+        c->inertia[j] = i;
+        c->gain[j].stiffness = himc_vec3_scale(i, w * w);
+        c->gain[j].damping = himc_vec3_scale(i, 2 * w);
+    }
+}
+
+void himc_controller_set_gain(himc_controller *c, int joint, double stiffness, double damping)
+{
+    himc_vec3 i = c->inertia[joint];
+    double flexion = i.y;
+    c->gain[joint].stiffness = himc_vec3_scale(i, stiffness / flexion);
+    c->gain[joint].damping = himc_vec3_scale(i, damping / flexion);
+    c->gain_set[joint] = true;
+}

@@ -1,0 +1,221 @@
+/// limit_torque.c: joints beyond their bounds are brought back towards the nearest orientation
+/// within (2012 paper, section 3.1), by accelerations where the law asks for those, by torques
+/// where it makes those. Limits win over tips, tips over posture.
+///
+/// Computed torque: where a joint would be in a moment T is kept within its bounds,
+///     q_T = exp(omega T + alpha T^2 / 2) q,     alpha += 2 / T^2 log(q_T^-1 q_lim(q_T)),
+/// from outside e'' = -2 / T^2 e - 2 / T e', a spring damped by .71 of critical. A motion that
+/// turns back by itself is left alone, one along the limit slides freely. What that takes from the
+/// tips the arm's other freedoms give back: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
+/// directions of the corrections.
+///
+/// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion
+/// of that orientation, so that nothing damps the way along the limit; implicit over the step like
+/// the servos themselves, which drive no joint further out. It is a spring and a damper: omega_lim
+/// has no more energy than omega, omega' I omega_lim <= omega' I omega, so it pumps none.
+#include "control/limit_torque.h"
+
+#define MOMENT 0.0056   // T: a spring of 40 Hz (s)
+#define RETURN 3.0      // speed of the way back from far beyond (rad/s)
+#define SPRING 60.0     // beside a servo (Hz)
+#define FARTHEST 0.02   // what is beyond by more is pulled no harder (rad)
+#define NEGLIGIBLE 1e-9 // what is beyond by less is within (rad)
+#define SOON 1e-4       // over which motion along a limit is seen (s)
+#define ENOUGH 0.01     // corrections smaller than that are none (rad/s^2)
+#define DAMPING 0.05    // lambda, of what the tips get back (m)
+#define PASSES 3        // of giving back: it may send out another joint
+#define INSIDE 0.95     // a joint held so near its bounds has hit them ...
+#define FREE 0.85       // ... and has to come back this far before it can hit them again
+
+/// A joint in its parent's frame.
+typedef struct place {
+    himc_quat q;
+    himc_vec3 spin; // (rad/s)
+    double beyond;  // its bounds (rad)
+} place;
+
+/// Corrections of joints, each along one direction.
+typedef struct stops {
+    int count;
+    int joint[HIMC_JOINTS];
+    himc_vec3 inward[HIMC_JOINTS]; // unit vectors of the world
+    double more[HIMC_JOINTS];      // acceleration along them (rad/s^2)
+} stops;
+
+// how far a rotation is from another (rad)
+static double angle_between(himc_quat a, himc_quat b)
+{
+    return himc_vec3_length(himc_quat_log(himc_quat_mul(a, himc_quat_conj(b))));
+}
+
+static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
+                        const himc_body_state *s, place at[HIMC_JOINTS])
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        int p = skeleton->segment[j + 1].parent;
+        himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
+        at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+        at[j].spin = himc_mat3_apply_transposed(&s->rotation[p], spin);
+        at[j].beyond = 0;
+        double measure = himc_limit_measure(c->limits, j, at[j].q);
+        if (measure > 1)
+            at[j].beyond = angle_between(himc_limit_closest(c->limits, j, at[j].q), at[j].q);
+        if (!c->saturation)
+            continue;
+        c->saturation->measure[j] = measure;
+        c->saturation->farthest[j] = fmax(c->saturation->farthest[j], at[j].beyond);
+        c->saturation->held[j] = c->saturation->held[j] && measure > FREE;
+    }
+}
+
+// what a joint's acceleration lacks, in its parent's frame (rad/s^2)
+static himc_vec3 correction(const himc_limits *limits, int j, const place *at, himc_vec3 alpha)
+{
+    himc_vec3 turn =
+        himc_vec3_madd(himc_vec3_scale(at->spin, MOMENT), 0.5 * MOMENT * MOMENT, alpha);
+    himc_quat then = himc_quat_mul(himc_quat_exp(turn), at->q);
+    himc_quat near = himc_limit_closest(limits, j, then);
+    himc_vec3 back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(then)));
+    double angle = himc_vec3_length(back), late = fmax(at->beyond - RETURN * MOMENT, 0);
+    if (angle <= late)
+        return himc_vec3_make(0, 0, 0);
+    return himc_vec3_scale(back, (1 - late / angle) * 2 / (MOMENT * MOMENT));
+}
+
+// the joints that these accelerations would take out of their bounds
+static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
+                       const himc_body_state *s, const place at[HIMC_JOINTS],
+                       const himc_vec3 *relative, stops *found)
+{
+    found->count = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        if (!c->limits->joint[j].bound)
+            continue;
+        int p = skeleton->segment[j + 1].parent;
+        // seen from the parent, which turns
+        himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
+        himc_vec3 alpha = himc_vec3_sub(relative[j], himc_vec3_cross(s->spin[p], spin));
+        alpha = himc_mat3_apply_transposed(&s->rotation[p], alpha);
+        himc_vec3 more = himc_mat3_apply(&s->rotation[p], correction(c->limits, j, &at[j], alpha));
+        double size = himc_vec3_length(more);
+        if (size < ENOUGH)
+            continue;
+        found->joint[found->count] = j;
+        found->inward[found->count] = himc_vec3_scale(more, 1 / size);
+        found->more[found->count++] = size;
+    }
+}
+
+static void count_hit(himc_saturation_counts *saturation, int j)
+{
+    if (!saturation || saturation->measure[j] < INSIDE)
+        return;
+    saturation->hits[j] += !saturation->held[j];
+    saturation->held[j] = true;
+}
+
+// accelerations of the arm that move its tip so and turn no stopped joint along its way back
+static void give_back(const stops *stop, const himc_arm_jacobian *jacobian, himc_hand hand,
+                      himc_vec3 lost, himc_vec3 wanted[HIMC_JOINTS])
+{
+    himc_vec3 way[HIMC_ARM_JOINTS] = {{0, 0, 0}};
+    himc_mat3 gram = jacobian->gram;
+    for (int h = 0; h < stop->count; h++)
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            if (stop->joint[h] == himc_arm_joint(hand, k))
+                way[k] = stop->inward[h];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        himc_vec3 v = himc_vec3_cross(way[k], jacobian->lever[k]);
+        const double b[3] = {v.x, v.y, v.z};
+        for (int i = 0; i < 9; i++)
+            gram.m[i / 3][i % 3] -= jacobian->weight[k] * b[i / 3] * b[i % 3];
+    }
+    for (int i = 0; i < 3; i++)
+        gram.m[i][i] += DAMPING * DAMPING;
+    himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);
+    himc_vec3 f = himc_mat3_apply(&inverse, lost);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        himc_vec3 d = himc_vec3_scale(himc_vec3_cross(jacobian->lever[k], f), jacobian->weight[k]),
+                  *to = &wanted[himc_arm_joint(hand, k)];
+        *to = himc_vec3_add(*to, himc_vec3_madd(d, -himc_vec3_dot(d, way[k]), way[k]));
+    }
+}
+
+void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skeleton,
+                            const himc_body_state *s, const himc_arm_jacobian jacobian[HIMC_HANDS],
+                            himc_vec3 wanted[HIMC_JOINTS])
+{
+    place at[HIMC_JOINTS];
+    stops stop = {.count = 0};
+    himc_vec3 before[HIMC_HANDS];
+    if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
+        return;
+    find_places(c, skeleton, s, at);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        before[hand] = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
+    for (int pass = 0; pass <= PASSES; pass++) {
+        find_stops(c, skeleton, s, at, wanted, &stop);
+        if (stop.count == 0)
+            break;
+        for (int h = 0; h < stop.count; h++) {
+            count_hit(c->saturation, stop.joint[h]);
+            himc_vec3 *a = &wanted[stop.joint[h]];
+            *a = himc_vec3_madd(*a, stop.more[h], stop.inward[h]);
+        }
+        for (int hand = 0; pass < PASSES && hand < HIMC_HANDS; hand++) {
+            himc_vec3 now = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
+            himc_vec3 lost = himc_vec3_sub(before[hand], now);
+            give_back(&stop, &jacobian[hand], (himc_hand)hand, lost, wanted);
+        }
+    }
+}
+
+// twice the energy of a turn in the parent's frame
+static double energy(const place *at, himc_vec3 inertia, himc_vec3 spin)
+{
+    himc_vec3 v = himc_quat_rotate(himc_quat_conj(at->q), spin);
+    return inertia.x * v.x * v.x + inertia.y * v.y * v.y + inertia.z * v.z * v.z;
+}
+
+// the way to the nearest orientation within, and how fast that is left, in the parent's frame
+static void find_way(const himc_limits *limits, int j, const place *at, himc_vec3 inertia,
+                     himc_vec3 *way, himc_vec3 *rate)
+{
+    himc_quat near = himc_limit_closest(limits, j, at->q);
+    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(at->spin, SOON)), at->q);
+    himc_quat moved = himc_quat_mul(himc_limit_closest(limits, j, next), himc_quat_conj(near));
+    *way = himc_quat_log(himc_quat_mul(near, himc_quat_conj(at->q)));
+    *way = himc_vec3_scale(*way, fmin(1, FARTHEST / himc_vec3_length(*way)));
+    // far outside, the nearest orientation may run away or jump to the other side
+    himc_vec3 along = himc_vec3_scale(himc_quat_log(moved), 1 / SOON);
+    double most = energy(at, inertia, at->spin), has = energy(at, inertia, along);
+    *rate = himc_vec3_madd(at->spin, has > most ? -sqrt(most / has) : -1, along);
+}
+
+void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
+                        const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS],
+                        himc_vec3 resistance[HIMC_JOINTS])
+{
+    const double w = 2 * HIMC_PI * SPRING, h = c->step;
+    place at[HIMC_JOINTS];
+    if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
+        return;
+    find_places(c, skeleton, s, at);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 way, rate;
+        if (at[j].beyond < NEGLIGIBLE)
+            continue;
+        count_hit(c->saturation, j);
+        find_way(c->limits, j, &at[j], c->inertia[j], &way, &rate);
+        const himc_mat3 *parent = &s->rotation[skeleton->segment[j + 1].parent];
+        const himc_mat3 *child = &s->rotation[j + 1];
+        himc_vec3 i = c->inertia[j], light = himc_vec3_make(1 / i.x, 1 / i.y, 1 / i.z);
+        himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);
+        himc_vec3 n = himc_mat3_apply(parent, himc_vec3_unit(way));
+        // what a servo does to a joint's inertia drives it no further out
+        double outward = fmin(himc_vec3_dot(n, himc_mat3_scale_along(child, light, torque[j])), 0);
+        a = himc_vec3_madd(himc_mat3_apply(parent, a), -outward, n);
+        torque[j] = himc_vec3_add(torque[j], himc_mat3_scale_along(child, i, a));
+        resistance[j] = himc_vec3_madd(resistance[j], h * w * (2 + h * w), i);
+    }
+}

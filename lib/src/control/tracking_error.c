@@ -1,0 +1,124 @@
+/// errors.c: what is missing at the joints. To the joint targets of `id`, as they are. For the tips
+/// of `himc` (and of `ik`, show.c) an arm's come from its tip alone,
+///     dq = J+ (X_t - X),  q'_t = J+ X'_t,  q''_t = J+ (X''_t - J' q') (equation 3, differentiated)
+/// plus what the posture asks, in the null space of J.
+#include "control/tracking_error.h"
+
+#include "body/stretch.h"
+
+#define LARGEST_STEP 0.20 // of the tip, one step of inverse kinematics (m)
+#define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
+#define LEFT 0.40         // ... and so far does so wholly (m)
+
+static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
+{
+    return himc_vec3_madd(a, share, himc_vec3_sub(b, a));
+}
+
+// errors to the joint targets, turned from the parent's frame into the world
+void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
+                                const himc_posture_motion *target, tracking_error *e)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        int p = skeleton->segment[j + 1].parent;
+        himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+        himc_vec3 missing = himc_quat_log(himc_quat_mul(target->joint[j], himc_quat_conj(q)));
+        himc_vec3 wanted = himc_mat3_apply(&s->rotation[p], target->rate[j]);
+        e->angle[j] = himc_mat3_apply(&s->rotation[p], missing);
+        e->rate[j] = himc_vec3_sub(wanted, himc_relative_spin(skeleton, s, j));
+        e->acceleration[j] =
+            himc_vec3_add(himc_mat3_apply(&s->rotation[p], target->acceleration[j]),
+                          himc_vec3_cross(s->spin[p], wanted));
+    }
+}
+
+static himc_vec3 clamp_length(himc_vec3 v, double most)
+{
+    double length = himc_vec3_length(v);
+    return length > most ? himc_vec3_scale(v, most / length) : v;
+}
+
+typedef struct arm_tasks {
+    const himc_controller *controller;
+    const himc_arm_jacobian *jacobian;
+    himc_mat3 inverse; // of J W J', as the solver has it
+    himc_elbow_task elbow;
+    himc_hand hand;
+} arm_tasks;
+
+static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
+{
+    const himc_controller *c = tasks->controller;
+    int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
+    himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
+    tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
+    if (c->elbow)
+        himc_elbow_task_at(tasks->jacobian, upper_arm, c->damping, &tasks->elbow);
+}
+
+// the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
+// for the elbow's place comes first; `demand` is linear in all of it
+static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
+{
+    const himc_controller *c = tasks->controller;
+    himc_mat3 inverse = tasks->inverse;
+    himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
+    himc_arm_gather(all, tasks->hand, posture);
+    for (int k = 0; c->null_space_off && k < HIMC_ARM_JOINTS; k++)
+        posture[k] = himc_vec3_make(0, 0, 0);
+    if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
+        inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
+    himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
+    himc_ik_add_null(tasks->jacobian, posture, solution);
+    if (c->elbow)
+        himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,
+                          himc_vec3_cross(posture[0], tasks->elbow.lever), solution);
+    himc_arm_scatter(solution, tasks->hand, all);
+}
+
+himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
+                                 himc_hand hand, const himc_vec3 *relative, himc_vec3 wanted)
+{
+    himc_vec3 others[HIMC_JOINTS];
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        others[j] = relative[j];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        others[himc_arm_joint(hand, k)] = himc_vec3_make(0, 0, 0);
+    return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
+}
+
+// The Jacobian is the truth near the target only: pushed far away, an arm that follows it turns in
+// circles. So it goes home by its joints, to the posture whose tip is the target.
+static void go_home(const tracking_error *joints, double away, himc_hand hand, tracking_error *e)
+{
+    double share = fmin((away - LEAVES) / (LEFT - LEAVES), 1);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        e->angle[j] = mix(e->angle[j], joints->angle[j], share);
+        e->rate[j] = mix(e->rate[j], joints->rate[j], share);
+        e->acceleration[j] = mix(e->acceleration[j], joints->acceleration[j], share);
+    }
+}
+
+// equation 3: replaces the arm's joint errors by those that its tip asks for, or the nearest place
+// in reach
+void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skeleton,
+                             const himc_body_state *s, const himc_target *asked, himc_hand hand,
+                             const himc_arm_jacobian *jacobian, tracking_error *e)
+{
+    tracking_error joints = *e;
+    himc_vec3 shoulder = s->origin[himc_arm_joint(hand, 0) + 1];
+    himc_target target = himc_stretch_towards(asked, shoulder, himc_stretch(skeleton, hand));
+    himc_vec3 way = himc_vec3_sub(target.x, s->tip[hand]);
+    himc_vec3 missing = clamp_length(way, LARGEST_STEP);
+    himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
+    himc_vec3 a = himc_acceleration_left(skeleton, s, hand, e->acceleration, target.a);
+    arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
+    begin_tasks(&tasks, s, missing);
+    solve_demand(&tasks, missing, e->angle);
+    solve_demand(&tasks, slower, e->rate);
+    solve_demand(&tasks, a, e->acceleration);
+    double away = himc_vec3_length(way);
+    if (away > LEAVES)
+        go_home(&joints, away, hand, e);
+}

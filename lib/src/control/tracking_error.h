@@ -1,0 +1,52 @@
+/// errors.h: what is missing at the joints: to their targets, or for the tips' sake; private.
+#ifndef HIMC_TRACKING_ERROR_H
+#define HIMC_TRACKING_ERROR_H
+
+#include "control/controller.h"
+
+/// Of each joint, in the world.
+typedef struct tracking_error {
+    himc_vec3 angle[HIMC_JOINTS];        ///< dq (rad)
+    himc_vec3 rate[HIMC_JOINTS];         ///< q'_t - q' (rad/s)
+    himc_vec3 acceleration[HIMC_JOINTS]; ///< q''_t (rad/s^2)
+} tracking_error;
+
+/// To the joint targets.
+HIMC_RT void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
+                                        const himc_posture_motion *target, tracking_error *e);
+
+/// Replaces the errors of an arm's joints by those that its tip asks for, or the nearest place to
+/// `asked` that is in reach; the old ones are what the null space is for.
+HIMC_RT void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skeleton,
+                                     const himc_body_state *s, const himc_target *asked,
+                                     himc_hand hand, const himc_arm_jacobian *jacobian,
+                                     tracking_error *e);
+
+/// Tip acceleration (m/s^2) that the arm's joints must make: what is wanted less what the state's
+/// spins and the trunk, accelerating as in `relative`, make already.
+HIMC_RT himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
+                                         himc_hand hand, const himc_vec3 *relative,
+                                         himc_vec3 wanted);
+
+/// Of a joint: its child's spin in the parent's, in the world (rad/s).
+static inline himc_vec3 himc_relative_spin(const himc_skeleton *skeleton, const himc_body_state *s,
+                                           int j)
+{
+    return himc_vec3_sub(s->spin[j + 1], s->spin[skeleton->segment[j + 1].parent]);
+}
+
+static inline void himc_arm_gather(const himc_vec3 *all, himc_hand hand,
+                                   himc_vec3 arm[HIMC_ARM_JOINTS])
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        arm[k] = all[himc_arm_joint(hand, k)];
+}
+
+static inline void himc_arm_scatter(const himc_vec3 arm[HIMC_ARM_JOINTS], himc_hand hand,
+                                    himc_vec3 *all)
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        all[himc_arm_joint(hand, k)] = arm[k];
+}
+
+#endif

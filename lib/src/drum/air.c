@@ -1,0 +1,323 @@
+/// air.c: closed forms for every mode, and a table that corrects them where the drum is a timpano.
+///
+/// In the head's own measures (air.h; x = w a/c, l = L/a) a mode whose zero is j = j_mn obeys
+///     x^2 (1 + epsilon beta(x)) = tau j^2,   beta = (beta_out + beta_in)/sqrt(1 - x^2/j^2)
+/// with beta the added mass of the two sides: at rest from the table, else 1.07/j each, the
+/// infinite membrane's 1/j and a little for the rim; near the speed of sound it grows as an
+/// infinite membrane's does. For m = 0 the kettle's air couples the modes by one spring k(x) =
+/// (1/l) f(x l) for the volume, so they are the roots of
+///     1 + epsilon k sum_n 4/(j_n^2 d_n) = 0,   d_n = tau j_n^2 - x^2 (1 + epsilon beta_n)
+/// one between each two zeros of d. f(x l) = x l cot(x l), kept positive: it falls as the kettle's
+/// air begins to move as a column. Radiation is that of the shape in a baffle,
+///     delta = x epsilon R/(2 (1 + epsilon beta)),   R = (2/j^2) I_m(x)/(1 - g x^2/j^2)^2
+///     I_m(x) = int_0^{pi/2} J_m(x sin t)^2 x sin t dt = J_{2m+1}(2x) + J_{2m+3}(2x) + ...
+/// (by Neumann's integral for J_m^2; Watson 1944, section 5.43), g = (2m+2)/(2m+3) the mean of
+/// sin^2 t for small x, where this is the monopole, dipole ... in x^(2m+1).
+///
+/// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension; monotone cubics
+/// (Fritsch & Butland 1984) along the tension, where a mode that meets a sloshing of the kettle
+/// jumps from below it to above, lines between drums. Its ratio to the closed form at the table's
+/// own kettle multiplies the closed form at the actual one, and outside the table goes to 1 over a
+/// factor of four in tension, or two in epsilon: no step and no bend as the pedal moves.
+///
+/// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, the kettle's slow spring 4
+/// epsilon/(l j^2); its mass is what gives the frequency. Thus static deflections are exact and,
+/// for the preferred modes of a tuned drum, mass is within a tenth of that with which the whole
+/// problem answers a blow (its residue).
+#include "drum/air.h"
+
+#include "drum/air_table.h"
+
+#include <math.h>
+
+#define KETTLES 2.0       // the largest kettle by the usual one, and that by the smallest
+#define FADE 1.3862943611 // of the table beyond its tensions, in log tension
+#define FADE_DRUM 0.6931471806
+#define RIM 1.07
+#define VOLUMES 8 // modes of order 0 that the kettle's spring couples
+#define SLOPE 1e-4
+
+static const double SPEED2 = HIMC_AIR_SPEED * HIMC_AIR_SPEED;
+
+// j_0n
+static const double ZERO[VOLUMES] = {2.404825557695773, 5.520078110286311, 8.653727912911013,
+                                     11.79153443901428, 14.93091770848779, 18.07106396791092,
+                                     21.21163662987926, 24.35247153074930};
+
+// a mode's logarithms of frequency per bare frequency and of delta a/c + HIMC_AIR_FLOOR
+typedef struct pair {
+    double ratio, decay;
+} pair;
+
+typedef struct spectrum {
+    int m, n;
+    double zero;
+} spectrum;
+
+double himc_air_kettle(double radius)
+{
+    return HIMC_AIR_KETTLE_SHAPE * radius * radius * radius;
+}
+
+bool himc_air_check(double kettle, double radius, himc_error *error)
+{
+    double usual = himc_air_kettle(radius);
+    return himc_check_range("kettle", kettle, usual / KETTLES, usual * KETTLES, "m3", error);
+}
+
+// J_{2m+1}(z) + J_{2m+3}(z) + ... by backward recurrence; what is below 1e-7 may come out as 0
+static double radiated(int m, double z)
+{
+    int top = (int)(z + 6 * cbrt(z) + 10), first = 2 * m + 1;
+    if (first > top || !(z > 1e-3))
+        return 0;
+    double above = 0, here = 1e-200, sum = 0, odd = 0, turn = 2 / z;
+    for (int k = top; k > 0; k--) {
+        if (k % 2 == 0)
+            sum += 2 * here;
+        else if (k >= first)
+            odd += here;
+        double below = k * turn * here - above;
+        above = here;
+        here = below;
+    }
+    return odd / (sum + here);
+}
+
+// added mass of both sides of a mode at rest
+static double added(int m, int n, double zero, double depth)
+{
+    if (m >= HIMC_AIR_ORDERS || n > HIMC_AIR_RANKS)
+        return 2 * RIM / zero;
+    // a kettle of another depth: the lowest mode that reaches its bottom
+    double b = himc_air_slosh[m], z2 = zero * zero - b * b;
+    double change = 1 / tanh(b * depth) - 1 / tanh(b * (HIMC_AIR_KETTLE_SHAPE / HIMC_PI));
+    double share = 4 * zero * zero / (z2 * z2 * (1 - m * m / (b * b)) * b);
+    return himc_air_outer[m][n - 1] + himc_air_inner[m][n - 1] + share * change;
+}
+
+// y in (0, 1) with y (1 + b/sqrt(1 - y)) = t
+static double below_sound(double b, double t)
+{
+    double y = fmin(t / (1 + b), 0.99);
+    for (int i = 0; i < 5; i++) {
+        double root = sqrt(1 - y);
+        double value = y * (1 + b / root) - t, slope = 1 + b / root * (1 + 0.5 * y / (1 - y));
+        double next = y - value / slope;
+        y = next < 1 ? next : 0.5 * (1 + y);
+    }
+    return y;
+}
+
+static double directed(int m, double x, double zero)
+{
+    return 1 - (2 * m + 2) / (2 * m + 3.0) * x * x / (zero * zero);
+}
+
+static pair logarithms(double x, double decay, double bare)
+{
+    return (pair){log(x / bare), log(decay + HIMC_AIR_FLOOR)};
+}
+
+// a mode whose volume, if it has any, is little
+static pair alone(const himc_air *air, double depth, spectrum s)
+{
+    double square = s.zero * s.zero, b = air->loading * added(s.m, s.n, s.zero, depth);
+    double spring = s.m == 0 ? 4 * air->loading / (depth * square * square) : 0;
+    double y = below_sound(b, air->tension + spring), x = s.zero * sqrt(y),
+           d = directed(s.m, x, s.zero);
+    double decay =
+        air->loading * x * radiated(s.m, 2 * x) / (square * d * d * (1 + b / sqrt(1 - y)));
+    return logarithms(x, decay, s.zero * sqrt(air->tension));
+}
+
+// the kettle's spring for a change of volume
+static double spring_at(double x, double depth)
+{
+    double s = x * x * depth * depth;
+    return exp(-s * (1 / 3.0 + s * (7 / 90.0))) / depth;
+}
+
+// a mode of order 0, which the kettle's spring couples to the others
+static pair coupled(const himc_air *air, double depth, spectrum s)
+{
+    double mass[VOLUMES], low, high;
+    for (int n = 0; n < VOLUMES; n++)
+        mass[n] = 1 + air->loading * added(0, n + 1, ZERO[n], depth);
+    low = ZERO[s.n - 1] * sqrt(air->tension / mass[s.n - 1]);
+    high = ZERO[s.n] * sqrt(air->tension / mass[s.n]);
+    double x = low;
+    for (int i = 0; i < 40; i++) {
+        double sum = 0;
+        x = 0.5 * (low + high);
+        for (int n = 0; n < VOLUMES; n++) {
+            double square = ZERO[n] * ZERO[n];
+            sum += 4 / (square * (air->tension * square - x * x * mass[n]));
+        }
+        // from -infinity to +infinity, rising
+        if (1 + air->loading * spring_at(x, depth) * sum < 0)
+            low = x;
+        else
+            high = x;
+    }
+    double volume = 0, inertia = 0;
+    for (int n = 0; n < VOLUMES; n++) {
+        double square = ZERO[n] * ZERO[n], d = air->tension * square - x * x * mass[n];
+        volume += 2 / (square * d * fmax(directed(0, x, ZERO[n]), 0.2));
+        inertia += 2 * mass[n] / (square * d * d);
+    }
+    double decay = 0.5 * air->loading * x * volume * volume * radiated(0, 2 * x) / inertia;
+    return logarithms(x, decay, s.zero * sqrt(air->tension));
+}
+
+static pair closed(const himc_air *air, double depth, spectrum s)
+{
+    return s.m == 0 && s.n <= HIMC_AIR_RANKS ? coupled(air, depth, s) : alone(air, depth, s);
+}
+
+static double usual_depth(void)
+{
+    return HIMC_AIR_KETTLE_SHAPE / HIMC_PI;
+}
+
+static double log_step(void)
+{
+    return log(HIMC_AIR_TABLE_HIGH / HIMC_AIR_TABLE_LOW) / (HIMC_AIR_NODES - 1);
+}
+
+// a slope at a node that keeps the curve monotone between its neighbours
+static double node_slope(double before, double after)
+{
+    return before * after > 0 ? 2 * before * after / (before + after) : 0;
+}
+
+// at an end the lesser of the two nearest: what lies beyond must not run away
+static double end_slope(double at, double beside)
+{
+    return at * beside <= 0 ? 0 : fabs(at) < fabs(beside) ? at : beside;
+}
+
+// a row of the table at node + t, with `rise` a node added so that frequencies are monotone, and
+// taken off again
+static double along_row(const short *row, double unit, double rise, int node, double t)
+{
+    double step = unit * (row[node + 1] - row[node]) + rise;
+    double before = node > 0 ? unit * (row[node] - row[node - 1]) + rise : 0;
+    double after = node + 2 < HIMC_AIR_NODES ? unit * (row[node + 2] - row[node + 1]) + rise : 0;
+    double first = node > 0 ? node_slope(before, step) : end_slope(step, after);
+    double last = node + 2 < HIMC_AIR_NODES ? node_slope(step, after) : end_slope(step, before);
+    double u = 1 - t;
+    return unit * row[node] + t * t * (1 + 2 * u) * step + t * u * (u * first - t * last) -
+           t * rise;
+}
+
+// the table at a place along the tensions
+static pair tabulated(const himc_air *air, spectrum s, int node, double t)
+{
+    double value[2][2], rise = 0.5 * log_step();
+    for (int i = 0; i < 2; i++) {
+        int row = HIMC_AIR_ROW(air->drum + i, s.m, s.n - 1);
+        value[i][0] = along_row(himc_air_ratio + row, HIMC_AIR_RATIO_UNIT, rise, node, t);
+        value[i][1] = along_row(himc_air_decay + row, HIMC_AIR_DECAY_UNIT, 0, node, t);
+    }
+    double u = 1 - air->between;
+    return (pair){u * value[0][0] + air->between * value[1][0],
+                  u * value[0][1] + air->between * value[1][1]};
+}
+
+// what the table says beyond the closed form, at a tension and an epsilon that it holds
+static pair excess(const himc_air *air, spectrum s, double t)
+{
+    himc_air there = *air;
+    double log_low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
+    there.tension = exp(log_low + (air->node + t) * log_step());
+    const double *a = himc_air_radius + air->drum;
+    there.loading =
+        (a[0] + air->between * (a[1] - a[0])) * (HIMC_AIR_DENSITY / HIMC_AIR_TABLE_FILM);
+    pair table = tabulated(air, s, air->node, t), form = closed(&there, usual_depth(), s);
+    return (pair){table.ratio - form.ratio, table.decay - form.decay};
+}
+
+// from 1 with no slope at 0 to nothing with no slope at 1
+static double fade_out(double s)
+{
+    return s < 1 ? (1 - s) * (1 - s) * (1 + 2 * s) : 0;
+}
+
+static pair correction(const himc_air *air, spectrum s)
+{
+    pair q = excess(air, s, air->along);
+    double cells = fabs(air->beyond) / log_step();
+    if (cells > 0) {
+        // the end's own slope, which may be a steep one, is lost within a cell
+        double inward = air->beyond > 0 ? -SLOPE : SLOPE,
+               kept = fade_out(cells * log_step() / FADE);
+        double run = cells < 1 ? cells * (1 - cells) * (1 - cells) / SLOPE : 0;
+        pair inside = excess(air, s, air->along + inward);
+        q.ratio = kept * q.ratio + run * (q.ratio - inside.ratio);
+        q.decay = kept * q.decay + run * (q.decay - inside.decay);
+    }
+    return (pair){air->fade * q.ratio, air->fade * q.decay};
+}
+
+// the cell of the table that is meant, or the nearest
+static void locate(himc_air *air)
+{
+    double low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
+    double at = (log(air->tension) - low) / log_step(),
+           inside = fmin(fmax(at, 0), HIMC_AIR_NODES - 1);
+    air->node = (int)fmin(inside, HIMC_AIR_NODES - 2);
+    air->along = inside - air->node;
+    air->beyond = (at - inside) * log_step();
+
+    double like =
+        air->loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY; // a head of the table's film
+    const double *a = himc_air_radius;
+    double held = fmin(fmax(like, a[0]), a[HIMC_AIR_DRUMS - 1]);
+    while (air->drum < HIMC_AIR_DRUMS - 2 && held > a[air->drum + 1])
+        air->drum++;
+    air->between = (held - a[air->drum]) / (a[air->drum + 1] - a[air->drum]);
+    air->fade = fade_out(fabs(log(like / held)) / FADE_DRUM);
+}
+
+himc_air himc_air_around(const himc_head *head, double kettle)
+{
+    double a = head->radius;
+    himc_air air = {.radius = a,
+                    .tension = head->tension / (head->density * SPEED2),
+                    .loading = HIMC_AIR_DENSITY * a / head->density,
+                    .depth = kettle / (HIMC_PI * a * a * a)};
+    locate(&air);
+    return air;
+}
+
+himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
+{
+    spectrum s = {m, n, zero};
+    pair found = closed(air, air->depth, s);
+    if (m < HIMC_AIR_ORDERS && n <= HIMC_AIR_RANKS && air->fade > 0 && fabs(air->beyond) < FADE) {
+        pair q = correction(air, s);
+        found.ratio += q.ratio;
+        found.decay += q.decay;
+    }
+    double ratio = exp(found.ratio), square = zero * zero;
+    double spring = m == 0 ? 4 * air->loading / (air->depth * square * square * air->tension) : 0;
+    return (himc_air_load){
+        .frequency = ratio,
+        .radiation = fmax(exp(found.decay) - HIMC_AIR_FLOOR, 0) * HIMC_AIR_SPEED / air->radius,
+        .mass = (1 + spring) / (ratio * ratio),
+        .stiffness = 1 + spring,
+    };
+}
+
+himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_mode *bare)
+{
+    himc_air_load load = himc_air_on(air, bare->m, bare->n, bare->zero);
+    himc_mode mode = *bare;
+    mode.frequency *= load.frequency;
+    mode.mass *= load.mass;
+    mode.stiffness *= load.stiffness;
+    double omega = 2 * HIMC_PI * mode.frequency;
+    mode.decay = fmin(himc_head_decay(head, omega, load.mass) + load.radiation, 0.9 * omega);
+    return mode;
+}

@@ -1,0 +1,59 @@
+/// air.h: what the air on both sides of a head, and the kettle, make of its modes.
+///
+/// Air moves with the head and makes it heavier, the low modes most; it carries sound away; shut in
+/// the kettle it is a spring to the modes of order m = 0. A loaded mode keeps its shape, and its
+/// stiffness T (j/a)^2 int phi^2 dS, so that a slow push and a change of tension find the same
+/// head; its mass and decay change. Without air there is nothing to call.
+///
+/// In the head's own measures a drum is three numbers, tau = T/(sigma c^2), epsilon = rho a/sigma
+/// and L/a = V/(pi a^3). A table, made once by solving the whole problem for the 23, 26, 29 and 32
+/// inch drums, serves every head of like measures; closed forms do beyond it, joined without a step
+/// or a bend in tension.
+#ifndef HIMC_AIR_H
+#define HIMC_AIR_H
+
+#include "drum/modes.h"
+
+#define HIMC_AIR_SPEED 344.0  ///< c (m/s)
+#define HIMC_AIR_DENSITY 1.21 ///< rho (kg/m^3); both as in Christian et al. 1984
+
+/// A head over its kettle, as the air sees it: constant while neither changes.
+typedef struct himc_air {
+    double radius;         ///< a (m)
+    double tension;        ///< tau
+    double loading;        ///< epsilon
+    double depth;          ///< L/a of the kettle
+    int node, drum;        ///< the cell of the table; air.c's own, as are the next
+    double along, between; ///< and where in it (0 .. 1): in log tension, in epsilon
+    double beyond;         ///< distance outside it in log tension
+    double fade;           ///< how much it still counts for this epsilon (0 .. 1)
+} himc_air;
+
+/// Volume (m^3) of a kettle of usual shape: 0.14 m^3 under a 26 inch head (Christian et al. 1984),
+/// others alike.
+HIMC_RT double himc_air_kettle(double radius);
+
+/// From half to twice the usual, or false with the value and the range.
+bool himc_air_check(double kettle, double radius, himc_error *error);
+
+/// The air around `head` (in its ranges) over a kettle of that volume (m^3, within himc_air_check).
+HIMC_RT himc_air himc_air_around(const himc_head *head, double kettle);
+
+/// What air makes of a mode.
+typedef struct himc_air_load {
+    double frequency; ///< per that of the bare head
+    double radiation; ///< decay by sound carried away (1/s)
+    double mass;      ///< modal mass per that of the bare head
+    double stiffness; ///< with the kettle's spring, per that of the bare head: 1 for m > 0
+} himc_air_load;
+
+/// For mode (m, n), whose zero is j_mn.
+HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero);
+
+/// The mode in air: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new frequency plus
+/// radiation, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic film's (Rhaouti,
+/// Chaigne & Joly 1999), S0 = 0.5 1/s the rest. Of a pair both are alike, so it may be called once
+/// for both.
+HIMC_RT himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_mode *bare);
+
+#endif

@@ -1,0 +1,238 @@
+/// grid.c: from masses and springs to modes.
+///
+/// K v = w^2 M v, by LAPACK's dsygvx: Cholesky's M = L L' (which fails if M is not positive), the
+/// standard problem of L^-1 K L^-T, its lowest eigenvalues. A membrane's K grows with its tension
+/// and its M with its density, so w = z/radius sqrt(T/sigma) with z = radius sqrt(w0^2 sigma0/T0)
+/// serves any other tension and density, as a Bessel zero does for a round head (modes.c).
+#include "drum/grid.h"
+
+#include "drum/matrix_file.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LINE 1200
+
+// what a head's file names
+typedef struct parts {
+    double tension, density;
+    matrix places, mass, stiffness;
+} parts;
+
+static void free_parts(parts *p)
+{
+    free(p->places.value);
+    free(p->mass.value);
+    free(p->stiffness.value);
+}
+
+// the file `name` beside the file `path`
+static bool beside(const char *path, const char *name, char *out, size_t size, himc_error *error)
+{
+    const char *slash = name[0] == '/' ? NULL : strrchr(path, '/');
+    int folder = slash ? (int)(slash - path) + 1 : 0;
+    int length = snprintf(out, size, "%.*s%s", folder, path, name);
+    return (length >= 0 && (size_t)length < size) ||
+           himc_error_set(error, "a file name of more than %zu characters", size - 1);
+}
+
+static bool read_item(parts *p, const char *path, const char *key, const char *value,
+                      himc_error *error)
+{
+    char file[LINE], *end;
+    double *number = strcmp(key, "tension") == 0   ? &p->tension
+                     : strcmp(key, "density") == 0 ? &p->density
+                                                   : NULL;
+    matrix *table = strcmp(key, "places") == 0      ? &p->places
+                    : strcmp(key, "mass") == 0      ? &p->mass
+                    : strcmp(key, "stiffness") == 0 ? &p->stiffness
+                                                    : NULL;
+    if (number) {
+        *number = strtod(value, &end);
+        if (*value == '\0' || *end)
+            return himc_error_set(error, "%s: %.60s, allowed a number", key, value);
+        return himc_check_range(key, *number, 1e-3, 1e5, number == &p->tension ? "N/m" : "kg/m2",
+                                error);
+    }
+    if (!table)
+        return himc_error_set(error,
+                              "%.60s: unknown, allowed tension density places mass stiffness", key);
+    if (table->value)
+        return himc_error_set(error, "%s: named twice", key);
+    return beside(path, value, file, sizeof file, error) &&
+           himc_matrix_load(table, file, table == &p->places ? 2 : 0, error);
+}
+
+static bool read_parts(parts *p, FILE *file, const char *path, himc_error *error)
+{
+    char line[LINE], key[64], value[LINE];
+    for (int number = 1; fgets(line, sizeof line, file); number++) {
+        line[strcspn(line, "#\r\n")] = '\0';
+        value[0] = '\0';
+        if (sscanf(line, "%63s %1199s", key, value) < 1)
+            continue;
+        if (!read_item(p, path, key, value, error))
+            return himc_error_prefix(error, "%s:%d", path, number);
+    }
+    return true;
+}
+
+static bool check_symmetric(const matrix *a, const char *name, himc_error *error)
+{
+    double most = 0;
+    for (int i = 0; i < a->rows * a->columns; i++)
+        most = fmax(most, fabs(a->value[i]));
+    for (int i = 0; i < a->rows; i++)
+        for (int j = 0; j < i; j++) {
+            double upper = a->value[j * a->columns + i], lower = a->value[i * a->columns + j];
+            if (fabs(upper - lower) > 1e-9 * most)
+                return himc_error_set(error, "%s: not symmetric: (%d, %d) is %g, (%d, %d) is %g",
+                                      name, j + 1, i + 1, upper, i + 1, j + 1, lower);
+        }
+    return true;
+}
+
+static bool check_matrix(const matrix *a, const char *name, const matrix *places, himc_error *error)
+{
+    if (!a->value)
+        return himc_error_set(error, "%s: missing", name);
+    if (a->rows != a->columns)
+        return himc_error_set(error, "%s: %d rows of %d numbers, allowed as many as rows", name,
+                              a->rows, a->columns);
+    if (a->rows > places->rows)
+        return himc_error_set(error, "%s: %d rows but %d places", name, a->rows, places->rows);
+    return check_symmetric(a, name, error);
+}
+
+static bool check_parts(const parts *p, himc_error *error)
+{
+    if (p->tension == 0 || p->density == 0)
+        return himc_error_set(error, "%s: missing", p->tension == 0 ? "tension" : "density");
+    if (!p->places.value)
+        return himc_error_set(error, "places: missing");
+    if (!check_matrix(&p->mass, "mass", &p->places, error) ||
+        !check_matrix(&p->stiffness, "stiffness", &p->places, error))
+        return false;
+    return p->mass.rows == p->stiffness.rows ||
+           himc_error_set(error, "mass: %d rows, stiffness: %d, allowed the same", p->mass.rows,
+                          p->stiffness.rows);
+}
+
+static himc_grid *grid_new(int places, int all, int modes)
+{
+    himc_grid *g = calloc(1, sizeof *g);
+    if (!g)
+        return NULL;
+    *g = (himc_grid){.references = 1, .places = places, .all = all, .modes = modes};
+    g->x = malloc(sizeof(double) * (size_t)all);
+    g->y = malloc(sizeof(double) * (size_t)all);
+    g->area = malloc(sizeof(double) * (size_t)places);
+    g->zero = malloc(sizeof(double) * (size_t)places); // dsygvx wants room for all
+    g->norm = malloc(sizeof(double) * (size_t)modes);
+    g->shape = malloc(sizeof(double) * (size_t)modes * (size_t)places);
+    if (g->x && g->y && g->area && g->zero && g->norm && g->shape)
+        return g;
+    himc_grid_release(g);
+    return NULL;
+}
+
+// places from the centre of the smallest box around them, per radius
+static void set_places(himc_grid *g, const matrix *places)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int i = 0; i < 2 * g->all; i++) {
+        low[i % 2] = fmin(low[i % 2], places->value[i]);
+        high[i % 2] = fmax(high[i % 2], places->value[i]);
+    }
+    for (int i = 0; i < g->all; i++) {
+        g->x[i] = places->value[2 * i] - 0.5 * (low[0] + high[0]);
+        g->y[i] = places->value[2 * i + 1] - 0.5 * (low[1] + high[1]);
+        g->radius = fmax(g->radius, hypot(g->x[i], g->y[i]));
+    }
+    for (int i = 0; i < g->all; i++) {
+        g->x[i] /= g->radius;
+        g->y[i] /= g->radius;
+    }
+}
+
+// shape k as LAPACK has normalised it, v' M v = 1, to a largest value of 1
+static void set_mode(himc_grid *g, int k, double square)
+{
+    double *v = g->shape + (size_t)k * (size_t)g->places, most = 0;
+    for (int i = 0; i < g->places; i++)
+        most = fabs(v[i]) > fabs(most) ? v[i] : most;
+    for (int i = 0; i < g->places; i++)
+        v[i] /= most;
+    double area = HIMC_PI * g->radius * g->radius;
+    g->norm[k] = 1 / (most * most * g->density * area);
+    g->zero[k] = g->radius * sqrt(square * g->density / g->tension);
+}
+
+static bool solve(himc_grid *g, parts *p, himc_error *error)
+{
+    int n = g->places, found = 0;
+    for (int i = 0; i < n; i++) {
+        g->area[i] = 0;
+        for (int j = 0; j < n; j++)
+            g->area[i] += p->mass.value[i * n + j] / (g->density * g->radius * g->radius);
+    }
+    lapack_int *failed = malloc(sizeof *failed * (size_t)n);
+    if (!failed)
+        return himc_error_set(error, "no memory for %d places", n);
+    // symmetric, so rows may be taken for columns
+    int info =
+        LAPACKE_dsygvx(LAPACK_COL_MAJOR, 1, 'V', 'I', 'L', n, p->stiffness.value, n, p->mass.value,
+                       n, 0, 0, 1, g->modes, 0, &found, g->zero, g->shape, n, failed);
+    free(failed);
+    if (info > n)
+        return himc_error_set(error, "mass: not positive: its first %d rows and columns are not",
+                              info - n);
+    if (info != 0 || found < g->modes)
+        return himc_error_set(error, "no modes found (LAPACK dsygvx: %d)", info);
+    if (!(g->zero[0] > 1e-9 * g->zero[g->modes - 1]))
+        return himc_error_set(error, "stiffness: not positive: its lowest eigenvalue is %g 1/s2",
+                              g->zero[0]);
+    for (int k = 0; k < g->modes; k++)
+        set_mode(g, k, g->zero[k]);
+    return true;
+}
+
+static himc_grid *make(parts *p, himc_error *error)
+{
+    if (!check_parts(p, error))
+        return NULL;
+    int n = p->mass.rows;
+    himc_grid *g = grid_new(n, p->places.rows, n < HIMC_GRID_MODES ? n : HIMC_GRID_MODES);
+    if (!g) {
+        himc_error_set(error, "no memory for %d places", n);
+        return NULL;
+    }
+    g->tension = p->tension;
+    g->density = p->density;
+    set_places(g, &p->places);
+    if (himc_check_range("radius of all places", g->radius, 0.05, 1, "m", error) &&
+        solve(g, p, error))
+        return g;
+    himc_grid_release(g);
+    return NULL;
+}
+
+himc_grid *himc_grid_load(const char *path, himc_error *error)
+{
+    parts p = {0};
+    himc_grid *grid = NULL;
+    FILE *file = himc_open_regular(path, error);
+    if (!file)
+        return NULL;
+    if (read_parts(&p, file, path, error)) {
+        grid = make(&p, error);
+        if (!grid)
+            himc_error_prefix(error, "%s", path);
+    }
+    fclose(file);
+    free_parts(&p);
+    return grid;
+}

@@ -1,0 +1,41 @@
+/// grid.h: a head known at places: made of masses and springs, so that any outline can be played.
+///
+/// M z'' + K z = f (2012 paper, equations 4 and 5) at N places. A head's file is text, one item a
+/// line, `#` begins a comment; file names in it are relative to it:
+///     tension 3528        the tension (N/m) and
+///     density 0.2653      mass per area (kg/m^2) that the matrices are made for
+///     places places.txt   rows of X Y (m), first the N of the matrices, then any that stand still
+///     mass mass.mtx       N x N (kg), symmetric, positive
+///     stiffness k.mtx     N x N (N/m), symmetric, positive
+/// A matrix is a Matrix Market file (coordinate or array, real or integer, general or symmetric) or
+/// N rows of N numbers. Between places a shape is interpolated linearly (modes.c), so list the rim.
+#ifndef HIMC_GRID_H
+#define HIMC_GRID_H
+
+#include "himc/base.h"
+
+#define HIMC_GRID_PLACES 4000 ///< most places
+#define HIMC_GRID_MODES 1000  ///< most modes found
+
+/// What its modes are. Constant once made; counts its references.
+typedef struct himc_grid himc_grid;
+struct himc_grid {
+    int references;
+    int places;              ///< those that move
+    int all;                 ///< and those that do not
+    int modes;               ///< in order of frequency
+    double tension, density; ///< of the file (N/m, kg/m^2)
+    double radius;           ///< of the circle around all places (m)
+    double *x, *y;           ///< from that circle's centre, per radius (all)
+    double *area;            ///< of head around each, per radius^2 (places)
+    double *zero;            ///< radius times wavenumber (modes)
+    double *norm;            ///< modal mass per density pi radius^2 (modes)
+    double *shape;           ///< (modes, places); the largest of each is 1
+};
+
+/// Reads the file and finds the modes; NULL with "file:line: ..." or what the matrices lack.
+himc_grid *himc_grid_load(const char *path, himc_error *error);
+himc_grid *himc_grid_retain(himc_grid *grid);
+void himc_grid_release(himc_grid *grid);
+
+#endif

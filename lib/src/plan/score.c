@@ -1,0 +1,379 @@
+/// score.c: a score file read in one pass: statements to commands, strokes sorted by beat.
+///
+/// Words are cut by text.c, checked by command.c; here is only what a score adds: lines for drums,
+/// the tempo map, order, and what no player can do. The tempo map is piecewise constant, so seconds
+/// are a sum of 60/bpm times beats, and its inverse the same sum walked the other way. Limits are
+/// there so that a wrong file is refused in a line rather than by the memory running out.
+/// Invariant: either the whole score is good, or nothing of it is kept.
+#include "himc/score.h"
+
+#include "base/argument.h"
+#include "base/text.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_STROKES 200000
+#define MOST_LINES 10000
+#define MOST_BYTES (64l << 20)
+#define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors' first characters
+#define CLOSEST 0.04                   // two strokes of one hand (s)
+
+/// A score being read; what came from which line is kept for messages.
+typedef struct reader {
+    himc_score *score;
+    int *stroke_line;
+    int stroke_room, tempo_room, line_room;
+    himc_command command; ///< the statement at hand
+    int line;
+    himc_error *error;
+} reader;
+
+/// Makes room for one more in an array that doubles.
+static bool grow(void *array, int count, int *room, size_t size, himc_error *error)
+{
+    if (count < *room)
+        return true;
+    int wanted = *room ? 2 * *room : 64;
+    void **slot = array;
+    void *bigger = realloc(*slot, (size_t)wanted * size);
+    if (!bigger)
+        return himc_error_set(error, "out of memory for %d lines", wanted);
+    *slot = bigger;
+    *room = wanted;
+    return true;
+}
+
+static bool add_stroke(reader *r)
+{
+    himc_score *score = r->score;
+    if (score->stroke_count == MOST_STROKES)
+        return himc_error_set(r->error, "stroke: one too many, allowed %d strokes", MOST_STROKES);
+    int room = r->stroke_room;
+    if (!grow(&r->stroke_line, score->stroke_count, &room, sizeof *r->stroke_line, r->error) ||
+        !grow(&score->strokes, score->stroke_count, &r->stroke_room, sizeof *score->strokes,
+              r->error))
+        return false;
+    r->stroke_line[score->stroke_count] = r->line;
+    score->strokes[score->stroke_count++] = r->command.stroke;
+    return true;
+}
+
+static bool add_tempo(reader *r)
+{
+    himc_score *score = r->score;
+    const himc_atom *atom = r->command.atom;
+    double beat = r->command.count > 1 ? atom[1].number : 0;
+    int i = score->tempo_count;
+    while (i > 0 && score->tempi[i - 1].beat > beat)
+        i--;
+    if (i > 0 && score->tempi[i - 1].beat == beat) {
+        score->tempi[i - 1].bpm = atom[0].number;
+        return true;
+    }
+    if (score->tempo_count == MOST_LINES)
+        return himc_error_set(r->error, "tempo: one too many, allowed %d", MOST_LINES);
+    if (!grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi, r->error))
+        return false;
+    memmove(score->tempi + i + 1, score->tempi + i,
+            (size_t)(score->tempo_count - i) * sizeof *score->tempi);
+    score->tempi[i] = (himc_tempo_change){beat, atom[0].number};
+    score->tempo_count++;
+    return true;
+}
+
+/// Commands point into themselves, so lines are copied one by one and not moved.
+static bool grow_lines(reader *r)
+{
+    himc_score *score = r->score;
+    if (score->line_count < r->line_room)
+        return true;
+    int wanted = r->line_room ? 2 * r->line_room : 16;
+    himc_score_line *bigger = malloc((size_t)wanted * sizeof *bigger);
+    if (!bigger)
+        return himc_error_set(r->error, "out of memory for %d lines", wanted);
+    for (int i = 0; i < score->line_count; i++) {
+        memcpy(bigger[i].drum, score->lines[i].drum, sizeof bigger[i].drum);
+        bigger[i].line = score->lines[i].line;
+        himc_command_copy(&bigger[i].command, &score->lines[i].command);
+    }
+    free(score->lines);
+    score->lines = bigger;
+    r->line_room = wanted;
+    return true;
+}
+
+static bool add_line(reader *r, const char *drum)
+{
+    himc_score *score = r->score;
+    if (score->line_count == MOST_LINES)
+        return himc_error_set(r->error, "one line too many, allowed %d besides strokes",
+                              MOST_LINES);
+    if (!grow_lines(r))
+        return false;
+    himc_score_line *line = &score->lines[score->line_count++];
+    snprintf(line->drum, sizeof line->drum, "%s", drum);
+    himc_command_copy(&line->command, &r->command);
+    line->line = r->line;
+    return true;
+}
+
+/// Whether `word` is the name of a command for that receiver.
+static bool is_command(himc_receiver receiver, const char *word)
+{
+    const himc_command_row *row;
+    for (int i = 0; (row = himc_command_table(i)); i++)
+        if (row->receiver == receiver && strcmp(row->name, word) == 0)
+            return true;
+    return false;
+}
+
+/// Whether an earlier line of the score made or addressed a drum of that name.
+static bool is_known_drum(const himc_score *score, const char *word)
+{
+    for (int i = 0; i < score->line_count; i++) {
+        const himc_score_line *line = &score->lines[i];
+        if (strcmp(line->drum, word) == 0 || (line->command.id == HIMC_COMMAND_MAKE_DRUM &&
+                                              strcmp(line->command.atom[0].symbol, word) == 0))
+            return true;
+    }
+    return false;
+}
+
+/// "kettle tune 110": for a drum.
+static bool read_drum_line(reader *r, const himc_atom *atom, int count)
+{
+    const himc_argument *name = himc_argument_find("NAME", NULL);
+    if (!himc_argument_accepts(name, &atom[0]))
+        return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
+    if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2, r->error))
+        return himc_error_prefix(r->error, "%s", atom[0].symbol);
+    return add_line(r, atom[0].symbol);
+}
+
+static bool read_performer_line(reader *r, const himc_atom *atom, int count)
+{
+    if (!himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
+                            r->error))
+        return false;
+    switch (r->command.id) {
+    case HIMC_COMMAND_STROKE: return add_stroke(r);
+    case HIMC_COMMAND_TEMPO: return add_tempo(r);
+    case HIMC_COMMAND_SCORE: return himc_error_set(r->error, "score: a score cannot load another");
+    default: return add_line(r, "");
+    }
+}
+
+static bool read_statement(reader *r, const himc_text_statement *s)
+{
+    int count = s->count < s->capacity ? s->count : s->capacity;
+    const himc_atom *atom = s->atom;
+    if (count == 0 || strcmp(atom[0].symbol, "comment") == 0)
+        return true;
+    if (s->overflow)
+        return himc_error_set(r->error, "more than %zu characters without a ;", s->size);
+    bool two_words = count > 1 && !is_command(HIMC_PERFORMER, atom[0].symbol);
+    if (two_words &&
+        (is_command(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
+        return read_drum_line(r, atom, count);
+    return read_performer_line(r, atom, count);
+}
+
+static bool read_all(reader *r, const char *text)
+{
+    himc_atom atoms[HIMC_COMMAND_ATOMS + 4];
+    char storage[HIMC_PATH_SIZE + 256];
+    himc_text_statement s = {.atom = atoms,
+                             .capacity = HIMC_COMMAND_ATOMS + 4,
+                             .storage = storage,
+                             .size = sizeof storage};
+    int line = 1;
+    if (strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK)) == 0)
+        text += strlen(BYTE_ORDER_MARK);
+    while (himc_text_next(&text, &line, &s)) {
+        r->line = s.line;
+        if (!read_statement(r, &s))
+            return false;
+    }
+    return true;
+}
+
+/// Beat and place in the file, to sort by.
+typedef struct sort_key {
+    double beat;
+    int index;
+} sort_key;
+
+static int by_beat(const void *a, const void *b)
+{
+    const sort_key *p = a, *q = b;
+    if (p->beat != q->beat)
+        return p->beat < q->beat ? -1 : 1;
+    return p->index - q->index;
+}
+
+static bool is_sorted(const himc_score *score)
+{
+    for (int i = 1; i < score->stroke_count; i++)
+        if (score->strokes[i].beat < score->strokes[i - 1].beat)
+            return false;
+    return true;
+}
+
+static bool sort_strokes(reader *r)
+{
+    himc_score *score = r->score;
+    size_t count = (size_t)score->stroke_count;
+    if (is_sorted(score))
+        return true;
+    sort_key *key = malloc(count * sizeof *key);
+    himc_stroke *sorted = malloc(count * sizeof *sorted);
+    int *line = malloc(count * sizeof *line);
+    if (!key || !sorted || !line) {
+        free(key), free(sorted), free(line);
+        return himc_error_set(r->error, "out of memory for %zu strokes", count);
+    }
+    for (size_t i = 0; i < count; i++)
+        key[i] = (sort_key){score->strokes[i].beat, (int)i};
+    qsort(key, count, sizeof *key, by_beat);
+    for (size_t i = 0; i < count; i++) {
+        sorted[i] = score->strokes[key[i].index];
+        line[i] = r->stroke_line[key[i].index];
+    }
+    free(key), free(score->strokes), free(r->stroke_line);
+    score->strokes = sorted;
+    r->stroke_line = line;
+    return true;
+}
+
+/// One hand cannot strike twice at once.
+static bool check_playable(reader *r)
+{
+    const himc_score *score = r->score;
+    double last[HIMC_HANDS] = {-1, -1};
+    double base = 0;
+    int tempo = 0;
+    for (int i = 0; i < score->stroke_count; i++) {
+        const himc_stroke *stroke = &score->strokes[i];
+        for (; tempo + 1 < score->tempo_count && score->tempi[tempo + 1].beat <= stroke->beat;
+             tempo++)
+            base += (score->tempi[tempo + 1].beat - score->tempi[tempo].beat) * 60 /
+                    score->tempi[tempo].bpm;
+        double seconds =
+            base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
+        r->line = r->stroke_line[i];
+        if (seconds - last[stroke->hand] < CLOSEST)
+            return himc_error_set(
+                r->error,
+                "stroke: BEAT: %g is %.3g s after the last stroke of the %s hand, allowed %g s "
+                "or more",
+                stroke->beat, seconds - last[stroke->hand], himc_hand_name(stroke->hand), CLOSEST);
+        last[stroke->hand] = seconds;
+    }
+    return true;
+}
+
+himc_score *himc_score_parse(const char *text, const char *name, himc_error *error)
+{
+    reader r = {.error = error};
+    r.score = calloc(1, sizeof *r.score);
+    bool good = r.score && grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
+    if (!good) {
+        free(r.score);
+        himc_error_set(error, "%s: out of memory", name);
+        return NULL;
+    }
+    r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
+    good = read_all(&r, text) && sort_strokes(&r) && check_playable(&r);
+    free(r.stroke_line);
+    if (good)
+        return r.score;
+    himc_error_prefix(error, "%s:%d", name, r.line);
+    himc_score_free(r.score);
+    return NULL;
+}
+
+/// The whole file as a string, owned by the caller.
+static char *read_file(FILE *file, himc_error *error)
+{
+    size_t room = 1 << 16, used = 0, got;
+    char *text = malloc(room + 1);
+    while (text && (got = fread(text + used, 1, room - used, file)) > 0) {
+        used += got;
+        if (used > MOST_BYTES) {
+            himc_error_set(error, "too long for a score, allowed %ld MiB", MOST_BYTES >> 20);
+            free(text);
+            return NULL;
+        }
+        char *bigger = used < room ? text : realloc(text, (room *= 2) + 1);
+        if (!bigger)
+            free(text);
+        text = bigger;
+    }
+    if (!text)
+        himc_error_set(error, "out of memory");
+    if (text && ferror(file))
+        himc_error_set(error, "%s", strerror(errno));
+    else if (text && memchr(text, 0, used))
+        himc_error_set(error, "not a text file");
+    else if (text) {
+        text[used] = '\0';
+        return text;
+    }
+    free(text);
+    return NULL;
+}
+
+himc_score *himc_score_load(const char *path, himc_error *error)
+{
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        himc_error_set(error, "%s: %s", path, strerror(errno));
+        return NULL;
+    }
+    char *text = read_file(file, error);
+    fclose(file);
+    if (!text) {
+        himc_error_prefix(error, "%s", path);
+        return NULL;
+    }
+    himc_score *score = himc_score_parse(text, path, error);
+    free(text);
+    return score;
+}
+
+void himc_score_free(himc_score *score)
+{
+    if (!score)
+        return;
+    free(score->strokes);
+    free(score->tempi);
+    free(score->lines);
+    free(score);
+}
+
+double himc_score_seconds(const himc_tempo_change *tempi, int count, double beat)
+{
+    double seconds = 0, from = 0;
+    for (; count > 1 && tempi[1].beat < beat; tempi++, count--) {
+        seconds += (tempi[1].beat - from) * 60 / tempi[0].bpm;
+        from = tempi[1].beat;
+    }
+    return seconds + (beat - from) * 60 / tempi[0].bpm;
+}
+
+double himc_score_beat(const himc_tempo_change *tempi, int count, double seconds)
+{
+    double from = 0;
+    for (; count > 1; tempi++, count--) {
+        double span = (tempi[1].beat - from) * 60 / tempi[0].bpm;
+        if (seconds < span)
+            break;
+        seconds -= span;
+        from = tempi[1].beat;
+    }
+    return from + seconds * tempi[0].bpm / 60;
+}

@@ -1,0 +1,80 @@
+/// track_fit.c: local cubic fits, x(u) = c0 + c1 u + c2 u^2 + c3 u^3 by least squares over frames
+/// within +-WINDOW seconds on the same side of every strike (Savitzky and Golay 1964), so noise is
+/// smoothed before it is differentiated and no impact is smeared.
+#include "plan/track_fit.h"
+
+#define WINDOW 0.025       // half width of the local fits (s)
+#define EDGE 6             // frames of the one-sided fit beside a strike ...
+#define LONGEST_EDGE 0.048 // ... and as much of a noisy capture as it takes (s) ...
+#define SURE_RATE 0.03     // ... until its rate is sure to that (m/s)
+
+// the rate at the end of a parabola through n points errs by sqrt(192 / n^3) noise / dt
+int himc_fit_edge(double noise, double rate)
+{
+    double n = cbrt(192 * pow(noise * rate / SURE_RATE, 2)), most = fmax(EDGE, LONGEST_EDGE * rate);
+    return (int)fmin(fmax(n, EDGE), most);
+}
+
+fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series)
+{
+    int reach = (int)fmax(3, WINDOW * series->rate), edge = series->edge - 1;
+    // beside a strike a noisy cubic is given more frames on its far side
+    if (edge >= EDGE && fmin(k - lo, hi - k) < reach)
+        reach = (int)fmax(reach, 1.5 * edge - fmin(k - lo, hi - k));
+    fit_window w = {k - reach < lo ? lo : k - reach, k, k + reach > hi ? hi : k + reach, 4, reach};
+    if (k == lo || k == hi) { // a parabola is not thrown as far as a cubic
+        w.order = 3;
+        w.reach = 0;
+    }
+    if (k == hi && hi < series->frames - 1 && k - edge > lo)
+        w.first = k - edge;
+    if (k == lo && lo > 0 && k + edge < hi)
+        w.last = k + edge;
+    return w;
+}
+
+// frames come into the window and leave it softly: else each would shake the fit, and with it the
+// acceleration between neighbouring frames (Cleveland 1979)
+static double weight_at(const fit_window *w, double u)
+{
+    double share = w->reach > 0 ? u / (w->reach + 1) : 0, bell = 1 - share * share;
+    return bell * bell;
+}
+
+// weighted normal equations of the powers of u and the three coordinates
+static void normal_equations(const himc_vec3 *x, const fit_window *w, double a[4][7])
+{
+    for (int i = w->first; i <= w->last; i++) {
+        double u = i - w->k, p[4] = {1, u, u * u, u * u * u}, v[3] = {x[i].x, x[i].y, x[i].z};
+        double weight = weight_at(w, u);
+        for (int r = 0; r < 4; r++) {
+            for (int c = 0; c < 4; c++)
+                a[r][c] += weight * p[r] * p[c];
+            for (int c = 0; c < 3; c++)
+                a[r][4 + c] += weight * p[r] * v[c];
+        }
+    }
+}
+
+himc_target himc_fit(const himc_vec3 *x, fit_window w, double dt)
+{
+    double a[4][7] = {{0}}, c[4][3] = {{0}};
+    int span = w.last - w.first, most = span >= 5 ? 4 : span >= 3 ? 3 : span >= 1 ? 2 : 1;
+    int order = w.order < most ? w.order : most;
+    normal_equations(x, &w, a);
+    for (int r = 0; r < order; r++) {
+        if (fabs(a[r][r]) < 1e-12)
+            return (himc_target){.x = x[w.k]};
+        for (int s = 0; s < order; s++) {
+            double f = s == r ? 0 : a[s][r] / a[r][r];
+            for (int k = 0; k < 7; k++)
+                a[s][k] -= f * a[r][k];
+        }
+    }
+    for (int r = 0; r < order; r++)
+        for (int d = 0; d < 3; d++)
+            c[r][d] = a[r][4 + d] / a[r][r];
+    return (himc_target){himc_vec3_make(c[0][0], c[0][1], c[0][2]),
+                         himc_vec3_scale(himc_vec3_make(c[1][0], c[1][1], c[1][2]), 1 / dt),
+                         himc_vec3_scale(himc_vec3_make(c[2][0], c[2][1], c[2][2]), 2 / (dt * dt))};
+}

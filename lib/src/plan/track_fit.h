@@ -1,0 +1,27 @@
+/// track_fit.h: smooth derivatives of what was sampled, one-sided beside a strike; private.
+#ifndef HIMC_TRACK_FIT_H
+#define HIMC_TRACK_FIT_H
+
+#include "base/quintic.h"
+
+/// Frames that one fit uses, `k` the one it is for, the coefficients it may have (1 .. 4), and how
+/// far from k weights fall to nothing (frames; 0: all weigh the same).
+typedef struct fit_window {
+    int first, k, last, order, reach;
+} fit_window;
+
+/// What is fitted: `frames` at `rate` (Hz), and the frames of one-sided fits beside a strike.
+typedef struct fit_series {
+    int frames, edge;
+    double rate;
+} fit_series;
+
+/// `edge` for points that shake by `noise` (m).
+int himc_fit_edge(double noise, double rate);
+/// The window of frame `k` of the stretch lo .. hi.
+fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series);
+/// Least squares polynomial through x[first] .. x[last] about frame k: position, velocity,
+/// acceleration there, `dt` (s) the frames' distance.
+himc_target himc_fit(const himc_vec3 *x, fit_window window, double dt);
+
+#endif

@@ -1,0 +1,319 @@
+/// track_posture.c: the joints of a take as targets that go with the tips.
+///
+/// Frame by frame the rotations q_i about frame k, as vectors log(q_i q_k^-1), are fitted like the
+/// tips (track_fit.c), so joints and tips lose the same noise; quintics join the frames. An arm's
+/// frames around its own strikes are left out as its tip's are, and bridged. What the capture
+/// cannot tell there, the tip's path can: it is carried on to the head before a blow, and starts
+/// after it from the stick as it really is. So the arm is bent to the tip, by the rotations of
+/// least effort
+///     min sum |theta_k|^2 / w_k  with  sum theta_k x r_k = e:   theta_k = w_k r_k x l,
+///     (sum w_k (|r_k|^2 1 - r_k r_k')) l = e,
+/// r_k the levers from the joints to the tip, w_k larger towards the stick, as a hand corrects;
+/// repeated, since it is the linear part of the way. Rates come from differences of that map.
+/// As published, joints are neither cut nor bent: a second fit, of all frames. An arm whose tip is
+/// a finger's end is no arm with a stick: bent, it would be bent out of shape, and has the natural
+/// posture instead.
+#include "plan/track_state.h"
+
+#include "body/stretch.h"
+
+#include <stdlib.h>
+
+#define BENDS 5            // Gauss-Newton steps: quadratic, from 5 cm to rounding ...
+#define MOST_BENDS 40      // ... and more, if the tip is still ...
+#define BENT 1e-8          // ... farther from its place (m)
+#define LARGEST_BEND 0.1   // of the tip, one step (m)
+#define DAMPING 1e-8       // of a straight arm (m^2)
+#define DIFFERENCE 5e-4    // step of the differences (s)
+#define EMPTY 0.15         // so far from its tip, mostly, a stick is none of the take's (m)
+#define LOOKED_AT 201      // of its frames
+#define LARGEST_WINDOW 512 // frames of one fit: 50 ms at 10 kHz
+
+static int hand_of(int joint)
+{
+    return (joint - (HIMC_LEFT_UPPER_ARM - 1)) % 2;
+}
+
+static bool is_arm(int joint)
+{
+    return joint >= HIMC_LEFT_UPPER_ARM - 1;
+}
+
+static joint_state fit_joint(const himc_pose *pose, int j, fit_window w, double dt)
+{
+    himc_vec3 turned[LARGEST_WINDOW];
+    himc_quat middle = pose[w.k].joint[j], back = himc_quat_conj(middle);
+    for (int i = w.first; i <= w.last; i++)
+        turned[i - w.first] = himc_quat_log(himc_quat_mul(pose[i].joint[j], back));
+    fit_window shifted = {0, w.k - w.first, w.last - w.first, w.order, w.reach};
+    himc_target s = himc_fit(turned, shifted, dt);
+    // the angular velocity is the rotation vector's rate but for half its turn, w = v + r x v / 2
+    himc_vec3 half = himc_vec3_scale(s.x, 0.5);
+    return (joint_state){himc_quat_unit(himc_quat_mul(himc_quat_exp(s.x), middle)),
+                         himc_vec3_add(s.v, himc_vec3_cross(half, s.v)),
+                         himc_vec3_add(s.a, himc_vec3_cross(half, s.a))};
+}
+
+// frames lo to hi, which know of no others
+static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, int lo, int hi,
+                        joint_state *joint)
+{
+    fit_series series = {track->frames, track->edge, track->rate};
+    for (int k = lo; k <= hi; k++)
+        joint[k] = fit_joint(pose, j, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
+}
+
+// stretch by stretch, as the tip of the joint's arm is cut; others in one
+static void fit_frames(himc_track *track, const himc_pose *pose, int j)
+{
+    const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
+    int gaps = h ? h->bridge_count : 0, lo = 0;
+    for (int i = 0; i <= gaps; i++) {
+        fit_stretch(track, pose, j, lo, i < gaps ? h->planned[i].last : track->frames - 1,
+                    track->joint[j]);
+        lo = i < gaps ? h->planned[i].next : 0;
+    }
+    if (track->uncut[j])
+        fit_stretch(track, pose, j, 0, track->frames - 1, track->uncut[j]);
+}
+
+// an arm's joints in the world
+typedef struct arm {
+    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of what the joint hangs on
+    himc_vec3 lever[HIMC_ARM_JOINTS];  // from the joint to the tip (m)
+    himc_vec3 tip;                     // (m)
+} arm;
+
+static arm arm_of(const himc_skeleton *skeleton, const himc_pose *pose, himc_hand hand)
+{
+    arm a;
+    himc_quat turned = pose->joint[HIMC_TRUNK - 1];
+    himc_vec3 at = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        at = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->segment[j + 1].origin));
+        a.lever[k] = at;
+        a.parent[k] = turned;
+        turned = himc_quat_mul(turned, pose->joint[j]);
+    }
+    a.tip = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->tip));
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        a.lever[k] = himc_vec3_sub(a.tip, a.lever[k]);
+    return a;
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// whether an arm that is not all known ends elsewhere than its tip in most frames
+static bool is_empty(const himc_track *track, const himc_player *player,
+                     const himc_skeleton *skeleton, himc_hand hand)
+{
+    int known = himc_player_known_arm(player, hand);
+    double off[LOOKED_AT];
+    if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
+        return false;
+    for (int i = 0; i < LOOKED_AT; i++) {
+        int f = (int)((double)(track->frames - 1) * i / (LOOKED_AT - 1));
+        himc_vec3 tip = arm_of(skeleton, &player->pose[f], hand).tip;
+        off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
+    }
+    qsort(off, LOOKED_AT, sizeof *off, compare);
+    return off[LOOKED_AT / 2] > EMPTY;
+}
+
+bool himc_track_fit_postures(himc_track *track, const himc_player *player)
+{
+    for (int j = 0; j < TRACK_JOINTS; j++) {
+        if (!player->pose || !player->known[j] || (is_arm(j) && !track->hand[hand_of(j)].present))
+            continue;
+        track->joint[j] = malloc((size_t)track->frames * sizeof *track->joint[j]);
+        if (is_arm(j))
+            track->uncut[j] = malloc((size_t)track->frames * sizeof *track->uncut[j]);
+        if (!track->joint[j] || (is_arm(j) && !track->uncut[j]))
+            return false;
+        track->known[j] = true;
+        fit_frames(track, player->pose, j);
+        track->before[j] = (joint_state){.q = track->joint[j][0].q};
+    }
+    himc_skeleton skeleton;
+    if (!player->pose || !himc_skeleton_init(&skeleton, &player->config, NULL))
+        return !player->pose;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        track->empty[hand] = is_empty(track, player, &skeleton, (himc_hand)hand);
+    return true;
+}
+
+bool himc_track_has_posture(const himc_track *track)
+{
+    for (int j = 0; j < TRACK_JOINTS; j++)
+        if (track->known[j])
+            return true;
+    return false;
+}
+
+// the first gap that does not end before frame u, by bisection
+static int gap_at(const hand_track *h, double u)
+{
+    int lo = 0, hi = h->bridge_count;
+    while (lo < hi) {
+        int mid = (lo + hi) / 2;
+        if (h->planned[mid].next > u)
+            hi = mid;
+        else
+            lo = mid + 1;
+    }
+    return lo;
+}
+
+static joint_state captured_joint(const himc_track *track, int j, double t, bool cut)
+{
+    const joint_state *joint = is_arm(j) && !cut ? track->uncut[j] : track->joint[j];
+    double u = fmin(fmax(t * track->rate, 0), track->frames - 1);
+    int from = u < track->frames - 2 ? (int)u : track->frames - 2, to = from + 1;
+    const hand_track *h = is_arm(j) && cut ? &track->hand[hand_of(j)] : NULL;
+    int i = h ? gap_at(h, u) : 0;
+    if (h && i < h->bridge_count && h->planned[i].last <= u) {
+        from = h->planned[i].last;
+        to = h->planned[i].next;
+    }
+    between b = himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
+    return himc_interpolate_joints(&b, &joint[from], &joint[to]);
+}
+
+static joint_state warped_joint(const himc_track *track, int j, double t, bool cut)
+{
+    double at[3];
+    himc_track_warp(track, t, at);
+    joint_state s = captured_joint(track, j, at[0], cut);
+    s.acceleration = himc_vec3_madd(himc_vec3_scale(s.acceleration, at[1] * at[1]), at[2], s.rate);
+    s.rate = himc_vec3_scale(s.rate, at[1]);
+    return s;
+}
+
+static double approach_time(const himc_track *track)
+{
+    return fmax(track->hand[HIMC_LEFT].approach_time, track->hand[HIMC_RIGHT].approach_time);
+}
+
+// with the way in before the first frame
+static joint_state entered_joint(const himc_track *track, int j, double t, bool cut)
+{
+    double approach = approach_time(track), since = t + 0.5 * EASE + approach;
+    if (t >= -0.5 * EASE || approach <= 0)
+        return warped_joint(track, j, t, cut);
+    joint_state first = {.q = track->joint[j][0].q};
+    between b = himc_interpolate_make(fmax(since, 0), approach);
+    return himc_interpolate_joints(&b, &track->before[j], &first);
+}
+
+// and the way out after a stop
+static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
+{
+    if (t < track->stop)
+        return entered_joint(track, j, t, cut);
+    joint_state left = entered_joint(track, j, track->stop, cut), rest = {.q = left.q};
+    rest.q = himc_quat_mul(himc_quat_exp(himc_vec3_scale(left.rate, 0.3 * SETTLE)), left.q);
+    between b = himc_interpolate_make(fmin(t - track->stop, SETTLE), SETTLE);
+    return himc_interpolate_joints(&b, &left, &rest);
+}
+
+void himc_track_approach_posture(himc_track *track, const himc_posture_motion *now)
+{
+    for (int j = 0; j < TRACK_JOINTS; j++)
+        track->before[j] = (joint_state){now->joint[j], now->rate[j], now->acceleration[j]};
+}
+
+// one step; how far the tip was from its place before it (m)
+static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip,
+                        himc_pose *pose)
+{
+    static const double share[HIMC_ARM_JOINTS] = {0.1, 0.2, 0.5, 1};
+    arm a = arm_of(skeleton, pose, hand);
+    himc_vec3 e = himc_vec3_sub(tip, a.tip);
+    double far = himc_vec3_length(e);
+    if (far > LARGEST_BEND)
+        e = himc_vec3_scale(e, LARGEST_BEND / far);
+    himc_mat3 gram = {{{DAMPING, 0, 0}, {0, DAMPING, 0}, {0, 0, DAMPING}}};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        double r[3] = {a.lever[k].x, a.lever[k].y, a.lever[k].z};
+        double square = himc_vec3_dot(a.lever[k], a.lever[k]);
+        for (int i = 0; i < 3; i++)
+            for (int n = 0; n < 3; n++)
+                gram.m[i][n] += share[k] * ((i == n ? square : 0) - r[i] * r[n]);
+    }
+    himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);
+    himc_vec3 l = himc_mat3_apply(&inverse, e);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        himc_quat *q = &pose->joint[himc_arm_joint(hand, k)];
+        himc_vec3 turn = himc_vec3_scale(himc_vec3_cross(a.lever[k], l), share[k]);
+        turn = himc_quat_rotate(himc_quat_conj(a.parent[k]), turn);
+        *q = himc_quat_unit(himc_quat_mul(himc_quat_exp(turn), *q));
+    }
+    return far;
+}
+
+static void bend_arm(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip, himc_pose *pose)
+{
+    himc_vec3 waist = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    himc_vec3 up = skeleton->segment[himc_arm_joint(hand, 0) + 1].origin;
+    himc_vec3 shoulder = himc_vec3_add(waist, himc_quat_rotate(pose->joint[HIMC_TRUNK - 1], up));
+    himc_target asked = {.x = tip};
+    tip = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
+    double far = INFINITY;
+    for (int i = 0; i < BENDS || (i < MOST_BENDS && far > BENT); i++)
+        far = bend_once(skeleton, hand, tip, pose);
+}
+
+// the joints `dt` later, going on as they move, the arms bent to the tips of that time
+static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_motion *m,
+                            const himc_target tip[HIMC_HANDS], double dt)
+{
+    himc_pose pose;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 turn =
+            himc_vec3_madd(himc_vec3_scale(m->rate[j], dt), 0.5 * dt * dt, m->acceleration[j]);
+        pose.joint[j] = himc_quat_mul(himc_quat_exp(turn), m->joint[j]);
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 x = himc_vec3_madd(himc_vec3_madd(tip[hand].x, dt, tip[hand].v), 0.5 * dt * dt,
+                                     tip[hand].a);
+        bend_arm(skeleton, (himc_hand)hand, x, &pose);
+    }
+    return pose;
+}
+
+static void bend_arms(const himc_skeleton *skeleton, const himc_target tip[HIMC_HANDS],
+                      himc_posture_motion *m)
+{
+    himc_pose before = pose_after(skeleton, m, tip, -DIFFERENCE),
+              now = pose_after(skeleton, m, tip, 0),
+              after = pose_after(skeleton, m, tip, DIFFERENCE);
+    for (int j = HIMC_LEFT_UPPER_ARM - 1; j < TRACK_JOINTS; j++) {
+        himc_quat back = himc_quat_conj(now.joint[j]);
+        himc_vec3 to = himc_quat_log(himc_quat_mul(after.joint[j], back)),
+                  from = himc_quat_log(himc_quat_mul(before.joint[j], back));
+        m->joint[j] = now.joint[j];
+        m->rate[j] = himc_vec3_scale(himc_vec3_sub(to, from), 0.5 / DIFFERENCE);
+        m->acceleration[j] =
+            himc_vec3_scale(himc_vec3_add(to, from), 1 / (DIFFERENCE * DIFFERENCE));
+    }
+}
+
+void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, double t,
+                        const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
+{
+    for (int j = 0; j < TRACK_JOINTS; j++) {
+        if (!track->known[j] || (tip && is_arm(j) && track->empty[hand_of(j)]))
+            continue;
+        joint_state s = played_joint(track, j, t, tip != NULL);
+        motion->joint[j] = s.q;
+        motion->rate[j] = s.rate;
+        motion->acceleration[j] = s.acceleration;
+    }
+    if (tip)
+        bend_arms(skeleton, tip, motion);
+}

@@ -1,0 +1,72 @@
+/// Places of drumheads and spots of strokes.
+#include "unity.h"
+
+#include "plan/planner.h"
+#include "base/head_frame.h"
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void test_positive_tilt_lifts_the_far_side(void)
+{
+    himc_head_frame place = {{0.7, 0.1, 0.85}, 0.2, 0.3};
+    TEST_ASSERT_TRUE(himc_head_frame_to_world(&place, 0.2, 0).z > 0.85);
+    TEST_ASSERT_TRUE(himc_head_frame_to_world(&place, -0.2, 0).z < 0.85);
+}
+
+static void test_normal_is_square_to_the_head(void)
+{
+    himc_head_frame place = {{0.7, 0.1, 0.85}, 0.3, 0.3};
+    himc_vec3 n = himc_head_frame_normal(&place);
+    himc_vec3 x = himc_vec3_sub(himc_head_frame_to_world(&place, 1, 0), place.center);
+    himc_vec3 y = himc_vec3_sub(himc_head_frame_to_world(&place, 0, 1), place.center);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0, himc_vec3_dot(n, x));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0, himc_vec3_dot(n, y));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1, himc_vec3_dot(n, himc_vec3_cross(x, y)));
+}
+
+static void test_from_world_undoes_to_world(void)
+{
+    himc_head_frame place = {{0.7, -0.4, 0.9}, -0.25, 0.3};
+    himc_vec3 w = himc_vec3_madd(himc_head_frame_to_world(&place, 0.11, -0.07), 0.05,
+                                 himc_head_frame_normal(&place));
+    himc_vec3 p = himc_head_frame_from_world(&place, w);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-14, 0.11, p.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-14, -0.07, p.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-14, 0.05, p.z);
+}
+
+static void test_spots_lie_towards_the_player_each_hand_on_its_side(void)
+{
+    himc_stroke s = {.hand = HIMC_LEFT, .spot = HIMC_SPOT_NORMAL};
+    double x, y;
+    himc_stroke_spot(&s, 0.3, &x, &y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, -0.225, x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.015, y);
+    s.hand = HIMC_RIGHT, s.spot = HIMC_SPOT_RIM;
+    himc_stroke_spot(&s, 0.3, &x, &y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, -0.276, x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, -0.015, y);
+    s.spot = HIMC_SPOT_CENTER;
+    himc_stroke_spot(&s, 0.3, &x, &y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0, x);
+    s.spot = HIMC_SPOT_XY, s.x = 0.1, s.y = 0.2;
+    himc_stroke_spot(&s, 0.3, &x, &y);
+    TEST_ASSERT_EQUAL_DOUBLE(0.1, x);
+    TEST_ASSERT_EQUAL_DOUBLE(0.2, y);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_positive_tilt_lifts_the_far_side);
+    RUN_TEST(test_normal_is_square_to_the_head);
+    RUN_TEST(test_from_world_undoes_to_world);
+    RUN_TEST(test_spots_lie_towards_the_player_each_hand_on_its_side);
+    return UNITY_END();
+}
