@@ -3,6 +3,7 @@
 # settings, to override on the command line: make ARCH=-march=native, make install PREFIX=/usr
 BUILD     ?= build
 PREFIX    ?= /usr/local
+LIBDIR    ?= $(PREFIX)/lib
 PDEXTRA   ?= $(PREFIX)/lib/pd-externals
 UNITY_DIR ?= build/unity/src
 ARCH      ?=
@@ -16,14 +17,21 @@ endif
 # what every C file is compiled with; CPPFLAGS, CFLAGS and LDFLAGS of the user come last
 OPTIMIZE = -O2 -g $(ARCH)
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wmissing-prototypes
-COMPILE  = $(CC) -std=c17 $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -ffp-contract=off -fPIC $(SANITIZE) \
-           -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
+COMPILE  = $(CC) -std=c17 $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interposition -ffp-contract=off \
+           -fPIC $(SANITIZE) -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
-LIBS     = -Wl,--as-needed -lode -llo -lsndfile -llapacke -llapack -lblas -lpthread -lm
+# what the library needs, and what the program needs beside it
+LIB_LIBS = -lode -llo -llapacke -llapack -lblas -lpthread -lm
+LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
 
 # what is built from what is there
+version    = $(shell sed -n 's/.*define HIMC_VERSION_$(1) //p' lib/himc/base.h)
+MAJOR     := $(call version,MAJOR)
+VERSION   := $(MAJOR).$(call version,MINOR).$(call version,PATCH)
 LIBRARY   := $(BUILD)/libhimc.a
+SHARED    := $(BUILD)/libhimc.so.$(VERSION)
+PKGCONFIG := $(BUILD)/himc.pc
 PROGRAM   := $(BUILD)/bin/himc
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
@@ -56,22 +64,26 @@ endif
 .DELETE_ON_ERROR:
 
 ##@ Build
-all: $(if $(wildcard $(VIEWER)),$(VIEWER)) $(LIBRARY) $(if $(TOOL_O),$(PROGRAM)) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
+all: $(if $(wildcard $(VIEWER)),$(VIEWER)) $(LIBRARY) $(SHARED) $(PKGCONFIG) $(PROGRAM) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
 
 install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
 	test ! -x $(VIEWER) || install $(VIEWER) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib
+	install -m 644 $(LIBRARY) $(SHARED) $(DESTDIR)$(LIBDIR)
+	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(LIBDIR)/libhimc.so.$(MAJOR)
+	ln -sf libhimc.so.$(MAJOR) $(DESTDIR)$(LIBDIR)/libhimc.so
+	install -m 644 $(PKGCONFIG) $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
 	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
 	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
 
 uninstall: ## remove what `make install` put there
-	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/bin/himc-viewer $(DESTDIR)$(PREFIX)/lib/libhimc.a $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/bin/himc-viewer $(DESTDIR)$(LIBDIR)/libhimc.* \
+	    $(DESTDIR)$(LIBDIR)/pkgconfig/himc.pc $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
 
 clean: ## remove all that was built
 	rm -rf build
@@ -153,7 +165,12 @@ manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/m
 lint: ## formatting, warnings as errors, cppcheck, the one-way order of the rooms
 	@tools/deps.sh tools/deps.txt tools/deps-lint.txt
 	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
-	@tools/lint.sh build/lint/libhimc.a $(SOURCES)
+	@tools/lint.sh build/lint $(SOURCES)
+
+reference: ## the public headers as web pages, build/reference/index.html (doxygen); no warning is let pass
+	@tools/deps.sh tools/deps-reference.txt
+	@mkdir -p $(BUILD)
+	doxygen docs/Doxyfile
 
 format: ## let clang-format lay out all C files
 	@tools/deps.sh tools/deps-lint.txt
@@ -163,7 +180,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
 .PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
-        figures check-figures air-table manual lint format help
+        reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -172,6 +189,16 @@ say = @mkdir -p $(@D) $(if $(V),,&& echo "$(1) $@")
 $(LIBRARY): $(LIB_O)
 	$(call say,ar  )
 	$(Q)rm -f $@ && ar rcs $@ $^
+
+$(SHARED): $(LIB_O)
+	$(call say,link)
+	$(Q)$(LINK) -shared -Wl,-soname,libhimc.so.$(MAJOR) -Wl,-Bsymbolic-functions -Wl,-z,defs -Wl,--as-needed $^ $(LIB_LIBS) -o $@
+
+# made anew each time, since it holds paths of the command line; touched only when it changes
+$(PKGCONFIG): tools/himc.pc.in FORCE
+	@mkdir -p $(@D)
+	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|$(LIB_LIBS)|' $< >$@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
 $(BUILD)/lib/%.o: lib/src/%.c
 	$(call say,cc  )

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Looks at the sources as a reviewer would, after a build with warnings as errors. Exit status 1 if anything must change.
-#   tools/lint.sh LIBRARY.a FILE...
-library=$1
+#   tools/lint.sh BUILD FILE...
+build=$1
 shift
 faults=0
 check() {
@@ -14,15 +14,32 @@ no_stray_whitespace() {
     ! git grep --untracked -nIE '[[:blank:]]+$|^ *	' -- . ':!Makefile' ':!*/Makefile' ':!*.mk' ':!*.pd' ':!docs/figures/*.svg' ':!mocap'
 }
 prefixed_symbols() {
-    nm -g --defined-only "$library" | awk 'NF == 3 && $3 !~ /^himc_/ { print "no himc_ prefix: " $3; bad = 1 } END { exit bad }'
+    nm -g --defined-only "$build/libhimc.a" | awk 'NF == 3 && $3 !~ /^himc_/ { print "no himc_ prefix: " $3; bad = 1 } END { exit bad }'
+}
+rooms() {
+    nm -A -g "$build"/lib/*/*.o | awk -f tools/rooms.awk
+}
+door() {
+    awk -f tools/door.awk lib/himc/*.h lib/src/*/*.[ch] tools/*.[ch] tools/*/*.[ch] mocap/*.[ch] viewer/*.[ch] \
+        pd-externals/*.[ch] docs/examples/*.c
+}
+# the shared library shows the functions of the public headers and nothing else
+shared_symbols() {
+    nm -D --defined-only "$build"/libhimc.so.* | sed 's/.* //' | sort >"$build/shown"
+    sed 's|//.*||' lib/himc/*.h | grep -E '^[a-zA-Z].*himc_[a-z0-9_]+\(' | grep -vE '^(static|HIMC_RT static|typedef)' |
+        sed -E 's/.*[ *](himc_[a-z0-9_]+)\(.*/\1/' | sort >"$build/declared"
+    diff "$build/declared" "$build/shown"
 }
 
 check "layout (make format mends it)" clang-format --dry-run -Werror "$@"
 check "stray blanks and tabs" no_stray_whitespace
-check "the rooms and who knows what" awk -f tools/rooms.awk "$@"
+check "calls between rooms and files, and who knows which library" rooms
+check "the public headers" door
+check "symbols of the shared library" shared_symbols
 check "names the library shows its host" prefixed_symbols
 check "cppcheck" cppcheck -q -j2 --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
-    --suppress=uninitvar --suppress=legacyUninitvar --suppress=missingInclude --suppress=checkersReport -Ilib lib/src tools pd-externals
+    --suppress=uninitvar --suppress=legacyUninitvar --suppress=missingInclude --suppress=checkersReport -Ilib -Ilib/src \
+    lib/src tools pd-externals
 check "sizes" awk -f tools/sizes.awk "$@"
 
 [ $faults = 0 ] && echo "lint: clean"

@@ -1,8 +1,6 @@
-# Holds the library to its plan: includes point one way, and outside libraries are known in one place each.
-#   awk -f tools/rooms.awk lib/himc/*.h lib/src/*.[ch] pd-externals/*.[ch] tools/*.[ch]
-#
-# The order of the rooms is the order of the includes in lib/himc/himc.h. A room is a public header, its source, and the
-# private files these include (with their sources); what it includes must stand before it. Prints one line per fault.
+# Holds the library to its plan, from its object files: calls between the rooms go one way, no file calls in a circle.
+#   nm -A -g build/lib/*/*.o | awk -f tools/rooms.awk
+# The rooms are the folders of lib/src, in the order of the data flow. Prints one line per fault.
 
 function fault(text)
 {
@@ -10,75 +8,70 @@ function fault(text)
     faults++
 }
 
-# follows what `file` includes on behalf of `room`
-function walk(file, room,    n, i, parts, name, stem)
-{
-    if ((room, file) in seen)
-        return
-    seen[room, file] = 1
-    n = split(includes[file], parts, "\n")
-    for (i = 1; i < n; i++) {
-        name = parts[i]
-        if (name ~ /^"himc\//) {
-            stem = substr(name, 7, length(name) - 9)
-            if (stem != "himc" && rank[stem] > rank[room])
-                fault(file ": " room " comes before " stem " in himc.h and may not include it")
-            if (pure[room])
-                walk("lib/himc/" stem ".h", room)
-        } else if (name ~ /^"/) {
-            stem = substr(name, 2, length(name) - 4)
-            walk("lib/src/" stem ".h", room)
-            walk("lib/src/" stem ".c", room)
-        } else if (pure[room] && name !~ /^<(math|stdlib|string|stdint|stdbool|stddef|stdarg|stdio|float|ctype|assert)\.h>$/)
-            fault(file ": " room " needs the C library and libm alone, not " name)
-    }
-}
-
 BEGIN {
-    # who may know which outside library
-    home["<ode/"] = "^lib/src/character"
-    home["<lo/"] = "^(lib/src/osc|viewer/|tests/)"
-    home["<sndfile"] = "^tools/"
-    home["m_pd.h"] = "^pd-externals/"
-    # rooms that can be embedded anywhere
-    pure["modes"] = pure["bank"] = pure["membrane"] = pure["contact"] = 1
+    rooms = split("base body capture plan control drum performance osc", order, " ")
+    for (i = 1; i <= rooms; i++)
+        rank[order[i]] = i
+    # which outside library is known to which files
+    only["^d(World|Body|Joint|Mass|Geom|Init|Close|AllocateODE|SetAlloc|SetFree|SetRealloc)"] = "^body/character$"
+    only["^lo_"] = "^osc/"
+    only["^(LAPACKE|cblas)_"] = "^(body|capture|control|drum)/"
+    only["^(socket|bind|sendto|recvfrom|pthread_create)$"] = "^osc/"
+    # a host's process and its terminal are not the library's
+    only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
+    # these may be embedded anywhere: they and all that they call need libm and the C library alone
+    alone = "^drum/(membrane|contact|modes|bank)"
 }
 
-FNR == 1 {
-    files[++count] = FILENAME
-}
-
-/^ *# *include/ {
-    name = $0
-    sub(/^ *# *include */, "", name)
-    sub(/[>"][^>"]*$/, substr(name, 1, 1) == "<" ? ">" : "\"", name)
-    includes[FILENAME] = includes[FILENAME] name "\n"
-    for (library in home)
-        if (index(name, library) && FILENAME !~ home[library])
-            fault(FILENAME ":" FNR ": only files like " home[library] " may include " name)
-    if (FILENAME == "lib/himc/himc.h")
-        rank[substr(name, 7, length(name) - 9)] = ++rooms
-}
-
-# a library does not end its host, nor talk to its terminal
-FILENAME ~ /^lib\// && /(^|[^a-z_])(exit|abort|printf|puts|perror) *\(/ && !/^ *(\/\/|\*)/ && !/format\(printf/ {
-    fault(FILENAME ":" FNR ": no exit, abort or printing in lib/")
+{
+    file = $1
+    sub(/\.o:.*/, "", file)
+    sub(/.*\/lib\//, "", file)
+    files[file]
+    kind = $(NF - 1)
+    symbol = $NF
+    if (kind == "U") {
+        needs[file, symbol]
+        for (pattern in only)
+            if (symbol ~ pattern && file !~ only[pattern])
+                fault("lib/src/" file ".c: calls " symbol ", which only files like " only[pattern] " may")
+        if (symbol ~ /^(lo_|LAPACKE_|cblas_|dWorld|dBody|dJoint|socket$|pthread_create$)/)
+            outside[file] = symbol
+    } else if (kind ~ /^[TDRBV]$/)
+        home[symbol] = file
 }
 
 END {
-    if (!rooms) {
-        fault("lib/himc/himc.h: missing, or includes no rooms")
-        exit 1
+    for (pair in needs) {
+        split(pair, p, SUBSEP)
+        to = home[p[2]]
+        if (to == "" || to == p[1])
+            continue
+        calls[p[1], to]
+        from_room = p[1]; sub(/\/.*/, "", from_room)
+        to_room = to; sub(/\/.*/, "", to_room)
+        if (rank[to_room] > rank[from_room])
+            fault("lib/src/" p[1] ".c: calls " p[2] " of a later room, " to_room)
     }
-    for (i = 1; i <= count; i++)
-        if (files[i] ~ /^lib\/himc\// && files[i] != "lib/himc/himc.h") {
-            room = substr(files[i], 10, length(files[i]) - 11)
-            if (!(room in rank))
-                fault(files[i] ": not included by lib/himc/himc.h")
-            else {
-                walk(files[i], room)
-                walk("lib/src/" room ".c", room)
-            }
-        }
+    # whom a file reaches, directly or not
+    for (pair in calls)
+        reach[pair]
+    for (k in files)
+        for (i in files)
+            if ((i, k) in reach)
+                for (j in files)
+                    if ((k, j) in reach)
+                        reach[i, j]
+    for (f in files) {
+        if ((f, f) in reach)
+            fault("lib/src/" f ".c: stands in a circle of calls between files")
+        if (f ~ alone)
+            for (g in outside)
+                if (g == f || (f, g) in reach)
+                    fault("lib/src/" f ".c: needs " outside[g] " (" g "), allowed libm and the C library")
+        room = f
+        sub(/\/.*/, "", room)
+        count[room]++
+    }
     exit faults > 0
 }

@@ -1,21 +1,21 @@
-# Sizes worth a second look, as remarks: functions over 60 lines, files over 400, comments over 100 columns.
-function remark(text)
-{
-    print "remark: " text
-}
-
+# Sizes of functions and folders of the library. Faults: median over 12 lines, 90 % over 25, one over 60; a folder of more than
+# 30 files. Remarks: files over 800 lines, comments over 100 columns.
 function finish()
 {
-    if (lines > 400)
-        remark(file ": " lines " lines, better 400 at most")
+    if (lines > 800)
+        print "remark: " file ": " lines " lines, better 800 at most"
     if (wide)
-        remark(file ": " wide " lines wider than 100 columns")
+        print "remark: " file ": " wide " lines wider than 100 columns"
     wide = 0
 }
 
 FNR == 1 {
     finish()
-    file = FILENAME
+    file = folder = FILENAME
+    sub(/\/[^\/]*$/, "", folder)
+    if (folder ~ /^lib\//)
+        held[folder]++
+    library = FILENAME ~ /^lib\//
 }
 
 {
@@ -27,17 +27,28 @@ FNR == 1 {
 /^[a-zA-Z].*\(/ { name = $0; sub(/\(.*/, "", name); sub(/.*[ *]/, "", name) }
 /^{/ { start = FNR }
 /^}$/ && start {
-    length_of[++functions] = FNR - start - 1
-    if (FNR - start - 1 > 60)
-        remark(FILENAME ":" start ": " name " has " FNR - start - 1 " lines, better 60 at most")
+    if (library)
+        length_of[++functions] = FNR - start - 1
+    if (FNR - start - 1 > 60) {
+        print FILENAME ":" start ": " name " has " FNR - start - 1 " lines, allowed 60"
+        faults += library
+    }
     start = 0
 }
 
 END {
     finish()
     sort(length_of, functions)
-    if (functions)
-        print functions " functions, median " length_of[int((functions + 1) / 2)] " lines, longest " length_of[functions]
+    median = length_of[int((functions + 1) / 2)]
+    most = length_of[int(0.9 * functions)]
+    print functions " functions in lib, median " median " lines, 90 % " most ", longest " length_of[functions]
+    faults += median > 12 || most > 25
+    for (folder in held)
+        if (held[folder] > 30) {
+            print folder ": " held[folder] " files, allowed 30"
+            faults++
+        }
+    exit faults > 0
 }
 
 # insertion sort, so that any awk will do
