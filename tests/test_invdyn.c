@@ -1,7 +1,7 @@
 /// test_invdyn.c: inverse and forward dynamics are mirrors; both against statics by hand and
 /// differences of motion.
 #include "body/character.h"
-#include "himc/body.h"
+#include "body/dynamics.h"
 #include "body/posture.h"
 
 #include "bodies.h"

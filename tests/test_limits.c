@@ -1,6 +1,6 @@
 /// test_limits.c: the mean rotation, ellipsoids and boxes of motion whose spread is known, and the
 /// nearest point against all that is known of it.
-#include "himc/body.h"
+#include "body/limits.h"
 
 #include "bodies.h"
 #include "unity.h"

@@ -2,6 +2,7 @@
 /// tips get back, how fast a joint returns, when it has come to its bounds anew; and the table of
 /// strength.
 #include "control/controller.h"
+#include "body/dynamics.h"
 
 #include "control/limit_torque.h"
 

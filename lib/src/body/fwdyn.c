@@ -14,7 +14,7 @@
 ///     alpha = K (-n - H a + D alpha_p),
 /// so the parent feels, beside A and b, the inertia E = D - D K D, the coupling G = D K H and the
 /// moment D K n. Then all segments take part, since the legs have servos as well.
-#include "himc/body.h"
+#include "body/dynamics.h"
 
 #define UPPER_END HIMC_LEFT_UPPER_LEG // segments 1 .. UPPER_END - 1 are trunk, neck, head and arms
 
@@ -94,22 +94,22 @@ static void resist(himc_articulation *art, int i, const himc_mat3 *d, const himc
 {
     add_to(j, d, 1);
     art->inverse[i] = himc_mat3_inverse_symmetric(j);
-    art->resist[i] = *d;
-    art->share[i] = himc_mat3_mul(d, &art->inverse[i]);
-    art->turn[i] = himc_mat3_mul(&art->share[i], h);
+    art->resistance[i] = *d;
+    art->transfer[i] = himc_mat3_mul(d, &art->inverse[i]);
+    art->parent_coupling[i] = himc_mat3_mul(&art->transfer[i], h);
 }
 
 // E and G of segment `i`, moved to its parent's joint at -rx
 static void pass_moments(const himc_articulation *art, int i, const himc_mat3 *rx, himc_mat3 *j,
                          himc_mat3 *h)
 {
-    himc_mat3 e = himc_mat3_mul(&art->share[i], &art->resist[i]);
-    himc_mat3 moved = mul_transposed(&art->turn[i], rx), back = transpose(&moved);
-    add_to(j, &art->resist[i], 1);
+    himc_mat3 e = himc_mat3_mul(&art->transfer[i], &art->resistance[i]);
+    himc_mat3 moved = mul_transposed(&art->parent_coupling[i], rx), back = transpose(&moved);
+    add_to(j, &art->resistance[i], 1);
     add_to(j, &e, -1);
     add_to(j, &moved, 1);
     add_to(j, &back, 1);
-    add_to(h, &art->turn[i], 1);
+    add_to(h, &art->parent_coupling[i], 1);
 }
 
 static void articulate(const himc_skeleton *skeleton, const himc_body_state *s,
@@ -127,7 +127,7 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s,
         } else {
             art->inverse[i] = himc_mat3_inverse_symmetric(&j[i]);
         }
-        art->couple[i] = h[i];
+        art->coupling[i] = h[i];
         himc_mat3 inverse_h = himc_mat3_mul(&art->inverse[i], &h[i]);
         himc_mat3 turned = transposed_mul(&h[i], &inverse_h);
         art->mass[i] = m[i];
@@ -192,14 +192,15 @@ static void gather(const himc_skeleton *skeleton, const himc_body_state *s,
             continue;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
         himc_vec3 force =
-            himc_vec3_add(b[i].force, himc_mat3_apply_transposed(&art->couple[i], alpha_free[i]));
+            himc_vec3_add(b[i].force, himc_mat3_apply_transposed(&art->coupling[i], alpha_free[i]));
         b[p].moment = himc_vec3_add(b[p].moment, torque[i - 1]);
         force = himc_vec3_add(force, himc_mat3_apply(&art->mass[i], centripetal(s->spin[p], r)));
         b[p].force = himc_vec3_add(b[p].force, force);
         b[p].moment = himc_vec3_add(b[p].moment, himc_vec3_cross(r, force));
         if (art->resists) {
-            himc_vec3 turned = himc_mat3_apply(&art->turn[i], centripetal(s->spin[p], r));
-            turned = himc_vec3_add(turned, himc_mat3_apply(&art->share[i], b[i].moment));
+            himc_vec3 turned =
+                himc_mat3_apply(&art->parent_coupling[i], centripetal(s->spin[p], r));
+            turned = himc_vec3_add(turned, himc_mat3_apply(&art->transfer[i], b[i].moment));
             b[p].moment = himc_vec3_add(b[p].moment, turned);
         }
     }
@@ -230,11 +231,11 @@ void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state 
             a[i] = himc_vec3_add(a[i], centripetal(s->spin[p], r));
         }
         himc_vec3 pulled =
-            himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->couple[i], a[i]));
+            himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->coupling[i], a[i]));
         alpha[i] = himc_vec3_sub(alpha[i], pulled);
         if (art->resists) // K D alpha_p, K D being the transpose of D K
             alpha[i] =
-                himc_vec3_add(alpha[i], himc_mat3_apply_transposed(&art->share[i], alpha[p]));
+                himc_vec3_add(alpha[i], himc_mat3_apply_transposed(&art->transfer[i], alpha[p]));
         relative[i - 1] = himc_vec3_sub(alpha[i], alpha[p]);
     }
 }
@@ -250,7 +251,7 @@ double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state 
         // goes to the parent
         moment = himc_vec3_cross(himc_vec3_sub(end, s->origin[i]), force);
         alpha[i] = himc_mat3_apply(&art->inverse[i], moment);
-        force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->couple[i], alpha[i]));
+        force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->coupling[i], alpha[i]));
         end = s->origin[i];
         chain[count++] = i;
     }
@@ -258,7 +259,7 @@ double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state 
     while (count-- > 0) {
         int i = chain[count];
         himc_vec3 to = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];
-        himc_vec3 pulled = himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->couple[i], a));
+        himc_vec3 pulled = himc_mat3_apply(&art->inverse[i], himc_mat3_apply(&art->coupling[i], a));
         himc_vec3 turn = himc_vec3_sub(alpha[i], pulled);
         a = himc_vec3_add(a, himc_vec3_cross(turn, himc_vec3_sub(to, s->origin[i])));
     }

@@ -5,7 +5,7 @@
 /// its children ask, give the moment that its joint must pass. Three components a joint, so no
 /// axes: the torque is a vector in the world frame. Fwdyn.c is the mirror; a test puts the
 /// torques of one into the other and gets the accelerations back.
-#include "himc/body.h"
+#include "body/dynamics.h"
 
 typedef struct motion {
     himc_vec3 angular, linear; // acceleration of the segment, and of its joint

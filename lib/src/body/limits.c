@@ -11,7 +11,7 @@
 /// where t > 0 makes it lie on the surface: one root of a function that falls, by bisection
 /// (Eberly, Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid, 2013).
 /// Invariant: whatever the radii, nothing is divided by less than THINNEST.
-#include "himc/body.h"
+#include "body/limits.h"
 
 #include "base/euler.h"
 #include "base/rotations.h"

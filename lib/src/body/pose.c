@@ -44,8 +44,8 @@ void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *s)
     complete_tips(skeleton, s);
 }
 
-void himc_pose_to_state(const himc_skeleton *skeleton, const himc_pose *pose,
-                        const himc_vec3 rate[HIMC_JOINTS], himc_body_state *s)
+void himc_pose_to_state(const himc_skeleton *skeleton, const himc_pose *pose, const himc_vec3 *rate,
+                        himc_body_state *s)
 {
     s->orientation[0] = himc_quat_identity();
     s->spin[0] = himc_vec3_make(0, 0, 0);

@@ -16,6 +16,7 @@
 #include "body/posture.h"
 
 #include "base/difference.h"
+#include "base/limb_frame.h"
 
 #define STICK_RISE 2.6        // stick's elevation per metre of the tip's height (rad/m)
 #define STICK_MOST 1.25       // it never stands steeper (rad)
@@ -237,9 +238,9 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
     for (int k = 0; k < 3; k++) {
         himc_vec3 x[HIMC_HANDS];
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            x[hand] = himc_target_after(&tip[hand], (k - 1) * DIFFERENCE).x;
+            x[hand] = himc_target_after(&tip[hand], (k - 1) * HIMC_DIFFERENCE_STEP).x;
         himc_posture now = *posture;
-        now.trunk_posture = bearing_after(&posture->trunk_posture, (k - 1) * DIFFERENCE);
+        now.trunk_posture = bearing_after(&posture->trunk_posture, (k - 1) * HIMC_DIFFERENCE_STEP);
         himc_posture_at(&now, x, &pose[k]);
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {

@@ -196,7 +196,7 @@ void himc_posture_regression_moving(const himc_posture_regression *regression,
     himc_pose pose[3];
     himc_quat own = himc_quat_mul(himc_quat_conj(player->usual), player->mean.joint[TRUNK]);
     for (int i = 0; i < 3; i++) {
-        double dt = (i - 1) * DIFFERENCE;
+        double dt = (i - 1) * HIMC_DIFFERENCE_STEP;
         himc_vec3 then[TAPS][HIMC_HANDS];
         pose[i] = player->mean;
         pose[i].joint[TRUNK] = himc_quat_mul(joint_after(motion, TRUNK, dt), own);
