@@ -1,11 +1,11 @@
 /// test_character.c: the engine's body against inverse dynamics, a compound pendulum, effective
 /// mass, and itself.
 ///
-/// Two habits of the engine show. It keeps joints by their velocities, so that centripetal forces
-/// come a step late: of a state just placed the first steps are wrong by w x (w x r), and the
-/// mirror is held up after a dozen. And its gyroscopic term is implicit: it brakes the roll of the
-/// thin stick (3e-6 kg m^2 about its length, a hundred times more across), so spins here are those
-/// of strokes.
+/// Two properties of the engine have an effect here. It constrains joints by their velocities, so
+/// centripetal forces act one step late: after a state is set, the first steps have an error of w x
+/// (w x r), so the comparison begins after a dozen steps. And its gyroscopic term is implicit: it
+/// brakes the roll of the thin stick (3e-6 kg m^2 about its length, a hundred times more across), so
+/// the spins here are those of strokes.
 #define _POSIX_C_SOURCE 200809L
 #include "body/character.h"
 #include "control/controller.h"
