@@ -78,8 +78,8 @@ static void dense(const himc_arm_jacobian *j, double a[3][COLUMNS])
     }
 }
 
-// (J'J + lambda^2 W^-1) x = J'e by Gauss elimination with pivots: the 12 x 12 form, where the module
-// uses the 3 x 3 form
+// (J'J + lambda^2 W^-1) x = J'e by Gauss elimination with pivots: the 12 x 12 form, where the
+// module uses the 3 x 3 form
 static void dense_damped(double a[3][COLUMNS], const double weight[HIMC_ARM_JOINTS], double lambda,
                          const double e[3], double x[COLUMNS])
 {

@@ -183,7 +183,8 @@ static himc_vec3 interpolated_tip(const himc_posture_regression_take *take, doub
     return himc_vec3_madd(x, frame - (int)frame, himc_vec3_sub(next, x));
 }
 
-// at the least sum |u - (W + D) phi|^2 + |D|^2 the derivative is zero: sum phi (u - (W + D) phi) = D
+// at the least sum |u - (W + D) phi|^2 + |D|^2 the derivative is zero: sum phi (u - (W + D) phi) =
+// D
 static void test_a_correction_is_a_ridge_regression_with_a_ridge_of_one(void)
 {
     himc_error error = {""};

@@ -1,6 +1,6 @@
 /// bench.c: `himc bench`: the speed of one core. It measures a step of the whole performance
-/// (control, contact, one drum) and one of the physics engine alone on the same body; the modes of a
-/// drumhead and the performers with their drums that one core plays in real time.
+/// (control, contact, one drum) and one of the physics engine alone on the same body; the modes of
+/// a drumhead and the performers with their drums that one core plays in real time.
 ///
 /// It measures processor time, not elapsed time, and each figure is the median of five runs, so
 /// other programs on the machine have little effect.

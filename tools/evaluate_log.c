@@ -188,8 +188,8 @@ static void name_columns(char *text, size_t size)
         used += (size_t)snprintf(text + used, size - used, ",%s", columns[i].name);
 }
 
-// reads all complete rows; `*end` is the end of the last one. A file that is not a log is refused and
-// stays unchanged
+// reads all complete rows; `*end` is the end of the last one. A file that is not a log is refused
+// and stays unchanged
 static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t *end,
                       himc_error *error)
 {

@@ -32,9 +32,9 @@ typedef struct evaluate_log {
     FILE *stream; ///< NULL without a log
 } evaluate_log;
 
-/// Reads the existing rows into `table` (trials above its number are skipped) and opens the file for
-/// appending. An incomplete last row, from an interruption, is removed. Does nothing if `path` is
-/// NULL. False with file:line.
+/// Reads the existing rows into `table` (trials above its number are skipped) and opens the file
+/// for appending. An incomplete last row, from an interruption, is removed. Does nothing if `path`
+/// is NULL. False with file:line.
 bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, himc_error *error);
 /// Appends a row and flushes it. False with the reason.
 bool evaluate_log_add(evaluate_log *log, const trial_table *table, int index, himc_error *error);

@@ -13,7 +13,8 @@ typedef struct pool {
     size_t result_size; ///< (bytes) at most POOL_RESULT
     /// Does one item, in a separate process without shared state; false with the reason.
     bool (*work)(void *user, int item, void *result, himc_error *error);
-    /// Receives a result in the calling process, in any order; false with the reason stops all work.
+    /// Receives a result in the calling process, in any order; false with the reason stops all
+    /// work.
     bool (*done)(void *user, int item, const void *result, himc_error *error);
     void *user;
 } pool;

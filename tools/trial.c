@@ -2,12 +2,12 @@
 /// original.
 ///
 /// A sequence of the motion database is captured as in a laboratory: markers with the noise of a
-/// tracker, through a file. It is played by a body with errors: its limbs are not exactly as long as
-/// the player's, and its segments do not have exactly the masses that the controller assumes. The
-/// body's measures (except for that error), its mean posture and its joint limits come from the
-/// noisy take. `id` and `ik` follow the take's joints; `himc` follows its tips alone, with a posture
-/// regression learned from the other two players in that nuance as null-space target. The simulated
-/// motion is compared with the noiseless sequence.
+/// tracker, through a file. It is played by a body with errors: its limbs are not exactly as long
+/// as the player's, and its segments do not have exactly the masses that the controller assumes.
+/// The body's measures (except for that error), its mean posture and its joint limits come from the
+/// noisy take. `id` and `ik` follow the take's joints; `himc` follows its tips alone, with a
+/// posture regression learned from the other two players in that nuance as null-space target. The
+/// simulated motion is compared with the noiseless sequence.
 ///
 /// Under the `printed` law `himc` is as published: nothing but the joint limits acts in the null
 /// space. The servos are the default ones; a player's are a third as fast, `gain` 1/3.

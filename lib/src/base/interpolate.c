@@ -1,10 +1,10 @@
 /// interpolate.c: quintic Hermite interpolation; one set of six basis values serves every channel.
 ///
 /// With u = (t - t0) / T, the six basis quintics for position, velocity and acceleration at each
-/// end, and their first two derivatives, are computed once. Joints are interpolated as four-component
-/// quaternions q with q' = w q / 2 and q'' = (w' - |w|^2 / 2) q / 2 (w in the parent's frame, as a
-/// pure quaternion), then normalised; w and w' come back as 2 vec(q' q*) / |q|^2 and its
-/// derivative.
+/// end, and their first two derivatives, are computed once. Joints are interpolated as
+/// four-component quaternions q with q' = w q / 2 and q'' = (w' - |w|^2 / 2) q / 2 (w in the
+/// parent's frame, as a pure quaternion), then normalised; w and w' come back as 2 vec(q' q*) /
+/// |q|^2 and its derivative.
 #include "base/interpolate.h"
 
 // the basis quintics of x0, v0 and a0 at u = 0 and their derivatives; those of the other end are

@@ -1,9 +1,9 @@
 /// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix; private.
 ///
 /// Cyclic Jacobi method: rotates in one plane p, q after the other by the smaller angle that makes
-/// a_pq zero. The tangent t of that angle solves t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2 a_pq.
-/// It always converges, at the end quadratically (Golub & Van Loan, Matrix Computations, 2013,
-/// section 8.5). HIMC_RT: no memory, at most HIMC_JACOBI_SWEEPS sweeps.
+/// a_pq zero. The tangent t of that angle solves t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2
+/// a_pq. It always converges, at the end quadratically (Golub & Van Loan, Matrix Computations,
+/// 2013, section 8.5). HIMC_RT: no memory, at most HIMC_JACOBI_SWEEPS sweeps.
 #ifndef HIMC_JACOBI_H
 #define HIMC_JACOBI_H
 

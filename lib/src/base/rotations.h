@@ -1,10 +1,10 @@
 /// rotations.h: the mean of rotations; private.
 ///
 /// The mean of unit quaternions q_i is the unit quaternion q that maximises q' S q, S = sum q_i
-/// q_i': the eigenvector of the largest eigenvalue of S. It minimises the sum of squared differences
-/// of the rotation matrices and does not depend on the signs of the q_i (Markley, Cheng, Crassidis &
-/// Oshman, Averaging Quaternions, Journal of Guidance, Control, and Dynamics 30(4), 2007, equation
-/// 13).
+/// q_i': the eigenvector of the largest eigenvalue of S. It minimises the sum of squared
+/// differences of the rotation matrices and does not depend on the signs of the q_i (Markley,
+/// Cheng, Crassidis & Oshman, Averaging Quaternions, Journal of Guidance, Control, and Dynamics
+/// 30(4), 2007, equation 13).
 #ifndef HIMC_ROTATIONS_H
 #define HIMC_ROTATIONS_H
 

@@ -23,8 +23,8 @@ HIMC_RT void himc_character_observe(const himc_character *character, himc_body_s
 /// forces add up; the pelvis is fixed and ignores them.
 HIMC_RT void himc_character_push(himc_character *character, int segment, himc_vec3 force);
 
-/// One step of `h` seconds (1e-5 .. 0.01) under gravity, the `torque` of each joint on its child and
-/// its opposite on the parent (world frame, N m), and a `tip_force` on each drumstick tip (N).
+/// One step of `h` seconds (1e-5 .. 0.01) under gravity, the `torque` of each joint on its child
+/// and its opposite on the parent (world frame, N m), and a `tip_force` on each drumstick tip (N).
 /// False, without a step, if a torque, a force or the body's state is not finite or a segment
 /// rotates faster than 3000 rad/s: the engine would end the process.
 HIMC_RT bool himc_character_step(himc_character *character, const himc_vec3 torque[HIMC_JOINTS],

@@ -12,8 +12,8 @@
 /// A joint that resists its own relative acceleration with D (alpha - alpha_p) (a servo integrated
 /// implicitly, D = h Kd + h^2 Kp) transmits moments too. With K = (J + D)^-1
 ///     alpha = K (-n - H a + D alpha_p),
-/// so the parent is subject, beside A and b, to the inertia E = D - D K D, the coupling G = D K H and
-/// the moment D K n. Then all segments take part, since the legs have servos as well.
+/// so the parent is subject, beside A and b, to the inertia E = D - D K D, the coupling G = D K H
+/// and the moment D K n. Then all segments take part, since the legs have servos as well.
 #include "body/dynamics.h"
 
 #define UPPER_END HIMC_LEFT_UPPER_LEG // segments 1 .. UPPER_END - 1 are trunk, neck, head and arms
@@ -247,7 +247,8 @@ double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state 
     int chain[HIMC_SEGMENTS], count = 0;
     himc_vec3 alpha[HIMC_SEGMENTS], force = n, end = s->tip[hand], moment = {0, 0, 0};
     for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent) {
-        // `force` acts at `end` and rotates the segment about its joint; the rest acts on the parent
+        // `force` acts at `end` and rotates the segment about its joint; the rest acts on the
+        // parent
         moment = himc_vec3_cross(himc_vec3_sub(end, s->origin[i]), force);
         alpha[i] = himc_mat3_apply(&art->inverse[i], moment);
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->coupling[i], alpha[i]));

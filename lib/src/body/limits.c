@@ -63,8 +63,8 @@ double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotati
     return himc_vec3_length(divide(along_axes(l, rotation), at_least(l->radius, THINNEST)));
 }
 
-// sum (r z / (s + r))^2 - 1 with r = radius^2, s = t in units of the thinnest semi-axis squared, z = x
-// / radius; positive at s = 0 and not positive at s = |r z| - 1, decreasing between
+// sum (r z / (s + r))^2 - 1 with r = radius^2, s = t in units of the thinnest semi-axis squared, z
+// = x / radius; positive at s = 0 and not positive at s = |r z| - 1, decreasing between
 static double excess(himc_vec3 r, himc_vec3 rz, double s)
 {
     himc_vec3 y = himc_vec3_make(rz.x / (s + r.x), rz.y / (s + r.y), rz.z / (s + r.z));

@@ -1,5 +1,5 @@
-/// pose.c: forward kinematics along the tree in one pass, since parents stand before children in the
-/// table.
+/// pose.c: forward kinematics along the tree in one pass, since parents stand before children in
+/// the table.
 ///
 /// p_c = p_p + R_p o_c, R_c = R_p R(q_c), w_c = w_p + R_p w_rel, tip velocity by summing w x r
 /// along the arm.

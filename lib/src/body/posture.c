@@ -1,5 +1,5 @@
-/// posture.c: the natural posture. An arm has twelve degrees of freedom and its tip takes three; this
-/// file chooses the other nine as a player does.
+/// posture.c: the natural posture. An arm has twelve degrees of freedom and its tip takes three;
+/// this file chooses the other nine as a player does.
 ///
 /// Built from the tip inwards. The stick is horizontal at impact and rises with the tip; the hand
 /// rises less. Both lie in the vertical plane from a fixed point beside the shoulder through the
@@ -19,7 +19,8 @@
 #include "base/limb_frame.h"
 
 // Elevation of stick and hand over the tip's height. Chosen: at 0.3 m, a normal stroke, the stick
-// then stands at 40 degrees and the hand has risen by 20, the raised stick and wrist seen in players.
+// then stands at 40 degrees and the hand has risen by 20, the raised stick and wrist seen in
+// players.
 #define STICK_SLOPE 2.6    // stick's elevation per tip height (rad/m)
 #define STICK_LIMIT 1.25   // (rad)
 #define HAND_SLOPE 1.3     // hand's elevation per tip height (rad/m)
@@ -43,8 +44,8 @@
 // The triangle. Chosen: the limits keep its angles away from 0 and pi, where rates are infinite.
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
-// The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach five
-// drums in an arc.
+// The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
+// five drums in an arc.
 #define TRUNK_LEAN 0.09         // (rad)
 #define LEAN_BEGINS 0.60        // strike points farther than this make the trunk lean more (m) ...
 #define LEAN_SLOPE 1.4          // ... by this (rad/m) ...
@@ -186,8 +187,8 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
     a->wrist = himc_vec3_madd(a->grip, -palm, a->hand);
 }
 
-// the direction in which the elbow hangs: down, and backwards too when the wrist, in the direction u
-// from the shoulder, comes under or behind the shoulder
+// the direction in which the elbow hangs: down, and backwards too when the wrist, in the direction
+// u from the shoulder, comes under or behind the shoulder
 static himc_vec3 downward(himc_vec3 u, double turn)
 {
     double ahead = u.x * cos(turn) + u.y * sin(turn);

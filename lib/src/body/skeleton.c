@@ -1,17 +1,18 @@
 /// skeleton.c: a body from height and mass.
 ///
 /// Lengths, mass fractions, centres of mass and radii of gyration are de Leva's (J. Biomech.
-/// 29(9), 1996, table 4, men: reference height 1.741 m), scaled with the height. Where this body has
-/// more or fewer segments: de Leva's head becomes head and neck (masses 4 : 1), his upper and middle
-/// trunk become one segment (by the parallel axis theorem), his lower trunk is the pelvis, and his
-/// foot becomes foot and toes (85 : 15). Invariant: the masses sum to the performer's mass exactly.
-/// Table 1 of the 2012 paper sums to 1.28 with both limbs of a pair, so it is scaled to 1.
+/// 29(9), 1996, table 4, men: reference height 1.741 m), scaled with the height. Where this body
+/// has more or fewer segments: de Leva's head becomes head and neck (masses 4 : 1), his upper and
+/// middle trunk become one segment (by the parallel axis theorem), his lower trunk is the pelvis,
+/// and his foot becomes foot and toes (85 : 15). Invariant: the masses sum to the performer's mass
+/// exactly. Table 1 of the 2012 paper sums to 1.28 with both limbs of a pair, so it is scaled to 1.
 #include "himc/body.h"
 
 #include <string.h>
 
 #define DE_LEVA_HEIGHT 1.741 // de Leva 1996, men (m)
-// hip joints of a timpanist on a stool, of the body's height. Chosen: the elbows are above the drumhead
+// hip joints of a timpanist on a stool, of the body's height. Chosen: the elbows are above the
+// drumhead
 #define SEAT_SHARE 0.42
 
 /// A row of the anthropometry at de Leva's reference height; limbs have one row, the left side's.

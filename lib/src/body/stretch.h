@@ -18,8 +18,8 @@ static inline double himc_stretch(const himc_skeleton *skeleton, himc_hand hand)
 }
 
 /// The point of the sphere of radius `stretch` (m) about the shoulder (m) nearest to `target`, with
-/// its velocity and acceleration as `target` moves; `target` itself if it is inside. With r = x - s,
-/// u = r / |r|, R the radius and s at rest:
+/// its velocity and acceleration as `target` moves; `target` itself if it is inside. With r = x -
+/// s, u = r / |r|, R the radius and s at rest:
 ///     x' = s + R u,  v' = (v - u u.v) R / |r|,
 ///     a' = (a - u u.a) R / |r| - 2 v' u.v / |r| - u |v'|^2 / R.
 static inline himc_target himc_stretch_towards(const himc_target *target, himc_vec3 shoulder,

@@ -126,8 +126,8 @@ static double largest_component(himc_vec3 v)
 }
 
 // Buss & Kim 2005, equations 10 to 14, for one end effector: N_i = 1. The undamped inverse would
-// rotate the joints by a W J' u_i / s_i^2 for the component a of the error along u_i; M_i is the sum
-// of the distances by which each joint alone would move the tip per unit of that component.
+// rotate the joints by a W J' u_i / s_i^2 for the component a of the error along u_i; M_i is the
+// sum of the distances by which each joint alone would move the tip per unit of that component.
 static double selective_gain(const himc_arm_jacobian *jacobian, double square, himc_vec3 u,
                              double a)
 {

@@ -206,8 +206,8 @@ static himc_quat joint_after(const himc_posture_motion *m, int j, double dt)
     return himc_quat_mul(himc_quat_exp(rotation), m->joint[j]);
 }
 
-// the pose `dt` seconds from now: the player's mean with the natural posture's trunk motion and, for
-// arms that were not captured, its arms
+// the pose `dt` seconds from now: the player's mean with the natural posture's trunk motion and,
+// for arms that were not captured, its arms
 static himc_pose pose_after(const himc_posture_regression_player *player,
                             const himc_posture_motion *natural, double dt)
 {

@@ -55,17 +55,17 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
                                  const himc_posture_regression_take *take, int count,
                                  himc_error *error);
 
-/// Learns weights by least squares from `count` takes, the takes of a player one after another, each
-/// player relative to his own means. `player` becomes the first one; another may be fitted into it
-/// afterwards. Directions in which no tip moves get no weight; an arm with a tip at rest gets the
-/// other arm's weights, mirrored. False with the reason, for example if no tip moves.
+/// Learns weights by least squares from `count` takes, the takes of a player one after another,
+/// each player relative to his own means. `player` becomes the first one; another may be fitted
+/// into it afterwards. Directions in which no tip moves get no weight; an arm with a tip at rest
+/// gets the other arm's weights, mirrored. False with the reason, for example if no tip moves.
 bool himc_posture_regression_learn(himc_posture_regression *regression,
                                    const himc_posture_regression_take *take, int count,
                                    himc_error *error);
 
-/// Fits the take's player and corrects the weights by his take: ridge regression, the smallest change
-/// that explains the take. One stroke corrects the parts that it moves and leaves the rest. False,
-/// and nothing changed, with the reason.
+/// Fits the take's player and corrects the weights by his take: ridge regression, the smallest
+/// change that explains the take. One stroke corrects the parts that it moves and leaves the rest.
+/// False, and nothing changed, with the reason.
 bool himc_posture_regression_correct(himc_posture_regression *regression,
                                      const himc_posture_regression_take *take, himc_error *error);
 

@@ -1,7 +1,7 @@
 /// posture_regression_learn.c: fits players, learns weights from their takes, corrects them.
 ///
-/// A player is described by the means of his takes (rotations.h) and his measures. The weights W are
-/// the least squares solution over all frames of all players, each relative to his own means
+/// A player is described by the means of his takes (rotations.h) and his measures. The weights W
+/// are the least squares solution over all frames of all players, each relative to his own means
 /// (LAPACK's dgelsd; singular values below 1e-3 of the largest are left out: the solution of least
 /// norm). A regression has smaller amplitude than its data: its mean square is that of the
 /// explained part. So the weights of each joint are then scaled until its rotations have the mean
@@ -54,9 +54,9 @@ static bool check_take(const himc_posture_regression_take *take, himc_error *err
         for (int j = 0; j < HIMC_JOINTS; j++) {
             himc_quat q = take->pose[i].joint[j];
             if (!(fabs(himc_quat_dot(q, q) - 1) < UNIT_TOLERANCE))
-                return himc_error_set(
-                    error, "posture regression: frame %d: %s: not a unit quaternion", i,
-                    himc_joint_name(j));
+                return himc_error_set(error,
+                                      "posture regression: frame %d: %s: not a unit quaternion", i,
+                                      himc_joint_name(j));
         }
     return true;
 }
@@ -169,7 +169,8 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
 
 // Least squares
 
-/// A least squares problem; dgelsd overwrites both arrays, the first rows of `angle` by the weights.
+/// A least squares problem; dgelsd overwrites both arrays, the first rows of `angle` by the
+/// weights.
 typedef struct problem {
     double *term;  // (rows x terms)
     double *angle; // the angles to explain (rows x angles)
@@ -254,8 +255,8 @@ static bool solve(problem *p, const char *tips, himc_error *error)
     return true;
 }
 
-// gives the arm `at_rest` the weights of the other one, mirrored: of positions y changes its sign, of
-// rotations x and z
+// gives the arm `at_rest` the weights of the other one, mirrored: of positions y changes its sign,
+// of rotations x and z
 static void mirror(himc_posture_regression *regression, himc_hand at_rest)
 {
     for (int c = 0; c < ANGLES; c++)
@@ -383,7 +384,8 @@ static bool learn(himc_posture_regression *regression, problem p[PROBLEMS],
         if (!solve(&p[i], problem_tips[i], error))
             return false;
     if (!p[HIMC_LEFT].moves && !p[HIMC_RIGHT].moves)
-        return himc_error_set(error, "posture regression: no drumstick tip moves: nothing to learn");
+        return himc_error_set(error,
+                              "posture regression: no drumstick tip moves: nothing to learn");
     memset(regression->weight, 0, sizeof regression->weight);
     memset(regression->trunk, 0, sizeof regression->trunk);
     add_solutions(regression, p);

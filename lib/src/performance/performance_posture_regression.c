@@ -41,7 +41,7 @@ void himc_performance_follow_posture_regression(const himc_performance *p, himc_
     for (int k = 0; k < HIMC_REGRESSION_OFFSETS; k++)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             tip[k][hand] = himc_performance_planned(p, (himc_hand)hand,
-                                                      tick->time + k * HIMC_REGRESSION_OFFSET_STEP);
+                                                    tick->time + k * HIMC_REGRESSION_OFFSET_STEP);
     himc_posture_motion natural = tick->posture;
     himc_posture_regression_moving(&p->regression, (const himc_target(*)[HIMC_HANDS])tip,
                                    &tick->posture);

@@ -180,7 +180,8 @@ static joint_state captured_joint(const himc_track *track, int j, double t, bool
         from = h->planned[i].last;
         to = h->planned[i].next;
     }
-    himc_interpolation b = himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
+    himc_interpolation b =
+        himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
     return himc_interpolate_joints(&b, &joint[from], &joint[to]);
 }
 
