@@ -7,6 +7,7 @@
 /// thumbs are up. Frames are those of skeleton.h: z points back to the joint, y is the axis of
 /// flexion.
 #include "parts.h"
+#include "base/limb_frame.h"
 #include "himc/body.h"
 
 #define THUMBS_UP 1.25 // roll of a french grip (rad)

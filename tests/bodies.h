@@ -1,4 +1,4 @@
-/// bodies.h: what tests of the body share: the default skeleton and vectors at random.
+/// bodies.h: the default skeleton and random vectors, for tests of the body.
 #ifndef HIMC_TESTS_BODIES_H
 #define HIMC_TESTS_BODIES_H
 
@@ -8,6 +8,7 @@
 
 static himc_skeleton skeleton;
 
+/// Sets `skeleton` to the default body and seeds the random numbers.
 static inline void default_skeleton(unsigned seed)
 {
     himc_skeleton_config config = himc_skeleton_default();

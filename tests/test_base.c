@@ -1,4 +1,4 @@
-/// test_base.c: errors are one line; ranges are refused with name, value, unit and what is allowed.
+/// test_base.c: errors are one line; a value out of range is refused with name, value, unit, range.
 #include "himc/base.h"
 
 #include "unity.h"

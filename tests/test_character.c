@@ -1,11 +1,11 @@
-/// test_character.c: the engine's body against inverse dynamics, a compound pendulum, effective
-/// mass, and itself.
+/// test_character.c: the body in the physics engine against inverse dynamics, a compound pendulum
+/// and the effective mass; two runs are equal.
 ///
-/// Two habits of the engine show. It keeps joints by their velocities, so that centripetal forces
-/// come a step late: of a state just placed the first steps are wrong by w x (w x r), and the
-/// mirror is held up after a dozen. And its gyroscopic term is implicit: it brakes the roll of the
-/// thin stick (3e-6 kg m^2 about its length, a hundred times more across), so spins here are those
-/// of strokes.
+/// Two properties of the engine have an effect here. It constrains joints by their velocities, so
+/// centripetal forces act one step late: after a state is set, the first steps have an error of w x
+/// (w x r), so the comparison begins after a dozen steps. And its gyroscopic term is implicit: it
+/// brakes the roll of the thin stick (3e-6 kg m^2 about its length, a hundred times more across),
+/// so the spins here are those of strokes.
 #define _POSIX_C_SOURCE 200809L
 #include "body/character.h"
 #include "control/controller.h"
@@ -152,7 +152,7 @@ static void test_place_and_observe_return_the_state(void)
     }
 }
 
-static void test_body_is_still_when_gravity_is_just_held(void)
+static void test_body_is_still_when_torques_balance_gravity(void)
 {
     himc_body_state s, after;
     himc_vec3 torque[HIMC_JOINTS];
@@ -276,7 +276,7 @@ static void test_joints_hold_within_a_micrometre_over_a_second_of_strokes(void)
     TEST_ASSERT_TRUE(worst < 1e-6); // measured 3e-8
 }
 
-static void test_limp_body_falls_and_flails_and_stays_in_one_piece(void)
+static void test_body_without_torques_falls_and_its_joints_hold(void)
 {
     himc_body_state s;
     double worst = 0;
@@ -322,7 +322,7 @@ static void test_two_runs_are_equal_bit_by_bit(void)
     TEST_ASSERT_EQUAL_MEMORY(&first, &other, sizeof first);
 }
 
-static void test_force_on_a_tip_meets_the_effective_mass(void)
+static void test_force_on_a_tip_accelerates_the_effective_mass(void)
 {
     double h = 1e-5, worst = 0;
     for (int n = 0; n < 50; n++) {
@@ -348,7 +348,7 @@ static void test_force_on_a_tip_meets_the_effective_mass(void)
     TEST_ASSERT_TRUE(worst < 1e-3); // measured 2e-5
 }
 
-// in a process of its own: the engine aborts where it should not
+// in a separate process, since the engine aborts on bad input
 static int survives(double torque)
 {
     fflush(stdout);
@@ -389,12 +389,12 @@ int main(void)
     RUN_TEST(test_torques_of_inverse_dynamics_make_the_accelerations_asked_for);
     RUN_TEST(test_at_rest_the_mirror_has_no_error_of_the_step);
     RUN_TEST(test_place_and_observe_return_the_state);
-    RUN_TEST(test_body_is_still_when_gravity_is_just_held);
+    RUN_TEST(test_body_is_still_when_torques_balance_gravity);
     RUN_TEST(test_stiff_leg_swings_with_the_period_of_a_compound_pendulum);
     RUN_TEST(test_joints_hold_within_a_micrometre_over_a_second_of_strokes);
-    RUN_TEST(test_limp_body_falls_and_flails_and_stays_in_one_piece);
+    RUN_TEST(test_body_without_torques_falls_and_its_joints_hold);
     RUN_TEST(test_two_runs_are_equal_bit_by_bit);
-    RUN_TEST(test_force_on_a_tip_meets_the_effective_mass);
+    RUN_TEST(test_force_on_a_tip_accelerates_the_effective_mass);
     RUN_TEST(test_no_torque_or_force_ends_the_process_and_the_body_can_be_placed_again);
     return UNITY_END();
 }

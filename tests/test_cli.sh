@@ -128,7 +128,7 @@ refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
 refuses test_folder_is_refused "directory" render . -o x.wav
 refuses test_unknown_row_is_refused "--only: magic, allowed: a nuance" evaluate --only legato,magic
 refuses test_a_comma_alone_is_refused "--only: no word, allowed" evaluate --only ,
-refuses test_row_that_is_none_is_refused "--only: ik,printed: no row is all of these" \
+refuses test_words_of_no_row_are_refused "--only: ik,printed: no row has all of these words" \
     evaluate --only ik,printed
 refuses test_no_trials_are_refused "--trials: 0, allowed 1 .. 10000" evaluate --trials 0
 refuses test_range_beyond_the_trials_is_refused "--range: 3-11, allowed A-B within 1-10" \

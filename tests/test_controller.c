@@ -4,6 +4,7 @@
 /// Bounds of tracking stand some 30 % above what was measured (computed torque: twice), the figure
 /// beside each.
 #include "body/character.h"
+#include "body/dynamics.h"
 #include "control/controller.h"
 
 #include "unity.h"

@@ -1,6 +1,7 @@
 /// test_controller_terms.c: single terms of the laws against the equations: what is asked of a tip
 /// by the transpose, gains of the user axis by axis, servos at the step's end.
 #include "control/controller.h"
+#include "body/dynamics.h"
 
 #include "bodies.h"
 #include "unity.h"

@@ -132,7 +132,7 @@ static void play_sequence(const trial_kind *kind, int number, sums *s)
 {
     trial_config config = trial_default(kind, number);
     trial_result r;
-    config.noise = config.misjudged = config.mismeasured = 0;
+    config.noise = config.mass_error = config.length_error = 0;
     config.limits = false;
     config.bent = true;
     config.frame = keep_frame;

@@ -75,7 +75,7 @@ refuses test_an_unknown_word_is_refused "--only: legatto, allowed: a nuance" --t
 refuses test_no_jobs_are_refused "--jobs" --jobs 0
 refuses test_one_file_for_both_tables_is_refused "x.csv: named twice" --trials 1 --log x.csv --csv x.csv
 sed '2s/legato/legatto/' whole.log >foreign.log
-refuses test_a_foreign_row_is_refused_with_its_line "foreign.log:2: no row of trials" --trials 2 --log foreign.log
+refuses test_a_foreign_row_is_refused_with_its_line "foreign.log:2: not a row of trials" --trials 2 --log foreign.log
 sed '3s/[^,]*$/nan/' whole.log >nan.log
 refuses test_a_number_not_finite_is_refused_with_its_line "nan.log:3: played: nan" --trials 2 --log nan.log
 refuses test_a_comma_alone_is_refused "--only: no word, allowed" --trials 2 --only ,
@@ -87,7 +87,7 @@ check test_that_is_told_at_once [ $(($(date +%s) - begun)) -le 2 ]
 for text in 'a letter' 'a letter\nof two lines\n'; do
     printf "$text" >letter.txt
     cp letter.txt kept.txt
-    refuses test_what_is_no_log_is_refused "letter.txt:1: no log of trials" --trials 2 --log letter.txt
+    refuses test_a_file_that_is_not_a_log_is_refused "letter.txt:1: not a log of trials" --trials 2 --log letter.txt
     check test_what_is_no_log_stays_as_it_is cmp letter.txt kept.txt
 done
 

@@ -1,7 +1,7 @@
-/// Places of drumheads and spots of strokes.
+/// test_head_frame.c: the frames of drumheads and the strike points of strokes.
 #include "unity.h"
 
-#include "plan/planner.h"
+#include "himc/command.h"
 #include "base/head_frame.h"
 
 void setUp(void)

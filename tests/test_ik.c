@@ -1,6 +1,6 @@
-/// test_ik.c: the Jacobian by differences, solvers against a dense 3 x 12 reference, null space,
-/// release.
-#include "himc/body.h"
+/// test_ik.c: the Jacobian against differences, the solvers against a dense 3 x 12 reference, the
+/// null space, the elbow task, the release of the contact normal.
+#include "control/ik.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -78,8 +78,8 @@ static void dense(const himc_arm_jacobian *j, double a[3][COLUMNS])
     }
 }
 
-// (J'J + lambda^2 W^-1) x = J'e by Gauss elimination with pivots: 12 x 12, the other way round than
-// the module
+// (J'J + lambda^2 W^-1) x = J'e by Gauss elimination with pivots: the 12 x 12 form, where the
+// module uses the 3 x 3 form
 static void dense_damped(double a[3][COLUMNS], const double weight[HIMC_ARM_JOINTS], double lambda,
                          const double e[3], double x[COLUMNS])
 {
@@ -172,8 +172,8 @@ static void test_pseudo_inverse_reaches_the_tip_with_the_least_rotation(void)
     }
 }
 
-// all levers along z but for `bend`: along z nothing moves, and a small singular value is made to
-// order
+// all levers along z except for `bend`: nothing moves along z, and `bend` sets a small singular
+// value
 static void straight(himc_arm_jacobian *j, double bend)
 {
     himc_body_state s;
@@ -269,8 +269,8 @@ static void test_selective_damping_is_the_pseudo_inverse_for_small_errors_only(v
     }
 }
 
-// priorities: the tip goes where it is asked to, the elbow as near as the tip lets it, and what is
-// left of the posture changes neither
+// priorities: the tip gets its displacement exactly, the elbow its own in the tip's null space, and
+// the rest of the posture changes neither
 static void test_elbow_comes_after_the_tip_and_before_the_posture(void)
 {
     for (int n = 0; n < POSES; n++) {
@@ -284,7 +284,7 @@ static void test_elbow_comes_after_the_tip_and_before_the_posture(void)
         himc_vec3 lever = himc_vec3_sub(s.origin[elbow], s.origin[shoulder]);
         himc_vec3 demand = himc_vec3_cross(random_vector(0.05), lever);
         himc_arm_jacobian_at(&s, hand, &j);
-        himc_elbow_task_at(&j, lever, 1e-4, &task);
+        himc_elbow_task_init(&task, &j, lever, 1e-4);
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             posture[k] = random_vector(0.1);
         himc_ik_solve(&j, HIMC_SOLVER_PINV, 0, e, x);
@@ -295,22 +295,22 @@ static void test_elbow_comes_after_the_tip_and_before_the_posture(void)
     }
 }
 
-// N J# = 0: what a pseudo-inverse makes has no part in the null space, and the null space does not
-// move the tip
+// N J# = 0: the result of a pseudo-inverse has no part in the null space, and the null space does
+// not move the tip
 static void test_null_space_leaves_the_tip_alone_and_projects_once(void)
 {
     static const double weights[][HIMC_ARM_JOINTS] = {{1, 1, 1, 1}, {0.2, 0.5, 1, 3}};
     for (int n = 0; n < POSES; n++) {
         himc_body_state s;
         himc_arm_jacobian j;
-        himc_vec3 wish[HIMC_ARM_JOINTS], got[HIMC_ARM_JOINTS] = {{0, 0, 0}};
+        himc_vec3 desired[HIMC_ARM_JOINTS], got[HIMC_ARM_JOINTS] = {{0, 0, 0}};
         himc_vec3 twice[HIMC_ARM_JOINTS] = {{0, 0, 0}}, reach[HIMC_ARM_JOINTS];
         himc_vec3 none[HIMC_ARM_JOINTS] = {{0, 0, 0}};
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            wish[k] = random_vector(1);
+            desired[k] = random_vector(1);
         random_state(&s);
         himc_arm_jacobian_weighted(&s, (himc_hand)(n % 2), weights[n % 3 == 0], &j);
-        himc_ik_add_null(&j, wish, got);
+        himc_ik_add_null(&j, desired, got);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(himc_ik_forward(&j, got)));
         himc_ik_add_null(&j, got, twice);
         himc_ik_solve(&j, HIMC_SOLVER_PINV, 0, random_vector(1), reach);
@@ -322,7 +322,7 @@ static void test_null_space_leaves_the_tip_alone_and_projects_once(void)
     }
 }
 
-static void test_release_leaves_what_may_remain_and_changes_nothing_across(void)
+static void test_release_keeps_the_allowed_remainder_and_the_tangential_motion(void)
 {
     for (int n = 0; n < POSES; n++) {
         himc_body_state s;
@@ -369,7 +369,7 @@ int main(void)
     RUN_TEST(test_selective_damping_is_the_pseudo_inverse_for_small_errors_only);
     RUN_TEST(test_elbow_comes_after_the_tip_and_before_the_posture);
     RUN_TEST(test_null_space_leaves_the_tip_alone_and_projects_once);
-    RUN_TEST(test_release_leaves_what_may_remain_and_changes_nothing_across);
+    RUN_TEST(test_release_keeps_the_allowed_remainder_and_the_tangential_motion);
     RUN_TEST(test_release_along_a_straight_arm_stays_bounded);
     return UNITY_END();
 }

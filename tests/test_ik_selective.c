@@ -1,5 +1,5 @@
-/// test_ik_selective.c: selectively damped least squares against the paper's own recipe with the
-/// whole Jacobian (Buss & Kim 2005, section 4).
+/// test_ik_selective.c: selectively damped least squares against the paper's algorithm with the
+/// full Jacobian (Buss & Kim 2005, section 4).
 #include "himc/body.h"
 
 #include "bodies.h"
@@ -57,7 +57,7 @@ static void clamp_max_abs(double *v, double most)
 // J = sum s_i u_i v_i'; with one end effector N_i = |u_i| = 1 and
 //     M_i = 1 / s_i sum_j |v_ji| |ds / dq_j|,   gamma_i = min(1, N_i / M_i) gamma_max
 //     dq = clamp(sum clamp(1 / s_i (u_i . e) v_i, gamma_i), gamma_max)
-// returns the smallest gamma_i's share of gamma_max that was clamped to
+// returns the smallest gamma_i / gamma_max that clamped
 static double buss_and_kim(const double e[3], double dq[COLUMNS])
 {
     double a[COLUMNS][3], s[3], u[3][3], v[COLUMNS][COLUMNS], super[3], share = 1;

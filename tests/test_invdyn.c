@@ -1,7 +1,7 @@
-/// test_invdyn.c: inverse and forward dynamics are mirrors; both against statics by hand and
-/// differences of motion.
+/// test_invdyn.c: inverse and forward dynamics are mirrors; both agree with statics computed by
+/// hand and with differences of motion.
 #include "body/character.h"
-#include "himc/body.h"
+#include "body/dynamics.h"
 #include "body/posture.h"
 
 #include "bodies.h"
@@ -249,7 +249,7 @@ static void test_tip_acceleration_is_the_difference_of_its_velocity(void)
     }
 }
 
-static void test_effective_mass_is_what_a_force_on_the_tip_meets(void)
+static void test_effective_mass_is_force_over_tip_acceleration(void)
 {
     for (int n = 0; n < 500; n++) {
         himc_body_state s;
@@ -317,8 +317,8 @@ static void test_forward_dynamics_leaves_the_legs_alone(void)
         TEST_ASSERT_EQUAL_DOUBLE(0, distance(relative[j], himc_vec3_make(7, 8, 9)));
 }
 
-// torques less what the joints resist are those that make the accelerations, in the legs too
-static void test_resisting_joints_get_the_accelerations_their_remaining_torques_make(void)
+// the torques minus the joints' resistance make the accelerations, in the legs too
+static void test_resisting_joints_accelerate_by_their_remaining_torques(void)
 {
     for (int n = 0; n < 1000; n++) {
         himc_body_state s;
@@ -336,7 +336,7 @@ static void test_resisting_joints_get_the_accelerations_their_remaining_torques_
         himc_articulate_resisting(&skeleton, &s, resistance, &art);
         himc_forward_dynamics(&skeleton, &s, &art, torque, force, relative);
         himc_inverse_dynamics(&skeleton, &s, relative, false, back);
-        // what the force at the tip does comes off on the way to the pelvis
+        // the torques of the tip force, subtracted from the stick to the pelvis
         for (int i = himc_stick_segment(hand); i > 0; i = skeleton.segment[i].parent)
             back[i - 1] = himc_vec3_sub(
                 back[i - 1], himc_vec3_cross(himc_vec3_sub(s.tip[hand], s.origin[i]), force[hand]));
@@ -350,9 +350,9 @@ static void test_resisting_joints_get_the_accelerations_their_remaining_torques_
     }
 }
 
-// Two hands drumming at 2 Hz: the torques that inverse dynamics gives for the motion, applied
-// without any feedback for 10 ms from everywhere along it, carry the body along it.
-static void test_torques_of_a_motion_return_it_in_the_physics_open_loop(void)
+// two hands drumming at 2 Hz: the torques of inverse dynamics for the motion, applied without
+// feedback for 10 ms from any point of it, keep the body on it
+static void test_torques_of_a_motion_reproduce_it_in_open_loop(void)
 {
     const himc_vec3 none[HIMC_HANDS] = {{0, 0, 0}};
     const double h = 1e-4;
@@ -413,11 +413,11 @@ int main(void)
     RUN_TEST(test_still_means_gravity_alone);
     RUN_TEST(test_power_of_the_torques_is_the_change_of_energy);
     RUN_TEST(test_tip_acceleration_is_the_difference_of_its_velocity);
-    RUN_TEST(test_effective_mass_is_what_a_force_on_the_tip_meets);
+    RUN_TEST(test_effective_mass_is_force_over_tip_acceleration);
     RUN_TEST(test_pivoting_stick_of_45_g_weighs_27_g_at_its_tip);
     RUN_TEST(test_effective_mass_along_the_stick_is_much_larger);
     RUN_TEST(test_forward_dynamics_leaves_the_legs_alone);
-    RUN_TEST(test_resisting_joints_get_the_accelerations_their_remaining_torques_make);
-    RUN_TEST(test_torques_of_a_motion_return_it_in_the_physics_open_loop);
+    RUN_TEST(test_resisting_joints_accelerate_by_their_remaining_torques);
+    RUN_TEST(test_torques_of_a_motion_reproduce_it_in_open_loop);
     return UNITY_END();
 }

@@ -1,6 +1,6 @@
-/// test_limits.c: the mean rotation, ellipsoids and boxes of motion whose spread is known, and the
-/// nearest point against all that is known of it.
-#include "himc/body.h"
+/// test_limits.c: the mean rotation, the bounds learned from motion of known distribution, and the
+/// nearest point of an ellipsoid.
+#include "body/limits.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -49,7 +49,8 @@ static double between(himc_quat a, himc_quat b)
     return himc_vec3_length(himc_quat_log(himc_quat_mul(himc_quat_conj(a), b)));
 }
 
-// all joints around their means, spread along axes of their own by `sigma` (rad), signs at random
+// random rotations of all joints around their means, with the standard deviations `sigma` along
+// axes of their own (rad) and random signs
 static void spread_motion(const himc_pose *mean, const himc_pose *axes, himc_vec3 sigma)
 {
     for (int f = 0; f < FRAMES; f++)
@@ -75,7 +76,7 @@ static void learn(double margin)
     TEST_ASSERT_TRUE_MESSAGE(learned, error.text);
 }
 
-static void test_mean_of_rotations_with_random_signs_is_where_they_are_spread_around(void)
+static void test_mean_of_rotations_is_their_centre_whatever_their_signs(void)
 {
     himc_pose mean = random_pose(), axes = random_pose();
     spread_motion(&mean, &axes, himc_vec3_make(0.35, 0.16, 0.04));
@@ -99,7 +100,7 @@ static void test_mean_of_one_rotation_is_that_rotation_and_of_two_the_middle(voi
     }
 }
 
-static void test_learned_axes_and_radii_are_those_of_the_spread(void)
+static void test_learned_axes_and_radii_are_those_of_the_distribution(void)
 {
     himc_pose mean = random_pose(), axes = random_pose();
     spread_motion(&mean, &axes, himc_vec3_make(0.35, 0.16, 0.04));
@@ -149,7 +150,7 @@ static void test_margin_widens_ellipsoid_and_box_by_its_share(void)
     }
 }
 
-static void test_loosened_bounds_are_at_least_so_wide_and_wider_ones_stay(void)
+static void test_loosened_bounds_have_the_least_width_and_wider_ones_stay(void)
 {
     learn(0);
     himc_limits before = limits;
@@ -179,7 +180,7 @@ static void test_joint_that_did_not_move_turns_freely_and_frames_may_be_one(void
     TEST_ASSERT_TRUE(himc_limits_learn(&limits, motion, 1, 0, &error));
 }
 
-static void test_learning_refuses_no_frames_margins_out_of_range_and_what_is_no_rotation(void)
+static void test_learning_refuses_no_frames_margins_out_of_range_and_non_rotations(void)
 {
     himc_limits before;
     memset(&limits, 7, sizeof limits);
@@ -231,7 +232,7 @@ static void test_brute_force_finds_no_point_of_the_ellipsoid_nearer(void)
         double best = himc_vec3_length(himc_vec3_sub(x, y));
         for (int k = 0; k < 300; k++) {
             himc_vec3 u = himc_vec3_unit(himc_vec3_make(normal(), normal(), normal()));
-            if (k % 2) { // near the answer, where a better one would be
+            if (k % 2) { // near the answer, to find a better one
                 himc_vec3 d = {y.x / r.x, y.y / r.y, y.z / r.z};
                 u = himc_vec3_unit(himc_vec3_madd(d, 0.02, u));
             }
@@ -251,7 +252,7 @@ static void test_closest_point_of_a_ball_is_on_the_way_to_its_centre(void)
     }
 }
 
-static void test_closest_rotation_is_itself_within_and_on_the_bounds_without(void)
+static void test_closest_rotation_is_itself_inside_and_on_the_bounds_outside(void)
 {
     himc_pose mean = random_pose(), axes = random_pose();
     int moved = 0;
@@ -299,7 +300,7 @@ static void test_table_1_bounds_neck_shoulders_elbows_and_wrists_and_no_more(voi
     }
 }
 
-// degrees of half the angle, so the wrist bends by 2 x 19.9 degrees each way about its longest axis
+// the table has half angles, so the wrist bends by 2 x 19.9 degrees each way about its longest axis
 static void test_table_1_lets_the_wrist_bend_by_40_degrees_most_of_it_in_flexion(void)
 {
     himc_pose zero = himc_pose_zero();
@@ -333,18 +334,18 @@ static void test_table_1_of_the_right_arm_mirrors_the_left(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_mean_of_rotations_with_random_signs_is_where_they_are_spread_around);
+    RUN_TEST(test_mean_of_rotations_is_their_centre_whatever_their_signs);
     RUN_TEST(test_mean_of_one_rotation_is_that_rotation_and_of_two_the_middle);
-    RUN_TEST(test_learned_axes_and_radii_are_those_of_the_spread);
+    RUN_TEST(test_learned_axes_and_radii_are_those_of_the_distribution);
     RUN_TEST(test_learned_bounds_contain_the_motion_and_touch_it);
     RUN_TEST(test_margin_widens_ellipsoid_and_box_by_its_share);
-    RUN_TEST(test_loosened_bounds_are_at_least_so_wide_and_wider_ones_stay);
+    RUN_TEST(test_loosened_bounds_have_the_least_width_and_wider_ones_stay);
     RUN_TEST(test_joint_that_did_not_move_turns_freely_and_frames_may_be_one);
-    RUN_TEST(test_learning_refuses_no_frames_margins_out_of_range_and_what_is_no_rotation);
+    RUN_TEST(test_learning_refuses_no_frames_margins_out_of_range_and_non_rotations);
     RUN_TEST(test_closest_point_of_3000_ellipsoids_is_on_them_with_the_way_along_the_normal);
     RUN_TEST(test_brute_force_finds_no_point_of_the_ellipsoid_nearer);
     RUN_TEST(test_closest_point_of_a_ball_is_on_the_way_to_its_centre);
-    RUN_TEST(test_closest_rotation_is_itself_within_and_on_the_bounds_without);
+    RUN_TEST(test_closest_rotation_is_itself_inside_and_on_the_bounds_outside);
     RUN_TEST(test_ellipsoids_and_boxes_of_no_width_give_finite_rotations);
     RUN_TEST(test_table_1_bounds_neck_shoulders_elbows_and_wrists_and_no_more);
     RUN_TEST(test_table_1_lets_the_wrist_bend_by_40_degrees_most_of_it_in_flexion);

@@ -1,5 +1,5 @@
-/// test_limits_table.c: the bounds of table 1 against the paper's own figures, their boxes, and
-/// Euler angles where two axes fall together.
+/// test_limits_table.c: the bounds of table 1 against the paper's numbers, their boxes, and Euler
+/// angles at gimbal lock.
 #include "himc/body.h"
 
 #include "bodies.h"
@@ -63,7 +63,7 @@ static void check_rows(int joint, const row rows[3], const himc_vec3 axes[3])
 }
 
 // captures: x to the left, y up, z forward; here x is forward, y to the left, z up
-static void test_neck_of_table_1_is_the_printed_one(void)
+static void test_neck_of_table_1_is_as_printed(void)
 {
     himc_vec3 axes[3];
     for (int k = 0; k < 3; k++) {
@@ -73,9 +73,8 @@ static void test_neck_of_table_1_is_the_printed_one(void)
     check_rows(NECK, neck_rows, axes);
 }
 
-// an arm held out to the left, along the captures' x, hangs here: along -z, its forward still
-// forward
-static void test_arms_of_table_1_are_the_printed_ones_and_the_right_in_a_mirror(void)
+// the captures hold the left arm along their x; here it hangs along -z, and forward stays forward
+static void test_arms_of_table_1_are_as_printed_and_the_right_one_mirrored(void)
 {
     himc_vec3 axes[3];
     for (int k = 0; k < 3; k++)
@@ -130,8 +129,8 @@ static himc_quat about(double x, double y, double z)
     return himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, z)), turn);
 }
 
-// y a quarter turn: x and z turn about the same line, and all of it counts as x
-static void test_where_two_euler_axes_fall_together_x_takes_the_whole_turn(void)
+// at y = pi/2 x and z rotate about the same line, and x gets the whole rotation
+static void test_at_gimbal_lock_x_gets_the_whole_rotation(void)
 {
     limits.kind = HIMC_LIMITS_EULER;
     limits.joint[ELBOW] = (himc_limit){
@@ -151,10 +150,10 @@ static void test_where_two_euler_axes_fall_together_x_takes_the_whole_turn(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_neck_of_table_1_is_the_printed_one);
-    RUN_TEST(test_arms_of_table_1_are_the_printed_ones_and_the_right_in_a_mirror);
+    RUN_TEST(test_neck_of_table_1_is_as_printed);
+    RUN_TEST(test_arms_of_table_1_are_as_printed_and_the_right_one_mirrored);
     RUN_TEST(test_boxes_of_table_1_touch_their_ellipsoids_on_every_side);
     RUN_TEST(test_a_turn_about_one_axis_as_far_as_the_box_goes_is_on_it);
-    RUN_TEST(test_where_two_euler_axes_fall_together_x_takes_the_whole_turn);
+    RUN_TEST(test_at_gimbal_lock_x_gets_the_whole_rotation);
     return UNITY_END();
 }

@@ -1,7 +1,8 @@
-/// test_limits_yield.c: what limits make of accelerations: where a stopped joint will be, what the
-/// tips get back, how fast a joint returns, when it has come to its bounds anew; and the table of
-/// strength.
+/// test_limits_yield.c: accelerations under joint limits: the future position of a stopped joint,
+/// the compensation at the tips, the speed of return, the count of limit hits; and the strength
+/// table.
 #include "control/controller.h"
+#include "body/dynamics.h"
 
 #include "control/limit_torque.h"
 
@@ -47,7 +48,7 @@ void tearDown(void)
 {
 }
 
-// binds a joint to an ellipsoid about where it is; the joint is put `off` its middle
+// limits a joint by an ellipsoid about its present rotation and moves it `off` the centre
 static void bind(int joint, himc_vec3 radius, himc_vec3 off)
 {
     limits.joint[joint] = (himc_limit){.bound = true,
@@ -65,7 +66,7 @@ static void yield(void)
     himc_limits_compliance(&controller, &skeleton, &state, jacobian, wanted);
 }
 
-// a joint's acceleration as its parent, which turns, sees it
+// a joint's acceleration in the rotating frame of its parent
 static himc_vec3 seen_from_parent(int joint)
 {
     int p = skeleton.segment[joint + 1].parent;
@@ -74,7 +75,7 @@ static himc_vec3 seen_from_parent(int joint)
     return himc_mat3_apply_transposed(&state.rotation[p], alpha);
 }
 
-// where the joint will be in a moment
+// the joint's rotation after MOMENT
 static himc_quat soon(int joint)
 {
     himc_vec3 turn = himc_vec3_madd(himc_vec3_scale(rate[joint], MOMENT), 0.5 * MOMENT * MOMENT,
@@ -82,7 +83,7 @@ static himc_quat soon(int joint)
     return himc_quat_mul(himc_quat_exp(turn), pose.joint[joint]);
 }
 
-static void test_a_joint_that_would_leave_its_bounds_is_on_them_in_a_moment(void)
+static void test_a_joint_about_to_leave_its_bounds_is_on_them_a_moment_later(void)
 {
     bind(NECK, himc_vec3_make(0.5, 0.3, 0.2), himc_vec3_make(0.2, 0.2, 0.1));
     rate[NECK] = himc_vec3_make(3, 2, 4);
@@ -92,8 +93,7 @@ static void test_a_joint_that_would_leave_its_bounds_is_on_them_in_a_moment(void
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1, himc_limit_measure(&limits, NECK, soon(NECK)));
 }
 
-// a joint at a constant rate along its bounds stays within; in the world its spin turns with the
-// parent's
+// a joint at a constant rate along its bounds stays inside; its spin rotates with the parent
 static void test_a_turning_parent_drives_no_joint_out_of_its_bounds(void)
 {
     bind(NECK, himc_vec3_make(0.5, 0.5, 0.5), himc_vec3_make(0, 0.4995, 0));
@@ -123,8 +123,8 @@ static void test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second(voi
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5 - 3 * MOMENT, himc_vec3_length(himc_quat_log(left)));
 }
 
-// the elbow may turn freely about two axes and no farther about the third; `lost` is what the tip
-// would lose by that, `left` what it still does
+// the elbow is free about two axes and stopped about the third; `lost` is the tip acceleration lost
+// by the stop alone, `left` the part that is not compensated
 static void stop_elbow(himc_vec3 radius, himc_vec3 off, double *lost, double *left)
 {
     int elbow = himc_arm_joint(HIMC_LEFT, 1);
@@ -155,8 +155,8 @@ static himc_vec3 limit_torque(int joint)
     return torque[joint];
 }
 
-// a stick turned anywhere by anything: where the nearest orientation within jumps, too
-static void test_what_damps_beside_servos_never_drives(void)
+// a stick at random orientations and spins, also where the nearest orientation inside jumps
+static void test_limit_damping_beside_servos_never_adds_energy(void)
 {
     int joint = himc_arm_joint(HIMC_RIGHT, 3), against = 0;
     srand(7);
@@ -182,7 +182,7 @@ static void test_what_damps_beside_servos_never_drives(void)
     TEST_ASSERT_TRUE(against > 15000);
 }
 
-static void test_a_tip_gets_back_what_a_stopped_elbow_takes(void)
+static void test_other_joints_compensate_a_stopped_elbow_at_the_tip(void)
 {
     for (int i = 0; i < 3; i++) {
         himc_vec3 axis = himc_vec3_make(i == 0, i == 1, i == 2);
@@ -195,7 +195,7 @@ static void test_a_tip_gets_back_what_a_stopped_elbow_takes(void)
     }
 }
 
-// hits: a joint comes to its bounds, and again once it has been at 0.85 of the way to them
+// a hit is counted when a joint reaches its bounds, and again after it has been at 0.85 of them
 static void visit(double measure, double outward)
 {
     himc_quat mean = limits.joint[NECK].mean;
@@ -246,11 +246,11 @@ static void test_strength_of_75_kg_is_that_of_the_table(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_a_joint_that_would_leave_its_bounds_is_on_them_in_a_moment);
+    RUN_TEST(test_a_joint_about_to_leave_its_bounds_is_on_them_a_moment_later);
     RUN_TEST(test_a_turning_parent_drives_no_joint_out_of_its_bounds);
     RUN_TEST(test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second);
-    RUN_TEST(test_what_damps_beside_servos_never_drives);
-    RUN_TEST(test_a_tip_gets_back_what_a_stopped_elbow_takes);
+    RUN_TEST(test_limit_damping_beside_servos_never_adds_energy);
+    RUN_TEST(test_other_joints_compensate_a_stopped_elbow_at_the_tip);
     RUN_TEST(test_a_joint_hits_its_bounds_again_once_it_has_left_them);
     RUN_TEST(test_strength_of_75_kg_is_that_of_the_table);
     return UNITY_END();

@@ -145,7 +145,7 @@ static void test_the_elbow_falls_before_the_stick_does(void)
     }
 }
 
-// a habit's take of a sequence; its postures are the caller's to free
+// a sequence as a take for posture regression; the caller frees its poses
 static himc_posture_regression_take postures(const himc_mocap *m)
 {
     int frames = himc_mocap_frames(m);
@@ -159,17 +159,17 @@ static himc_posture_regression_take postures(const himc_mocap *m)
                                           .rate = HIMC_MOCAP_RATE};
 }
 
-// adds the squared angles between a sequence's joints and those its tips alone give; returns how
-// many
+// adds the squared angles between a sequence's joints and the regression's; returns their count
 static int add_errors(const himc_posture_regression *regression, const himc_mocap *m,
                       double sum[HIMC_ARM_JOINTS])
 {
     int count = 0;
     for (int f = 0; f < himc_mocap_frames(m); f += 2) {
-        himc_vec3 tip[HIMC_REGRESSION_TAPS][HIMC_HANDS];
-        for (int tap = 0; tap < HIMC_REGRESSION_TAPS; tap++) {
-            himc_body_state s = sequence_state(m, f / HIMC_MOCAP_RATE + tap * HIMC_REGRESSION_STEP);
-            memcpy(tip[tap], s.tip, sizeof tip[tap]);
+        himc_vec3 tip[HIMC_REGRESSION_OFFSETS][HIMC_HANDS];
+        for (int o = 0; o < HIMC_REGRESSION_OFFSETS; o++) {
+            himc_body_state s =
+                sequence_state(m, f / HIMC_MOCAP_RATE + o * HIMC_REGRESSION_OFFSET_STEP);
+            memcpy(tip[o], s.tip, sizeof tip[o]);
         }
         himc_pose captured = himc_mocap_pose(m, f / HIMC_MOCAP_RATE), guess = captured;
         himc_posture_regression_at(regression, (const himc_vec3(*)[HIMC_HANDS])tip, &guess);
@@ -184,7 +184,7 @@ static int add_errors(const himc_posture_regression *regression, const himc_moca
     return count;
 }
 
-// the other players' habit in a nuance, all spots
+// a posture regression learned from the other players in a nuance, all spots
 static void learn(int unseen, int nuance, himc_posture_regression *regression)
 {
     himc_mocap *m[MOCAP_SEQUENCES];

@@ -1,4 +1,4 @@
-/// test_pose.c: forward kinematics against hand-made places and against its own differences.
+/// test_pose.c: forward kinematics against positions computed by hand and against differences.
 #include "himc/body.h"
 
 #include "bodies.h"
@@ -48,8 +48,8 @@ static void test_zero_pose_stands_with_arms_and_sticks_hanging(void)
         TEST_ASSERT_EQUAL_DOUBLE(1, s.orientation[i].w);
 }
 
-// shoulder turned to hold the arm forward, elbow bent so that the forearm points up, the rest
-// straight on
+// shoulder rotated until the arm points forward, elbow bent until the forearm points up, wrist and
+// grip straight
 static void test_bent_arm_is_where_hand_computation_puts_it(void)
 {
     himc_pose pose = himc_pose_zero();
@@ -97,7 +97,7 @@ static void test_segments_stay_joined_and_rigid_in_any_pose(void)
     }
 }
 
-// the pose a time h further on, each joint turned by its rate in the parent's frame
+// the pose a time h later, each joint rotated by its rate in the parent's frame
 static himc_pose turned(const himc_pose *pose, const himc_vec3 rate[], double h)
 {
     himc_pose next;

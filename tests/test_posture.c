@@ -1,5 +1,4 @@
-/// test_posture.c: the natural posture puts both tips where asked, smoothly, the same left and
-/// right.
+/// test_posture.c: the natural posture puts both tips on their targets; it is smooth and symmetric.
 #include "body/posture.h"
 
 #include "unity.h"
@@ -43,8 +42,8 @@ static double place_tips(const himc_vec3 tip[HIMC_HANDS], himc_body_state *s)
     return missing;
 }
 
-// where a timpanist's tips are: over heads in front, up to 0.6 m above them, a little across the
-// middle
+// a random tip position of a timpanist: over drumheads in front, up to 0.6 m above them, a little
+// across the middle
 static himc_vec3 playing_place(himc_hand hand)
 {
     double x = uniform(0.35, 0.75), y = uniform(-0.15, 0.35),
@@ -67,7 +66,7 @@ static void test_tips_are_on_their_targets_over_the_whole_playing_space(void)
     TEST_ASSERT_TRUE(reached > 18000);
 }
 
-static void test_heights_of_people_do_not_matter(void)
+static void test_bodies_of_every_height_reach_the_tips(void)
 {
     for (double height = 1.2; height <= 2.2; height += 0.05) {
         himc_skeleton_config config = himc_skeleton_default();
@@ -89,8 +88,7 @@ static void test_arms_have_their_lengths_and_elbows_hang_below_and_outside(void)
     himc_body_state s;
     for (int n = 0; n < 1000; n++) {
         himc_vec3 tip[HIMC_HANDS] = {playing_place(HIMC_LEFT), playing_place(HIMC_RIGHT)};
-        for (int hand = 0; hand < HIMC_HANDS;
-             hand++) { // a wrist below its shoulder leaves no outside
+        for (int hand = 0; hand < HIMC_HANDS; hand++) { // below the shoulder there is no outside
             tip[hand].x = fmax(tip[hand].x, 0.45);
             tip[hand].y = fmin(fmax(tip[hand].y, -0.15), 0.15);
         }
@@ -162,8 +160,7 @@ static himc_target later(const himc_target *t, double h)
     return s;
 }
 
-// rates are central differences over 1 ms: their own error is near 1e-6 of the third derivatives
-// the wrist comes from the front to under its shoulder and a little behind it
+// the wrist moves from the front to below its shoulder and a little behind it
 static void test_an_elbow_stays_behind_while_its_wrist_goes_under_the_shoulder(void)
 {
     double fastest = 0;
@@ -178,10 +175,11 @@ static void test_an_elbow_stays_behind_while_its_wrist_goes_under_the_shoulder(v
                     fmax(fastest, himc_vec3_length(motion.rate[himc_arm_joint(HIMC_LEFT, k)]));
         }
     printf("fastest joint at 1 m/s: %.1f rad/s\n", fastest);
-    TEST_ASSERT_TRUE(fastest < 35); // 122, had it to hang straight down
+    TEST_ASSERT_TRUE(fastest < 35); // 122 if the elbow always hung straight down
 }
 
-static void test_rates_carry_the_tips_at_the_velocity_asked(void)
+// rates are central differences over 1 ms with an error near 1e-6 of the third derivatives
+static void test_rates_move_the_tips_at_the_target_velocity(void)
 {
     for (int n = 0; n < 500; n++) {
         himc_target tip[HIMC_HANDS] = {random_motion(HIMC_LEFT), random_motion(HIMC_RIGHT)};
@@ -225,7 +223,7 @@ static void test_acceleration_is_the_difference_of_the_rate(void)
     }
 }
 
-static void test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that(void)
+static void test_a_tip_out_of_reach_is_missed_by_the_returned_distance(void)
 {
     himc_body_state s;
     for (int n = 0; n < 1000; n++) {
@@ -241,7 +239,7 @@ static void test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that(v
     }
 }
 
-// what that hand misses of a place that the trunk has turned to (m)
+// the remaining distance of a hand to a point that the trunk is turned to (m)
 static double turned_to(himc_vec3 tip, himc_hand hand)
 {
     himc_posture before = posture;
@@ -253,7 +251,7 @@ static double turned_to(himc_vec3 tip, himc_hand hand)
     return distance(s.tip[hand], tip);
 }
 
-static void test_reachable_place_is_reached_and_a_place_in_reach_is_kept(void)
+static void test_reachable_points_are_reached_and_points_in_reach_are_kept(void)
 {
     for (int n = 0; n < 2000; n++) {
         himc_hand hand = (himc_hand)(n % 2);
@@ -267,7 +265,7 @@ static void test_reachable_place_is_reached_and_a_place_in_reach_is_kept(void)
     }
 }
 
-static void test_reachable_place_is_reached_by_people_of_every_height(void)
+static void test_reachable_points_are_reached_by_bodies_of_every_height(void)
 {
     for (double height = 1.2; height <= 2.2; height += 0.1)
         for (double level = 0.45; level <= 0.55; level += 0.05) {
@@ -283,7 +281,7 @@ static void test_reachable_place_is_reached_by_people_of_every_height(void)
         }
 }
 
-static void test_no_place_makes_a_posture_that_is_no_number(void)
+static void test_postures_are_finite_for_every_tip(void)
 {
     himc_body_state s, rest;
     himc_pose_to_state(&skeleton, &posture.rest, NULL, &rest);
@@ -335,7 +333,7 @@ static void test_thumbs_point_inwards_in_german_and_up_in_french_grip(void)
     }
 }
 
-static void test_feet_of_the_seated_stand_on_the_floor(void)
+static void test_feet_of_a_seated_body_stand_on_the_floor(void)
 {
     himc_body_state s;
     himc_pose_to_state(&skeleton, &posture.rest, NULL, &s);
@@ -349,19 +347,19 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_tips_are_on_their_targets_over_the_whole_playing_space);
-    RUN_TEST(test_heights_of_people_do_not_matter);
+    RUN_TEST(test_bodies_of_every_height_reach_the_tips);
     RUN_TEST(test_arms_have_their_lengths_and_elbows_hang_below_and_outside);
     RUN_TEST(test_stick_lies_level_at_impact_and_rises_with_the_tip);
     RUN_TEST(test_joints_follow_the_tip_without_jumps);
     RUN_TEST(test_an_elbow_stays_behind_while_its_wrist_goes_under_the_shoulder);
-    RUN_TEST(test_rates_carry_the_tips_at_the_velocity_asked);
+    RUN_TEST(test_rates_move_the_tips_at_the_target_velocity);
     RUN_TEST(test_acceleration_is_the_difference_of_the_rate);
-    RUN_TEST(test_out_of_reach_is_reported_and_the_arm_falls_short_by_just_that);
-    RUN_TEST(test_reachable_place_is_reached_and_a_place_in_reach_is_kept);
-    RUN_TEST(test_reachable_place_is_reached_by_people_of_every_height);
-    RUN_TEST(test_no_place_makes_a_posture_that_is_no_number);
+    RUN_TEST(test_a_tip_out_of_reach_is_missed_by_the_returned_distance);
+    RUN_TEST(test_reachable_points_are_reached_and_points_in_reach_are_kept);
+    RUN_TEST(test_reachable_points_are_reached_by_bodies_of_every_height);
+    RUN_TEST(test_postures_are_finite_for_every_tip);
     RUN_TEST(test_left_and_right_mirror_each_other);
     RUN_TEST(test_thumbs_point_inwards_in_german_and_up_in_french_grip);
-    RUN_TEST(test_feet_of_the_seated_stand_on_the_floor);
+    RUN_TEST(test_feet_of_a_seated_body_stand_on_the_floor);
     return UNITY_END();
 }

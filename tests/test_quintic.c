@@ -1,4 +1,5 @@
-/// test_quintic.c: both ends are met, minimum jerk is the known one, any quintic is recovered.
+/// test_quintic.c: both end states are exact, minimum jerk is the known curve, any quintic is
+/// recovered from its ends.
 #include "base/quintic.h"
 
 #include "unity.h"
@@ -43,7 +44,7 @@ static void assert_state(const himc_target *want, const himc_target *got, double
     TEST_ASSERT_DOUBLE_WITHIN(relative * 200, 0, distance(want->a, got->a));
 }
 
-static void test_quintic_meets_both_ends_in_position_velocity_and_acceleration(void)
+static void test_both_ends_have_the_given_position_velocity_and_acceleration(void)
 {
     for (int i = 0; i < 1000; i++) {
         double duration = 0.02 + 0.5 * (1 + random_unit());
@@ -119,7 +120,7 @@ static void test_any_quintic_is_recovered_from_its_ends(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_quintic_meets_both_ends_in_position_velocity_and_acceleration);
+    RUN_TEST(test_both_ends_have_the_given_position_velocity_and_acceleration);
     RUN_TEST(test_rest_to_rest_is_minimum_jerk_with_peak_speed_1_875);
     RUN_TEST(test_stroke_down_is_monotone_up_to_speed_ratio_2_5);
     RUN_TEST(test_derivatives_are_those_of_the_position);

@@ -2,6 +2,7 @@
 /// ticks; and the contract of all that runs in a physics step: nothing is allocated.
 #include "allocations.h"
 #include "body/character.h"
+#include "body/dynamics.h"
 #include "control/setpoint.h"
 
 #include "unity.h"

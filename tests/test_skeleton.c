@@ -1,4 +1,4 @@
-/// test_skeleton.c: the table of the body: its shape, masses, de Leva's numbers, what it refuses.
+/// test_skeleton.c: the table of the body: its tree, masses, de Leva's numbers, refused values.
 #include "himc/body.h"
 
 #include "unity.h"
@@ -212,7 +212,7 @@ static void test_body_scales_with_height_and_mass(void)
     }
 }
 
-static void test_stick_does_not_depend_on_who_holds_it(void)
+static void test_stick_does_not_depend_on_the_body(void)
 {
     build();
     himc_segment stick = skeleton.segment[HIMC_LEFT_STICK];
@@ -237,7 +237,7 @@ static void test_inertias_obey_the_triangle_inequality(void)
     }
 }
 
-static void test_measured_lengths_are_taken_and_the_next_joint_follows(void)
+static void test_measured_lengths_are_used_and_move_the_next_joint(void)
 {
     config.length[HIMC_LEFT_UPPER_ARM] = 0.333;
     config.length[HIMC_RIGHT_FOREARM] = 0.222;
@@ -253,7 +253,7 @@ static void test_measured_lengths_are_taken_and_the_next_joint_follows(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 75, mass_without_sticks());
 }
 
-static void test_seat_is_where_asked_or_follows_the_height(void)
+static void test_seat_is_as_configured_or_from_the_height(void)
 {
     build();
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.42 * 1.75, skeleton.root.z);
@@ -328,10 +328,10 @@ int main(void)
     RUN_TEST(test_mallet_inertia_is_that_of_a_rod_and_a_ball_in_slices);
     RUN_TEST(test_left_and_right_mirror_each_other);
     RUN_TEST(test_body_scales_with_height_and_mass);
-    RUN_TEST(test_stick_does_not_depend_on_who_holds_it);
+    RUN_TEST(test_stick_does_not_depend_on_the_body);
     RUN_TEST(test_inertias_obey_the_triangle_inequality);
-    RUN_TEST(test_measured_lengths_are_taken_and_the_next_joint_follows);
-    RUN_TEST(test_seat_is_where_asked_or_follows_the_height);
+    RUN_TEST(test_measured_lengths_are_used_and_move_the_next_joint);
+    RUN_TEST(test_seat_is_as_configured_or_from_the_height);
     RUN_TEST(test_ranges_are_refused_with_the_name_of_the_field);
     RUN_TEST(test_length_of_a_stick_is_not_silently_ignored);
     return UNITY_END();

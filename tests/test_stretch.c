@@ -1,5 +1,5 @@
-/// test_stretch.c: places out of an arm's reach: where the arm is stretched to instead, how that
-/// place moves, and that control asks for nothing else.
+/// test_stretch.c: tip targets out of an arm's reach: the nearest reachable point, its motion, and
+/// the torques for it.
 #include "body/stretch.h"
 
 #include "control/controller.h"
@@ -26,7 +26,7 @@ static double distance(himc_vec3 a, himc_vec3 b)
     return himc_vec3_length(himc_vec3_sub(a, b));
 }
 
-static void test_an_arm_stretches_nearly_as_far_as_its_segments_are_long_together(void)
+static void test_reach_of_an_arm_is_nearly_the_sum_of_its_segments(void)
 {
     double length = skeleton.segment[HIMC_RIGHT_UPPER_ARM].length +
                     skeleton.segment[HIMC_RIGHT_FOREARM].length +
@@ -36,7 +36,7 @@ static void test_an_arm_stretches_nearly_as_far_as_its_segments_are_long_togethe
     TEST_ASSERT_TRUE(himc_stretch(&skeleton, HIMC_RIGHT) < length);
 }
 
-static void test_what_is_in_reach_stays_as_it_is(void)
+static void test_a_target_in_reach_stays_unchanged(void)
 {
     himc_target t = {{0.5, 0.2, -0.1}, {1, 2, 3}, {4, 5, 6}}, s;
     s = himc_stretch_towards(&t, himc_vec3_make(0.1, 0.1, 0), 0.6);
@@ -45,7 +45,7 @@ static void test_what_is_in_reach_stays_as_it_is(void)
 
 static const himc_vec3 shoulder = {0.1, -0.2, 1.2};
 
-// a curve that is out of reach throughout
+// a curve that is out of reach everywhere
 static himc_target curve(double t)
 {
     return (himc_target){
@@ -61,18 +61,18 @@ static himc_target stretched(double t)
     return himc_stretch_towards(&x, shoulder, 0.9);
 }
 
-static void test_what_is_not_is_met_in_the_same_direction(void)
+static void test_a_target_out_of_reach_is_replaced_in_the_same_direction(void)
 {
     for (double t = 0; t < 1; t += 0.1) {
-        himc_vec3 asked = himc_vec3_sub(curve(t).x, shoulder),
-                  met = himc_vec3_sub(stretched(t).x, shoulder);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.9, himc_vec3_length(met));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0,
-                                  himc_vec3_length(himc_vec3_cross(himc_vec3_unit(asked), met)));
+        himc_vec3 target = himc_vec3_sub(curve(t).x, shoulder),
+                  reached = himc_vec3_sub(stretched(t).x, shoulder);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.9, himc_vec3_length(reached));
+        TEST_ASSERT_DOUBLE_WITHIN(
+            1e-12, 0, himc_vec3_length(himc_vec3_cross(himc_vec3_unit(target), reached)));
     }
 }
 
-static void test_with_the_velocity_and_acceleration_of_that_place(void)
+static void test_velocity_and_acceleration_are_those_of_the_replaced_target(void)
 {
     const double h = 1e-4;
     for (double t = 0; t < 1; t += 0.1) {
@@ -97,7 +97,7 @@ static void at_rest(himc_posture *posture, himc_body_state *state, himc_referenc
     himc_posture_moving(posture, reference->tip, &reference->posture);
 }
 
-static void test_torques_for_a_tip_out_of_reach_are_those_for_the_nearest_place(void)
+static void test_torques_for_a_tip_out_of_reach_are_those_for_the_nearest_point(void)
 {
     himc_posture posture;
     himc_body_state state;
@@ -121,10 +121,10 @@ static void test_torques_for_a_tip_out_of_reach_are_those_for_the_nearest_place(
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_an_arm_stretches_nearly_as_far_as_its_segments_are_long_together);
-    RUN_TEST(test_what_is_in_reach_stays_as_it_is);
-    RUN_TEST(test_what_is_not_is_met_in_the_same_direction);
-    RUN_TEST(test_with_the_velocity_and_acceleration_of_that_place);
-    RUN_TEST(test_torques_for_a_tip_out_of_reach_are_those_for_the_nearest_place);
+    RUN_TEST(test_reach_of_an_arm_is_nearly_the_sum_of_its_segments);
+    RUN_TEST(test_a_target_in_reach_stays_unchanged);
+    RUN_TEST(test_a_target_out_of_reach_is_replaced_in_the_same_direction);
+    RUN_TEST(test_velocity_and_acceleration_are_those_of_the_replaced_target);
+    RUN_TEST(test_torques_for_a_tip_out_of_reach_are_those_for_the_nearest_point);
     return UNITY_END();
 }

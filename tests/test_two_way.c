@@ -7,6 +7,7 @@
 
 #include "unity.h"
 #include "body/posture.h"
+#include "body/dynamics.h"
 #include "body/character.h"
 #include "himc/membrane.h"
 

@@ -1,4 +1,4 @@
-/// test_vec.c: vectors, quaternions and matrices against each other and against hand-made values.
+/// test_vec.c: vectors, quaternions and matrices against each other and values computed by hand.
 #include "himc/vec.h"
 
 #include "unity.h"
@@ -67,7 +67,7 @@ static void test_unit_of_zero_stays_zero(void)
                               himc_vec3_length(himc_vec3_unit(himc_vec3_make(3, -4, 12))));
 }
 
-static void test_finite_sees_every_component(void)
+static void test_finite_checks_every_component(void)
 {
     TEST_ASSERT_TRUE(himc_vec3_finite(himc_vec3_make(1, -2, 3)));
     TEST_ASSERT_FALSE(himc_vec3_finite(himc_vec3_make(NAN, 0, 0)));
@@ -85,7 +85,7 @@ static himc_vec3 rodrigues(himc_vec3 rotation, himc_vec3 v)
     return himc_vec3_madd(r, himc_vec3_dot(k, v) * (1 - cos(t)), k);
 }
 
-static void test_exp_rotates_as_rodrigues_says(void)
+static void test_exp_rotates_by_rodrigues_formula(void)
 {
     for (int i = 0; i < 1000; i++) {
         himc_vec3 rotation = himc_vec3_scale(random_vector(), 6), v = random_vector();
@@ -198,8 +198,8 @@ int main(void)
     RUN_TEST(test_quarter_turn_about_z_takes_x_to_y);
     RUN_TEST(test_cross_product_is_right_handed_and_perpendicular);
     RUN_TEST(test_unit_of_zero_stays_zero);
-    RUN_TEST(test_finite_sees_every_component);
-    RUN_TEST(test_exp_rotates_as_rodrigues_says);
+    RUN_TEST(test_finite_checks_every_component);
+    RUN_TEST(test_exp_rotates_by_rodrigues_formula);
     RUN_TEST(test_product_applies_the_right_factor_first);
     RUN_TEST(test_log_undoes_exp_up_to_half_a_turn);
     RUN_TEST(test_log_and_exp_keep_tiny_angles);

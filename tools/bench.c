@@ -1,9 +1,9 @@
-/// bench.c: `himc bench`: what one core does. A step of the whole performance (control, contact,
-/// one drum) beside one of the bare engine on the same body; how many modes of a head, and how many
-/// performers with their drums, a core plays in real time.
+/// bench.c: `himc bench`: the speed of one core. It measures a step of the whole performance
+/// (control, contact, one drum) and one of the physics engine alone on the same body; the modes of
+/// a drumhead and the performers with their drums that one core plays in real time.
 ///
-/// Processor time is measured, not the clock's, each figure as the median of five runs, so that
-/// what else the machine does counts for little.
+/// It measures processor time, not elapsed time, and each figure is the median of five runs, so
+/// other programs on the machine have little effect.
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "himc/himc.h"
@@ -17,13 +17,13 @@
 #include <string.h>
 #include <time.h>
 
-#define RUNS 5
-#define RATE 48000
-#define PHYSICS 10000
-#define BLOCK 64
-#define SECONDS 4  // of each performance
-#define MODES 1024 // of the head that is measured alone
-#define MODE_SAMPLES 24000
+#define RUNS 5             // chosen: odd, for a median
+#define RATE 48000         // sample rate (Hz)
+#define PHYSICS 10000      // the default physics rate, and the repetitions of each part (Hz)
+#define BLOCK 64           // Pd's block (samples)
+#define SECONDS 4          // chosen: of each performance (s)
+#define MODES 1024         // chosen: of the drumhead that is measured alone
+#define MODE_SAMPLES 24000 // chosen: half a second of it
 #define PARTS 6
 
 enum { JSON };
@@ -37,13 +37,13 @@ static const cli_option options[] = {
 typedef struct figures {
     double step, engine;      ///< (us)
     double part[PARTS];       ///< (us)
-    double performers, modes; ///< in real time, one core
+    double performers, modes; ///< that one core plays in real time
 } figures;
 
 static const char *const part_name[PARTS] = {
     "targets between ticks",           "natural posture (at each tick)",
     "inverse kinematics and dynamics", "articulated inertia (in contact)",
-    "reading the body back",           "the bare engine"};
+    "reading the body back",           "physics engine alone"};
 
 static double cpu_seconds(void)
 {
@@ -64,14 +64,14 @@ static double median(double *value)
     return value[RUNS / 2];
 }
 
-static bool tell(himc_performance *p, const char *text, himc_error *error)
+static bool do_command(himc_performance *p, const char *text, himc_error *error)
 {
     himc_command c;
     return himc_command_parse_text(&c, HIMC_PERFORMER, text, error) &&
            himc_performance_command(p, &c, 0, error);
 }
 
-/// Four strokes a second, hands in turn.
+/// A performance of four strokes a second, hands in turn; NULL with the reason.
 static himc_performance *make_performance(himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
@@ -80,15 +80,15 @@ static himc_performance *make_performance(himc_error *error)
     himc_performance *p = himc_performance_new(&config, error);
     himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
     bool good =
-        p && drum && himc_performance_add_drum(p, drum, error) && tell(p, "tempo 120", error);
+        p && drum && himc_performance_add_drum(p, drum, error) && do_command(p, "tempo 120", error);
     himc_drum_release(drum);
     for (int i = 0; good && i < 4 * SECONDS; i++) {
         char text[64];
         snprintf(text, sizeof text, "stroke %g %s legato mf", 1 + i / 2.0,
                  i % 2 ? "left" : "right");
-        good = tell(p, text, error);
+        good = do_command(p, text, error);
     }
-    if (good && tell(p, "play", error))
+    if (good && do_command(p, "play", error))
         return p;
     himc_performance_free(p);
     return NULL;
@@ -108,7 +108,7 @@ static double time_performance(himc_error *error)
     return taken;
 }
 
-/// What the parts of a step work on: a body in playing posture.
+/// A body in playing posture, on which the parts of a step work.
 typedef struct bench_body {
     himc_skeleton skeleton;
     himc_posture posture;
@@ -176,8 +176,8 @@ static bool time_parts(double part[PARTS], himc_error *error)
     return true;
 }
 
-/// Modes that a core keeps swinging in real time: of a head low enough for all to be below half the
-/// sample rate, and nearly without losses, since what has died away costs nothing.
+/// Modes that a core computes in real time. The drumhead is tuned so low that all of them are below
+/// half the sample rate, and has almost no losses, since modes that have died away cost nothing.
 static double time_modes(himc_error *error)
 {
     himc_head head = himc_head_default();
@@ -220,13 +220,13 @@ static bool measure(figures *out, himc_error *error)
 
 static void print_table(const figures *f)
 {
-    printf("a step, all in all                 %8.2f us at %d Hz, with one drum at %d Hz\n",
+    printf("one step in all                    %8.2f us at %d Hz, with one drum at %d Hz\n",
            f->step, PHYSICS, RATE);
     for (int k = 0; k < PARTS; k++)
         printf("  %-32s %8.2f us\n", part_name[k], f->part[k]);
-    printf("step over bare engine              %8.2f\n", f->step / f->engine);
-    printf("modes a core                       %8.0f\n", f->modes);
-    printf("performers a core                  %8.2f (times real time)\n", f->performers);
+    printf("step / engine alone                %8.2f\n", f->step / f->engine);
+    printf("modes per core                     %8.0f\n", f->modes);
+    printf("performers per core                %8.2f (times real time)\n", f->performers);
 }
 
 static int run(const cli_arguments *arguments)

@@ -1,10 +1,9 @@
 /// evaluate.c: `himc evaluate`: the published comparison of the controllers (Bouënard, Gibet &
 /// Wanderley 2012, section 3.3.2, figure 6b).
 ///
-/// A row is a nuance under one controller and law; its trials are numbered, and a trial's
-/// disturbance comes from its number alone. So trials can be done in any order, on any core or
-/// machine, and a table of trials (--log) that has some of them already is gone on with: what is in
-/// it is not done again.
+/// A row is a nuance under one controller and law. Its trials are numbered, and a trial's
+/// disturbance depends on its number only. So trials can run in any order, on any core or machine,
+/// and a log of trials (--log) can be continued: trials in the log are not repeated.
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "evaluate_log.h"
@@ -22,13 +21,13 @@ static const cli_option options[] = {
     {"trials", 0, "N", "trials for each nuance and controller, 1 .. 10000 (100)"},
     {"range", 0, "A-B", "only these of them, to spread over machines"},
     {"only", 0, "WORD,...", "only rows of this nuance, this controller, this law"},
-    {"csv", 0, "F.csv", "where the table goes (standard output)"},
-    {"log", 0, "F.csv", "keeps each trial as it ends; those already there are not done again"},
-    {"jobs", 0, "N", "trials at a time, 1 .. 256 (as many as there are cores)"},
+    {"csv", 0, "F.csv", "writes the table to this file (standard output)"},
+    {"log", 0, "F.csv", "stores each trial when it ends; trials in it are not repeated"},
+    {"jobs", 0, "N", "parallel trials, 1 .. 256 (the number of cores)"},
     {0},
 };
 
-/// What is asked for and what is done of it.
+/// The requested trials and the state of their execution.
 typedef struct evaluation {
     int first, last, jobs;
     bool wanted[TRIAL_KINDS];
@@ -57,7 +56,7 @@ static bool read_range(const char *text, evaluation *e, himc_error *error)
     return himc_error_set(error, "--range: %s, allowed A-B within 1-%d", text, e->table.trials);
 }
 
-/// Keeps the rows that have this word; false if none ever has it.
+/// Keeps the rows that contain this word; false if the word is unknown.
 static bool keep_rows(evaluation *e, const char *word)
 {
     bool known = false;
@@ -89,8 +88,8 @@ static bool read_only(const char *text, evaluation *e, himc_error *error)
     for (int kind = 0; kind < TRIAL_KINDS; kind++)
         if (e->wanted[kind])
             return true;
-    return himc_error_set(error, "--only: %s: no row is all of these, allowed: words of one row",
-                          text);
+    return himc_error_set(
+        error, "--only: %s: no row has all of these words, allowed: words of one row", text);
 }
 
 static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_error *error)
@@ -109,8 +108,8 @@ static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_e
            read_only(value[ONLY], e, error);
 }
 
-/// Which of the trials asked for the log has not got. In order of trials, so that whoever stops it
-/// half-way has some of every row.
+/// Lists the requested trials that are not in the log, in the order of their numbers, so an
+/// interrupted run has some trials of every row.
 static bool list_todo(evaluation *e, himc_error *error)
 {
     int count = (e->last - e->first + 1) * TRIAL_KINDS;
@@ -164,9 +163,9 @@ static bool evaluate(evaluation *e, const char *log, himc_error *error)
 {
     if (!evaluate_log_open(&e->log, log, &e->table, error) || !list_todo(e, error))
         return false;
-    pool spread = {e->todo_count, e->jobs, sizeof(trial_result), work, done, e};
+    pool workers = {e->todo_count, e->jobs, sizeof(trial_result), work, done, e};
     e->start = now();
-    return pool_run(&spread, error);
+    return pool_run(&workers, error);
 }
 
 static bool write_table(const evaluation *e, cli_file *file, himc_error *error)
@@ -181,7 +180,7 @@ static int run(const cli_arguments *arguments)
     evaluation e = {0};
     cli_file csv = {0};
     bool good = read_arguments(arguments, &e, &error) &&
-                cli_file_open(&csv, arguments->value[CSV], &error) && // not after hours of trials
+                cli_file_open(&csv, arguments->value[CSV], &error) && // before hours of trials
                 evaluate(&e, arguments->value[LOG], &error) && write_table(&e, &csv, &error);
     cli_file_drop(&csv);
     evaluate_log_close(&e.log);
@@ -197,7 +196,8 @@ const cli_call cli_evaluate = {
     "compares ik, id and himc over many trials, as published",
     "Each row plays disturbed takes of the motion database: nuance,controller,law,trials,rms_mm,\n"
     "rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratio. RMS is the distance of captured and\n"
-    "simulated sticks, impacts included, its SD that of the trials. docs/scaling.md spreads it.",
+    "simulated tips, impacts included, SD its deviation over the trials. docs/scaling.md: how to\n"
+    "run it on several machines.",
     options,
     run,
 };

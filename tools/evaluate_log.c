@@ -1,5 +1,5 @@
-/// evaluate_log.c: one table of columns writes and reads a row, so the two agree. Numbers are
-/// written with enough digits to come back the same to 1e-9 of their size.
+/// evaluate_log.c: the same table of columns writes and reads a row. Numbers are written with nine
+/// digits, so reading returns them to 1e-9 of their size.
 #define _POSIX_C_SOURCE 200809L
 #include "evaluate_log.h"
 #include "control/controller.h"
@@ -15,7 +15,7 @@
 typedef struct column {
     const char *name;
     size_t at;    ///< in a trial_result
-    double scale; ///< what is written is the field times this
+    double scale; ///< the column is the field times this
 } column;
 
 #define AT(field) offsetof(trial_result, field)
@@ -79,15 +79,15 @@ trial_kind trial_kind_of(const trial_table *table, int index)
     return out;
 }
 
-/// Mean and standard deviation over the trials there are.
-typedef struct spread {
+/// Mean and standard deviation over the known trials.
+typedef struct statistics {
     int count;
     double mean, deviation;
-} spread;
+} statistics;
 
-static spread spread_of(const trial_table *table, int kind, size_t at)
+static statistics statistics_of(const trial_table *table, int kind, size_t at)
 {
-    spread s = {0};
+    statistics s = {0};
     double squares = 0;
     for (int number = 1; number <= table->trials; number++) {
         int i = trial_index(table, kind, number);
@@ -114,14 +114,14 @@ void trial_table_print(const trial_table *table, FILE *stream)
           "elbow_range_ratio\n",
           stream);
     for (int kind = 0; kind < TRIAL_KINDS; kind++) {
-        spread rms = spread_of(table, kind, AT(rms));
-        double amplitude = spread_of(table, kind, AT(amplitude)).mean;
+        statistics rms = statistics_of(table, kind, AT(rms));
+        double amplitude = statistics_of(table, kind, AT(amplitude)).mean;
         if (rms.count == 0)
             continue;
         print_key(table, trial_index(table, kind, 1), stream);
         fprintf(stream, ",%d,%.5f,%.5f,%.3f,%.5f,%.4f\n", rms.count, 1e3 * rms.mean,
                 1e3 * rms.deviation, 1e3 * amplitude, 100 * rms.mean / amplitude,
-                spread_of(table, kind, AT(elbow)).mean);
+                statistics_of(table, kind, AT(elbow)).mean);
     }
 }
 
@@ -137,7 +137,7 @@ static int find_kind(const trial_table *table, char *const key[3])
     return -1;
 }
 
-// cuts a row at its commas; the number of fields
+// splits a row at its commas; returns the number of fields
 static int split(char *row, char *fields[FIELDS])
 {
     int count = 0;
@@ -165,7 +165,8 @@ static bool read_row(trial_table *table, char *row, himc_error *error)
     double number, value;
     int count = split(row, fields), kind = count == FIELDS ? find_kind(table, fields) : -1;
     if (kind < 0)
-        return himc_error_set(error, "no row of trials, allowed: %s and %d numbers", KEY, COLUMNS);
+        return himc_error_set(error, "not a row of trials, allowed: %s and %d numbers", KEY,
+                              COLUMNS);
     if (!read_number(fields[3], &number) || number != floor(number) || number < 1)
         return himc_error_set(error, "trial: %s, allowed 1 .. %d", fields[3], TRIALS_MAX);
     if (number > table->trials)
@@ -173,13 +174,13 @@ static bool read_row(trial_table *table, char *row, himc_error *error)
     int index = trial_index(table, kind, (int)number);
     for (int i = 0; i < COLUMNS; i++) {
         if (!read_number(fields[4 + i], &value))
-            return himc_error_set(error, "%s: %s is no number", columns[i].name, fields[4 + i]);
+            return himc_error_set(error, "%s: %s is not a number", columns[i].name, fields[4 + i]);
         *field(&table->result[index], columns[i].at) = value / columns[i].scale;
     }
     return table->known[index] = true;
 }
 
-// the first line, without its end
+// the header line, without its newline
 static void name_columns(char *text, size_t size)
 {
     size_t used = (size_t)snprintf(text, size, "%s", KEY);
@@ -187,7 +188,8 @@ static void name_columns(char *text, size_t size)
         used += (size_t)snprintf(text + used, size - used, ",%s", columns[i].name);
 }
 
-// all complete rows; `*end` is where the last one ends. What is no log is refused as it is
+// reads all complete rows; `*end` is the end of the last one. A file that is not a log is refused
+// and stays unchanged
 static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t *end,
                       himc_error *error)
 {
@@ -200,14 +202,15 @@ static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t 
     for (int line = 1; good && (length = getline(&row, &room, stream)) > 0; line++) {
         bool whole = row[length - 1] == '\n';
         if (!whole && (line > 1 || !strncmp(row, header, (size_t)length)))
-            break; // an interrupted write: that trial is done again
+            break; // an interrupted write: this trial will be repeated
         row[length - whole] = '\0';
         *end += length;
         if (strcmp(row, header) == 0)
             continue; // logs joined by cat have several
         good = line > 1 ? read_row(table, row, error)
-                        : himc_error_set(
-                              error, "no log of trials, allowed: one that begins with %s", header);
+                        : himc_error_set(error,
+                                         "not a log of trials, allowed: a file that begins with %s",
+                                         header);
         if (!good)
             himc_error_prefix(error, "%s:%d", path, line);
     }
@@ -232,7 +235,8 @@ bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, 
         return true;
     snprintf(log->path, sizeof log->path, "%s", path);
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
-        return himc_error_set(error, "%s: not a file, which a log must be", path);
+        return himc_error_set(error, "%s: not a regular file, allowed for --log: a regular file",
+                              path);
     log->stream = fopen(path, "a+");
     if (!log->stream)
         return himc_error_set(error, "%s: cannot be opened: %s", path, strerror(errno));
@@ -240,7 +244,7 @@ bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, 
     if (!read_rows(log->stream, table, path, &end, error))
         return false;
     if (ftruncate(fileno(log->stream), end) || fseek(log->stream, 0, SEEK_END))
-        return himc_error_set(error, "%s: cannot be gone on with: %s", path, strerror(errno));
+        return himc_error_set(error, "%s: cannot be continued: %s", path, strerror(errno));
     return end > 0 || begin(log, error);
 }
 

@@ -1,4 +1,4 @@
-/// evaluate_log.h: the results of all trials, and the file that keeps them as they come.
+/// evaluate_log.h: the results of all trials, and the log file that stores each one at once.
 #ifndef EVALUATE_LOG_H
 #define EVALUATE_LOG_H
 
@@ -22,21 +22,21 @@ void trial_table_free(trial_table *table);
 int trial_index(const trial_table *table, int kind, int number);
 trial_kind trial_kind_of(const trial_table *table, int index);
 int trial_number_of(const trial_table *table, int index);
-/// One row for each kind that has trials: their mean, the RMS's standard deviation, their range.
+/// Writes one row for each kind that has trials: means, standard deviation of the RMS, elbow range.
 void trial_table_print(const trial_table *table, FILE *stream);
 
-/// A table of trials on disk, one row each. Rows may come in any order, headers between them, so
-/// that logs are joined by `cat`.
+/// A table of trials on disk, one row each. Rows may come in any order with headers between them,
+/// so logs can be joined by `cat`.
 typedef struct evaluate_log {
     char path[4096];
-    FILE *stream; ///< NULL when none is kept
+    FILE *stream; ///< NULL without a log
 } evaluate_log;
 
-/// Reads what is there into `table` (trials above its number are left out) and opens it to go on;
-/// a last row that was cut off by an interruption is dropped. Does nothing if `path` is NULL.
-/// False with file:line.
+/// Reads the existing rows into `table` (trials above its number are skipped) and opens the file
+/// for appending. An incomplete last row, from an interruption, is removed. Does nothing if `path`
+/// is NULL. False with file:line.
 bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, himc_error *error);
-/// Adds a row, at once on disk.
+/// Appends a row and flushes it. False with the reason.
 bool evaluate_log_add(evaluate_log *log, const trial_table *table, int index, himc_error *error);
 void evaluate_log_close(evaluate_log *log);
 

@@ -1,7 +1,7 @@
-/// pool.c: workers are forks of this process. The next item's number is a counter in memory that
-/// all share; a result goes to the parent through one pipe, in a single write small enough to
-/// arrive whole (POSIX: up to PIPE_BUF bytes). A worker that dies leaves an item without an answer,
-/// and that is an error; one that fails stops the others after the item each is at.
+/// pool.c: workers are forks of this process. The number of the next item is a counter in shared
+/// memory. Results go to the parent through one pipe; each is a single write of at most PIPE_BUF
+/// bytes, which POSIX does not interleave with others. A worker that dies leaves an item without an
+/// answer, and that is an error. A worker that fails stops the others after their present items.
 #define _GNU_SOURCE // MAP_ANONYMOUS
 #include "pool.h"
 
@@ -13,7 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define JOBS_MAX 256
+#define JOBS_MAX 256    // the range of --jobs
+#define ANSWER_MAX 4096 // PIPE_BUF of Linux (bytes)
 
 typedef struct answer {
     int item;
@@ -22,7 +23,7 @@ typedef struct answer {
     _Alignas(16) unsigned char result[POOL_RESULT];
 } answer;
 
-_Static_assert(sizeof(answer) <= 4096, "an answer must arrive whole");
+_Static_assert(sizeof(answer) <= ANSWER_MAX, "an answer must be one atomic write");
 
 static bool read_whole(int from, answer *a)
 {
@@ -67,7 +68,7 @@ static int start_workers(const pool *p, atomic_int *next, const int ends[2], pid
     return count;
 }
 
-// takes answers until the workers have closed their ends; how many items were done
+// receives answers until all workers have closed the pipe; the number of items done, -1 on failure
 static int collect(const pool *p, atomic_int *next, int from, himc_error *error)
 {
     int done = 0;
@@ -95,19 +96,19 @@ bool pool_run(const pool *p, himc_error *error)
     atomic_int *next =
         mmap(NULL, sizeof *next, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (next == MAP_FAILED || pipe(ends))
-        return himc_error_set(error, "no workers: %s", strerror(errno));
+        return himc_error_set(error, "cannot start workers: %s", strerror(errno));
     atomic_init(next, 0);
     int workers = start_workers(p, next, ends, worker);
     close(ends[1]);
-    int why = errno, done = workers ? collect(p, next, ends[0], error) : 0;
+    int fork_error = errno, done = workers ? collect(p, next, ends[0], error) : 0;
     close(ends[0]);
     for (int i = 0; i < workers; i++)
         waitpid(worker[i], NULL, 0);
     munmap(next, sizeof *next);
     if (workers == 0)
-        return himc_error_set(error, "no workers: %s", strerror(why));
+        return himc_error_set(error, "cannot start workers: %s", strerror(fork_error));
     if (done >= 0 && done < p->items)
-        return himc_error_set(error, "a worker died: %d of %d trials done", done, p->items);
+        return himc_error_set(error, "a worker process died: %d of %d items done", done, p->items);
     return done == p->items;
 }
 

@@ -1,4 +1,4 @@
-/// pool.h: independent work spread over the cores, one process each.
+/// pool.h: runs independent items of work in parallel, one process for each core.
 #ifndef POOL_H
 #define POOL_H
 
@@ -6,22 +6,23 @@
 
 #define POOL_RESULT 1024 ///< largest result (bytes)
 
-/// What is to be done and what becomes of it.
+/// The work and the receiver of its results.
 typedef struct pool {
     int items;          ///< numbered from 0
     int jobs;           ///< processes, at least 1
     size_t result_size; ///< (bytes) at most POOL_RESULT
-    /// Does one item, in a process of its own that shares nothing; false with the reason.
+    /// Does one item, in a separate process without shared state; false with the reason.
     bool (*work)(void *user, int item, void *result, himc_error *error);
-    /// Takes a result, here, as soon as it is there, in whatever order; false stops everything.
+    /// Receives a result in the calling process, in any order; false with the reason stops all
+    /// work.
     bool (*done)(void *user, int item, const void *result, himc_error *error);
     void *user;
 } pool;
 
-/// Runs all items; false with the first reason if one failed, after which no more are begun.
+/// Runs all items. False with the first reason if one failed; then no further items are started.
 bool pool_run(const pool *pool, himc_error *error);
 
-/// Cores that are online.
+/// Number of cores that are online, 1 .. 256.
 int pool_cores(void);
 
 #endif

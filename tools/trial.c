@@ -1,12 +1,16 @@
-/// trial.c: a trial is a sequence of the motion database as a laboratory would have captured it
-/// (its markers with a tracker's noise), played by a body whose limbs are not quite as long as the
-/// player's, and whose segments do not weigh quite what control believes. The body's measures, but
-/// for that error, its mean posture and its joint limits come from that noisy take; `id` and `ik`
-/// follow its joints, `himc` its tips alone, its null space being for the habit of the other two
-/// players in that nuance. What was simulated is compared with the motion itself, noiseless.
+/// trial.c: a trial plays one captured sequence under one controller and compares it with the
+/// original.
 ///
-/// Under the `printed` law `himc` is as published: nothing in the null space but the limits. The
-/// servos are the default ones; a player's are a third as fast, `gain` 1/3.
+/// A sequence of the motion database is captured as in a laboratory: markers with the noise of a
+/// tracker, through a file. It is played by a body with errors: its limbs are not exactly as long
+/// as the player's, and its segments do not have exactly the masses that the controller assumes.
+/// The body's measures (except for that error), its mean posture and its joint limits come from the
+/// noisy take. `id` and `ik` follow the take's joints; `himc` follows its tips alone, with a
+/// posture regression learned from the other two players in that nuance as null-space target. The
+/// simulated motion is compared with the noiseless sequence.
+///
+/// Under the `printed` law `himc` is as published: nothing but the joint limits acts in the null
+/// space. The servos are the default ones; a player's are a third as fast, `gain` 1/3.
 #define _DEFAULT_SOURCE // mkstemps
 #include "trial.h"
 
@@ -24,26 +28,26 @@
 #include <string.h>
 #include <unistd.h>
 
-#define NOISE 2e-4       // of each marker's coordinate (m)
-#define MISJUDGED 0.1    // standard deviation of a segment's weight
-#define MISMEASURED 0.01 // and of a limb's length
-#define LEAST_SHARE 0.5
-#define RATE 48000
-#define BLOCK 64
-#define SETTLED 0.3 // after a take begins and before it ends, that are not compared (s)
+#define NOISE 2e-4        // chosen: of each marker coordinate, a good optical tracker (m)
+#define MASS_ERROR 0.1    // chosen: of the segments' masses, the accuracy of anthropometric tables
+#define LENGTH_ERROR 0.01 // chosen: of the limbs' lengths, 3 mm of a forearm
+#define LEAST_FACTOR 0.5  // chosen: no random mass or length is below half of the true one
+#define RATE 48000        // sample rate (Hz)
+#define BLOCK 64          // Pd's block (samples)
+#define SETTLED 0.3       // chosen: not compared after a take's begin and before its end (s)
 
-/// What is summed up while a trial plays.
+/// Sums over the frames of a trial while it plays.
 typedef struct tally {
     const trial_config *config;
     const himc_mocap *mocap;
-    himc_vec3 offset; ///< from the take's coordinates to ours (m)
+    himc_vec3 offset; ///< from the take's coordinates to the library's (m)
     double begin;     ///< time of the take's first frame (s)
-    double squares;   ///< of the tips' distances from where they were captured (m^2)
-    double outside;   ///< of their distances from the targets, where no force was (m^2)
+    double squares;   ///< squared distances of simulated and captured tips (m^2)
+    double outside;   ///< squared distances of tips and targets, outside contact (m^2)
     long outside_count;
-    double angle[3]; ///< squares: shoulder, elbow, wrist (rad^2)
+    double angle[3]; ///< squared angles of shoulder, elbow, wrist (rad^2)
     long count;
-    double low[2][HIMC_HANDS], high[2][HIMC_HANDS]; ///< elbows: captured, simulated (m)
+    double low[2][HIMC_HANDS], high[2][HIMC_HANDS]; ///< elbow heights: captured, simulated (m)
     himc_body_state body;                           ///< simulated, at the latest tick
 } tally;
 
@@ -64,8 +68,8 @@ trial_config trial_default(const trial_kind *kind, int number)
     return (trial_config){.kind = *kind,
                           .number = number,
                           .noise = NOISE,
-                          .misjudged = MISJUDGED,
-                          .mismeasured = MISMEASURED,
+                          .mass_error = MASS_ERROR,
+                          .length_error = LENGTH_ERROR,
                           .gain = 1,
                           .pace = 1,
                           .limits = true};
@@ -100,7 +104,7 @@ static uint64_t seed_of(const trial_config *config)
     return (uint64_t)config->kind.nuance << 32 | (uint64_t)config->number;
 }
 
-/// A clean sequence: postures of all frames, `take` to be freed by drop_sequence.
+/// A noiseless sequence and the poses of all its frames. The caller frees `mocap` and `take->pose`.
 static bool make_sequence(const himc_mocap_config *config, himc_posture_regression_take *take,
                           himc_mocap **mocap, himc_error *error)
 {
@@ -118,7 +122,7 @@ static bool make_sequence(const himc_mocap_config *config, himc_posture_regressi
     return pose || himc_error_set(error, "out of memory");
 }
 
-/// How the other players' arms go with their sticks in this nuance, all spots.
+/// Learns a posture regression from the other players in this nuance, all spots.
 static bool learn_from_others(himc_mocap_config config, himc_posture_regression *regression,
                               himc_error *error)
 {
@@ -126,7 +130,7 @@ static bool learn_from_others(himc_mocap_config config, himc_posture_regression 
     himc_posture_regression_take take[TAKES] = {{0}};
     himc_mocap *mocap[TAKES] = {NULL};
     int unseen = config.player, count = 0;
-    config.pace = 1; // how an arm lies with its stick, not how fast
+    config.pace = 1; // learned from the original sequences, whatever the trial's pace
     bool good = true;
     for (config.player = 0; config.player < HIMC_MOCAP_PLAYERS; config.player++)
         for (int spot = 0; good && config.player != unseen && spot < TRIAL_SPOTS; spot++, count++) {
@@ -141,20 +145,20 @@ static bool learn_from_others(himc_mocap_config config, himc_posture_regression 
     return good;
 }
 
-/// Learned once for each player left out and each nuance, in each process.
-static const himc_posture_regression *habit_without(const himc_mocap_config *config,
-                                                    himc_error *error)
+/// The regression for a player and nuance, learned once in each process; NULL with the reason.
+static const himc_posture_regression *regression_without(const himc_mocap_config *config,
+                                                         himc_error *error)
 {
     static himc_posture_regression regression[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
     static bool known[HIMC_MOCAP_PLAYERS][HIMC_NUANCES];
-    himc_posture_regression *h = &regression[config->player][config->nuance];
+    himc_posture_regression *learned = &regression[config->player][config->nuance];
     bool *k = &known[config->player][config->nuance];
     if (!*k)
-        *k = learn_from_others(*config, h, error);
-    return *k ? h : NULL;
+        *k = learn_from_others(*config, learned, error);
+    return *k ? learned : NULL;
 }
 
-/// The sequence as captured: through a file, as a laboratory's would come.
+/// The sequence as captured, with noise, through a file like a laboratory's.
 static himc_take *capture(const trial_config *config, const himc_mocap *mocap, himc_error *error)
 {
     char path[] = "/tmp/himc-trial-XXXXXX.c3d";
@@ -172,17 +176,17 @@ static himc_take *capture(const trial_config *config, const himc_mocap *mocap, h
     return take;
 }
 
-static bool tell(himc_performance *p, himc_error *error, const char *text)
+static bool do_command(himc_performance *p, himc_error *error, const char *text)
 {
     himc_command c;
     return himc_command_parse_text(&c, HIMC_PERFORMER, text, error) &&
            himc_performance_command(p, &c, 0, error);
 }
 
-static bool adopt_habit(himc_performance *p, const himc_player *seen, double rate,
-                        const himc_mocap_config *config, himc_error *error)
+static bool use_regression(himc_performance *p, const himc_player *seen, double rate,
+                           const himc_mocap_config *config, himc_error *error)
 {
-    const himc_posture_regression *learned = habit_without(config, error);
+    const himc_posture_regression *learned = regression_without(config, error);
     himc_skeleton skeleton;
     if (!learned || !himc_skeleton_init(&skeleton, &seen->config, error))
         return false;
@@ -197,26 +201,26 @@ static bool adopt_habit(himc_performance *p, const himc_player *seen, double rat
 
 static double near_one(mocap_dice *dice, double deviation)
 {
-    return fmax(1 + deviation * himc_mocap_normal(dice), LEAST_SHARE);
+    return fmax(1 + deviation * himc_mocap_normal(dice), LEAST_FACTOR);
 }
 
 static bool make_plant(himc_performance *p, const trial_config *config, himc_error *error)
 {
-    double weight[HIMC_SEGMENTS];
+    double factor[HIMC_SEGMENTS];
     mocap_dice dice = himc_mocap_dice(seed_of(config), NULL, 0);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
-        weight[i] = near_one(&dice, config->misjudged);
-    return himc_performance_set_weights(p, weight, error);
+        factor[i] = near_one(&dice, config->mass_error);
+    return himc_performance_set_weights(p, factor, error);
 }
 
-/// The sticks are measured on the table.
-static void mismeasure(himc_skeleton_config *body, const trial_config *config)
+/// Multiplies the limbs' lengths by random errors; the sticks' length is known exactly.
+static void add_length_errors(himc_skeleton_config *body, const trial_config *config)
 {
-    int which = 1; // other dice than the weights'
-    mocap_dice dice = himc_mocap_dice(seed_of(config), &which, 1);
+    int stream = 1; // independent of the masses' random numbers
+    mocap_dice dice = himc_mocap_dice(seed_of(config), &stream, 1);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
         if (i != HIMC_LEFT_STICK && i != HIMC_RIGHT_STICK)
-            body->length[i] *= near_one(&dice, config->mismeasured);
+            body->length[i] *= near_one(&dice, config->length_error);
 }
 
 static bool set_control(himc_performance *p, const trial_config *config, himc_error *error)
@@ -226,27 +230,27 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
     bool joints = kind->controller == HIMC_PIPELINE_ID && !config->bent;
     snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
-    if (!tell(p, error, text) || (published && !tell(p, error, "posture 0")) ||
-        (joints && !tell(p, error, "bend 0")) ||
-        (config->limits && !tell(p, error, "limits ellipsoid")))
+    if (!do_command(p, error, text) || (published && !do_command(p, error, "posture 0")) ||
+        (joints && !do_command(p, error, "bend 0")) ||
+        (config->limits && !do_command(p, error, "limits ellipsoid")))
         return false;
     snprintf(text, sizeof text, "gain frequency %.6f", config->gain);
-    if (config->gain != 1 && !tell(p, error, text))
+    if (config->gain != 1 && !do_command(p, error, text))
         return false;
     snprintf(text, sizeof text, "law %s", trial_law_name(kind));
-    return kind->controller == HIMC_PIPELINE_IK || tell(p, error, text);
+    return kind->controller == HIMC_PIPELINE_IK || do_command(p, error, text);
 }
 
 static bool play_as(himc_performance *p, const trial_config *config, himc_take *take,
                     himc_player *player, himc_error *error)
 {
     himc_mocap_config sequence = trial_sequence(config);
-    mismeasure(&player->config, config);
+    add_length_errors(&player->config, config);
     return himc_performance_play_player(p, take, player, "take", error) &&
            make_plant(p, config, error) && set_control(p, config, error) &&
            (config->kind.controller != HIMC_PIPELINE_HIMC ||
-            adopt_habit(p, player, himc_take_rate(take), &sequence, error)) &&
-           tell(p, error, "play");
+            use_regression(p, player, himc_take_rate(take), &sequence, error)) &&
+           do_command(p, error, "play");
 }
 
 static himc_performance *prepare(const trial_config *config, himc_take *take, himc_error *error)
@@ -267,7 +271,7 @@ static himc_performance *prepare(const trial_config *config, himc_take *take, hi
     return NULL;
 }
 
-static void stretch(tally *t, int which, himc_hand hand, double z)
+static void extend_range(tally *t, int which, himc_hand hand, double z)
 {
     t->low[which][hand] = fmin(t->low[which][hand], z);
     t->high[which][hand] = fmax(t->high[which][hand], z);
@@ -285,8 +289,8 @@ static void compare_hand(tally *t, const himc_motion_row *row, const himc_body_s
         t->outside += himc_vec3_dot(away, away);
         t->outside_count++;
     }
-    stretch(t, 0, hand, captured->origin[elbow].z);
-    stretch(t, 1, hand, row->elbow[hand].z);
+    extend_range(t, 0, hand, captured->origin[elbow].z);
+    extend_range(t, 1, hand, row->elbow[hand].z);
 }
 
 static void compare_joints(tally *t, const himc_motion_row *row, const himc_pose *captured,

@@ -1,8 +1,8 @@
-/// vec.h: vectors, quaternions (w, x, y, z) and 3x3 matrices; values, inline, HIMC_RT throughout.
+/// vec.h: vectors, quaternions and 3x3 matrices. All are plain values; every function is HIMC_RT.
 ///
-/// A unit quaternion q turns the vector v by q v q^-1. Rotation vectors are axis times angle
-/// (rad): the log here is the full angle, twice the half-angle logarithm of the 2012 paper's
-/// algorithm 1.
+/// A unit quaternion q rotates the vector v to q v q^-1; the product a b applies b first. A
+/// rotation vector is the axis times the angle (rad). The logarithm here gives the full angle,
+/// twice the half-angle logarithm of the 2012 paper's algorithm 1.
 #ifndef HIMC_VEC_H
 #define HIMC_VEC_H
 
@@ -10,14 +10,17 @@
 
 #include <math.h>
 
+/// A quaternion w + x i + y j + z k.
 typedef struct himc_quat {
     double w, x, y, z;
 } himc_quat;
 
-/// Row by row.
+/// A matrix, row by row.
 typedef struct himc_mat3 {
     double m[3][3];
 } himc_mat3;
+
+// Vectors
 
 static inline himc_vec3 himc_vec3_make(double x, double y, double z)
 {
@@ -39,7 +42,7 @@ static inline himc_vec3 himc_vec3_scale(himc_vec3 a, double s)
     return (himc_vec3){a.x * s, a.y * s, a.z * s};
 }
 
-/// a + s b
+/// a + s b.
 static inline himc_vec3 himc_vec3_madd(himc_vec3 a, double s, himc_vec3 b)
 {
     return (himc_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
@@ -55,11 +58,13 @@ static inline himc_vec3 himc_vec3_cross(himc_vec3 a, himc_vec3 b)
     return (himc_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// |a|, the Euclidean norm.
 static inline double himc_vec3_length(himc_vec3 a)
 {
     return sqrt(himc_vec3_dot(a, a));
 }
 
+/// True if no component is infinite or NaN.
 static inline bool himc_vec3_finite(himc_vec3 a)
 {
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
@@ -72,23 +77,20 @@ static inline himc_vec3 himc_vec3_unit(himc_vec3 a)
     return length > 0 ? himc_vec3_scale(a, 1 / length) : a;
 }
 
-/// The unit vector at these angles (rad): azimuth from x towards y, elevation from there up to z.
-static inline himc_vec3 himc_vec3_elevated(double azimuth, double elevation)
-{
-    return himc_vec3_make(cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth),
-                          sin(elevation));
-}
+// Quaternions
 
 static inline himc_quat himc_quat_identity(void)
 {
     return (himc_quat){1, 0, 0, 0};
 }
 
+/// The conjugate; of a unit quaternion the inverse rotation.
 static inline himc_quat himc_quat_conj(himc_quat q)
 {
     return (himc_quat){q.w, -q.x, -q.y, -q.z};
 }
 
+/// The product a b: the rotation b followed by the rotation a.
 static inline himc_quat himc_quat_mul(himc_quat a, himc_quat b)
 {
     return (himc_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
@@ -107,17 +109,19 @@ static inline himc_quat himc_quat_scale(himc_quat q, double s)
     return (himc_quat){q.w * s, q.x * s, q.y * s, q.z * s};
 }
 
+/// q / |q|; q must not be zero.
 static inline himc_quat himc_quat_unit(himc_quat q)
 {
     return himc_quat_scale(q, 1 / sqrt(himc_quat_dot(q, q)));
 }
 
+/// The vector part (x, y, z).
 static inline himc_vec3 himc_quat_vector(himc_quat q)
 {
     return (himc_vec3){q.x, q.y, q.z};
 }
 
-/// q v q^-1
+/// q v q^-1, the vector v rotated by the unit quaternion q.
 static inline himc_vec3 himc_quat_rotate(himc_quat q, himc_vec3 v)
 {
     himc_vec3 u = {q.x, q.y, q.z};
@@ -125,7 +129,7 @@ static inline himc_vec3 himc_quat_rotate(himc_quat q, himc_vec3 v)
     return himc_vec3_add(himc_vec3_madd(v, q.w, t), himc_vec3_cross(u, t));
 }
 
-/// Rotation vector (rad) to unit quaternion.
+/// The unit quaternion of a rotation vector (rad).
 static inline himc_quat himc_quat_exp(himc_vec3 rotation)
 {
     double angle = himc_vec3_length(rotation), half = 0.5 * angle;
@@ -133,7 +137,7 @@ static inline himc_quat himc_quat_exp(himc_vec3 rotation)
     return (himc_quat){cos(half), rotation.x * s, rotation.y * s, rotation.z * s};
 }
 
-/// Unit quaternion to the rotation vector (rad) of the shorter way round, |result| <= pi.
+/// The rotation vector (rad) of a unit quaternion, the shorter way round: |result| <= pi.
 static inline himc_vec3 himc_quat_log(himc_quat q)
 {
     double sign = q.w < 0 ? -1 : 1;
@@ -143,6 +147,9 @@ static inline himc_vec3 himc_quat_log(himc_quat q)
     return himc_vec3_scale(v, s);
 }
 
+// Matrices
+
+/// The rotation matrix of a unit quaternion.
 static inline himc_mat3 himc_mat3_from_quat(himc_quat q)
 {
     double w = q.w, x = q.x, y = q.y, z = q.z;
@@ -151,18 +158,16 @@ static inline himc_mat3 himc_mat3_from_quat(himc_quat q)
                         {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
-/// Rotation matrix to unit quaternion (Shepperd's choice of the largest component).
+/// The unit quaternion of a rotation matrix (Shepperd 1978: from the largest component).
 himc_quat himc_quat_from_mat3(himc_mat3 a);
-/// The frame of a limb that goes along the unit vector `along`: z back against it, y as near as may
-/// be to the axis of its `flexion`, level where that is along it too.
-himc_quat himc_quat_from_limb(himc_vec3 along, himc_vec3 flexion);
 
-/// The rotation whose columns are the given orthonormal, right-handed axes.
+/// The rotation matrix with the given orthonormal, right-handed axes as its columns.
 static inline himc_mat3 himc_mat3_from_axes(himc_vec3 x, himc_vec3 y, himc_vec3 z)
 {
     return (himc_mat3){{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
 }
 
+/// The product a v.
 static inline himc_vec3 himc_mat3_apply(const himc_mat3 *a, himc_vec3 v)
 {
     return (himc_vec3){a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
@@ -170,7 +175,7 @@ static inline himc_vec3 himc_mat3_apply(const himc_mat3 *a, himc_vec3 v)
                        a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z};
 }
 
-/// Transpose of a, applied to v.
+/// The product a' v, a' the transpose of a.
 static inline himc_vec3 himc_mat3_apply_transposed(const himc_mat3 *a, himc_vec3 v)
 {
     return (himc_vec3){a->m[0][0] * v.x + a->m[1][0] * v.y + a->m[2][0] * v.z,
@@ -178,13 +183,14 @@ static inline himc_vec3 himc_mat3_apply_transposed(const himc_mat3 *a, himc_vec3
                        a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
 }
 
-/// R diag(d) R' v: v scaled by d along the axes that are the columns of the rotation R.
+/// R diag(d) R' v: scales v by d.x, d.y, d.z along the columns of the rotation matrix R.
 static inline himc_vec3 himc_mat3_scale_along(const himc_mat3 *r, himc_vec3 d, himc_vec3 v)
 {
     himc_vec3 local = himc_mat3_apply_transposed(r, v);
     return himc_mat3_apply(r, (himc_vec3){d.x * local.x, d.y * local.y, d.z * local.z});
 }
 
+/// The product a b.
 static inline himc_mat3 himc_mat3_mul(const himc_mat3 *a, const himc_mat3 *b)
 {
     himc_mat3 c;
@@ -194,7 +200,7 @@ static inline himc_mat3 himc_mat3_mul(const himc_mat3 *a, const himc_mat3 *b)
     return c;
 }
 
-/// Inverse of a symmetric positive definite matrix by cofactors.
+/// The inverse of a symmetric positive definite matrix, by cofactors.
 static inline himc_mat3 himc_mat3_inverse_symmetric(const himc_mat3 *a)
 {
     double c00 = a->m[1][1] * a->m[2][2] - a->m[1][2] * a->m[1][2];

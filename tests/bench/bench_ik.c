@@ -1,4 +1,4 @@
-/// bench_ik.c: what a step of inverse kinematics costs, solver by solver.
+/// bench_ik.c: the processor time of one step of inverse kinematics for each solver.
 #define _POSIX_C_SOURCE 200809L
 #include "body/posture.h"
 
@@ -9,7 +9,7 @@
 
 #define STEPS 200000
 
-// The natural posture of a player at rest over the head.
+// the natural posture of a player at rest over the drumhead
 static himc_pose rest_pose(void)
 {
     himc_posture posture;

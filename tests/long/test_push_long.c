@@ -1,5 +1,4 @@
-/// test_push_long.c: every combination of pipeline, law and gains over the pieces there are, six
-/// pushes each.
+/// test_push_long.c: six pushes in every combination of pipeline, law, gains and piece.
 #include "../pushes.h"
 
 static const struct {

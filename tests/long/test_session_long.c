@@ -1,4 +1,4 @@
-/// test_session_long.c: the figures of a session at full length.
+/// test_session_long.c: timing, position, dynamics and nuances of strokes in long sessions.
 #include "../session.h"
 #include "base/head_frame.h"
 
@@ -50,7 +50,7 @@ static void expect_on_time(const figures *f)
     TEST_ASSERT_TRUE(f->place <= 0.015);
 }
 
-// a line of `count` strokes, hands in turn, at the performer's present tempo
+// adds `count` strokes, hands in turn, at the performer's present tempo; returns the last beat
 static double write_strokes(himc_performance *p, unsigned *seed, int count, double beat,
                             double seconds_per_beat)
 {
@@ -135,7 +135,7 @@ static void test_dynamics_rise_from_ppp_to_fff_for_each_nuance_and_spot(void)
     TEST_ASSERT_TRUE(worst_rank >= 0.98);
 }
 
-// the tips of a session, at the task rate
+// the tips' positions over the drumhead in a session, at 250 Hz
 typedef struct watch {
     double (*height)[HIMC_HANDS], (*away)[HIMC_HANDS];
     int count, room;
@@ -181,7 +181,7 @@ static int nuance_of(const himc_strike *s)
     return 0;
 }
 
-// centroids, and what the strokes of one nuance have in common in their scatter
+// centroids of the nuances, and their pooled covariance
 typedef struct classes {
     double centre[HIMC_NUANCES][FEATURES], scatter[FEATURES][FEATURES];
 } classes;
@@ -221,7 +221,7 @@ static int nearest(const classes *c, const double f[FEATURES])
     return best;
 }
 
-// learnt from every second stroke beginning with `first`
+// learned from every second stroke beginning with `first`
 static classes learn(double (*f)[FEATURES], const heard *h, int first)
 {
     classes c = {{{0}}, {{0}}};
@@ -244,7 +244,7 @@ static classes learn(double (*f)[FEATURES], const heard *h, int first)
     return c;
 }
 
-// each half is recognised by what the other has taught; all 250 strokes are
+// the share recognised: each half of the strokes by the classes of the other half
 static double recognised(double (*f)[FEATURES], const heard *h)
 {
     int right = 0;

@@ -28,7 +28,7 @@ static trial_config config_of(int item)
                        laws[row / HIMC_NUANCES]};
     trial_config config = trial_default(&kind, 1 + item % TRIAL_SEQUENCES);
     config.noise = 0;
-    config.misjudged = config.mismeasured = 0;
+    config.mass_error = config.length_error = 0;
     if (kind.law == HIMC_LAW_FEEDFORWARD)
         config.pace = RATE / trial_own_rate(&config);
     return config;

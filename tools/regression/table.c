@@ -1,8 +1,8 @@
-/// table.c: makes lib/src/posture_regression_table.c from the motion database. A few seconds; not a part of
-/// himc.
+/// table.c: writes lib/src/control/posture_regression_table.c from the motion database in a few
+/// seconds (`make regression-table`); not a part of himc.
 ///
-/// All 45 sequences of mocap/ (seed 1), each about its own means: so what is learned is how arms
-/// move with their sticks, not where who holds them.
+/// All 45 sequences of mocap/ (seed 1), each relative to its own means. So the weights contain the
+/// motion of the arms with the sticks and not the positions of different players.
 #include "../../mocap/mocap.h"
 
 #include "control/posture_regression.h"
@@ -19,7 +19,7 @@ static bool make_take(int index, himc_posture_regression_take *take, himc_error 
     config.player = index / (HIMC_NUANCES * SPOTS);
     config.nuance = (himc_nuance)(index / SPOTS % HIMC_NUANCES);
     config.spot = (himc_spot)(index % SPOTS);
-    himc_mocap *mocap = himc_mocap_new(&config, error); // kept: the take looks at its skeleton
+    himc_mocap *mocap = himc_mocap_new(&config, error); // not freed: the take borrows its skeleton
     if (!mocap)
         return false;
     int frames = himc_mocap_frames(mocap);
@@ -41,20 +41,21 @@ static void put_numbers(const char *name, const double *number, int count)
     puts("\n    },");
 }
 
-static void put_all(const himc_posture_regression *h)
+static void put_all(const himc_posture_regression *regression)
 {
     puts(
-        "/// posture_regression_table.c: how arms move with their sticks (make regression-table).\n"
+        "/// posture_regression_table.c: the default posture regression (`make regression-table`).\n"
         "///\n"
-        "/// Learned from three players, five nuances and three spots, each sequence about its own\n"
-        "/// means. Invariant: the table's shapes are himc_posture_regression's.\n"
-        "#include \"habit_terms.h\"\n\n"
+        "/// Learned from three players, five nuances and three spots, each sequence relative to its\n"
+        "/// own means. Invariant: the arrays have the shapes of himc_posture_regression.\n"
+        "#include \"control/posture_regression.h\"\n\n"
         "// clang-format off\n"
         "const himc_posture_regression_numbers himc_posture_regression_table = {");
-    put_numbers("weight", &h->weight[0][0][0][0],
+    put_numbers("weight", &regression->weight[0][0][0][0],
                 HIMC_HANDS * HIMC_ARM_JOINTS * 3 * HIMC_REGRESSION_TERMS);
-    put_numbers("trunk", &h->trunk[0][0], 3 * HIMC_REGRESSION_TRUNK_TERMS);
-    put_numbers("spread", &h->spread[0][0][0], HIMC_HANDS * 9 * HIMC_ARM_JOINTS * HIMC_ARM_JOINTS);
+    put_numbers("trunk", &regression->trunk[0][0], 3 * HIMC_REGRESSION_TRUNK_TERMS);
+    put_numbers("residual_covariance", &regression->residual_covariance[0][0][0],
+                HIMC_HANDS * HIMC_REGRESSION_ANGLES * HIMC_REGRESSION_ANGLES);
     puts("};");
 }
 

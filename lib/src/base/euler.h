@@ -1,11 +1,11 @@
-/// euler.h: rotations as Rz Ry Rx, the angles of joint limits; private.
+/// euler.h: rotations as Euler angles Rz Ry Rx, used by the joint limits; private.
 #ifndef HIMC_EULER_H
 #define HIMC_EULER_H
 
 #include "himc/vec.h"
 
-/// About x, y, z (rad), y within a quarter turn. Within 1.4e-6 of that x and z turn about the same
-/// axis: x then takes all of it and z is 0.
+/// Angles about x, y, z (rad) of a unit quaternion, y within +-pi/2. Where y is within 1.4e-6 of
+/// +-pi/2 (gimbal lock), x gets the whole rotation and z is 0.
 static inline himc_vec3 himc_euler_from_quat(himc_quat q)
 {
     himc_mat3 r = himc_mat3_from_quat(q);
@@ -15,6 +15,7 @@ static inline himc_vec3 himc_euler_from_quat(himc_quat q)
     return himc_vec3_make(atan2(r.m[2][1], r.m[2][2]), asin(sine), atan2(r.m[1][0], r.m[0][0]));
 }
 
+/// The unit quaternion of the angles about x, y, z (rad).
 static inline himc_quat himc_euler_to_quat(himc_vec3 angle)
 {
     himc_quat x = himc_quat_exp(himc_vec3_make(angle.x, 0, 0));

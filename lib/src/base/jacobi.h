@@ -1,17 +1,18 @@
 /// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix; private.
 ///
-/// Cyclic Jacobi: rotations in one plane p, q after the other, each by the smaller angle that
-/// zeroes a_pq, t = tan of it from t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2 a_pq. Always
-/// converges, in the end quadratically (Golub & Van Loan, Matrix Computations, 2013, section 8.5).
-/// HIMC_RT: no memory, at most HIMC_JACOBI_SWEEPS.
+/// Cyclic Jacobi method: rotates in one plane p, q after the other by the smaller angle that makes
+/// a_pq zero. The tangent t of that angle solves t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2
+/// a_pq. It always converges, at the end quadratically (Golub & Van Loan, Matrix Computations,
+/// 2013, section 8.5). HIMC_RT: no memory, at most HIMC_JACOBI_SWEEPS sweeps.
 #ifndef HIMC_JACOBI_H
 #define HIMC_JACOBI_H
 
 #include <math.h>
 
-#define HIMC_JACOBI_SWEEPS 8 // 3 x 3 and 4 x 4 need 4 to 6
+#define HIMC_JACOBI_SWEEPS 8       // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
+#define HIMC_JACOBI_DIAGONAL 1e-17 // chosen: below the rounding of doubles, 1.1e-16, of the trace
 
-// x' = c x - s y, y' = s x + c y for n pairs, the numbers of each `stride` apart
+// x' = c x - s y, y' = s x + c y for n pairs, neighbours `stride` apart in memory
 static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, double c, double s)
 {
     for (int i = 0; i < n * stride; i += stride) {
@@ -21,7 +22,7 @@ static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, doub
     }
 }
 
-// one rotation that zeroes a[p][q]
+// the rotation that makes a[p][q] zero
 static inline void himc_jacobi_rotate(int n, double *a, double *v, int p, int q)
 {
     if (a[p * n + q] == 0)
@@ -34,8 +35,9 @@ static inline void himc_jacobi_rotate(int n, double *a, double *v, int p, int q)
     himc_jacobi_mix(n, v + p, v + q, n, c, s);
 }
 
-/// Turns `a`, symmetric, n x n by rows, not negative, into the diagonal of its eigenvalues in any
-/// order, and sets the columns of `v`, likewise, to their unit eigenvectors.
+/// Eigenvalues and eigenvectors of `a`, symmetric, positive semidefinite, n x n by rows. On return
+/// `a` is the diagonal matrix of the eigenvalues in any order, and the columns of `v` (n x n by
+/// rows) are the unit eigenvectors in the same order.
 static inline void himc_jacobi(int n, double *a, double *v)
 {
     double trace = 0;
@@ -48,7 +50,7 @@ static inline void himc_jacobi(int n, double *a, double *v)
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)
                 off += fabs(a[p * n + q]);
-        if (!(off > 1e-17 * trace))
+        if (!(off > HIMC_JACOBI_DIAGONAL * trace))
             return;
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)

@@ -1,16 +1,17 @@
-/// himc_line_sink.h: facts told line by line to whoever asked.
+/// line_sink.h: a receiver of text lines, such as the description of a take; private.
 #ifndef HIMC_LINE_SINK_H
 #define HIMC_LINE_SINK_H
 
 #include <stdarg.h>
 #include <stdio.h>
 
+/// A callback and its argument.
 typedef struct himc_line_sink {
-    void (*line)(void *, const char *);
+    void (*line)(void *user, const char *text); ///< called once for each line, without newline
     void *user;
 } himc_line_sink;
 
-/// One line, cut at 255 characters.
+/// Sends one line (printf format), cut at 255 characters.
 __attribute__((format(printf, 2, 3))) static inline void himc_tell(const himc_line_sink *to,
                                                                    const char *format, ...)
 {

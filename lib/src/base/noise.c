@@ -1,10 +1,16 @@
-/// noise.c: noise from fourth differences: of white noise they have the variance 70 sigma^2, while
-/// smooth motion nearly cancels in them, being as small as its fourth derivative times dt^4. Of
-/// their lengths the median is taken, which the few frames of an impact cannot move; for three
-/// normal coordinates it is 1.5382 standard deviations of one.
+/// noise.c: noise of a point's track from its fourth differences.
+///
+/// White noise of variance sigma^2 has fourth differences of variance 70 sigma^2. Smooth motion
+/// nearly cancels: only its fourth derivative times dt^4 remains. The median of the differences'
+/// lengths is insensitive to the few frames of an impact; for three normal coordinates it is 1.5382
+/// standard deviations of one coordinate (the median of the chi distribution, 3 degrees of
+/// freedom).
 #include "base/noise.h"
 
 #include <stdlib.h>
+
+#define FOURTH_DIFFERENCE_VARIANCE 70.0 // 1 + 16 + 36 + 16 + 1
+#define CHI_3_MEDIAN 1.5382             // of the length of three standard normal numbers
 
 static int by_size(const void *a, const void *b)
 {
@@ -29,5 +35,5 @@ double himc_noise(const himc_vec3 *x, int frames)
     qsort(size, (size_t)count, sizeof *size, by_size);
     double middle = 0.5 * (size[(count - 1) / 2] + size[count / 2]);
     free(size);
-    return middle / (1.5382 * sqrt(70));
+    return middle / (CHI_3_MEDIAN * sqrt(FOURTH_DIFFERENCE_VARIANCE));
 }

@@ -1,11 +1,11 @@
-/// quintic.h: the polynomial of fifth degree in space that joins two states of position, velocity
-/// and acceleration; what all planned motion is made of.
+/// quintic.h: the polynomial of fifth degree in space that connects two states of position,
+/// velocity and acceleration; all planned motion consists of such quintics.
 #ifndef HIMC_QUINTIC_H
 #define HIMC_QUINTIC_H
 
 #include "himc/vec.h"
 
-/// Where a drumstick tip should be, and how it should move.
+/// A state of motion, such as the target of a drumstick tip.
 typedef struct himc_target {
     himc_vec3 x; ///< position (m)
     himc_vec3 v; ///< velocity (m/s)
@@ -16,8 +16,7 @@ typedef struct himc_quintic {
     himc_vec3 c[6]; ///< coefficients of 1, t, ... t^5 (m, m/s, ...)
 } himc_quintic;
 
-/// The quintic from `from` at time 0 to `to` at `duration` (s, > 0): solves the three conditions
-/// at its end.
+/// The quintic from `from` at time 0 to `to` at time `duration` (s, above 0).
 HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, const himc_target *to,
                                                      double duration)
 {
@@ -39,24 +38,24 @@ HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, co
     return q;
 }
 
-/// 10 / sqrt(3): peak acceleration of a quintic from rest to rest over D in T, in D / T^2 (Flash &
-/// Hogan 1985).
+/// 10 / sqrt(3): peak acceleration of a quintic from rest to rest over the distance D in the time
+/// T, in units of D / T^2 (Flash & Hogan 1985).
 #define HIMC_MOVE_PEAK 5.774
 
-/// How long such a move over `distance` (m, not negative) takes (s) if its acceleration is to peak
-/// at `peak` (m/s^2, > 0).
+/// Duration (s) of such a move over `distance` (m, not negative) with the peak acceleration `peak`
+/// (m/s^2, above 0).
 HIMC_RT static inline double himc_move_time(double distance, double peak)
 {
     return sqrt(HIMC_MOVE_PEAK * distance / peak);
 }
 
-/// Its state at time `t` (s from its start).
+/// The state of the quintic at time `t` (s from its start).
 HIMC_RT static inline himc_target himc_quintic_at(const himc_quintic *q, double t)
 {
+    // Horner's rule for the value and its first two derivatives; the second comes out halved
     himc_target s = {q->c[5], {0, 0, 0}, {0, 0, 0}};
     for (int i = 4; i >= 0; i--) {
-        s.a = himc_vec3_madd(
-            s.v, t, s.a); // Horner's rule for the value and its first two derivatives (a / 2)
+        s.a = himc_vec3_madd(s.v, t, s.a);
         s.v = himc_vec3_madd(s.x, t, s.v);
         s.x = himc_vec3_madd(q->c[i], t, s.x);
     }

@@ -1,9 +1,10 @@
 /// rotations.h: the mean of rotations; private.
 ///
-/// The unit quaternion q that maximises q' S q, S = sum q_i q_i', is the one nearest to all q_i in
-/// the sum of the squares of the rotation matrices' differences, whatever their signs: the
-/// eigenvector of the largest eigenvalue of S (Markley, Cheng, Crassidis & Oshman, Averaging
-/// Quaternions, Journal of Guidance, Control, and Dynamics 30(4), 2007, equation 13).
+/// The mean of unit quaternions q_i is the unit quaternion q that maximises q' S q, S = sum q_i
+/// q_i': the eigenvector of the largest eigenvalue of S. It minimises the sum of squared
+/// differences of the rotation matrices and does not depend on the signs of the q_i (Markley,
+/// Cheng, Crassidis & Oshman, Averaging Quaternions, Journal of Guidance, Control, and Dynamics
+/// 30(4), 2007, equation 13).
 #ifndef HIMC_ROTATIONS_H
 #define HIMC_ROTATIONS_H
 
@@ -11,11 +12,12 @@
 
 #include "base/jacobi.h"
 
-/// Rotations to be averaged; none when zero.
+/// A sum of rotations to average; all zero when empty.
 typedef struct himc_rotations {
-    double sum[16]; ///< S, of w x y z, by rows
+    double sum[16]; ///< S in the order w x y z, by rows
 } himc_rotations;
 
+/// Adds a rotation (unit quaternion). HIMC_RT.
 static inline void himc_rotations_add(himc_rotations *r, himc_quat q)
 {
     const double v[4] = {q.w, q.x, q.y, q.z};
@@ -23,16 +25,17 @@ static inline void himc_rotations_add(himc_rotations *r, himc_quat q)
         r->sum[i] += v[i / 4] * v[i % 4];
 }
 
-/// Their mean, w not negative; the identity when there are none. HIMC_RT.
+/// The mean of the added rotations, w not negative; the identity if there are none. HIMC_RT.
 static inline himc_quat himc_rotations_mean(const himc_rotations *r)
 {
     himc_rotations a = *r;
     double v[16];
-    int most = 0;
+    int largest = 0;
     himc_jacobi(4, a.sum, v);
     for (int i = 1; i < 4; i++)
-        most = a.sum[5 * i] > a.sum[5 * most] ? i : most;
-    himc_quat q = himc_quat_unit((himc_quat){v[most], v[4 + most], v[8 + most], v[12 + most]});
+        largest = a.sum[5 * i] > a.sum[5 * largest] ? i : largest;
+    himc_quat q =
+        himc_quat_unit((himc_quat){v[largest], v[4 + largest], v[8 + largest], v[12 + largest]});
     return q.w < 0 ? himc_quat_scale(q, -1) : q;
 }
 

@@ -1,20 +1,23 @@
 /// character.c: 19 ODE bodies for the segments beyond the pelvis, 19 ball joints, one loop over
 /// the table.
 ///
-/// A body's frame is its segment's, moved to the centre of mass, where ODE wants it. The pelvis
-/// is ODE's world (body 0), so trunk and legs are islands of their own and cost the sum of their
-/// small systems. dWorldStep (not QuickStep: that one draws random numbers) repeats to the bit.
-/// ODE aborts the process on a bad mass, so the skeleton has been checked before; it takes NaN
+/// The frame of an ODE body is its segment's, moved to the centre of mass, as ODE requires. The
+/// pelvis is ODE's world (body 0), so the trunk and each leg are separate islands and ODE solves
+/// three small systems. dWorldStep is deterministic to the bit (QuickStep draws random numbers).
+/// ODE aborts the process on an invalid mass, so the skeleton is checked before; it accepts NaN
 /// silently, so himc_performance checks the state after each step.
 #include "body/character.h"
 
 #include <ode/ode.h>
 #include <stdlib.h>
 
-#define JOINT_ERP 0.8 // share of a joint's drift corrected per step: measured drift 3e-8 m
-
-#define FASTEST 3000 // (rad/s)
-#define MOST 1e30    // of all torques, forces, places and speeds squared
+// share of a joint's drift that ODE corrects per step. Chosen: the drift then measures 3e-8 m
+#define JOINT_ERP 0.8
+// chosen: beyond any motion of a limb and below the speeds at which ODE aborts
+#define FASTEST_SPIN 3000 // (rad/s)
+// chosen: far above any real value, and its square is still finite
+#define LARGEST_SUM 1e30 // of the squares of all torques, forces, positions and velocities
+#define FIRST_STEP 1e-4  // chosen: any valid step makes the engine allocate (s)
 
 struct himc_character {
     himc_skeleton skeleton;
@@ -51,7 +54,7 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     }
     c->skeleton = *skeleton;
     c->world = dWorldCreate();
-    dWorldSetGravity(c->world, 0, 0, -9.80665);
+    dWorldSetGravity(c->world, 0, 0, -HIMC_GRAVITY);
     dWorldSetERP(c->world, JOINT_ERP);
     dWorldSetCFM(c->world, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
@@ -62,10 +65,10 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     himc_character_place(c, &state);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         make_joint(c, i, &state);
-    // the engine allocates its working memory in the first step: take it here, not in the audio
+    // the engine allocates its working memory in the first step: make it here, not in the audio
     // callback
     static const himc_vec3 none[HIMC_JOINTS];
-    himc_character_step(c, none, none, 1e-4);
+    himc_character_step(c, none, none, FIRST_STEP);
     himc_character_place(c, &state);
     return c;
 }
@@ -79,7 +82,7 @@ void himc_character_free(himc_character *c)
     free(c);
 }
 
-// velocity of each joint's centre, by summing w x r outwards
+// velocity of each joint: the sum of w x r from the pelvis outwards
 static void origin_velocities(const himc_skeleton *skeleton, const himc_body_state *s,
                               himc_vec3 v[HIMC_SEGMENTS])
 {
@@ -117,7 +120,7 @@ static himc_vec3 from_ode(const dReal *v)
     return himc_vec3_make(v[0], v[1], v[2]);
 }
 
-// tips from the sticks' own bodies, since these are what really moves
+// the tips from ODE's stick bodies; along the joints their drift would add up
 static void observe_tips(const himc_character *c, himc_body_state *s)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -159,7 +162,7 @@ static void apply_torques(himc_character *c, const himc_vec3 torque[HIMC_JOINTS]
         dBodyAddTorque(c->body[i], sum[i].x, sum[i].y, sum[i].z);
 }
 
-// the engine's own checks abort the process, so what they would find is looked for first
+// false for any input on which the engine's own checks would abort the process
 static bool can_step(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
                      const himc_vec3 tip_force[HIMC_HANDS])
 {
@@ -174,10 +177,10 @@ static bool can_step(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS
         himc_vec3 v = from_ode(dBodyGetLinearVel(c->body[i]));
         himc_vec3 pushed = from_ode(dBodyGetForce(c->body[i]));
         sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v) + himc_vec3_dot(pushed, pushed);
-        if (!(himc_vec3_dot(w, w) < FASTEST * FASTEST))
+        if (!(himc_vec3_dot(w, w) < FASTEST_SPIN * FASTEST_SPIN))
             return false;
     }
-    return sum < MOST;
+    return sum < LARGEST_SUM;
 }
 
 void himc_character_push(himc_character *c, int segment, himc_vec3 force)

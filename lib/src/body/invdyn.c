@@ -1,11 +1,11 @@
 /// invdyn.c: recursive Newton-Euler for a tree of ball joints, in world coordinates.
 ///
 /// Outwards: alpha_c = alpha_p + relative_c, a_c = a_p + alpha_p x r + w_p x (w_p x r) for each
-/// joint; inwards: the force m (a_com - g) and moment I alpha + w x I w of each segment, and what
-/// its children ask, give the moment that its joint must pass. Three components a joint, so no
-/// axes: the torque is a vector in the world frame. Fwdyn.c is the mirror; a test puts the
-/// torques of one into the other and gets the accelerations back.
-#include "himc/body.h"
+/// joint; inwards: the force m (a_com - g) and moment I alpha + w x I w of each segment and the
+/// forces and moments of its children give the moment that its joint must transmit. A joint has
+/// three rotational freedoms, so its torque is a vector in the world frame, without axes. fwdyn.c
+/// is the mirror: a test puts the torques of one into the other and gets the accelerations back.
+#include "body/dynamics.h"
 
 typedef struct motion {
     himc_vec3 angular, linear; // acceleration of the segment, and of its joint
@@ -20,7 +20,7 @@ static himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_vec3 spin
 static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
                      const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
 {
-    // gravity as an upward acceleration of the pelvis
+    // gravity acts like an upward acceleration of the pelvis
     m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = skeleton->segment[i].parent;
@@ -44,9 +44,10 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
         himc_vec3 a = add_centripetal(m[i].linear, m[i].angular, spin[i], c);
         himc_vec3 own = himc_vec3_scale(a, segment->mass);
         himc_vec3 l = himc_mat3_scale_along(&s->rotation[i], segment->inertia, spin[i]);
-        himc_vec3 turn = himc_mat3_scale_along(&s->rotation[i], segment->inertia, m[i].angular);
-        turn = himc_vec3_add(turn, himc_vec3_cross(spin[i], l));
-        moment[i] = himc_vec3_add(moment[i], himc_vec3_add(turn, himc_vec3_cross(c, own)));
+        himc_vec3 rotational =
+            himc_mat3_scale_along(&s->rotation[i], segment->inertia, m[i].angular);
+        rotational = himc_vec3_add(rotational, himc_vec3_cross(spin[i], l));
+        moment[i] = himc_vec3_add(moment[i], himc_vec3_add(rotational, himc_vec3_cross(c, own)));
         force[i] = himc_vec3_add(force[i], own);
         torque[i - 1] = moment[i];
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[segment->parent]);

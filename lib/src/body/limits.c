@@ -5,13 +5,14 @@
 ///     t_i = log(q_mean^-1 q_i),  T = U S V'                      (singular values)
 ///     x = axes' t,  sum (x_k / radius_k)^2 <= 1                  (bounding ellipsoid)
 ///
-/// The paper prints log(q_mean q), which is not about the mean; the inverse is meant. The axes are
-/// those of the singular value decomposition, the radii in its proportions, as large as the
-/// farthest sample needs. The nearest point y to an x outside is y_k = r_k^2 x_k / (t + r_k^2),
-/// where t > 0 makes it lie on the surface: one root of a function that falls, by bisection
-/// (Eberly, Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid, 2013).
-/// Invariant: whatever the radii, nothing is divided by less than THINNEST.
-#include "himc/body.h"
+/// The paper prints log(q_mean q), which is not relative to the mean; the inverse is meant. The
+/// axes are those of the singular value decomposition; the radii have the proportions of the
+/// singular values and are just large enough for the farthest sample. The nearest point y to an x
+/// outside is y_k = r_k^2 x_k / (t + r_k^2), where t > 0 puts it on the surface: the only root of a
+/// decreasing function, found by bisection (Eberly, Distance from a Point to an Ellipse, an
+/// Ellipsoid, or a Hyperellipsoid, 2013). Invariant: no divisor is smaller than THINNEST, whatever
+/// the radii.
+#include "body/limits.h"
 
 #include "base/euler.h"
 #include "base/rotations.h"
@@ -19,8 +20,11 @@
 #include <lapacke.h>
 #include <stdlib.h>
 
-#define THINNEST 1e-3  // semi-axes and half intervals (rad)
-#define BISECTIONS 128 // doubles hold no more than a few over 60
+// least semi-axis and half interval (rad). Chosen: 0.06 degrees, below the noise of captures
+#define THINNEST 1e-3
+#define BISECTIONS 128 // chosen: an upper bound, doubles stop the loop after some 60
+#define UNIT_TOLERANCE \
+    1e-6 // chosen: of a unit quaternion's squared length, rounding of file formats
 #define DEGREE (HIMC_PI / 180)
 
 static himc_vec3 at_least(himc_vec3 v, double least)
@@ -28,7 +32,7 @@ static himc_vec3 at_least(himc_vec3 v, double least)
     return himc_vec3_make(fmax(v.x, least), fmax(v.y, least), fmax(v.z, least));
 }
 
-// a rotation in the tangent space of the mean, along the ellipsoid's axes
+// the components along the ellipsoid's axes of a rotation in the tangent space of the mean
 static himc_vec3 along_axes(const himc_limit *l, himc_quat rotation)
 {
     himc_vec3 t = himc_quat_log(himc_quat_mul(himc_quat_conj(l->mean), rotation));
@@ -59,9 +63,8 @@ double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotati
     return himc_vec3_length(divide(along_axes(l, rotation), at_least(l->radius, THINNEST)));
 }
 
-// with everything in units of the thinnest semi-axis squared: r = radius^2, s = t, and
-// sum (r z / (s + r))^2 - 1 falls from above zero at s = 0 to below at |r z| - 1, where z = x /
-// radius
+// sum (r z / (s + r))^2 - 1 with r = radius^2, s = t in units of the thinnest semi-axis squared, z
+// = x / radius; positive at s = 0 and not positive at s = |r z| - 1, decreasing between
 static double excess(himc_vec3 r, himc_vec3 rz, double s)
 {
     himc_vec3 y = himc_vec3_make(rz.x / (s + r.x), rz.y / (s + r.y), rz.z / (s + r.z));
@@ -146,10 +149,10 @@ static const printed arm[3] = {
 };
 // clang-format on
 
-// the paper does not say its frames. With y up and z forward the neck's longest axis is the turn
-// of the head; with the arms sideways the wrist's shortest is its own length, its longest the
-// flexion. Here arms hang at zero: the left one's length, x, points down, its y stays the axis of
-// flexion
+// The paper does not state its frames. With y up and z forward the neck's longest axis is the
+// rotation of the head to the side; with the arms held sideways the wrist's shortest axis is its
+// own length and its longest the flexion. In this library arms hang in the zero pose: x, the left
+// arm's length, becomes -z, and y stays the axis of flexion.
 static himc_vec3 from_capture(const double v[3], bool is_arm)
 {
     return is_arm ? himc_vec3_make(v[2], v[1], -v[0]) : himc_vec3_make(v[2], v[0], v[1]);
@@ -160,9 +163,10 @@ static himc_limit printed_limit(const printed *p, bool is_arm, bool right, himc_
     himc_vec3 e[3];
     for (int k = 0; k < 3; k++) {
         e[k] = from_capture(p->axis[k], is_arm);
-        if (right) // mirrored; a rotation's axis keeps its y and turns x and z
+        // mirrored, a rotation axis (x, y, z) becomes (-x, y, -z): the same line as (x, -y, z)
+        if (right)
             e[k].y = -e[k].y;
-        // three digits are not quite orthonormal
+        // Gram-Schmidt, since axes of three digits are not quite orthonormal
         for (int i = 0; i < k; i++)
             e[k] = himc_vec3_madd(e[k], -himc_vec3_dot(e[k], e[i]), e[i]);
         e[k] = himc_vec3_unit(e[k]);
@@ -203,8 +207,8 @@ himc_pose himc_limits_mean(const himc_pose *pose, int frames)
     return mean;
 }
 
-// axes and radii around `t` (count), which is lost: the singular values' proportions, none taken
-// thinner than THINNEST, as large as the farthest needs
+// axes and radii of the ellipsoid around the tangent vectors `t` (count), which LAPACK overwrites;
+// `kept` is a copy of them
 static bool fit_ellipsoid(himc_limit *l, himc_vec3 *t, const himc_vec3 *kept, int count)
 {
     double axis[3][3], value[3] = {0, 0, 0}, none[3], super[3], farthest = 0;
@@ -277,7 +281,7 @@ static bool poses_valid(const himc_pose *pose, int frames, himc_error *error)
     for (int f = 0; f < frames; f++)
         for (int j = 0; j < HIMC_JOINTS; j++) {
             double square = himc_quat_dot(pose[f].joint[j], pose[f].joint[j]);
-            if (!(fabs(square - 1) < 1e-6))
+            if (!(fabs(square - 1) < UNIT_TOLERANCE))
                 return himc_error_set(error,
                                       "limits: frame %d: %s: a quaternion of length %g, "
                                       "allowed 1",

@@ -1,5 +1,5 @@
-/// pose.c: forward kinematics along the tree; parents stand before children in the table, so one
-/// pass does it.
+/// pose.c: forward kinematics along the tree in one pass, since parents stand before children in
+/// the table.
 ///
 /// p_c = p_p + R_p o_c, R_c = R_p R(q_c), w_c = w_p + R_p w_rel, tip velocity by summing w x r
 /// along the arm.
@@ -44,8 +44,8 @@ void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *s)
     complete_tips(skeleton, s);
 }
 
-void himc_pose_to_state(const himc_skeleton *skeleton, const himc_pose *pose,
-                        const himc_vec3 rate[HIMC_JOINTS], himc_body_state *s)
+void himc_pose_to_state(const himc_skeleton *skeleton, const himc_pose *pose, const himc_vec3 *rate,
+                        himc_body_state *s)
 {
     s->orientation[0] = himc_quat_identity();
     s->spin[0] = himc_vec3_make(0, 0, 0);
@@ -73,7 +73,7 @@ himc_pose himc_pose_from_state(const himc_skeleton *skeleton, const himc_body_st
 
 bool himc_body_state_finite(const himc_body_state *s)
 {
-    // a body state is doubles throughout; one that is not finite makes the sum so
+    // a body state consists of doubles only; x - x is NaN if x is not finite, and so is the sum
     const double *number = (const double *)s;
     double sum = 0;
     for (size_t i = 0; i < sizeof *s / sizeof *number; i++)

@@ -1,56 +1,75 @@
-/// posture.c: an arm has twelve freedoms and its tip takes three; this is where a player puts the
-/// other nine.
+/// posture.c: the natural posture. An arm has twelve degrees of freedom and its tip takes three;
+/// this file chooses the other nine as a player does.
 ///
-/// Built from the far end inwards: the stick lies level at impact and rises with the tip, the
-/// hand follows less, both in the vertical plane from the elbow's place through the tip; the
-/// wrist is then known, and shoulder, elbow and wrist make a triangle that hangs below its long
-/// side, turned outwards a little, and behind where the wrist is under the shoulder. Axes are set
-/// as in the zero pose: each segment's z points back to its joint, its y is the axis of flexion.
-/// The slopes are choices that give the raised stick and wrist seen in players; everything is a
-/// smooth function of the tip, so rates come from differences of the map.
+/// Built from the tip inwards. The stick is horizontal at impact and rises with the tip; the hand
+/// rises less. Both lie in the vertical plane from a fixed point beside the shoulder through the
+/// tip. This gives the wrist. Shoulder, elbow and wrist form a triangle that hangs below the line
+/// from shoulder to wrist, turned a little outwards, and backwards where the wrist is under the
+/// shoulder. Frames are as in the zero pose: z of each segment points back to its joint, y is the
+/// axis of flexion. Everything is a smooth function of the tip, so rates are differences of the
+/// map.
 ///
-/// Palms down (german) the hand is lifted by the wrist's flexion; thumbs up (french) forearm,
-/// hand and stick are rolled about their lengths, the hand follows the forearm and the fingers
-/// turn the stick more. The trunk turns and leans towards where the sticks shall strike, not
-/// after each motion of the tips: a player's trunk is slow.
+/// German grip: the wrist's flexion lifts the hand. French grip: forearm, hand and stick are rolled
+/// about their lengths, the hand follows the forearm, and the fingers turn the stick more. The
+/// trunk turns and leans towards the strike points and does not follow each motion of the tips,
+/// since a player's trunk is slow.
 #include "body/posture.h"
 
 #include "base/difference.h"
+#include "base/limb_frame.h"
 
-#define STICK_RISE 2.6        // stick's elevation per metre of the tip's height (rad/m)
-#define STICK_MOST 1.25       // it never stands steeper (rad)
-#define HAND_RISE 1.3         // the hand's
-#define HAND_MOST 0.6         // (rad)
-#define HAND_LEVEL (-0.25)    // the hand's elevation at impact: fingers a little down (rad)
-#define FRENCH_STICK_RISE 3.5 // with thumbs up: the stick's
-#define FRENCH_HAND_RISE 1.35 // and the hand's
-#define FRENCH_ROLL 1.25      // of forearm, hand and stick, thumbs up (rad)
-#define ELBOW_OUT 0.35        // turn of the elbow out of the vertical plane (rad)
+// Elevation of stick and hand over the tip's height. Chosen: at 0.3 m, a normal stroke, the stick
+// then stands at 40 degrees and the hand has risen by 20, the raised stick and wrist seen in
+// players.
+#define STICK_SLOPE 2.6    // stick's elevation per tip height (rad/m)
+#define STICK_LIMIT 1.25   // (rad)
+#define HAND_SLOPE 1.3     // hand's elevation per tip height (rad/m)
+#define HAND_LIMIT 0.6     // (rad)
+#define HAND_LEVEL (-0.25) // hand's elevation at impact: fingers a little lower (rad)
+// French grip. Chosen: the fingers raise the stick more; 72 degrees of roll bring the thumbs up.
+#define FRENCH_STICK_SLOPE 3.5 // (rad/m)
+#define FRENCH_HAND_SLOPE 1.35 // (rad/m)
+#define FRENCH_ROLL 1.25       // of forearm, hand and stick about their lengths (rad)
+// The elbow. Chosen: hangs a little outwards, less so with thumbs up; the stick's plane begins near
+// the elbow of a playing arm.
+#define ELBOW_OUT 0.35        // rotation of the elbow out of the vertical plane (rad)
 #define FRENCH_ELBOW_OUT 0.15 // (rad)
-#define ELBOW_BEHIND 0.08     // where the stick's plane begins: behind the shoulder (m) ...
-#define ELBOW_BESIDE 0.05     // ... and outside it (m)
-#define AHEAD 0.12            // ahead of the shoulder, of their distance: from here a wrist ...
-#define BEHIND (-0.35)        // ... (at most from here)
-#define MOST_BACK 2.0         // ... has its elbow so far behind, not just below
-#define REACH 0.985           // of the straight arm
-#define TRUNK_LEAN 0.09       // (rad)
-#define NEAR_ENOUGH 0.60      // farther strokes make the trunk lean (m)
-#define LEAN_MORE 1.4         // by so much (rad/m)
-#define LEAN_MOST 0.55        // (rad)
-#define TURN_SHARE 0.85       // of the azimuth of what is struck
-#define TURN_MOST 1.05        // (rad)
-#define BEARING_SPEED 11.0    // of the trunk's motion (rad/s)
-#define LOOK_DOWN 0.22        // of neck and head together (rad)
-#define ANKLE_HEIGHT 0.075    // (m)
-#define KNEES_APART 0.45      // each, from straight ahead (rad)
+#define PLANE_BEHIND 0.08     // origin of the stick's plane: behind the shoulder (m) ...
+#define PLANE_BESIDE 0.05     // ... and outside it (m)
+// Where the wrist comes under or behind the shoulder, front and back are ambiguous for a hanging
+// elbow. Chosen: it moves backwards smoothly, before that happens.
+#define BACK_BEGINS 0.12  // forward part of the unit vector from shoulder to wrist: begins here ...
+#define BACK_ENDS (-0.35) // ... and is complete here
+#define BACK_MOST 2.0     // backward part of the hanging direction, relative to its downward part
+// The triangle. Chosen: the limits keep its angles away from 0 and pi, where rates are infinite.
+#define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
+#define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
+// The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
+// five drums in an arc.
+#define TRUNK_LEAN 0.09         // (rad)
+#define LEAN_BEGINS 0.60        // strike points farther than this make the trunk lean more (m) ...
+#define LEAN_SLOPE 1.4          // ... by this (rad/m) ...
+#define LEAN_LIMIT 0.55         // ... up to this (rad)
+#define TURN_SHARE 0.85         // of the azimuth of the strike points; the arms do the rest
+#define TURN_LIMIT 1.05         // (rad)
+#define TRUNK_POSTURE_RATE 11.0 // chosen: half a second from drum to drum (rad/s)
+// Rest of the body. Chosen: looks at a head half a metre ahead, sits with the feet flat.
+#define LOOK_DOWN 0.22     // of neck and head together (rad)
+#define ANKLE_HEIGHT 0.075 // (m)
+#define KNEES_APART 0.45   // each, from straight ahead (rad)
+#define THIGH_LIMIT (-0.2) // cosine of the steepest thigh on a low seat: knees above the hips
+// A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
+#define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
+#define REACHED_ABOVE 0.1  // above the level of impact (m)
+#define BISECTIONS 40      // chosen: to 1e-12 of the distance
 
-// thighs down to where the lower legs stand upright on the floor, knees apart; standing straight
-// if the seat is high
+// thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if the
+// seat is high
 static void seat_legs(himc_pose *rest, const himc_skeleton *skeleton)
 {
     double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length;
     double drop = skeleton->root.z - skeleton->segment[HIMC_LEFT_LOWER_LEG].length - ANKLE_HEIGHT;
-    double raise = acos(fmin(fmax(drop / thigh, -0.2), 1));
+    double raise = acos(fmin(fmax(drop / thigh, THIGH_LIMIT), 1));
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_quat apart =
             himc_quat_exp(himc_vec3_make(0, 0, (hand == HIMC_LEFT ? KNEES_APART : -KNEES_APART)));
@@ -72,21 +91,21 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     seat_legs(&posture->rest, skeleton);
 }
 
-himc_trunk_posture himc_posture_trunk(const himc_vec3 place[HIMC_HANDS], himc_grip grip)
+himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
 {
-    himc_vec3 both = himc_vec3_add(place[HIMC_LEFT], place[HIMC_RIGHT]);
+    himc_vec3 both = himc_vec3_add(strike[HIMC_LEFT], strike[HIMC_RIGHT]);
     double turn = both.x * both.x + both.y * both.y > 1e-6 ? TURN_SHARE * atan2(both.y, both.x) : 0;
-    double far = fmax(hypot(place[HIMC_LEFT].x, place[HIMC_LEFT].y),
-                      hypot(place[HIMC_RIGHT].x, place[HIMC_RIGHT].y));
-    double more = fmin(LEAN_MORE * fmax(far - NEAR_ENOUGH, 0), LEAN_MOST - TRUNK_LEAN);
+    double far = fmax(hypot(strike[HIMC_LEFT].x, strike[HIMC_LEFT].y),
+                      hypot(strike[HIMC_RIGHT].x, strike[HIMC_RIGHT].y));
+    double more = fmin(LEAN_SLOPE * fmax(far - LEAN_BEGINS, 0), LEAN_LIMIT - TRUNK_LEAN);
     himc_trunk_posture b = {{0}, {0}, {0}};
-    b.value[HIMC_TRUNK_POSTURE_TURN] = fmin(fmax(turn, -TURN_MOST), TURN_MOST);
+    b.value[HIMC_TRUNK_POSTURE_TURN] = fmin(fmax(turn, -TURN_LIMIT), TURN_LIMIT);
     b.value[HIMC_TRUNK_POSTURE_LEAN] = TRUNK_LEAN + more;
     b.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP] = grip == HIMC_GRIP_FRENCH;
     return b;
 }
 
-static himc_trunk_posture bearing_after(const himc_trunk_posture *b, double dt)
+static himc_trunk_posture trunk_posture_after(const himc_trunk_posture *b, double dt)
 {
     himc_trunk_posture after = *b;
     for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++) {
@@ -96,12 +115,12 @@ static himc_trunk_posture bearing_after(const himc_trunk_posture *b, double dt)
     return after;
 }
 
-// x''' = -3 w x'' - 3 w^2 x' - w^3 (x - goal), held for dt
+// x''' = -3 w x'' - 3 w^2 x' - w^3 (x - goal), constant during dt
 himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
                                                const himc_trunk_posture *goal, double dt)
 {
-    double w = BEARING_SPEED;
-    himc_trunk_posture next = bearing_after(now, dt);
+    double w = TRUNK_POSTURE_RATE;
+    himc_trunk_posture next = trunk_posture_after(now, dt);
     for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++) {
         double jerk = w * (-3 * now->acceleration[i] +
                            w * (-3 * now->rate[i] + w * (goal->value[i] - now->value[i])));
@@ -112,20 +131,20 @@ himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
     return next;
 }
 
-// a slope that flattens towards +-most
-static double rise(double height, double slope, double most)
+// an elevation with this slope at height 0 that saturates at +-limit
+static double elevation_at(double height, double slope, double limit)
 {
-    return most * tanh(slope * height / most);
+    return limit * tanh(slope * height / limit);
 }
 
 typedef struct arm {
-    himc_quat trunk; // in the world
-    double turn, french;
+    himc_quat trunk;     // orientation in the world
+    double turn, french; // of the trunk (rad); share of the French grip
     himc_vec3 shoulder, elbow, wrist, grip, tip;
-    himc_vec3 stick, hand, side; // directions; side is the flexion axis of wrist and grip
+    himc_vec3 stick, hand, side; // unit vectors; side is the flexion axis of wrist and grip
 } arm;
 
-static double between(double german, double french, double share)
+static double blend_grips(double german, double french, double share)
 {
     return german + share * (french - german);
 }
@@ -149,49 +168,51 @@ static arm arm_of(const himc_posture *posture, himc_hand hand)
     return a;
 }
 
-// from the tip to the wrist
-static void place_hand(const himc_posture *posture, himc_hand hand, himc_vec3 tip, arm *a)
+// stick and hand: from the tip to the wrist
+static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 tip, arm *a)
 {
-    double outside = hand == HIMC_LEFT ? ELBOW_BESIDE : -ELBOW_BESIDE;
-    double dx = tip.x - (a->shoulder.x - ELBOW_BEHIND * cos(a->turn) - outside * sin(a->turn));
-    double dy = tip.y - (a->shoulder.y - ELBOW_BEHIND * sin(a->turn) + outside * cos(a->turn));
+    double outside = hand == HIMC_LEFT ? PLANE_BESIDE : -PLANE_BESIDE;
+    double dx = tip.x - (a->shoulder.x - PLANE_BEHIND * cos(a->turn) - outside * sin(a->turn));
+    double dy = tip.y - (a->shoulder.y - PLANE_BEHIND * sin(a->turn) + outside * cos(a->turn));
     double azimuth = atan2(dy, dx), height = tip.z - posture->level;
-    double hand_rise = between(HAND_RISE, FRENCH_HAND_RISE, a->french);
+    double hand_slope = blend_grips(HAND_SLOPE, FRENCH_HAND_SLOPE, a->french);
     a->tip = tip;
-    double stick_rise = between(STICK_RISE, FRENCH_STICK_RISE, a->french);
-    a->stick = himc_vec3_elevated(azimuth, rise(height, stick_rise, STICK_MOST));
-    a->hand = himc_vec3_elevated(azimuth, HAND_LEVEL + rise(height, hand_rise, HAND_MOST));
+    double stick_slope = blend_grips(STICK_SLOPE, FRENCH_STICK_SLOPE, a->french);
+    a->stick = himc_vec3_elevated(azimuth, elevation_at(height, stick_slope, STICK_LIMIT));
+    a->hand =
+        himc_vec3_elevated(azimuth, HAND_LEVEL + elevation_at(height, hand_slope, HAND_LIMIT));
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     a->grip = himc_vec3_madd(tip, -himc_vec3_length(posture->skeleton.tip), a->stick);
     double palm = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_STICK + hand].origin);
     a->wrist = himc_vec3_madd(a->grip, -palm, a->hand);
 }
 
-// where the elbow hangs: down, but back too when the wrist, in the direction u from the shoulder,
-// comes under or behind it, where nothing else would tell front from back
+// the direction in which the elbow hangs: down, and backwards too when the wrist, in the direction
+// u from the shoulder, comes under or behind the shoulder
 static himc_vec3 downward(himc_vec3 u, double turn)
 {
     double ahead = u.x * cos(turn) + u.y * sin(turn);
-    double x = fmin(fmax((AHEAD - ahead) / (AHEAD - BEHIND), 0), 1);
-    double back = MOST_BACK * x * x * x * (10 + x * (-15 + x * 6));
+    double x = fmin(fmax((BACK_BEGINS - ahead) / (BACK_BEGINS - BACK_ENDS), 0), 1);
+    double back = BACK_MOST * x * x * x * (10 + x * (-15 + x * 6));
     return himc_vec3_make(-back * cos(turn), -back * sin(turn), -1);
 }
 
-// the triangle shoulder - elbow - wrist; moves the wrist into reach and returns by how much
-static double place_elbow(const himc_posture *posture, himc_hand hand, arm *a)
+// the triangle shoulder - elbow - wrist; moves the wrist into reach and returns the distance (m)
+static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
 {
     double upper = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_FOREARM + hand].origin);
     double lower = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_HAND + hand].origin);
     himc_vec3 d = himc_vec3_sub(a->wrist, a->shoulder);
-    double distance = himc_vec3_length(d), longest = REACH * (upper + lower);
-    double shortest = fabs(upper - lower) + 0.05, used = fmin(fmax(distance, shortest), longest);
+    double distance = himc_vec3_length(d), longest = LONGEST_SHARE * (upper + lower);
+    double shortest = fabs(upper - lower) + SHORTEST_EXTRA,
+           used = fmin(fmax(distance, shortest), longest);
     himc_vec3 u = distance > 0 ? himc_vec3_scale(d, 1 / distance) : himc_vec3_make(1, 0, 0);
     double along = (used * used + upper * upper - lower * lower) / (2 * used);
     double away = sqrt(fmax(upper * upper - along * along, 0));
     himc_vec3 down = downward(u, a->turn);
     down = himc_vec3_unit(himc_vec3_madd(down, -himc_vec3_dot(down, u), u));
     himc_vec3 out = himc_vec3_cross(down, u);
-    double elbow_out = between(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french);
+    double elbow_out = blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french);
     double turn = hand == HIMC_LEFT ? -elbow_out : elbow_out;
     himc_vec3 hang = himc_vec3_madd(himc_vec3_scale(down, cos(turn)), sin(turn), out);
     a->elbow = himc_vec3_madd(himc_vec3_madd(a->shoulder, along, u), away, hang);
@@ -203,8 +224,8 @@ static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 
                          himc_pose *pose)
 {
     arm a = arm_of(posture, hand);
-    place_hand(posture, hand, tip, &a);
-    double missing = place_elbow(posture, hand, &a);
+    solve_wrist(posture, hand, tip, &a);
+    double missing = solve_elbow(posture, hand, &a);
     himc_vec3 upper = himc_vec3_unit(himc_vec3_sub(a.elbow, a.shoulder));
     himc_vec3 lower = himc_vec3_unit(himc_vec3_sub(a.wrist, a.elbow));
     himc_quat frame[HIMC_ARM_JOINTS + 1] = {
@@ -237,9 +258,10 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
     for (int k = 0; k < 3; k++) {
         himc_vec3 x[HIMC_HANDS];
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            x[hand] = himc_target_after(&tip[hand], (k - 1) * DIFFERENCE).x;
+            x[hand] = himc_target_after(&tip[hand], (k - 1) * HIMC_DIFFERENCE_STEP).x;
         himc_posture now = *posture;
-        now.trunk_posture = bearing_after(&posture->trunk_posture, (k - 1) * DIFFERENCE);
+        now.trunk_posture =
+            trunk_posture_after(&posture->trunk_posture, (k - 1) * HIMC_DIFFERENCE_STEP);
         himc_posture_at(&now, x, &pose[k]);
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -249,7 +271,7 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
     }
 }
 
-// with the trunk turned towards it
+// whether the arm reaches the tip with the trunk turned towards it
 static bool in_reach(const himc_posture *posture, himc_hand hand, himc_vec3 tip)
 {
     himc_vec3 both[HIMC_HANDS] = {tip, tip};
@@ -263,17 +285,18 @@ himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand, hi
 {
     if (in_reach(posture, hand, tip))
         return tip;
-    // on the way there from a place surely in reach, by bisection
+    // bisection on the line from a point in reach of every body
     double side = posture->skeleton.segment[HIMC_LEFT_UPPER_ARM + hand].origin.y;
-    himc_vec3 from = {0.27 * posture->skeleton.height, 0.5 * side, posture->level + 0.1};
-    himc_vec3 way = himc_vec3_sub(tip, from);
+    himc_vec3 from = {REACHED_AHEAD * posture->skeleton.height, 0.5 * side,
+                      posture->level + REACHED_ABOVE};
+    himc_vec3 line = himc_vec3_sub(tip, from);
     double reached = 0, missed = 1;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < BISECTIONS; i++) {
         double middle = 0.5 * (reached + missed);
-        if (in_reach(posture, hand, himc_vec3_madd(from, middle, way)))
+        if (in_reach(posture, hand, himc_vec3_madd(from, middle, line)))
             reached = middle;
         else
             missed = middle;
     }
-    return himc_vec3_madd(from, reached, way);
+    return himc_vec3_madd(from, reached, line);
 }

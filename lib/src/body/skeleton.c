@@ -1,21 +1,22 @@
 /// skeleton.c: a body from height and mass.
 ///
 /// Lengths, mass fractions, centres of mass and radii of gyration are de Leva's (J. Biomech.
-/// 29(9), 1996, table 4, men: reference height 1.741 m), scaled with the height. What de Leva
-/// keeps together is split here: the head's mass between head and neck (4 : 1), the trunk into
-/// its upper and middle part (one segment, merged by the parallel axis theorem) and the lower
-/// part (pelvis), the foot between foot and toes (85 : 15). Invariant: the masses sum to the
-/// performer's mass exactly. Table 1 of the 2012 paper sums to 1.28 when limbs are counted per
-/// body, so it is scaled.
+/// 29(9), 1996, table 4, men: reference height 1.741 m), scaled with the height. Where this body
+/// has more or fewer segments: de Leva's head becomes head and neck (masses 4 : 1), his upper and
+/// middle trunk become one segment (by the parallel axis theorem), his lower trunk is the pelvis,
+/// and his foot becomes foot and toes (85 : 15). Invariant: the masses sum to the performer's mass
+/// exactly. Table 1 of the 2012 paper sums to 1.28 with both limbs of a pair, so it is scaled to 1.
 #include "himc/body.h"
 
 #include <string.h>
 
-#define DE_LEVA_HEIGHT 1.741
-#define SEAT \
-    0.42 // height of a seated timpanist's hip joints, fraction of the height: elbows above the head
+#define DE_LEVA_HEIGHT 1.741 // de Leva 1996, men (m)
+// hip joints of a timpanist on a stool, of the body's height. Chosen: the elbows are above the
+// drumhead
+#define SEAT_SHARE 0.42
 
-/// A row of the anthropometry at de Leva's reference height; a limb's row is its left side's.
+/// A row of the anthropometry at de Leva's reference height; limbs have one row, the left side's.
+/// Chosen where de Leva has no value: capsule radii, joint positions across the trunk, split parts.
 typedef struct row {
     int parent;
     double length;      // (m)
@@ -29,17 +30,17 @@ typedef struct row {
 } row;
 
 // clang-format off
-#define HEAD_AND_NECK 0.0694
-#define FOOT_AND_TOES 0.0137
+#define HEAD_AND_NECK 0.0694 // de Leva 1996, of the body's mass
+#define FOOT_AND_TOES 0.0137 // de Leva 1996
 static const row rows[] = {
-    // pelvis, trunk (its centre and gyration by merge_trunk), neck, head
+    // pelvis, trunk (centre and gyration set by merge_trunk), neck, head
     {-1, 0.1457, {0, 0, 0}, {0, 0, 1}, 0.1117, 18, 0.3885, {0.615, 0.551, 0.587}, 0.11},
     {HIMC_PELVIS, 0.3862, {0, 0, 0.1457}, {0, 0, 1}, 0.3229, 46, 0, {0, 0, 0}, 0.13},
     {HIMC_TRUNK, 0.0696, {0, 0, 0.3862}, {0, 0, 1},
      0.2 * HEAD_AND_NECK, 4, 0.5, {0.7, 0.7, 0.6}, 0.05},
     {HIMC_NECK, 0.2033, {0, 0, 0.0696}, {0, 0, 1},
      0.8 * HEAD_AND_NECK, 4, 0.4024, {0.362, 0.376, 0.312}, 0.09},
-    // upper arm, forearm, hand, stick (by build_stick)
+    // upper arm, forearm, hand, stick (set by build_stick)
     {HIMC_TRUNK, 0.2817, {0, 0.185, 0.345}, {0, 0, -1},
      0.0271, 4, 0.5772, {0.285, 0.269, 0.158}, 0.045},
     {HIMC_LEFT_UPPER_ARM, 0.2689, {0, 0, -0.2817}, {0, 0, -1},
@@ -115,9 +116,8 @@ static bool config_valid(const himc_skeleton_config *c, himc_error *error)
     valid = valid && (c->seat == 0 || himc_check_range("seat", c->seat, 0.3, 1.3, "m", error));
     for (int hand = 0; valid && hand < HIMC_HANDS; hand++)
         if (c->length[HIMC_LEFT_STICK + hand] != 0)
-            valid =
-                himc_error_set(error, "%s: a length of its own, allowed 0: set the stick length",
-                               segment_names[HIMC_LEFT_STICK + hand]);
+            valid = himc_error_set(error, "%s: a measured length, allowed 0: set the stick length",
+                                   segment_names[HIMC_LEFT_STICK + hand]);
     for (int i = 0; valid && i < HIMC_SEGMENTS; i++)
         valid = c->length[i] == 0 ||
                 himc_check_range(segment_names[i], c->length[i], 0.02, 1, "m", error);
@@ -129,7 +129,7 @@ static double share(const row *r, himc_anthropometry anthropometry)
     return anthropometry == HIMC_TABLE_1 ? r->table1 : r->fraction;
 }
 
-// a share of the body's mass, the table's own sum taken as one
+// a segment's share of the body's mass, normalised by the table's sum
 static double mass_share(int segment, himc_anthropometry anthropometry)
 {
     double sum = 0;
@@ -141,7 +141,7 @@ static double mass_share(int segment, himc_anthropometry anthropometry)
     return share(&own, anthropometry) / sum;
 }
 
-// the upper and the middle trunk as one: centre and inertia by the parallel axis theorem
+// de Leva's upper and middle trunk as one segment: centre and inertia by the parallel axis theorem
 static void merge_trunk(himc_segment *trunk)
 {
     static const struct {
@@ -169,7 +169,7 @@ static void merge_trunk(himc_segment *trunk)
     }
 }
 
-// a uniform shaft with a ball on its end, held at the grip
+// a uniform shaft with a ball at its end, held at the grip
 static void build_stick(himc_segment *stick, himc_vec3 tip, const himc_skeleton_config *c)
 {
     double shaft = 0.5 * c->stick_length - c->grip, ball = -tip.z;
@@ -186,7 +186,7 @@ static void build_stick(himc_segment *stick, himc_vec3 tip, const himc_skeleton_
     stick->inertia = himc_vec3_make(across, across, along);
 }
 
-// a joint at the parent's far end follows the parent's length, one beside it the body's size
+// positions along the parent scale with its length, positions across it with the body's height
 static himc_vec3 joint_origin(const himc_skeleton *skeleton, const row *r, double scale)
 {
     double stretch = scale;
@@ -217,7 +217,7 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
 
 double himc_skeleton_seat(const himc_skeleton_config *config)
 {
-    return config->seat > 0 ? config->seat : SEAT * config->height;
+    return config->seat > 0 ? config->seat : SEAT_SHARE * config->height;
 }
 
 bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *config,

@@ -1,25 +1,27 @@
-/// stretch.h: a place that an arm cannot reach, met by the arm stretched towards it.
+/// stretch.h: the nearest reachable point for a tip target out of the arm's reach; private.
 #ifndef HIMC_STRETCH_H
 #define HIMC_STRETCH_H
 
 #include "base/quintic.h"
 #include "himc/body.h"
 
-#define STRETCHED 0.998 // of the straight arm, where its Jacobian still is one
+/// Share of the straight arm that counts as reach. Chosen: the Jacobian is still regular there.
+#define HIMC_STRETCH_SHARE 0.998
 
-/// Shoulder to tip, as far as the arm goes (m).
+/// The arm's reach: the largest distance from shoulder to tip (m).
 static inline double himc_stretch(const himc_skeleton *skeleton, himc_hand hand)
 {
     double length = himc_vec3_length(skeleton->tip);
     for (int k = 1; k < HIMC_ARM_JOINTS; k++)
         length += himc_vec3_length(skeleton->segment[himc_arm_joint(hand, k) + 1].origin);
-    return STRETCHED * length;
+    return HIMC_STRETCH_SHARE * length;
 }
 
-/// The nearest to `target` on the sphere about the shoulder (m) that the arm's stretch reaches,
-/// with the velocity and acceleration it has there; `target` itself if it is inside. With r = x -
-/// s, u = r / |r| and R the stretch: s + R u, v' = (v - u u.v) R / |r|, a' = (a - u u.a) R / |r| -
-/// 2 v' u.v / |r| - u |v'|^2 / R, v and a about a shoulder at rest.
+/// The point of the sphere of radius `stretch` (m) about the shoulder (m) nearest to `target`, with
+/// its velocity and acceleration as `target` moves; `target` itself if it is inside. With r = x -
+/// s, u = r / |r|, R the radius and s at rest:
+///     x' = s + R u,  v' = (v - u u.v) R / |r|,
+///     a' = (a - u u.a) R / |r| - 2 v' u.v / |r| - u |v'|^2 / R.
 static inline himc_target himc_stretch_towards(const himc_target *target, himc_vec3 shoulder,
                                                double stretch)
 {

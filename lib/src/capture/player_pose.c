@@ -11,6 +11,8 @@
 /// this library's own body comes back as it was.
 #include "capture/player_pose.h"
 
+#include "base/limb_frame.h"
+
 #include <stdlib.h>
 
 #define SIDEWAYS 0.5  // of a zero pose's arm: from here on it is a T-pose's

@@ -13,9 +13,11 @@
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "control/controller.h"
 
-#include "control/tracking_error.h"
+#include "body/dynamics.h"
+#include "control/ik.h"
 #include "control/limit_torque.h"
 #include "control/strength.h"
+#include "control/tracking_error.h"
 
 #define PD_STIFFER 3.0 // the default gains' frequencies above the table's
 

@@ -1,20 +1,28 @@
-/// ik.c: everything is a force f at the tip, three numbers, put through W J': rotation_j = w_j
-/// lever_j x f. A solver is what it takes for (J W J')^-1 in f = (J W J')^-1 e.
+/// ik.c: every solution has the form x = W J' f with a vector f of three numbers at the tip:
+/// rotation_j = w_j lever_j x f. The solvers differ in their approximation of (J W J')^-1 in
+/// f = (J W J')^-1 e.
 ///
-/// With the eigenvalues s_i^2 and eigenvectors u_i of J W J' (jacobi.h) each is sum g_i u_i u_i' /
-/// s_i^2 with its own g_i: the pseudo-inverse 1 or, for s_i below a share of the largest, 0; damped
-/// least squares s_i^2 / (s_i^2 + lambda^2), where Nakamura's lambda = lambda_0 (1 - w / w_0) for
-/// the manipulability w = s_1 s_2 s_3 < w_0; selectively damped least squares whatever keeps the
-/// turn of every joint below gamma_i, which shrinks where joints would move the tip much more than
-/// they bring it nearer.
-#include "himc/body.h"
+/// With the eigenvalues s_i^2 and eigenvectors u_i of J W J' (jacobi.h) each approximation is
+/// sum g_i u_i u_i' / s_i^2 with its own gain g_i:
+///     pseudo-inverse          1, or 0 if s_i is below a share of the largest one
+///     damped least squares    s_i^2 / (s_i^2 + lambda^2); Nakamura's lambda is
+///                             lambda_0 (1 - w / w_0) for a manipulability w = s_1 s_2 s_3 < w_0
+///     selectively damped      limits the rotation of every joint to gamma_i, which is smaller
+///                             where the joints move the tip much more than they bring it nearer
+#include "control/ik.h"
 
 #include "base/jacobi.h"
 
+// chosen: a playing arm has 0.1 or more, so only a nearly straight arm loses a direction
 #define PINV_TOLERANCE 0.02 // singular values below this share of the largest are left out
-#define NULL_FLOOR 1e-12    // keeps the null space projector finite when the arm is straight (m^2)
-#define SINGULAR 0.05       // Nakamura's w_0 (m^3)
-#define MOST_TURN 0.785     // gamma_max, of a joint in one step of SDLS (rad), Buss & Kim's pi / 4
+// chosen: (1 um)^2, six orders below the smallest useful damping, only keeps the inverse finite
+#define NULL_FLOOR 1e-12 // added to J W J' (m^2)
+// chosen: a playing arm has 0.12 .. 0.25 m^3, so damping begins well outside its region
+#define NAKAMURA_SINGULAR 0.05 // w_0 (m^3)
+#define SDLS_MOST_ROTATION \
+    0.785 // gamma_max of one joint in one step (rad): Buss & Kim 2005, pi / 4
+// chosen: levers below about 1 cm across the direction: a straight arm along it
+#define RELEASE_MOST 1e4 // n' (J W J')^-1 n, largest that is released (1/m^2)
 
 static void add_weighted(himc_mat3 *g, double w, himc_vec3 r)
 {
@@ -51,8 +59,8 @@ void himc_arm_jacobian_weighted(const himc_body_state *s, himc_hand hand,
     jacobian->inverse = himc_mat3_inverse_symmetric(&g);
 }
 
-void himc_ik_through(const himc_arm_jacobian *jacobian, himc_vec3 f,
-                     himc_vec3 rotation[HIMC_ARM_JOINTS])
+void himc_ik_apply_transposed(const himc_arm_jacobian *jacobian, himc_vec3 f,
+                              himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         rotation[k] = himc_vec3_cross(jacobian->lever[k], himc_vec3_scale(f, jacobian->weight[k]));
@@ -109,7 +117,7 @@ static double nakamura(const himc_mat3 *gram, double most)
     double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2]) -
                  m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2]) +
                  m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
-    return most * fmax(1 - sqrt(fmax(det, 0)) / SINGULAR, 0);
+    return most * fmax(1 - sqrt(fmax(det, 0)) / NAKAMURA_SINGULAR, 0);
 }
 
 static double largest_component(himc_vec3 v)
@@ -117,22 +125,22 @@ static double largest_component(himc_vec3 v)
     return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-// Buss & Kim 2005, equations 10 to 14, for one end effector: N_i is 1. The turn that the pure
-// inverse would ask for along u_i is a W J' u_i / s_i^2; M_i, by how far the joints, each on its
-// own, would move the tip for one unit of the way along u_i.
+// Buss & Kim 2005, equations 10 to 14, for one end effector: N_i = 1. The undamped inverse would
+// rotate the joints by a W J' u_i / s_i^2 for the component a of the error along u_i; M_i is the
+// sum of the distances by which each joint alone would move the tip per unit of that component.
 static double selective_gain(const himc_arm_jacobian *jacobian, double square, himc_vec3 u,
                              double a)
 {
-    himc_vec3 turn[HIMC_ARM_JOINTS];
-    double moves = 0, most = 0;
-    himc_ik_through(jacobian, himc_vec3_scale(u, 1 / square), turn);
+    himc_vec3 step[HIMC_ARM_JOINTS];
+    double distance = 0, most = 0;
+    himc_ik_apply_transposed(jacobian, himc_vec3_scale(u, 1 / square), step);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_vec3 r = jacobian->lever[k];
-        moves += fabs(turn[k].x) * hypot(r.y, r.z) + fabs(turn[k].y) * hypot(r.x, r.z) +
-                 fabs(turn[k].z) * hypot(r.x, r.y);
-        most = fmax(most, fabs(a) * largest_component(turn[k]));
+        distance += fabs(step[k].x) * hypot(r.y, r.z) + fabs(step[k].y) * hypot(r.x, r.z) +
+                    fabs(step[k].z) * hypot(r.x, r.y);
+        most = fmax(most, fabs(a) * largest_component(step[k]));
     }
-    double gamma = fmin(1, 1 / moves) * MOST_TURN;
+    double gamma = fmin(1, 1 / distance) * SDLS_MOST_ROTATION;
     return most > gamma ? gamma / most : 1;
 }
 
@@ -140,18 +148,18 @@ static himc_mat3 selective(const himc_arm_jacobian *jacobian, himc_vec3 error)
 {
     spectrum s = spectrum_of(&jacobian->gram);
     himc_mat3 inverse = {{{0}}};
-    himc_vec3 turn[HIMC_ARM_JOINTS];
+    himc_vec3 step[HIMC_ARM_JOINTS];
     for (int i = 0; i < 3; i++) {
         double square = fmax(s.square[i], NULL_FLOOR), a = himc_vec3_dot(s.axis[i], error);
         add_outer(&inverse, selective_gain(jacobian, square, s.axis[i], a) / square, s.axis[i]);
     }
     double most = 0;
-    himc_ik_through(jacobian, himc_mat3_apply(&inverse, error), turn);
+    himc_ik_apply_transposed(jacobian, himc_mat3_apply(&inverse, error), step);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        most = fmax(most, largest_component(turn[k]));
-    if (most > MOST_TURN)
+        most = fmax(most, largest_component(step[k]));
+    if (most > SDLS_MOST_ROTATION)
         for (int i = 0; i < 9; i++)
-            inverse.m[i / 3][i % 3] *= MOST_TURN / most;
+            inverse.m[i / 3][i % 3] *= SDLS_MOST_ROTATION / most;
     return inverse;
 }
 
@@ -179,7 +187,7 @@ void himc_ik_solve(const himc_arm_jacobian *jacobian, himc_solver solver, double
                    himc_vec3 error, himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     himc_mat3 inverse = himc_ik_inverse(jacobian, solver, damping, error);
-    himc_ik_through(jacobian, himc_mat3_apply(&inverse, error), rotation);
+    himc_ik_apply_transposed(jacobian, himc_mat3_apply(&inverse, error), rotation);
 }
 
 himc_vec3 himc_ik_forward(const himc_arm_jacobian *jacobian,
@@ -191,27 +199,27 @@ himc_vec3 himc_ik_forward(const himc_arm_jacobian *jacobian,
     return moved;
 }
 
-void himc_ik_add_null(const himc_arm_jacobian *jacobian, const himc_vec3 wish[HIMC_ARM_JOINTS],
+void himc_ik_add_null(const himc_arm_jacobian *jacobian, const himc_vec3 desired[HIMC_ARM_JOINTS],
                       himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
-    himc_vec3 seen[HIMC_ARM_JOINTS];
-    himc_vec3 moved = himc_ik_forward(jacobian, wish);
-    himc_ik_through(jacobian, himc_mat3_apply(&jacobian->inverse, moved), seen);
+    himc_vec3 tip_part[HIMC_ARM_JOINTS];
+    himc_vec3 moved = himc_ik_forward(jacobian, desired);
+    himc_ik_apply_transposed(jacobian, himc_mat3_apply(&jacobian->inverse, moved), tip_part);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        rotation[k] = himc_vec3_add(rotation[k], himc_vec3_sub(wish[k], seen[k]));
+        rotation[k] = himc_vec3_add(rotation[k], himc_vec3_sub(desired[k], tip_part[k]));
 }
 
 // adds N W J_e' g, with J_e x = x_shoulder x lever and so J_e' g = lever x g at the shoulder
 static void add_elbow_force(const himc_arm_jacobian *jacobian, himc_vec3 lever, himc_vec3 g,
                             himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
-    himc_vec3 wish[HIMC_ARM_JOINTS] = {
+    himc_vec3 desired[HIMC_ARM_JOINTS] = {
         himc_vec3_scale(himc_vec3_cross(lever, g), jacobian->weight[0])};
-    himc_ik_add_null(jacobian, wish, rotation);
+    himc_ik_add_null(jacobian, desired, rotation);
 }
 
-void himc_elbow_task_at(const himc_arm_jacobian *jacobian, himc_vec3 lever, double damping,
-                        himc_elbow_task *task)
+void himc_elbow_task_init(himc_elbow_task *task, const himc_arm_jacobian *jacobian, himc_vec3 lever,
+                          double damping)
 {
     himc_mat3 s;
     for (int c = 0; c < 3; c++) {
@@ -236,14 +244,14 @@ void himc_ik_add_elbow(const himc_arm_jacobian *jacobian, const himc_elbow_task 
 void himc_ik_release(const himc_arm_jacobian *jacobian, himc_vec3 direction, double remain,
                      himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
-    // f = (J W J')^-1 n takes away along n and nothing across it
-    himc_vec3 turn[HIMC_ARM_JOINTS];
+    // f = (J W J')^-1 n changes the tip's motion along n and not across it
+    himc_vec3 step[HIMC_ARM_JOINTS];
     double along = himc_vec3_dot(direction, himc_ik_forward(jacobian, rotation)) - remain;
     himc_vec3 f = himc_mat3_apply(&jacobian->inverse, direction);
-    if (himc_vec3_dot(direction, f) > 1e4) // a straight arm along n: nothing moves the tip that way
+    if (himc_vec3_dot(direction, f) > RELEASE_MOST) // nothing moves the tip along n
         return;
     double effect = himc_vec3_dot(direction, himc_mat3_apply(&jacobian->gram, f));
-    himc_ik_through(jacobian, himc_vec3_scale(f, along / effect), turn);
+    himc_ik_apply_transposed(jacobian, himc_vec3_scale(f, along / effect), step);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        rotation[k] = himc_vec3_sub(rotation[k], turn[k]);
+        rotation[k] = himc_vec3_sub(rotation[k], step[k]);
 }

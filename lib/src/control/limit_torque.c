@@ -15,6 +15,8 @@
 /// has no more energy than omega, omega' I omega_lim <= omega' I omega, so it pumps none.
 #include "control/limit_torque.h"
 
+#include "body/dynamics.h"
+
 #define MOMENT 0.0056   // T: a spring of 40 Hz (s)
 #define RETURN 3.0      // speed of the way back from far beyond (rad/s)
 #define SPRING 60.0     // beside a servo (Hz)

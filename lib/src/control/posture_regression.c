@@ -1,36 +1,42 @@
-/// habit.c: a posture from the tips: the regression, and what it misses.
+/// posture_regression.c: a pose from the tips by a posture regression.
 ///
-/// With y(t) = (R' (tip(t) - waist) - mean) / reach, R the trunk's rotation, and the terms phi =
-/// [1, y(t), y(t + h), y(t + 2h)] of a hand, C_k log(mean_k^-1 q_k) = W_k phi for shoulder, elbow,
-/// wrist and grip: rotation vectors seen from the trunk, C_k being the mean rotation of segment k
-/// in it, so that hands that hold the stick palm down or thumb up learn from each other. The trunk
-/// sways likewise with the terms of both hands.
+/// With y(t) = (R' (tip(t) - waist) - mean) / reach, R the trunk's orientation, and the terms phi =
+/// [1, y(t), y(t + h), y(t + 2h)] of one arm: C_k log(mean_k^-1 q_k) = W_k phi for shoulder, elbow,
+/// wrist and grip. These are rotation vectors in the trunk's frame, C_k being the mean orientation
+/// of segment k in it, so palms down and thumbs up can learn from each other. The trunk's rotation
+/// is linear in the terms of both hands in the same way.
 ///
-/// A regression misses the tips themselves by some millimetres. With S the covariance of its
-/// residuals over the arm's joints and J the tip's Jacobian, the likeliest correction that brings
-/// the tip to its place is S J' (J S J')^-1 e: least squares again, weighted by how surely each
-/// joint is known.
-#include "control/posture_regression_terms.h"
+/// The regression misses the tips by some millimetres. With S the covariance of its residuals over
+/// the arm's joints and J the tip's Jacobian, the likeliest correction that brings the tip to its
+/// position is S J' (J S J')^-1 e: least squares, each joint weighted by its uncertainty.
+#include "control/posture_regression.h"
 
 #include "base/difference.h"
 
 #include <string.h>
 
-#define LARGEST_STEP 0.05 // of the tip, in one correction (m)
-#define CORRECTIONS 3     // quadratically converging
+#define OFFSETS HIMC_REGRESSION_OFFSETS
+#define TERMS HIMC_REGRESSION_TERMS
+#define TRUNK_TERMS HIMC_REGRESSION_TRUNK_TERMS
+#define ANGLES HIMC_REGRESSION_ANGLES
+#define TRUNK (HIMC_TRUNK - 1) // the joint
 
-himc_vec3 himc_posture_regression_seen(himc_vec3 waist, himc_quat trunk, himc_vec3 x)
+#define LARGEST_CORRECTION 0.05 // of the tip, in one step; chosen: the Jacobian still holds (m)
+#define CORRECTION_STEPS 3      // chosen: quadratic convergence from millimetres to 1e-5 m
+#define REGULARISATION 1e-10    // of J S J'; chosen: (10 um)^2, keeps a straight arm finite (m^2)
+
+himc_vec3 himc_posture_regression_in_trunk(himc_vec3 waist, himc_quat trunk, himc_vec3 x)
 {
     return himc_quat_rotate(himc_quat_conj(trunk), himc_vec3_sub(x, waist));
 }
 
 void himc_posture_regression_terms(const himc_posture_regression_player *player, himc_hand hand,
-                                   himc_quat trunk, const himc_vec3 tip[TAPS][HIMC_HANDS],
+                                   himc_quat trunk, const himc_vec3 tip[OFFSETS][HIMC_HANDS],
                                    double term[TERMS])
 {
     *term++ = 1;
-    for (int tap = 0; tap < TAPS; tap++) {
-        himc_vec3 x = himc_posture_regression_seen(player->waist, trunk, tip[tap][hand]);
+    for (int k = 0; k < OFFSETS; k++) {
+        himc_vec3 x = himc_posture_regression_in_trunk(player->waist, trunk, tip[k][hand]);
         x = himc_vec3_scale(himc_vec3_sub(x, player->tip[hand]), 1 / player->reach[hand]);
         *term++ = x.x, *term++ = x.y, *term++ = x.z;
     }
@@ -45,7 +51,7 @@ void himc_posture_regression_frames(const himc_posture_regression_player *player
 }
 
 void himc_posture_regression_trunk_terms(const himc_posture_regression_player *player,
-                                         himc_quat mean, const himc_vec3 tip[TAPS][HIMC_HANDS],
+                                         himc_quat mean, const himc_vec3 tip[OFFSETS][HIMC_HANDS],
                                          double term[TRUNK_TERMS])
 {
     double right[TERMS];
@@ -54,10 +60,11 @@ void himc_posture_regression_trunk_terms(const himc_posture_regression_player *p
     memcpy(term + TERMS, right + 1, (TERMS - 1) * sizeof *term);
 }
 
+/// An arm in the trunk's frame.
 typedef struct arm {
-    himc_quat frame[HIMC_ARM_JOINTS]; // of the segments, in the trunk
-    himc_vec3 lever[HIMC_ARM_JOINTS]; // to the tip (m)
-    himc_vec3 tip;                    // from the trunk's joint (m)
+    himc_quat frame[HIMC_ARM_JOINTS]; // orientations of the segments
+    himc_vec3 lever[HIMC_ARM_JOINTS]; // from each joint to the tip (m)
+    himc_vec3 tip;                    // from the waist (m)
 } arm;
 
 static void place_arm(const himc_posture_regression_player *player, himc_hand hand,
@@ -75,9 +82,9 @@ static void place_arm(const himc_posture_regression_player *player, himc_hand ha
         a->lever[k] = himc_vec3_sub(a->tip, a->lever[k]);
 }
 
-// turn = S J' f
-static void spread_through(const double spread[ANGLES][ANGLES], const arm *a, himc_vec3 f,
-                           himc_vec3 turn[HIMC_ARM_JOINTS])
+// rotation = S J' f
+static void apply_covariance(const double covariance[ANGLES][ANGLES], const arm *a, himc_vec3 f,
+                             himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     double g[ANGLES], sum[ANGLES];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
@@ -87,60 +94,63 @@ static void spread_through(const double spread[ANGLES][ANGLES], const arm *a, hi
     for (int c = 0; c < ANGLES; c++) {
         sum[c] = 0;
         for (int d = 0; d < ANGLES; d++)
-            sum[c] += spread[c][d] * g[d];
+            sum[c] += covariance[c][d] * g[d];
     }
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        turn[k] = himc_vec3_make(sum[3 * k], sum[3 * k + 1], sum[3 * k + 2]);
+        rotation[k] = himc_vec3_make(sum[3 * k], sum[3 * k + 1], sum[3 * k + 2]);
 }
 
-static himc_vec3 moved_by(const arm *a, const himc_vec3 turn[HIMC_ARM_JOINTS])
+// J x
+static himc_vec3 tip_displacement(const arm *a, const himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     himc_vec3 moved = {0, 0, 0};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        moved = himc_vec3_add(moved, himc_vec3_cross(turn[k], a->lever[k]));
+        moved = himc_vec3_add(moved, himc_vec3_cross(rotation[k], a->lever[k]));
     return moved;
 }
 
-// one step of the likeliest correction towards the tip's place (from the trunk's joint, in its
-// frame)
-static void correct(const himc_posture_regression *regression, himc_hand hand, himc_vec3 place,
-                    himc_pose *pose)
+// one step of the likeliest correction that brings the tip to `target` (from the waist, in the
+// trunk's frame)
+static void correct_tip(const himc_posture_regression *regression, himc_hand hand, himc_vec3 target,
+                        himc_pose *pose)
 {
+    const double(*covariance)[ANGLES] = regression->residual_covariance[hand];
     arm a;
     himc_mat3 gram;
-    himc_vec3 turn[HIMC_ARM_JOINTS];
+    himc_vec3 rotation[HIMC_ARM_JOINTS];
     place_arm(&regression->player, hand, pose, &a);
     for (int c = 0; c < 3; c++) {
         himc_vec3 f = {c == 0, c == 1, c == 2};
-        spread_through(regression->spread[hand], &a, f, turn);
-        himc_vec3 m = moved_by(&a, turn);
+        apply_covariance(covariance, &a, f, rotation);
+        himc_vec3 m = tip_displacement(&a, rotation);
         gram.m[0][c] = m.x, gram.m[1][c] = m.y, gram.m[2][c] = m.z;
     }
     for (int i = 0; i < 3; i++)
-        gram.m[i][i] += 1e-10;
-    himc_vec3 e = himc_vec3_sub(place, a.tip);
-    double far = himc_vec3_length(e);
-    e = himc_vec3_scale(e, far > LARGEST_STEP ? LARGEST_STEP / far : 1);
+        gram.m[i][i] += REGULARISATION;
+    himc_vec3 e = himc_vec3_sub(target, a.tip);
+    double distance = himc_vec3_length(e);
+    e = himc_vec3_scale(e, distance > LARGEST_CORRECTION ? LARGEST_CORRECTION / distance : 1);
     himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);
-    spread_through(regression->spread[hand], &a, himc_mat3_apply(&inverse, e), turn);
+    apply_covariance(covariance, &a, himc_mat3_apply(&inverse, e), rotation);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
-        himc_vec3 own = himc_quat_rotate(himc_quat_conj(a.frame[k]), turn[k]);
+        himc_vec3 own = himc_quat_rotate(himc_quat_conj(a.frame[k]), rotation[k]);
         pose->joint[j] = himc_quat_mul(pose->joint[j], himc_quat_exp(own));
     }
 }
 
-void himc_posture_regression_usual(himc_posture_regression *regression)
+void himc_posture_regression_default(himc_posture_regression *regression)
 {
     *regression = (himc_posture_regression){0};
     memcpy(regression->weight, himc_posture_regression_table.weight, sizeof regression->weight);
     memcpy(regression->trunk, himc_posture_regression_table.trunk, sizeof regression->trunk);
-    memcpy(regression->spread, himc_posture_regression_table.spread, sizeof regression->spread);
+    memcpy(regression->residual_covariance, himc_posture_regression_table.residual_covariance,
+           sizeof regression->residual_covariance);
 }
 
-// how the trunk sways with the sticks, from where it bears itself on average
-static himc_quat sway(const himc_posture_regression *regression,
-                      const himc_vec3 tip[TAPS][HIMC_HANDS], himc_quat trunk)
+// the trunk rotated with the tips from its mean orientation `trunk`
+static himc_quat rotate_trunk(const himc_posture_regression *regression,
+                              const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_quat trunk)
 {
     double term[TRUNK_TERMS], u[3] = {0, 0, 0};
     himc_posture_regression_trunk_terms(&regression->player, trunk, tip, term);
@@ -150,63 +160,80 @@ static himc_quat sway(const himc_posture_regression *regression,
     return himc_quat_mul(trunk, himc_quat_exp(himc_vec3_make(u[0], u[1], u[2])));
 }
 
-void himc_posture_regression_at(const himc_posture_regression *regression,
-                                const himc_vec3 tip[TAPS][HIMC_HANDS], himc_pose *pose)
+// the joints of one arm by the weights, before the tip's correction
+static void set_arm(const himc_posture_regression *regression, himc_hand hand,
+                    const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_pose *pose)
 {
-    if (regression->player.trunk)
-        pose->joint[TRUNK] = sway(regression, tip, pose->joint[TRUNK]);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        if (!regression->player.arm[hand])
-            continue;
-        double term[TERMS];
-        himc_quat frame[HIMC_ARM_JOINTS];
-        himc_posture_regression_terms(&regression->player, (himc_hand)hand, pose->joint[TRUNK], tip,
-                                      term);
-        himc_posture_regression_frames(&regression->player, (himc_hand)hand, frame);
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-            double u[3] = {0, 0, 0};
-            for (int c = 0; c < 3; c++)
-                for (int t = 0; t < TERMS; t++)
-                    u[c] += regression->weight[hand][k][c][t] * term[t];
-            int j = himc_arm_joint((himc_hand)hand, k);
-            himc_vec3 own =
-                himc_quat_rotate(himc_quat_conj(frame[k]), himc_vec3_make(u[0], u[1], u[2]));
-            pose->joint[j] = himc_quat_mul(regression->player.mean.joint[j], himc_quat_exp(own));
-        }
-        himc_vec3 place = himc_posture_regression_seen(regression->player.waist, pose->joint[TRUNK],
-                                                       tip[0][hand]);
-        for (int i = 0; i < CORRECTIONS; i++)
-            correct(regression, (himc_hand)hand, place, pose);
+    const himc_posture_regression_player *player = &regression->player;
+    double term[TERMS];
+    himc_quat frame[HIMC_ARM_JOINTS];
+    himc_posture_regression_terms(player, hand, pose->joint[TRUNK], tip, term);
+    himc_posture_regression_frames(player, hand, frame);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        double u[3] = {0, 0, 0};
+        for (int c = 0; c < 3; c++)
+            for (int t = 0; t < TERMS; t++)
+                u[c] += regression->weight[hand][k][c][t] * term[t];
+        int j = himc_arm_joint(hand, k);
+        himc_vec3 own =
+            himc_quat_rotate(himc_quat_conj(frame[k]), himc_vec3_make(u[0], u[1], u[2]));
+        pose->joint[j] = himc_quat_mul(player->mean.joint[j], himc_quat_exp(own));
     }
 }
 
-// a joint of a motion, `dt` later
+void himc_posture_regression_at(const himc_posture_regression *regression,
+                                const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_pose *pose)
+{
+    const himc_posture_regression_player *player = &regression->player;
+    if (player->trunk)
+        pose->joint[TRUNK] = rotate_trunk(regression, tip, pose->joint[TRUNK]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        if (!player->arm[hand])
+            continue;
+        set_arm(regression, (himc_hand)hand, tip, pose);
+        himc_vec3 target =
+            himc_posture_regression_in_trunk(player->waist, pose->joint[TRUNK], tip[0][hand]);
+        for (int i = 0; i < CORRECTION_STEPS; i++)
+            correct_tip(regression, (himc_hand)hand, target, pose);
+    }
+}
+
+// a joint of a motion `dt` seconds later, at constant acceleration
 static himc_quat joint_after(const himc_posture_motion *m, int j, double dt)
 {
-    himc_vec3 turn =
+    himc_vec3 rotation =
         himc_vec3_madd(himc_vec3_scale(m->rate[j], dt), 0.5 * dt * dt, m->acceleration[j]);
-    return himc_quat_mul(himc_quat_exp(turn), m->joint[j]);
+    return himc_quat_mul(himc_quat_exp(rotation), m->joint[j]);
+}
+
+// the pose `dt` seconds from now: the player's mean with the natural posture's trunk motion and,
+// for arms that were not captured, its arms
+static himc_pose pose_after(const himc_posture_regression_player *player,
+                            const himc_posture_motion *natural, double dt)
+{
+    himc_pose pose = player->mean;
+    himc_quat own = himc_quat_mul(himc_quat_conj(player->natural_trunk), player->mean.joint[TRUNK]);
+    pose.joint[TRUNK] = himc_quat_mul(joint_after(natural, TRUNK, dt), own);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; k < HIMC_ARM_JOINTS && !player->arm[hand]; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            pose.joint[j] = joint_after(natural, j, dt);
+        }
+    return pose;
 }
 
 void himc_posture_regression_moving(const himc_posture_regression *regression,
-                                    const himc_target tip[TAPS][HIMC_HANDS],
+                                    const himc_target tip[OFFSETS][HIMC_HANDS],
                                     himc_posture_motion *motion)
 {
-    const himc_posture_regression_player *player = &regression->player;
     himc_pose pose[3];
-    himc_quat own = himc_quat_mul(himc_quat_conj(player->usual), player->mean.joint[TRUNK]);
     for (int i = 0; i < 3; i++) {
-        double dt = (i - 1) * DIFFERENCE;
-        himc_vec3 then[TAPS][HIMC_HANDS];
-        pose[i] = player->mean;
-        pose[i].joint[TRUNK] = himc_quat_mul(joint_after(motion, TRUNK, dt), own);
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            for (int k = 0; k < HIMC_ARM_JOINTS && !player->arm[hand]; k++)
-                pose[i].joint[himc_arm_joint((himc_hand)hand, k)] =
-                    joint_after(motion, himc_arm_joint((himc_hand)hand, k), dt);
-        for (int tap = 0; tap < TAPS; tap++)
+        double dt = (i - 1) * HIMC_DIFFERENCE_STEP;
+        himc_vec3 then[OFFSETS][HIMC_HANDS];
+        pose[i] = pose_after(&regression->player, motion, dt);
+        for (int k = 0; k < OFFSETS; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
-                then[tap][hand] = himc_target_after(&tip[tap][hand], dt).x;
+                then[k][hand] = himc_target_after(&tip[k][hand], dt).x;
         himc_posture_regression_at(regression, (const himc_vec3(*)[HIMC_HANDS])then, &pose[i]);
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {

@@ -1,48 +1,200 @@
-/// habit_learn.c: least squares from takes of the whole body to a habit's weights.
+/// posture_regression_learn.c: fits players, learns weights from their takes, corrects them.
 ///
-/// W is by least squares over all frames of all players, each about his own means (LAPACK's
-/// dgelsd; singular values under 1e-3 of the largest are left out: the solution of least norm).
-/// A regression says less than it was told: its mean square is that of what it explains. So the
-/// weights of a joint are then scaled until its rotations are as far as those seen, on average (the
-/// reduced major axis): an elbow that moves as far as the captured costs next to nothing in angle.
-/// One take corrects a habit by ridge regression (Hoerl and Kennard 1970), the W + D of
-///     min sum |u - (W + D) phi|^2 + TRUST^2 |D|^2.
-#include "control/posture_regression_terms.h"
+/// A player is described by the means of his takes (rotations.h) and his measures. The weights W
+/// are the least squares solution over all frames of all players, each relative to his own means
+/// (LAPACK's dgelsd; singular values below 1e-3 of the largest are left out: the solution of least
+/// norm). A regression has smaller amplitude than its data: its mean square is that of the
+/// explained part. So the weights of each joint are then scaled until its rotations have the mean
+/// square of the captured ones (reduced major axis). An elbow that moves as far as the captured one
+/// costs next to nothing in angle.
+///
+/// One take corrects a regression by ridge regression (Hoerl and Kennard 1970), to the W + D of
+///     min sum |u - (W + D) phi|^2 + PRIOR_FRAMES^2 |D|^2.
+#include "control/posture_regression.h"
+
+#include "base/rotations.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define NEGLIGIBLE 1e-3     // singular values under this share of the largest
-#define LEAST_SPREAD 2e-3   // no joint is known better than this (rad)
-#define TRUST 1.0           // in a habit that a take corrects, as many frames of a tip a reach away
-#define LEAST_EXPLAINED 0.5 // of a joint's mean square, below which it is not scaled to all of it
-#define LEAST_RANK 3        // of a problem that is determined: a tip that moves in two ways
+#define OFFSETS HIMC_REGRESSION_OFFSETS
+#define TERMS HIMC_REGRESSION_TERMS
+#define TRUNK_TERMS HIMC_REGRESSION_TRUNK_TERMS
+#define ANGLES HIMC_REGRESSION_ANGLES
+#define TRUNK (HIMC_TRUNK - 1) // the joint
 
-// rows of `terms` numbers, and of the `angles` that they are to give
+#define UNIT_TOLERANCE 1e-3      // chosen: of a quaternion's squared length, three digits of a file
+#define STRIKE_HEIGHT 0.02       // chosen: tip positions this near to the lowest are strikes (m)
+#define NEGLIGIBLE_SINGULAR 1e-3 // chosen: share of the largest, below the noise of captures
+#define LEAST_DEVIATION 2e-3     // chosen: no joint is captured more exactly (rad)
+#define PRIOR_FRAMES 1.0         // chosen: weighs like one frame with the tip one reach away
+#define LEAST_EXPLAINED 0.5      // chosen: joints with less of their mean square are not scaled
+#define LEAST_RANK 3             // of a determined problem: the constant and two tip directions
+#define SAME_FRAME 1e-9 // chosen: a time offset this near to a frame needs no interpolation
+
+// Players
+
+int himc_posture_regression_known_frames(const himc_posture_regression_take *take)
+{
+    return take->frames - 1 - (int)ceil((OFFSETS - 1) * HIMC_REGRESSION_OFFSET_STEP * take->rate);
+}
+
+// false, with the reason, for a take that is too short or contains invalid rotations
+static bool check_take(const himc_posture_regression_take *take, himc_error *error)
+{
+    if (!himc_check_range("posture regression: rate of a take", take->rate, 20, 10000, "Hz", error))
+        return false;
+    if (himc_posture_regression_known_frames(take) < 2 * TERMS)
+        return himc_error_set(
+            error, "posture regression: a take of %d frames, allowed %d or more", take->frames,
+            take->frames - himc_posture_regression_known_frames(take) + 2 * TERMS);
+    for (int i = 0; i < take->frames; i++)
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            himc_quat q = take->pose[i].joint[j];
+            if (!(fabs(himc_quat_dot(q, q) - 1) < UNIT_TOLERANCE))
+                return himc_error_set(error,
+                                      "posture regression: frame %d: %s: not a unit quaternion", i,
+                                      himc_joint_name(j));
+        }
+    return true;
+}
+
+// true if all takes contain the arm
+static bool arm_captured(const himc_posture_regression_take *take, int count, int hand)
+{
+    for (int n = 0; n < count; n++)
+        if (take[n].unseen_arm[hand])
+            return false;
+    return true;
+}
+
+static himc_quat mean_rotation(const himc_posture_regression_take *take, int count, int joint)
+{
+    himc_rotations all = {{0}};
+    for (int n = 0; n < count; n++)
+        for (int i = 0; i < take[n].frames; i++)
+            himc_rotations_add(&all, take[n].pose[i].joint[joint]);
+    return himc_rotations_mean(&all);
+}
+
+himc_vec3 himc_posture_regression_tip(const himc_skeleton *skeleton, const himc_pose *pose,
+                                      himc_hand hand)
+{
+    himc_vec3 x = skeleton->tip;
+    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
+        x = himc_vec3_add(skeleton->segment[i].origin, himc_quat_rotate(pose->joint[i - 1], x));
+    return himc_vec3_add(skeleton->root, x);
+}
+
+static void fit_hand(himc_posture_regression_player *player,
+                     const himc_posture_regression_take *take, int count, himc_hand hand)
+{
+    const himc_skeleton *skeleton = take->skeleton;
+    himc_vec3 sum = {0, 0, 0};
+    double frames = 0;
+    for (int n = 0; n < count; frames += take[n++].frames)
+        for (int i = 0; i < take[n].frames; i++) {
+            const himc_pose *pose = &take[n].pose[i];
+            himc_vec3 x = himc_posture_regression_tip(skeleton, pose, hand);
+            sum = himc_vec3_add(
+                sum, himc_posture_regression_in_trunk(player->waist, pose->joint[TRUNK], x));
+        }
+    player->tip[hand] = himc_vec3_scale(sum, 1 / frames);
+    player->reach[hand] = himc_vec3_length(skeleton->tip);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        player->joint[hand][k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
+        if (k > 0)
+            player->reach[hand] += himc_vec3_length(player->joint[hand][k]);
+    }
+}
+
+// a hand's mean strike point: the mean of the lowest positions of its tip (m)
+static himc_vec3 mean_strike(const himc_posture_regression_take *take, int count, himc_hand hand)
+{
+    double low = INFINITY, weight = 0;
+    himc_vec3 sum = {0, 0, 0};
+    for (int pass = 0; pass < 2; pass++)
+        for (int n = 0; n < count; n++)
+            for (int i = 0; i < take[n].frames; i++) {
+                himc_vec3 x = himc_posture_regression_tip(take->skeleton, &take[n].pose[i], hand);
+                low = pass == 0 ? fmin(low, x.z) : low;
+                if (pass == 1 && x.z < low + STRIKE_HEIGHT) {
+                    sum = himc_vec3_add(sum, x);
+                    weight++;
+                }
+            }
+    return himc_vec3_scale(sum, 1 / weight);
+}
+
+// the trunk's orientation in the natural posture for the player's strike points
+static himc_quat natural_trunk(const himc_posture_regression_take *take, int count)
+{
+    himc_posture posture;
+    himc_pose pose;
+    himc_vec3 strike[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        strike[hand] = mean_strike(take, count, (himc_hand)hand);
+    himc_posture_init(&posture, take->skeleton, 0);
+    posture.trunk_posture = himc_posture_trunk(strike, HIMC_GRIP_GERMAN);
+    himc_posture_at(&posture, strike, &pose);
+    return pose.joint[TRUNK];
+}
+
+bool himc_posture_regression_fit(himc_posture_regression_player *player,
+                                 const himc_posture_regression_take *take, int count,
+                                 himc_error *error)
+{
+    if (count < 1)
+        return himc_error_set(error, "posture regression: no take of a player, allowed 1 or more");
+    for (int n = 0; n < count; n++)
+        if (!check_take(&take[n], error))
+            return false;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        player->mean.joint[j] = mean_rotation(take, count, j);
+    player->waist = himc_vec3_add(take->skeleton->root, take->skeleton->segment[HIMC_TRUNK].origin);
+    player->trunk = true;
+    for (int n = 0; n < count; n++)
+        player->trunk = player->trunk && !take[n].unseen_trunk;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        player->arm[hand] = arm_captured(take, count, hand);
+        player->trunk = player->trunk && player->arm[hand];
+        fit_hand(player, take, count, (himc_hand)hand);
+    }
+    player->stick = take->skeleton->tip;
+    player->natural_trunk = natural_trunk(take, count);
+    return true;
+}
+
+// Least squares
+
+/// A least squares problem; dgelsd overwrites both arrays, the first rows of `angle` by the
+/// weights.
 typedef struct problem {
-    double *term, *angle;
+    double *term;  // (rows x terms)
+    double *angle; // the angles to explain (rows x angles)
     int rows, terms, angles;
-    bool moves; // the tips do, so there is something to learn
+    bool moves; // the tips move, so there is something to learn
 } problem;
 
 #define PROBLEMS (HIMC_HANDS + 1) // each arm, and the trunk
+static const char *const problem_tips[PROBLEMS] = {"left tip", "right tip", "tips"};
 
-// where a tip is `ahead` seconds after frame i, linearly between frames
+// the tip `ahead` seconds after frame i, by linear interpolation between frames
 static himc_vec3 tip_ahead(const himc_posture_regression_take *take, int i, double ahead,
                            himc_hand hand)
 {
     double at = ahead * take->rate, part = at - floor(at);
     const himc_pose *pose = &take->pose[i + (int)at];
     himc_vec3 x = himc_posture_regression_tip(take->skeleton, pose, hand);
-    if (part < 1e-9)
+    if (part < SAME_FRAME)
         return x;
     himc_vec3 next = himc_posture_regression_tip(take->skeleton, pose + 1, hand);
     return himc_vec3_madd(himc_vec3_scale(x, 1 - part), part, next);
 }
 
-// a take's rows of the least squares problem of one hand
+// adds a take's rows to the problem of one arm
 static void add_rows(problem *p, const himc_posture_regression_player *player,
                      const himc_posture_regression_take *take, himc_hand hand)
 {
@@ -50,9 +202,9 @@ static void add_rows(problem *p, const himc_posture_regression_player *player,
     himc_posture_regression_frames(player, hand, frame);
     for (int i = 0; i < himc_posture_regression_known_frames(take); i++, p->rows++) {
         const himc_pose *pose = &take->pose[i];
-        himc_vec3 tip[TAPS][HIMC_HANDS];
-        for (int tap = 0; tap < TAPS; tap++)
-            tip[tap][hand] = tip_ahead(take, i, tap * HIMC_REGRESSION_STEP, hand);
+        himc_vec3 tip[OFFSETS][HIMC_HANDS];
+        for (int k = 0; k < OFFSETS; k++)
+            tip[k][hand] = tip_ahead(take, i, k * HIMC_REGRESSION_OFFSET_STEP, hand);
         himc_posture_regression_terms(player, hand, pose->joint[TRUNK],
                                       (const himc_vec3(*)[HIMC_HANDS])tip,
                                       p->term + p->terms * (size_t)p->rows);
@@ -66,15 +218,16 @@ static void add_rows(problem *p, const himc_posture_regression_player *player,
     }
 }
 
+// adds a take's rows to the problem of the trunk
 static void add_trunk_rows(problem *p, const himc_posture_regression_player *player,
                            const himc_posture_regression_take *take)
 {
     himc_quat mean = player->mean.joint[TRUNK];
     for (int i = 0; i < himc_posture_regression_known_frames(take); i++, p->rows++) {
-        himc_vec3 tip[TAPS][HIMC_HANDS];
-        for (int tap = 0; tap < TAPS; tap++)
+        himc_vec3 tip[OFFSETS][HIMC_HANDS];
+        for (int k = 0; k < OFFSETS; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
-                tip[tap][hand] = tip_ahead(take, i, tap * HIMC_REGRESSION_STEP, (himc_hand)hand);
+                tip[k][hand] = tip_ahead(take, i, k * HIMC_REGRESSION_OFFSET_STEP, (himc_hand)hand);
         himc_posture_regression_trunk_terms(player, mean, (const himc_vec3(*)[HIMC_HANDS])tip,
                                             p->term + p->terms * (size_t)p->rows);
         himc_vec3 u =
@@ -83,41 +236,44 @@ static void add_trunk_rows(problem *p, const himc_posture_regression_player *pla
     }
 }
 
-// the weights into the first rows of `angle`
-static bool solve(problem *p, const char *whose, himc_error *error)
+// solves for the weights, into the first rows of `angle`; `tips` names them in errors
+static bool solve(problem *p, const char *tips, himc_error *error)
 {
     double singular[TRUNK_TERMS];
     lapack_int rank = 0;
     p->moves = false;
-    if (p->rows == 0) // nobody showed it
+    if (p->rows == 0) // not captured
         return true;
-    lapack_int info = LAPACKE_dgelsd(LAPACK_ROW_MAJOR, p->rows, p->terms, p->angles, p->term,
-                                     p->terms, p->angle, p->angles, singular, NEGLIGIBLE, &rank);
+    lapack_int info =
+        LAPACKE_dgelsd(LAPACK_ROW_MAJOR, p->rows, p->terms, p->angles, p->term, p->terms, p->angle,
+                       p->angles, singular, NEGLIGIBLE_SINGULAR, &rank);
     if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR)
-        return himc_error_set(error, "habit: out of memory for %d frames", p->rows);
+        return himc_error_set(error, "posture regression: out of memory for %d frames", p->rows);
     if (info != 0)
-        return himc_error_set(error, "habit: no singular values for the %s", whose);
+        return himc_error_set(error, "posture regression: no singular values for the %s", tips);
     p->moves = rank >= LEAST_RANK;
     return true;
 }
 
-// an arm that was not seen moves like the other one in a mirror: y changes its sign, of rotations x
-// and z do
-static void mirror(himc_posture_regression *regression, himc_hand unseen)
+// gives the arm `at_rest` the weights of the other one, mirrored: of positions y changes its sign,
+// of rotations x and z
+static void mirror(himc_posture_regression *regression, himc_hand at_rest)
 {
     for (int c = 0; c < ANGLES; c++)
         for (int t = 0; t < TERMS; t++) {
             double sign = (c % 3 == 1) == (t % 3 != 2) ? 1 : -1; // terms 2, 5, 8 are of y
-            regression->weight[unseen][c / 3][c % 3][t] =
-                sign * regression->weight[1 - unseen][c / 3][c % 3][t];
+            regression->weight[at_rest][c / 3][c % 3][t] =
+                sign * regression->weight[1 - at_rest][c / 3][c % 3][t];
         }
     for (int c = 0; c < ANGLES; c++)
         for (int d = 0; d < ANGLES; d++) {
             double sign = (c % 3 == 1) == (d % 3 == 1) ? 1 : -1;
-            regression->spread[unseen][c][d] = sign * regression->spread[1 - unseen][c][d];
+            regression->residual_covariance[at_rest][c][d] =
+                sign * regression->residual_covariance[1 - at_rest][c][d];
         }
 }
 
+// the angle that the weights give for these terms
 static double explained(const double *weight, const double *term, int terms)
 {
     double sum = 0;
@@ -126,44 +282,45 @@ static double explained(const double *weight, const double *term, int terms)
     return sum;
 }
 
-// each joint's weights, of three angles, so that it turns as far as it was seen to
-static void restore_extent(const problem *p, double *weight)
+// scales each joint's weights (three angles) to the mean square of the captured rotations
+static void restore_amplitude(const problem *p, double *weight)
 {
     for (int joint = 0; joint < p->angles; joint += 3) {
-        double seen = 0, said = 0;
+        double captured = 0, regressed = 0;
         for (int i = 0; i < p->rows; i++)
             for (int c = joint; c < joint + 3; c++) {
                 double u = p->angle[p->angles * (size_t)i + c];
                 double v =
                     explained(weight + p->terms * c, p->term + p->terms * (size_t)i, p->terms);
-                seen += u * u;
-                said += v * v;
+                captured += u * u;
+                regressed += v * v;
             }
-        if (said < LEAST_EXPLAINED * seen || said == 0)
+        if (regressed < LEAST_EXPLAINED * captured || regressed == 0)
             continue;
         for (int i = p->terms * joint; i < p->terms * (joint + 3); i++)
-            weight[i] *= sqrt(seen / said);
+            weight[i] *= sqrt(captured / regressed);
     }
 }
 
-// the covariance of what is left of the rows
-static void measure_spread(himc_posture_regression *regression, himc_hand hand, const problem *p)
+// the covariance of the residuals; replaces `angle` by the residuals
+static void measure_residuals(himc_posture_regression *regression, himc_hand hand, const problem *p)
 {
-    memset(regression->spread[hand], 0, sizeof regression->spread[hand]);
+    double(*covariance)[ANGLES] = regression->residual_covariance[hand];
+    memset(covariance, 0, sizeof regression->residual_covariance[hand]);
     for (int i = 0; i < p->rows; i++) {
         const double *term = p->term + TERMS * (size_t)i;
-        double *left = p->angle + ANGLES * (size_t)i;
+        double *residual = p->angle + ANGLES * (size_t)i;
         for (int c = 0; c < ANGLES; c++)
-            left[c] -= explained(regression->weight[hand][c / 3][c % 3], term, TERMS);
+            residual[c] -= explained(regression->weight[hand][c / 3][c % 3], term, TERMS);
         for (int c = 0; c < ANGLES; c++)
             for (int d = 0; d < ANGLES; d++)
-                regression->spread[hand][c][d] += left[c] * left[d] / p->rows;
+                covariance[c][d] += residual[c] * residual[d] / p->rows;
     }
     for (int c = 0; c < ANGLES; c++)
-        regression->spread[hand][c][c] += LEAST_SPREAD * LEAST_SPREAD;
+        covariance[c][c] += LEAST_DEVIATION * LEAST_DEVIATION;
 }
 
-// takes from `from` on that are one player's
+// number of takes from `from` on that belong to one player
 static int same_player(const himc_posture_regression_take *take, int from, int count)
 {
     int n = 1;
@@ -172,9 +329,9 @@ static int same_player(const himc_posture_regression_take *take, int from, int c
     return n;
 }
 
-// all rows, player by player; `habit` becomes the first player's
-static bool gather(himc_posture_regression *regression, problem p[PROBLEMS],
-                   const himc_posture_regression_take *take, int count, himc_error *error)
+// fills the rows of all problems, player by player; `regression` gets the first player
+static bool fill_rows(himc_posture_regression *regression, problem p[PROBLEMS],
+                      const himc_posture_regression_take *take, int count, himc_error *error)
 {
     for (int i = 0; i < PROBLEMS; i++)
         p[i].rows = 0;
@@ -200,16 +357,16 @@ static bool allocate(problem *p, int rows, int terms, int angles, himc_error *er
     p->term = malloc((size_t)rows * (size_t)terms * sizeof *p->term);
     p->angle = malloc((size_t)rows * (size_t)angles * sizeof *p->angle);
     return (p->term && p->angle) ||
-           himc_error_set(error, "habit: out of memory for %d frames", rows);
+           himc_error_set(error, "posture regression: out of memory for %d frames", rows);
 }
 
-// the weights of problem i, `terms` for each of its angles
+// the weights of problem i (angles x terms)
 static double *weights_of(himc_posture_regression *regression, int i)
 {
     return i < HIMC_HANDS ? &regression->weight[i][0][0][0] : &regression->trunk[0][0];
 }
 
-// the solutions, which stand where the rows were, added to the weights
+// adds the solutions, which dgelsd left in the first rows, to the weights
 static void add_solutions(himc_posture_regression *regression, const problem p[PROBLEMS])
 {
     for (int i = 0; i < PROBLEMS; i++)
@@ -221,23 +378,23 @@ static void add_solutions(himc_posture_regression *regression, const problem p[P
 static bool learn(himc_posture_regression *regression, problem p[PROBLEMS],
                   const himc_posture_regression_take *take, int count, himc_error *error)
 {
-    static const char *const whose[PROBLEMS] = {"left tip", "right tip", "tips"};
-    if (!gather(regression, p, take, count, error))
+    if (!fill_rows(regression, p, take, count, error))
         return false;
     for (int i = 0; i < PROBLEMS; i++)
-        if (!solve(&p[i], whose[i], error))
+        if (!solve(&p[i], problem_tips[i], error))
             return false;
     if (!p[HIMC_LEFT].moves && !p[HIMC_RIGHT].moves)
-        return himc_error_set(error, "habit: no tip moves: nothing to learn from it");
+        return himc_error_set(error,
+                              "posture regression: no drumstick tip moves: nothing to learn");
     memset(regression->weight, 0, sizeof regression->weight);
     memset(regression->trunk, 0, sizeof regression->trunk);
     add_solutions(regression, p);
-    if (!gather(regression, p, take, count, error))
+    if (!fill_rows(regression, p, take, count, error))
         return false;
     for (int i = 0; i < PROBLEMS; i++)
-        restore_extent(&p[i], weights_of(regression, i));
+        restore_amplitude(&p[i], weights_of(regression, i));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        measure_spread(regression, (himc_hand)hand, &p[hand]);
+        measure_residuals(regression, (himc_hand)hand, &p[hand]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (!p[hand].moves)
             mirror(regression, (himc_hand)hand);
@@ -266,9 +423,10 @@ bool himc_posture_regression_learn(himc_posture_regression *regression,
     problem p[PROBLEMS] = {{0}};
     int rows = 0;
     if (count < 1)
-        return himc_error_set(error, "habit: no take to learn from, allowed 1 or more");
+        return himc_error_set(error,
+                              "posture regression: no take to learn from, allowed 1 or more");
     for (int n = 0; n < count; n++) {
-        if (!himc_posture_regression_check(&take[n], error))
+        if (!check_take(&take[n], error))
             return false;
         rows += himc_posture_regression_known_frames(&take[n]);
     }
@@ -277,9 +435,9 @@ bool himc_posture_regression_learn(himc_posture_regression *regression,
     return ok;
 }
 
-// a problem about its correction: what the weights leave, and a row for each that holds it where
-// it is
-static void ask_correction(problem *p, const double *weight)
+// turns a problem into one for the correction D: the residuals, and a row for each term that holds
+// its weight
+static void make_correction_problem(problem *p, const double *weight)
 {
     if (p->rows == 0)
         return;
@@ -290,27 +448,26 @@ static void ask_correction(problem *p, const double *weight)
     for (int t = 0; t < p->terms; t++, p->rows++) {
         memset(p->term + p->terms * p->rows, 0, (size_t)p->terms * sizeof *p->term);
         memset(p->angle + p->angles * p->rows, 0, (size_t)p->angles * sizeof *p->angle);
-        p->term[p->terms * p->rows + t] = TRUST;
+        p->term[p->terms * p->rows + t] = PRIOR_FRAMES;
     }
 }
 
 static bool correct(himc_posture_regression *regression, problem p[PROBLEMS],
                     const himc_posture_regression_take *take, himc_error *error)
 {
-    static const char *const whose[PROBLEMS] = {"left tip", "right tip", "tips"};
-    if (!gather(regression, p, take, 1, error))
+    if (!fill_rows(regression, p, take, 1, error))
         return false;
     for (int i = 0; i < PROBLEMS; i++) {
-        ask_correction(&p[i], weights_of(regression, i));
-        if (!solve(&p[i], whose[i], error))
+        make_correction_problem(&p[i], weights_of(regression, i));
+        if (!solve(&p[i], problem_tips[i], error))
             return false;
     }
     add_solutions(regression, p);
-    if (!gather(regression, p, take, 1, error))
+    if (!fill_rows(regression, p, take, 1, error))
         return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (regression->player.arm[hand])
-            measure_spread(regression, (himc_hand)hand, &p[hand]);
+            measure_residuals(regression, (himc_hand)hand, &p[hand]);
     return true;
 }
 
@@ -319,7 +476,7 @@ bool himc_posture_regression_correct(himc_posture_regression *regression,
 {
     problem p[PROBLEMS] = {{0}};
     himc_posture_regression corrected = *regression;
-    bool ok = himc_posture_regression_check(take, error) &&
+    bool ok = check_take(take, error) &&
               allocate_all(p, himc_posture_regression_known_frames(take) + TRUNK_TERMS, error) &&
               correct(&corrected, p, take, error);
     free_all(p);

@@ -1,8 +1,8 @@
-/// posture_regression_table.c: how arms move with their sticks (make regression-table).
+/// posture_regression_table.c: the default posture regression (`make regression-table`).
 ///
-/// Learned from three players, five nuances and three spots, each sequence about its own
-/// means. Invariant: the table's shapes are himc_posture_regression's.
-#include "control/posture_regression_terms.h"
+/// Learned from three players, five nuances and three spots, each sequence relative to its
+/// own means. Invariant: the arrays have the shapes of himc_posture_regression.
+#include "control/posture_regression.h"
 
 // clang-format off
 const himc_posture_regression_numbers himc_posture_regression_table = {
@@ -40,7 +40,7 @@ const himc_posture_regression_numbers himc_posture_regression_table = {
         0.116, 0.02309, -0.02378, 0.07103, -0.02056, 0.02085, -0.00485, 0.02013, -0.06236, 0.099,
         -0.002336, 0.09341, 0.09072, -0.005081, -0.05908, 0.003851, 0.002836,
     },
-    .spread = {
+    .residual_covariance = {
         8.569e-05, 0.0002322, -6.284e-08, -3.945e-05, -0.0001115, -5.76e-06, -1.854e-06, 9.38e-06, 1.008e-05, -1.114e-05,
         -4.024e-05, -8.365e-07, 0.0002322, 0.0008528, 2.884e-05, -0.000113, -0.0004229, -2.08e-05, 5.149e-06, 3.123e-05,
         8.148e-07, -5.712e-05, -0.0001959, -3.865e-06, -6.284e-08, 2.884e-05, 2.975e-05, 7.502e-06, -1.335e-05, -7.118e-06,

@@ -4,7 +4,9 @@
 /// plus what the posture asks, in the null space of J.
 #include "control/tracking_error.h"
 
+#include "body/dynamics.h"
 #include "body/stretch.h"
+#include "control/ik.h"
 
 #define LARGEST_STEP 0.20 // of the tip, one step of inverse kinematics (m)
 #define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
@@ -53,7 +55,7 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
     himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
     tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
     if (c->elbow)
-        himc_elbow_task_at(tasks->jacobian, upper_arm, c->damping, &tasks->elbow);
+        himc_elbow_task_init(&tasks->elbow, tasks->jacobian, upper_arm, c->damping);
 }
 
 // the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
@@ -68,7 +70,7 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
         posture[k] = himc_vec3_make(0, 0, 0);
     if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
         inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
-    himc_ik_through(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
+    himc_ik_apply_transposed(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
     himc_ik_add_null(tasks->jacobian, posture, solution);
     if (c->elbow)
         himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,

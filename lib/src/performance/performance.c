@@ -7,6 +7,8 @@
 /// asked for, and its forces wait here; so what is played does not depend on how many samples are
 /// asked for at a time.
 #include "performance/performance_state.h"
+#include "performance/research.h"
+
 #include "base/head_frame.h"
 
 #include <stdlib.h>

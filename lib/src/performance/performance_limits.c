@@ -9,6 +9,8 @@
 /// a drum of its own, and a piece need not keep to it.
 #include "performance/performance_state.h"
 
+#include "body/limits.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -35,13 +35,13 @@ static void blend(const himc_posture_motion *natural, himc_target share, int j,
 
 void himc_performance_follow_posture_regression(const himc_performance *p, himc_setpoint *tick)
 {
-    himc_target tip[HIMC_REGRESSION_TAPS][HIMC_HANDS], share = share_at(p, tick->time);
+    himc_target tip[HIMC_REGRESSION_OFFSETS][HIMC_HANDS], share = share_at(p, tick->time);
     if (p->controller.mode != HIMC_PIPELINE_HIMC || share.x.x <= 0)
         return;
-    for (int tap = 0; tap < HIMC_REGRESSION_TAPS; tap++)
+    for (int k = 0; k < HIMC_REGRESSION_OFFSETS; k++)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            tip[tap][hand] = himc_performance_planned(p, (himc_hand)hand,
-                                                      tick->time + tap * HIMC_REGRESSION_STEP);
+            tip[k][hand] = himc_performance_planned(p, (himc_hand)hand,
+                                                    tick->time + k * HIMC_REGRESSION_OFFSET_STEP);
     himc_posture_motion natural = tick->posture;
     himc_posture_regression_moving(&p->regression, (const himc_target(*)[HIMC_HANDS])tip,
                                    &tick->posture);
@@ -59,7 +59,7 @@ void himc_performance_fit_posture_regression(himc_performance *p)
         return;
     held.trunk_posture = p->trunk_posture;
     himc_posture_at(&held, tip, &pose);
-    p->regression.player.usual = pose.joint[HIMC_TRUNK - 1];
+    p->regression.player.natural_trunk = pose.joint[HIMC_TRUNK - 1];
 }
 
 void himc_performance_set_posture_regression(himc_performance *p,

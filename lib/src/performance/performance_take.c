@@ -179,12 +179,12 @@ static void adopt_habit(himc_performance *p, const himc_player *player, const hi
         .pose = player->pose,
         .frames = player->frames,
         .rate = himc_take_rate(take),
-        .hides = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
-        .hides_trunk = !player->known[HIMC_TRUNK - 1]};
+        .unseen_arm = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
+        .unseen_trunk = !player->known[HIMC_TRUNK - 1]};
     if (p->has_regression && !p->regression_of_take)
         return;
-    himc_posture_regression_usual(&regression);
-    bool shown = !seen.hides[HIMC_LEFT] || !seen.hides[HIMC_RIGHT];
+    himc_posture_regression_default(&regression);
+    bool shown = !seen.unseen_arm[HIMC_LEFT] || !seen.unseen_arm[HIMC_RIGHT];
     bool met = shown && himc_posture_regression_correct(&regression, &seen, &error);
     if (shown && !met)
         himc_performance_note(p, "%s: %s: the arms go as is natural", path, error.text);

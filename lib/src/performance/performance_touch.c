@@ -10,6 +10,7 @@
 /// the plan goes on from the stick as it really is.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
+#include "body/dynamics.h"
 
 #include <string.h>
 

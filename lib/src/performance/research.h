@@ -12,4 +12,11 @@
 HIMC_RT void himc_performance_set_posture_regression(himc_performance *performance,
                                                      const himc_posture_regression *regression);
 
+/// From now on the simulated segments have `factor` (HIMC_SEGMENTS, 0.2 .. 5; NULL for 1) times the
+/// mass and inertia that the controller assumes: the effect of an uncertain body on control. The
+/// body is rebuilt at the pose of the targets. False with the reason if a factor is out of range
+/// or memory is short.
+bool himc_performance_set_weights(himc_performance *performance, const double *factor,
+                                  himc_error *error);
+
 #endif

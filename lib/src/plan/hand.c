@@ -120,7 +120,7 @@ void himc_hand_cut(himc_hand_plan *plan, double t)
 {
     if (t >= plan->end)
         return;
-    t = fmax(t, plan->ground.piece[0].t0);
+    t = fmax(t, plan->ground.segment[0].t0);
     himc_spline_cut(&plan->ground, t);
     himc_spline_cut(&plan->lift, t);
     plan->end = t;
