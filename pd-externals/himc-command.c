@@ -31,23 +31,18 @@ static bool himc_tilde_file(t_himc *x, himc_command *command, himc_error *error)
     char path[HIMC_PATH_SIZE];
     himc_atom atom[HIMC_COMMAND_ATOMS];
     himc_command found;
-    bool record =
-        command->id == HIMC_COMMAND_RECORD && strcmp(command->atom[0].symbol, "stop") != 0;
-    bool units = command->id == HIMC_COMMAND_UNITS && command->count > 1;
-    bool read = units || command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
-    if (!record && !read)
+    int at;
+    himc_file_use use = himc_command_file(command, &at);
+    if (use == HIMC_FILE_NONE)
         return true;
-    if (read && !himc_tilde_locate(x, command->atom[0].symbol, path, sizeof path, error))
-        return false;
-    if (record)
-        canvas_makefilename(x->x_canvas, command->atom[0].symbol, path, sizeof path);
     memcpy(atom, command->atom, sizeof atom);
-    atom[0].symbol = path;
-    const char *name = record                              ? "record"
-                       : units                             ? "units"
-                       : command->id == HIMC_COMMAND_SCORE ? "score"
-                                                           : "take";
-    if (!himc_command_parse(&found, HIMC_PERFORMER, name, atom, command->count, error))
+    if (use == HIMC_FILE_WRITE)
+        canvas_makefilename(x->x_canvas, atom[at].symbol, path, sizeof path);
+    else if (!himc_tilde_locate(x, atom[at].symbol, path, sizeof path, error))
+        return false;
+    atom[at].symbol = path;
+    if (!himc_command_parse(&found, HIMC_PERFORMER, himc_command_table((int)command->id)->name,
+                            atom, command->count, error))
         return false;
     himc_command_copy(command, &found);
     return true;
@@ -97,12 +92,12 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
     himc_command command;
     if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
         return false;
+    himc_command_when when = himc_command_table((int)command.id)->when;
     if (command.id == HIMC_COMMAND_INFO) {
         himc_performance_describe(x->x_performance, himc_tilde_line, x);
         return true;
     }
-    if (command.id == HIMC_COMMAND_SUBSCRIBE || command.id == HIMC_COMMAND_UNSUBSCRIBE ||
-        command.id == HIMC_COMMAND_LISTEN)
+    if (when == HIMC_WHEN_NETWORK)
         return himc_tilde_osc(x, &command, error);
     if (!himc_tilde_file(x, &command, error))
         return himc_error_prefix(error, "%s", s->s_name);

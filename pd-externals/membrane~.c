@@ -203,7 +203,7 @@ static void membrane_tell_technique(t_membrane *x)
         return;
     t_atom atom;
     x->x_technique = now;
-    SETSYMBOL(&atom, gensym(himc_technique_name(now)));
+    SETSYMBOL(&atom, gensym(himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)now).text));
     outlet_anything(x->x_messages, gensym("technique"), 1, &atom);
 }
 
@@ -309,10 +309,11 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
 static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer, himc_error *error)
 {
     const char *name = wish->w_name ? wish->w_name : "nameless";
-    himc_command pickups = {.id = HIMC_COMMAND_PICKUPS, .count = 1};
-    pickups.atom[0] = (himc_atom){HIMC_ATOM_NUMBER, wish->w_channels, NULL};
+    himc_atom channels = {HIMC_ATOM_NUMBER, wish->w_channels, NULL};
+    himc_command pickups;
     himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
-    if (drum && himc_drum_command(drum, &pickups, error))
+    if (drum && himc_command_parse(&pickups, HIMC_DRUM, "pickups", &channels, 1, error) &&
+        himc_drum_command(drum, &pickups, error))
         layer->l_membrane =
             himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, error);
     if (layer->l_membrane) {

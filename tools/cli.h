@@ -3,16 +3,18 @@
 #ifndef CLI_H
 #define CLI_H
 
-#include "himc/score.h"
+#include "himc/performance.h"
 #include "himc/mocap.h"
 
 #include <stdio.h>
 
 /// One option; the table of these is the parser's and the help's.
 typedef struct cli_option {
-    const char *name;  ///< "rate" is --rate
-    char letter;       ///< 'o' is -o; 0 for none
-    const char *value; ///< what follows it, "HZ"; NULL for a switch
+    const char *name; ///< "rate" is --rate
+    char letter;      ///< 'o' is -o; 0 for none
+    const char
+        *value; ///< what follows it, "HZ"; NULL for a switch; a command's name stands for the
+                ///< words of that command
     const char *does;
 } cli_option;
 
@@ -81,19 +83,30 @@ bool cli_same_file(const char *a, const char *b);
 #define CLI_DRUM "kettle"
 #define CLI_INCHES 23.0
 
+/// Gives the performance that drum.
+bool cli_add_drum(himc_performance *performance, double rate, himc_error *error);
+/// Gives the performance a command: the text, or, if `word` is not NULL, the name `text` with that
+/// one word, which may contain spaces.
+bool cli_tell(himc_performance *performance, const char *text, const char *word, himc_error *error);
+/// Time on the monotonic clock (s).
+double cli_now(void);
+
 /// The first `drum` line of a score, or NULL.
 const himc_score_line *cli_first_drum(const himc_score *score);
-/// The size a `drum` line asks for (inches).
+/// The size in a `drum` line (inches).
 double cli_drum_inches(const himc_score_line *line);
 
-/// How a take is to be read, from the values of --left-tip, --right-tip and --up (each may be
-/// NULL).
-bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
-                      himc_take_options *out, himc_error *error);
-
-/// False if options for takes are given with a score.
-bool cli_take_options_fit(const char *path, const char *left_tip, const char *right_tip,
-                          const char *up, himc_error *error);
+/// The options of all calls that read a take; their values stand one after the other.
+#define CLI_TAKE_OPTIONS                                                                    \
+    {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else found by name)"}, \
+        {"right-tip", 0, "NAME", "the same, right"},                                        \
+    {                                                                                       \
+        "up", 0, "z|y", "a take's upward axis (else as the file says)"                      \
+    }
+/// How the take at `path` is to be read, from the values of CLI_TAKE_OPTIONS. False if one is
+/// wrong, or given with a score.
+bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
+                      himc_error *error);
 /// True if the name ends as a motion capture's does: .bvh .c3d .trc, in any case.
 bool cli_is_take(const char *path);
 

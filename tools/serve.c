@@ -38,26 +38,10 @@ static void stop(int signal)
     stopped = 1;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void sleep_until(double t)
 {
     struct timespec at = {(time_t)t, (long)((t - floor(t)) * 1e9)};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
-}
-
-static bool tell(himc_performance *performance, const char *name, const char *word,
-                 himc_error *error)
-{
-    himc_command command;
-    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
-    return himc_command_parse(&command, HIMC_PERFORMER, name, &atom, 1, error) &&
-           himc_performance_command(performance, &command, 0, error);
 }
 
 static himc_performance *prepare(const char *source, himc_error *error)
@@ -70,14 +54,11 @@ static himc_performance *prepare(const char *source, himc_error *error)
     himc_performance_make_drums(performance, true);
     himc_score *score = source && !cli_is_take(source) ? himc_score_load(source, error) : NULL;
     bool good = score || !source || cli_is_take(source);
-    if (good && !(score && cli_first_drum(score))) {
-        himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
-        good = drum && himc_performance_add_drum(performance, drum, error);
-        himc_drum_release(drum);
-    }
+    if (good && !(score && cli_first_drum(score)))
+        good = cli_add_drum(performance, RATE, error);
     himc_score_free(score);
     if (good && source)
-        good = tell(performance, cli_is_take(source) ? "take" : "score", source, error);
+        good = cli_tell(performance, cli_is_take(source) ? "take" : "score", source, error);
     if (good)
         return performance;
     himc_performance_free(performance);
@@ -88,7 +69,7 @@ static void play_block(himc_performance *performance, himc_osc *osc)
 {
     char line[HIMC_OSC_LINE];
     himc_event event;
-    double start = now();
+    double start = cli_now();
     himc_osc_receive(osc, performance, COMMANDS_A_BLOCK);
     himc_performance_process(performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
     while (himc_performance_event(performance, &event)) {
@@ -96,7 +77,7 @@ static void play_block(himc_performance *performance, himc_osc *osc)
         if (event.kind == HIMC_EVENT_NOTE)
             fprintf(stderr, "himc serve: %s\n", event.text);
     }
-    himc_osc_publish(osc, performance, now() - start);
+    himc_osc_publish(osc, performance, cli_now() - start);
     while (himc_osc_line(osc, line))
         fprintf(stderr, "himc serve: %s\n", line);
 }
@@ -110,12 +91,12 @@ typedef struct punctuality {
 static punctuality serve(himc_performance *performance, himc_osc *osc)
 {
     punctuality p = {0};
-    double period = (double)BLOCK / RATE, due = now();
+    double period = (double)BLOCK / RATE, due = cli_now();
     while (!stopped) {
         sleep_until(due);
         play_block(performance, osc);
         due += period;
-        double behind = now() - due;
+        double behind = cli_now() - due;
         p.blocks++;
         p.late += behind > 0;
         p.latest = fmax(p.latest, behind);

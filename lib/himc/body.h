@@ -142,6 +142,7 @@ HIMC_RT bool himc_body_state_finite(const himc_body_state *state);
 // limits.h: how far a percussionist's joints turn: bounds learned from captured motion, and the
 // nearest rotation within them (2012 paper, section 3.1, algorithm 1 and table 1).
 
+/// In the order of the words of `limits`.
 typedef enum himc_limits_kind {
     HIMC_LIMITS_OFF,
     HIMC_LIMITS_ELLIPSOID, ///< around the mean, in its tangent space (algorithm 1)
@@ -201,6 +202,7 @@ HIMC_RT himc_vec3 himc_limit_closest_on_ellipsoid(himc_vec3 radius, himc_vec3 po
 // of joints. Weights, null space and the elbow's task stay in three numbers likewise. Finding a
 // posture for tips at a distance, limits and trunk included, is reach.h's.
 
+/// In the order of the words of `solver`.
 typedef enum himc_solver {
     HIMC_SOLVER_DLS,       ///< damped least squares (Wampler 1986): J' (J J' + lambda^2)^-1 e
     HIMC_SOLVER_PINV,      ///< pseudo-inverse, small singular values truncated

@@ -8,6 +8,7 @@
 #define HIMC_SCORE_H
 
 #include "himc/command.h"
+#include "himc/ranges.h"
 
 #define HIMC_TEMPO 100 ///< where none is given (beats per minute)
 

@@ -15,6 +15,7 @@ typedef struct himc_posture_motion {
 } himc_posture_motion;
 
 /// How the sticks are held: palms down and the wrist bends, or thumbs up and the fingers do.
+/// In the order of the words of `grip`.
 typedef enum himc_grip { HIMC_GRIP_GERMAN, HIMC_GRIP_FRENCH } himc_grip;
 
 /// How the body bears itself, apart from the arms; it changes slowly.

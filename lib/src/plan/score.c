@@ -121,17 +121,7 @@ static bool add_line(reader *r, const char *drum)
     return true;
 }
 
-/// Whether `word` is the name of a command for that receiver.
-static bool is_command(himc_receiver receiver, const char *word)
-{
-    const himc_command_row *row;
-    for (int i = 0; (row = himc_command_table(i)); i++)
-        if (row->receiver == receiver && strcmp(row->name, word) == 0)
-            return true;
-    return false;
-}
-
-/// Whether an earlier line of the score made or addressed a drum of that name.
+/// True if an earlier line of the score made or addressed a drum of that name.
 static bool is_known_drum(const himc_score *score, const char *word)
 {
     for (int i = 0; i < score->line_count; i++) {
@@ -159,10 +149,12 @@ static bool read_performer_line(reader *r, const himc_atom *atom, int count)
     if (!himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
                             r->error))
         return false;
-    switch (r->command.id) {
+    const himc_command_row *row = himc_command_table((int)r->command.id);
+    if (row->marks & HIMC_NOT_IN_SCORE)
+        return himc_error_set(r->error, "%s: not allowed in a score", row->name);
+    switch (row->id) {
     case HIMC_COMMAND_STROKE: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
-    case HIMC_COMMAND_SCORE: return himc_error_set(r->error, "score: a score cannot load another");
     default: return add_line(r, "");
     }
 }
@@ -175,9 +167,9 @@ static bool read_statement(reader *r, const himc_text_statement *s)
         return true;
     if (s->overflow)
         return himc_error_set(r->error, "more than %zu characters without a ;", s->size);
-    bool two_words = count > 1 && !is_command(HIMC_PERFORMER, atom[0].symbol);
+    bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
     if (two_words &&
-        (is_command(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
+        (himc_command_find(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
         return read_drum_line(r, atom, count);
     return read_performer_line(r, atom, count);
 }
