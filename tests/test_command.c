@@ -289,6 +289,7 @@ static void test_hands_nuances_and_spots_stand_in_the_order_of_their_enums(void)
         TEST_ASSERT_EQUAL_INT(i, command.stroke.nuance);
         TEST_ASSERT_EQUAL_INT(i % 3, command.stroke.spot);
         TEST_ASSERT_EQUAL_STRING(nuances[i], himc_nuance_name((himc_nuance)i));
+        TEST_ASSERT_EQUAL_STRING(spots[i % 3], himc_spot_name((himc_spot)(i % 3)));
     }
     TEST_ASSERT_TRUE(perform("hit left vertical-accent p rim"));
     TEST_ASSERT_EQUAL_INT(HIMC_VERTICAL_ACCENT, command.stroke.nuance);

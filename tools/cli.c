@@ -1,9 +1,9 @@
 /// cli.c: one table of options per call serves the parser, its error lines and --help, so they
 /// cannot disagree.
 ///
-/// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that
-/// names the call, what was wrong and what is allowed. Options take a value, switches none; given
-/// twice, the last counts, as POSIX tools do.
+/// getopt_long splits the arguments and prints nothing: an error here is one line with the call,
+/// the fault and the allowed values. Options have a value, switches none; the last of two equal
+/// options counts, as in POSIX tools.
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 

@@ -1,5 +1,4 @@
-/// cli.h: what the calls of the program share: how options are read, how a call fails, how files
-/// are written.
+/// cli.h: shared by the calls of the program: options, failure, files, commands.
 #ifndef CLI_H
 #define CLI_H
 
@@ -20,8 +19,8 @@ typedef struct cli_option {
 
 #define CLI_OPTIONS 16
 
-/// What was given: one operand at most, and each option's value or NULL, in the table's order (a
-/// switch's is "").
+/// The command line: at most one operand, and the value of each option or NULL, in the order of the
+/// table ("" for a switch).
 typedef struct cli_arguments {
     const char *operand;
     const char *value[CLI_OPTIONS];
@@ -34,15 +33,15 @@ typedef struct cli_call {
     const char *operand;       ///< "SOURCE", "[SCORE]" when it may be left out, "" for none
     const char *needs;         ///< options that must be given, for the usage line: " -o OUT.wav"
     const char *does;          ///< one line
-    const char *more;          ///< what else --help says; "" for nothing
+    const char *more;          ///< further text of --help, or ""
     const cli_option *options; ///< ends with a name of NULL
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
 extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_serve, cli_bench;
 
-/// Reads the arguments after the call's name; false with one line that says what is wrong and what
-/// is allowed.
+/// Reads the arguments after the call's name; false with one line: the fault and the allowed
+/// values.
 bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error);
 
 /// Prints usage and options.
@@ -51,7 +50,7 @@ void cli_help(const cli_call *call);
 /// One line on stderr, "himc NAME: ..."; returns the exit status 1.
 int cli_fail(const cli_call *call, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/// Returns 0, or fails if what was printed did not reach stdout (a full disk).
+/// Returns 0, or fails if the output did not reach stdout (a full disk).
 int cli_finish(const cli_call *call);
 
 /// The whole number after option `name`, which must lie in [low, high]; left as it is if `text` is
@@ -60,7 +59,7 @@ bool cli_count(const char *name, const char *text, int low, int high, const char
                himc_error *error);
 
 /// A file that appears under its name complete or not at all: it is written beside it and renamed
-/// in the end. What is no regular file (/dev/null, a pipe) is written directly.
+/// in the end. A file that is not regular (/dev/null, a pipe) is written directly.
 typedef struct cli_file {
     char path[4096]; ///< "" when not wanted
     char temp[4096]; ///< where it is written until kept; "" when written directly
@@ -69,17 +68,16 @@ typedef struct cli_file {
 
 /// Opens for writing; does nothing if `path` is NULL.
 bool cli_file_open(cli_file *file, const char *path, himc_error *error);
-/// Brings all to the disk and closes; false, and the temporary file removed, if something did not
-/// arrive.
+/// Writes all to the disk and closes; false, and the temporary file removed, if that fails.
 bool cli_file_close(cli_file *file, himc_error *error);
 /// Gives a closed file its name.
 bool cli_file_keep(cli_file *file, himc_error *error);
-/// Closes and removes what is not kept. Safe on a file in any state, also one that is all zero.
+/// Closes the file and removes it unless it was kept. Safe in any state, also all zero.
 void cli_file_drop(cli_file *file);
 /// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);
 
-/// The drum that is there when a score makes none.
+/// The drum of a score that makes none.
 #define CLI_DRUM "kettle"
 #define CLI_INCHES 23.0
 

@@ -1,4 +1,4 @@
-/// info.c: `himc info`: what is in a take or a score, in a few lines.
+/// info.c: `himc info`: describes a take or a score in a few lines.
 #include "cli.h"
 
 #include "himc/drum.h"
@@ -137,7 +137,7 @@ const cli_call cli_info = {
     "info",
     "FILE",
     "",
-    "says what is in a score, or in a take (.bvh .c3d .trc)",
+    "describes a score or a take (.bvh .c3d .trc)",
     "Of a take: rate, length, points, gaps, the strikes found in it, the player,\n"
     "where drumhead and seat are placed.",
     options,

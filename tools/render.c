@@ -3,9 +3,9 @@
 ///
 /// The command `score` or `take`, then `play` on sample 0, then block after block, just as
 /// `[himc~]` does it in Pd; each sample written is the sum of the drums' samples, rounded to 32-bit
-/// float once, as Pd's signals are. Whether it is over is asked only where a cell of 0.2 s ends,
-/// and blocks end there too, so that nothing depends on --block. It is over when the performer is
-/// done and a whole cell stayed 80 dB below the peak, or 8 s after.
+/// float once, as Pd's signals are. The end is tested only where a cell of 0.2 s ends; blocks end
+/// there too, so that nothing depends on --block. The end: the performer is done and a whole cell
+/// stayed 80 dB below the peak, or 8 s have passed.
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "render_tables.h"
@@ -16,10 +16,11 @@
 #include <string.h>
 #include <unistd.h>
 
+// chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
-#define SILENCE 1e-4
-#define BLOCK_MAX 8192
+#define SILENCE 1e-4   // of the peak: 80 dB
+#define BLOCK_MAX 8192 // samples; chosen: the longest block of Pd
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
@@ -37,14 +38,14 @@ static const cli_option options[] = {
     {0},
 };
 
-/// What was asked for.
+/// The arguments.
 typedef struct job {
     const char *source, *mode, *limits;
     int rate, block;
     himc_take_options take;
 } job;
 
-/// What is under way.
+/// The state of the rendering.
 typedef struct rendering {
     himc_performance *performance;
     cli_file wav, strokes, motion;
@@ -144,7 +145,7 @@ static void clear_progress(void)
         fputs("\r\033[K", stderr);
 }
 
-/// Asks the performer for what happened; strikes go to their table, notes to the user.
+/// Takes the performer's events: strikes go to their table, notes to the user.
 static void take_events(rendering *r)
 {
     himc_event event;
@@ -182,7 +183,7 @@ static void play_block(rendering *r, int n)
     take_events(r);
 }
 
-/// Called where a cell ends: true when there is nothing more to hear.
+/// Called where a cell ends: true if nothing more can be heard.
 static bool is_over(rendering *r, int rate)
 {
     r->peak = fmax(r->peak, r->cell_peak);

@@ -1,9 +1,9 @@
 /// serve.c: `himc serve`: the physics manager alone, in real time, driven and heard over OSC.
 ///
-/// The sample count is the clock: blocks of 2 ms, each begun when its time has come on the
-/// monotonic clock. One that comes late is made up for by the next ones; when the machine was away
-/// for more than 0.2 s that time is given up, and counted. No sound goes out: sound managers play
-/// what `/himc/strike` says, wherever they are.
+/// The sample count is the clock: blocks of 2 ms, each started at its time on the monotonic clock.
+/// The blocks after a late one start at once until they have caught up; a delay of more than 0.2 s
+/// is given up and counted. No sound goes out: sound managers on other machines play the
+/// `/himc/strike` messages.
 #define _GNU_SOURCE // sched_setscheduler
 #include "cli.h"
 #include "himc/osc.h"
@@ -14,10 +14,10 @@
 #include <string.h>
 #include <time.h>
 
-#define RATE 48000
-#define BLOCK 96
-#define GIVE_UP 0.2
-#define COMMANDS_A_BLOCK 8
+#define RATE 48000         // (Hz)
+#define BLOCK 96           // samples; chosen: 2 ms, short against a reaction to a message
+#define GIVE_UP 0.2        // (s); chosen: catching up with more would be seen as a jump
+#define COMMANDS_A_BLOCK 8 // chosen: none makes a block late
 
 enum { PORT, BIND, FILES, ALLOW };
 
@@ -25,8 +25,8 @@ static const cli_option options[] = {
     {"port", 'p', "P", "UDP port, 0 .. 65535, 0 any free one (9000)"},
     {"bind", 0, "ADDR",
      "numeric address to listen at; 0.0.0.0 is all of this machine's (127.0.0.1)"},
-    {"files", 0, "DIR", "folder that `score` and `take` over the network are confined to (none)"},
-    {"allow", 0, "HOST[,HOST]", "hosts that anyone may subscribe for (only one's own)"},
+    {"files", 0, "DIR", "folder from which `score` and `take` over the network may read (none)"},
+    {"allow", 0, "HOST[,HOST]", "hosts that any host may subscribe (else only itself)"},
     {0},
 };
 
@@ -82,7 +82,7 @@ static void play_block(himc_performance *performance, himc_osc *osc)
         fprintf(stderr, "himc serve: %s\n", line);
 }
 
-/// What a run was like.
+/// Statistics of a run.
 typedef struct punctuality {
     long blocks, late;       ///< ended after the next was due
     double latest, given_up; ///< (s)

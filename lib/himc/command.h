@@ -37,6 +37,9 @@ typedef enum himc_spot {
     HIMC_SPOT_XY ///< given by two numbers
 } himc_spot;
 
+/// The spot's word in commands; "" for HIMC_SPOT_XY.
+const char *himc_spot_name(himc_spot spot);
+
 #define HIMC_NAME_SIZE 32
 
 /// One stroke, as written in a score.

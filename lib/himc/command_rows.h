@@ -15,10 +15,10 @@
 ///             HOST       the program around the library answers it
 ///             NETWORK    the OSC server carries it out
 ///   marks     0, or several of himc_command_marks joined by |
-///   atoms     the grammar. Capitals name an argument (lib/src/base/argument.c has its range), small
-///             letters stand for themselves, `a|b` is one word of several, brackets are optional,
-///             ` | ` separates the forms. SPOT is a word or two numbers. Where words are the names
-///             of an enum's values, they stand in the order of that enum.
+///   atoms     the grammar. Capitals name an argument (lib/src/base/argument.c has its range),
+///             small letters stand for themselves, `a|b` is one word of several, brackets are
+///             optional, ` | ` separates the forms. SPOT is a word or two numbers. Where words are
+///             the names of an enum's values, they stand in the order of that enum.
 ///   does      one sentence for the manual
 
 #define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"

@@ -124,6 +124,11 @@ const char *himc_nuance_name(himc_nuance nuance)
     return nuance >= 0 && nuance < HIMC_NUANCES ? nuances[nuance] : "none";
 }
 
+const char *himc_spot_name(himc_spot spot)
+{
+    return spot >= 0 && spot < HIMC_SPOT_XY ? spots[spot] : "";
+}
+
 bool himc_note_frequency(const char *note, double *hz)
 {
     static const int semitone[] = {9, 11, 0, 2, 4, 5, 7}; // a .. g above c

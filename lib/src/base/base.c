@@ -1,4 +1,4 @@
-/// base.c: errors are text for a person; they are written once, where the trouble is seen.
+/// base.c: errors are text for a person, written once, where the fault is found.
 #include "himc/base.h"
 
 #include <math.h>
