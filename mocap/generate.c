@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const spots[] = {"center", "normal", "rim"};
-
 static bool write_one(const himc_mocap_config *config, const char *folder, himc_error *error)
 {
     himc_mocap *mocap = himc_mocap_new(config, error);
@@ -17,7 +15,7 @@ static bool write_one(const himc_mocap_config *config, const char *folder, himc_
         char path[1024];
         snprintf(path, sizeof path, "%s/%s-%s-%s.%s", folder,
                  himc_mocap_player_name(config->player), himc_nuance_name(config->nuance),
-                 spots[config->spot], i ? "c3d" : "bvh");
+                 himc_spot_name(config->spot), i ? "c3d" : "bvh");
         ok = himc_mocap_write(mocap, path, error);
     }
     himc_mocap_free(mocap);

@@ -1,13 +1,13 @@
-/* drum-link.h: how [membrane~ NAME] and [himc~ NAME] meet, and what both do alike.
+/* drum-link.h: how [himc~ NAME] finds [membrane~ NAME], and the code that both share.
 
-A [membrane~] binds itself to the symbol "himc:NAME". [himc~] looks there, makes sure by class
-name, magic word, size and version that it found what it thinks, and takes the drum behind it. The
+A [membrane~] binds itself to the symbol "himc:NAME". [himc~] looks there, checks class name, magic
+word, size and version, and takes the drum behind it. The
 two are separate binaries, each with its own hidden copy of libhimc: they share data through
 pointers, and no statics.
 
 Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The
-engine, a drum or a performance, counts in the same way; whoever comes first in a tick brings it
-forward, the other reads its ring. */
+engine, a drum or a performance, counts in the same way; the first object in a tick advances it, the
+other reads its ring. */
 #ifndef DRUM_LINK_H
 #define DRUM_LINK_H
 
@@ -21,13 +21,13 @@ forward, the other reads its ring. */
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
 #define DRUM_LINK_CLASS "membrane~"
 
-/* What a drum's object shows, right behind its t_object. */
+/* Follows the t_object of a [membrane~]. */
 typedef struct t_drum_link {
     uint32_t l_magic;
     uint32_t l_size;                /* of this struct */
     char l_version[HIMC_NAME_SIZE]; /* of the library that made the drum */
     himc_drum *l_drum;
-    double l_rate; /* the drum runs at this sample rate; kept by whoever drives it (Hz) */
+    double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
 } t_drum_link;
 
 static inline t_drum_link drum_link(himc_drum *drum, double rate)
@@ -43,7 +43,7 @@ static inline t_symbol *drum_link_symbol(const char *name)
     return gensym(text);
 }
 
-/* The link of [membrane~ NAME], or NULL: there is none, or one of another version of himc. */
+/* The link of [membrane~ NAME]; NULL if there is none, or one of another version of himc. */
 static inline t_drum_link *drum_link_find(const char *name)
 {
     t_pd *thing = drum_link_symbol(name)->s_thing;
@@ -55,7 +55,7 @@ static inline t_drum_link *drum_link_find(const char *name)
     return same ? link : NULL;
 }
 
-/* What a [himc~] gives a drum as its performer: [membrane~] can see how far it has played. */
+/* The performer in a drum that a [himc~] plays; [membrane~] reads its time. */
 typedef struct t_player {
     void *p_himc;
     uint64_t p_time; /* of the performance; the head may be a few samples ahead (samples) */
@@ -66,7 +66,7 @@ typedef struct t_stream {
     int s_length;     /* of a block (samples) */
     double s_rate;    /* (Hz) */
     uint64_t s_count; /* put out since the graph was built */
-    uint64_t s_lag;   /* the engine was ahead by so many samples when the last block began */
+    uint64_t s_lag;   /* samples the engine was ahead when the last block began */
     double s_start;   /* logical time at which the next block starts */
 } t_stream;
 

@@ -1,14 +1,16 @@
-/* himc-command.c: what a [himc~] is told, by message or over OSC.
+/* himc-command.c: the commands to a [himc~], by message or over OSC.
 
-A message becomes a command of the library's vocabulary. Here is only what the library leaves to its
-host: names of files are looked for as Pd does it, the network is opened, `info` is answered. */
+A message becomes a command of the library (himc/command.h). This file does only what the library
+leaves to its host: it finds files as Pd does, opens the network, answers `info`. */
 #include "himc-tilde.h"
 #include "himc/osc.h"
 
-#define LOOK 2.0          /* how often the network's commands are taken (ms) */
-#define COMMANDS_A_LOOK 8 /* and how many, so that no block is late for them */
+#define NETWORK_PERIOD \
+    2.0                    /* between two looks for commands from the network (ms); chosen: shorter
+                                 than a block of 128 samples */
+#define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
 
-/* Pd's own way to a file: absolute, beside the patch, or along its search path. */
+/* Finds a file as Pd does: absolute, beside the patch, or along the search path. */
 static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size,
                               himc_error *error)
 {
@@ -24,30 +26,25 @@ static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t si
     return true;
 }
 
-/* Gives a command that names a file its full name: one that is there for reading, or beside the
-patch for writing. */
+/* Replaces the file name in a command by the full name: of an existing file to read, or beside the
+patch to write. */
 static bool himc_tilde_file(t_himc *x, himc_command *command, himc_error *error)
 {
     char path[HIMC_PATH_SIZE];
     himc_atom atom[HIMC_COMMAND_ATOMS];
     himc_command found;
-    bool record =
-        command->id == HIMC_COMMAND_RECORD && strcmp(command->atom[0].symbol, "stop") != 0;
-    bool units = command->id == HIMC_COMMAND_UNITS && command->count > 1;
-    bool read = units || command->id == HIMC_COMMAND_SCORE || command->id == HIMC_COMMAND_TAKE;
-    if (!record && !read)
+    int at;
+    himc_file_use use = himc_command_file(command, &at);
+    if (use == HIMC_FILE_NONE)
         return true;
-    if (read && !himc_tilde_locate(x, command->atom[0].symbol, path, sizeof path, error))
-        return false;
-    if (record)
-        canvas_makefilename(x->x_canvas, command->atom[0].symbol, path, sizeof path);
     memcpy(atom, command->atom, sizeof atom);
-    atom[0].symbol = path;
-    const char *name = record                              ? "record"
-                       : units                             ? "units"
-                       : command->id == HIMC_COMMAND_SCORE ? "score"
-                                                           : "take";
-    if (!himc_command_parse(&found, HIMC_PERFORMER, name, atom, command->count, error))
+    if (use == HIMC_FILE_WRITE)
+        canvas_makefilename(x->x_canvas, atom[at].symbol, path, sizeof path);
+    else if (!himc_tilde_locate(x, atom[at].symbol, path, sizeof path, error))
+        return false;
+    atom[at].symbol = path;
+    if (!himc_command_parse(&found, HIMC_PERFORMER, himc_command_table((int)command->id)->name,
+                            atom, command->count, error))
         return false;
     himc_command_copy(command, &found);
     return true;
@@ -61,11 +58,11 @@ static void himc_tilde_line(void *object, const char *line)
 void himc_tilde_network(t_himc *x)
 {
     char line[HIMC_OSC_LINE];
-    himc_osc_receive(x->x_osc, x->x_performance, COMMANDS_A_LOOK);
+    himc_osc_receive(x->x_osc, x->x_performance, NETWORK_COMMANDS);
     while (himc_osc_line(x->x_osc, line))
         pd_error(x, "himc~: %s", line);
     if (x->x_osc)
-        clock_delay(x->x_network, LOOK);
+        clock_delay(x->x_network, NETWORK_PERIOD);
 }
 
 static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
@@ -77,11 +74,11 @@ static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
         return false;
     x->x_osc = osc;
     himc_performance_on_tick(x->x_performance, himc_osc_tick, osc);
-    clock_delay(x->x_network, LOOK);
+    clock_delay(x->x_network, NETWORK_PERIOD);
     return true;
 }
 
-/* `listen PORT` begins anew; `subscribe` and `unsubscribe` need no port of our own. */
+/* `listen PORT` opens a port; `subscribe` and `unsubscribe` need none. */
 static bool himc_tilde_osc(t_himc *x, const himc_command *command, himc_error *error)
 {
     if (command->id == HIMC_COMMAND_LISTEN) {
@@ -97,16 +94,16 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
     himc_command command;
     if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
         return false;
+    himc_command_when when = himc_command_table((int)command.id)->when;
     if (command.id == HIMC_COMMAND_INFO) {
         himc_performance_describe(x->x_performance, himc_tilde_line, x);
         return true;
     }
-    if (command.id == HIMC_COMMAND_SUBSCRIBE || command.id == HIMC_COMMAND_UNSUBSCRIBE ||
-        command.id == HIMC_COMMAND_LISTEN)
+    if (when == HIMC_WHEN_NETWORK)
         return himc_tilde_osc(x, &command, error);
     if (!himc_tilde_file(x, &command, error))
         return himc_error_prefix(error, "%s", s->s_name);
-    /* a command may come before DSP is on, and its drums should be there */
+    /* a command may come before DSP is on, and needs its drums */
     himc_tilde_resolve(x, false);
     int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
     return himc_performance_command(x->x_performance, &command, delay, error);

@@ -1,5 +1,5 @@
-/* himc-drums.c: the drums of a [himc~]: found by name, taken and let go, and brought forward
-together with the performance, whoever of them comes first in a tick of Pd's. */
+/* himc-drums.c: the drums of a [himc~]: found by name, taken and released, and advanced together
+with the performance by the first of them in a tick of Pd. */
 #define _POSIX_C_SOURCE 200809L
 #include "himc-tilde.h"
 #include "himc/osc.h"
@@ -32,13 +32,13 @@ void himc_tilde_advance(void *player, uint64_t time)
     }
 }
 
-static void himc_tilde_let_go(t_himc *x, const t_himc_drum *d)
+static void himc_tilde_release(t_himc *x, const t_himc_drum *d)
 {
     if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == &x->x_player)
         himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
 }
 
-/* Puts `drum` where another of its name was. */
+/* Takes `drum` in place of another of its name. */
 static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_error *error)
 {
     if (!himc_performance_add_drum(x->x_performance, drum, error))
@@ -73,7 +73,7 @@ void himc_tilde_resolve(t_himc *x, bool tell)
         himc_error error = {""};
         himc_drum *drum = himc_tilde_find(x, d->d_name, &error);
         if (drum && drum != d->d_drum) {
-            himc_tilde_let_go(x, d);
+            himc_tilde_release(x, d);
             if (himc_tilde_take(x, d, drum, &error))
                 d->d_silent = d->d_told = false;
             else
@@ -82,12 +82,12 @@ void himc_tilde_resolve(t_himc *x, bool tell)
         if (!drum && !d->d_silent) {
             himc_error ignored;
             himc_drum *silent = himc_drum_new(d->d_name, 23, x->x_rate, &ignored);
-            himc_tilde_let_go(x, d);
+            himc_tilde_release(x, d);
             d->d_silent = silent && himc_tilde_take(x, d, silent, &ignored);
             himc_drum_release(silent);
         }
         if (!drum && tell && !d->d_told) {
-            pd_error(x, "himc~: %s: playing on a silent one", error.text);
+            pd_error(x, "himc~: %s: its strokes are silent", error.text);
             d->d_told = true;
         }
     }
@@ -96,5 +96,5 @@ void himc_tilde_resolve(t_himc *x, bool tell)
 void himc_tilde_leave(t_himc *x)
 {
     for (int i = 0; i < x->x_count; i++)
-        himc_tilde_let_go(x, x->x_drum + i);
+        himc_tilde_release(x, x->x_drum + i);
 }

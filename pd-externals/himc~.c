@@ -2,23 +2,23 @@
 [membrane~ DRUM].
 
 inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
-inlets   with -signals: where the tip of the left stick shall be, x y z, and of the right (m,
-         signals); three inlets that are all 0 do not lead their stick
+inlets   with -signals: target of the left stick's tip, x y z, and of the right one's (m, signals);
+         while its three inlets are 0 a stick has no target
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          beat N   done   info ...
 
 Glue only: commands go to a himc_performance with the sample on which they arrived; each block
-brings it forward and puts out what the sticks felt. A [membrane~] that comes earlier in the tick
-asks for its sound first and so brings the performance forward itself (himc_tilde_advance); so the
-forces wait in a ring. Nothing is sent from perform: a clock does, at the start of the next tick. */
+advances it and puts out the forces of the sticks. A [membrane~] that comes earlier in the tick asks
+for its sound first and so advances the performance itself (himc_tilde_advance); the forces wait in
+a ring. Nothing is sent from perform: a clock sends it at the start of the next tick. */
 #include "himc-tilde.h"
 #include "himc/vec.h"
 
 static t_class *himc_tilde_class;
 
-/* The tips go where the signals are at the block's end. Inlets with nothing in them are 0 0 0,
-which is under the player's seat: such a stick is not led. */
+/* The signals at the block's end are the targets of the tips. Unconnected inlets are 0 0 0, a point
+under the player's seat: such a stick has no target. */
 static void himc_tilde_follow(t_himc *x)
 {
     int last = x->x_stream.s_length - 1;
@@ -107,10 +107,10 @@ static void himc_tilde_tick(t_himc *x)
 {
     if (x->x_spoilt && !x->x_told) {
         x->x_told = true;
-        pd_error(x, "himc~: a target signal that is not a finite number leads nowhere");
+        pd_error(x, "himc~: a target signal is not a finite number and is ignored");
     }
     while (x->x_waiting) {
-        /* what is sent may come back as a command, so the state is written first */
+        /* an event that is sent may come back as a command, so the state is written first */
         himc_event event = x->x_event;
         x->x_waiting = himc_performance_event(x->x_performance, &x->x_event);
         himc_tilde_send(x, &event);

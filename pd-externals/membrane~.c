@@ -6,9 +6,9 @@ inlets   force at the spot (N, signal or float) and commands: tune radius mallet
          performer, signal or float)
 outlets  sound, one for each of CHANNELS pickups; displacement under the spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
-         touch TIME X Y VELOCITY PLACE PITCH       anyone's blow begins: distance from the centre
+         touch TIME X Y VELOCITY PLACE PITCH       a blow begins: distance from the centre
                                                    per radius, the principal mode's frequency (Hz)
-         technique NAME                            says how blows sound from now on
+         technique NAME                            the new technique of sound
          info ...
 
 A `touch` comes when its sample has been put out, by a block later than it sounds here and just as
@@ -42,15 +42,15 @@ typedef struct t_membrane {
     t_clock *x_touch_clock; /* runs when x_touch is to be sent */
     bool x_touching;
     himc_touch x_touch;
-    himc_technique x_technique; /* that was told last */
-    long x_refused;             /* samples of force or place that were not numbers */
+    himc_technique x_technique; /* in the last message */
+    long x_refused;             /* samples of force or place that were not finite */
     bool x_apart;               /* runs at another sample rate than its performer */
-    bool x_told;                /* of either, since the graph was built */
+    bool x_told;                /* the user, of either, since the graph was built */
 } t_membrane;
 
 _Static_assert(offsetof(t_membrane, x_link) == sizeof(t_object), "[himc~] looks for it there");
 
-/* What is not a number counts as 0, and is counted. */
+/* A sample that is not a finite number becomes 0 and is counted. */
 static double membrane_number(t_membrane *x, t_sample value)
 {
     if (isfinite(value))
@@ -67,7 +67,7 @@ static void membrane_fit_layer(t_membrane *x)
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
-/* What the drum has put out: its channels, then the displacement. */
+/* Reads the drum: its channels, then the displacement. */
 static void membrane_read(t_membrane *x, int n, double out[LAYER_OUTS][LAYER_CHUNK])
 {
     for (int k = 0; k < x->x_channels; k++)
@@ -96,7 +96,7 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
     x->x_stream.s_count += (uint64_t)n;
 }
 
-/* Something happened in perform that the user does not know yet. */
+/* True if perform has met trouble that the user has not been told. */
 static bool membrane_troubled(const t_membrane *x)
 {
     return (x->x_refused || x->x_apart) && !x->x_told;
@@ -185,7 +185,7 @@ static void membrane_send_strike(t_membrane *x, const himc_contact_report *r)
     membrane_send(x, "strike", value);
 }
 
-/* What is sent may come back as a command, so the state is written first. */
+/* A message that is sent may come back as a command, so the state is written first. */
 static void membrane_touch_tick(t_membrane *x)
 {
     const himc_touch t = x->x_touch;
@@ -203,7 +203,7 @@ static void membrane_tell_technique(t_membrane *x)
         return;
     t_atom atom;
     x->x_technique = now;
-    SETSYMBOL(&atom, gensym(himc_technique_name(now)));
+    SETSYMBOL(&atom, gensym(himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)now).text));
     outlet_anything(x->x_messages, gensym("technique"), 1, &atom);
 }
 
@@ -309,10 +309,11 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
 static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer, himc_error *error)
 {
     const char *name = wish->w_name ? wish->w_name : "nameless";
-    himc_command pickups = {.id = HIMC_COMMAND_PICKUPS, .count = 1};
-    pickups.atom[0] = (himc_atom){HIMC_ATOM_NUMBER, wish->w_channels, NULL};
+    himc_atom channels = {HIMC_ATOM_NUMBER, wish->w_channels, NULL};
+    himc_command pickups;
     himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
-    if (drum && himc_drum_command(drum, &pickups, error))
+    if (drum && himc_command_parse(&pickups, HIMC_DRUM, "pickups", &channels, 1, error) &&
+        himc_drum_command(drum, &pickups, error))
         layer->l_membrane =
             himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, error);
     if (layer->l_membrane) {

@@ -1,9 +1,10 @@
-/// test_base.c: errors are one line; a value out of range is refused with name, value, unit, range.
+/// test_base.c: errors are one line; ranges are refused with name, value, unit and allowed range.
 #include "himc/base.h"
 
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static himc_error error;
@@ -89,6 +90,15 @@ static void test_hands_have_names(void)
     TEST_ASSERT_EQUAL_INT(2, HIMC_HANDS);
 }
 
+static void test_version_is_made_of_its_three_numbers(void)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%d.%d.%d", HIMC_VERSION_MAJOR, HIMC_VERSION_MINOR,
+             HIMC_VERSION_PATCH);
+    TEST_ASSERT_EQUAL_STRING(text, himc_version());
+    TEST_ASSERT_EQUAL_STRING(text, HIMC_VERSION);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -101,5 +111,6 @@ int main(void)
     RUN_TEST(test_range_without_unit_has_no_stray_space);
     RUN_TEST(test_range_refuses_what_is_not_finite_even_if_unbounded);
     RUN_TEST(test_hands_have_names);
+    RUN_TEST(test_version_is_made_of_its_three_numbers);
     return UNITY_END();
 }

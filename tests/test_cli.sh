@@ -88,7 +88,7 @@ awk 'BEGIN {
 }' >still.trc
 
 # what it says of itself
-version=$(sed -n 's/.*HIMC_VERSION "\(.*\)"/\1/p' "$root/lib/himc/base.h")
+version=$(sed -n 's/^#define HIMC_VERSION_[A-Z]* \([0-9]*\)$/\1/p' "$root/lib/himc/base.h" | paste -sd .)
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
@@ -119,7 +119,7 @@ refuses test_block_zero_is_refused "--block: 0 samples, allowed 1 .. 8192 sample
 refuses test_broken_block_is_refused '"1.5" is not a whole number' \
     render piece.txt -o x.wav --block 1.5
 refuses test_unknown_mode_is_refused "allowed himc id ik" render piece.txt -o x.wav --mode magic
-refuses test_unknown_limits_are_refused "allowed ellipsoid euler off" render piece.txt -o x.wav --limits sky
+refuses test_unknown_limits_are_refused "allowed off ellipsoid euler" render piece.txt -o x.wav --limits sky
 refuses test_unknown_axis_is_refused '"x", allowed y or z' render cut.trc -o x.wav --up x
 refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, allowed with a take" \
     render piece.txt -o x.wav --left-tip LSTK

@@ -1,8 +1,14 @@
-/// The vocabulary: every row parses, every fault is one line that changes nothing.
+/// test_command.c: every row of the command table parses, every fault is one line and changes
+/// nothing.
+#define _DEFAULT_SOURCE // strsep
 #include "unity.h"
 
+#include "base/argument.h"
+#include "control/controller.h"
+#include "drum/drum_state.h"
 #include "himc/command.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,6 +48,307 @@ static void test_table_is_complete_and_in_order_of_the_ids(void)
         TEST_ASSERT_EQUAL_INT(i, himc_command_table(i)->id);
     TEST_ASSERT_NULL(himc_command_table(HIMC_COMMANDS));
     TEST_ASSERT_NULL(himc_command_table(-1));
+}
+
+#define TOKENS 12 // of a form, and room for one atom too many
+
+/// A form of a row's grammar, and atoms that fit it.
+typedef struct example {
+    const himc_command_row *row;
+    int form, count, required;
+    char token[TOKENS][64];
+    const himc_argument *argument[TOKENS]; // NULL for literal words
+    himc_atom atom[TOKENS];
+} example;
+
+// an atom that the argument accepts
+static himc_atom fitting(const himc_argument *a)
+{
+    static const char *const note = "A2", *const free_word = "some-word";
+    if (a->kind == HIMC_ARGUMENT_NUMBER || a->kind == HIMC_ARGUMENT_COUNT)
+        return (himc_atom){HIMC_ATOM_NUMBER, a->high, NULL};
+    return (himc_atom){HIMC_ATOM_SYMBOL, 0,
+                       a->kind == HIMC_ARGUMENT_NOTE ? note
+                       : a->words                    ? a->words[0]
+                                                     : free_word};
+}
+
+// word `index` of the token "a|b|c" into `word`; false past the last
+static bool cut(const char *token, int index, char word[64])
+{
+    char copy[64], *rest = copy, *found = NULL;
+    snprintf(copy, sizeof copy, "%s", token);
+    for (int i = 0; i <= index; i++)
+        found = rest ? strsep(&rest, "|") : NULL;
+    snprintf(word, 64, "%s", found ? found : "");
+    return found;
+}
+
+// fills in the tokens and fitting atoms of the form that begins at `grammar`; returns the next form
+static const char *make_example(example *e, const char *grammar)
+{
+    static char first[TOKENS][64];
+    const char *context = e->row->name, *end = strstr(grammar, " | ");
+    size_t length = end ? (size_t)(end - grammar) : strlen(grammar);
+    char text[256], *rest = text, *token;
+    snprintf(text, sizeof text, "%.*s", (int)length, grammar);
+    e->count = e->required = 0;
+    while (text[0] && (token = strsep(&rest, " "))) {
+        int i = e->count++;
+        e->required += token[0] != '[';
+        snprintf(e->token[i], sizeof e->token[i], "%.*s",
+                 (int)strcspn(token + (*token == '['), "]"), token + (*token == '['));
+        e->argument[i] = NULL;
+        if (isupper((unsigned char)e->token[i][0])) {
+            e->argument[i] = himc_argument_find(e->token[i], context);
+            TEST_ASSERT_NOT_NULL_MESSAGE(e->argument[i], e->token[i]);
+            e->atom[i] = fitting(e->argument[i]);
+        } else {
+            cut(e->token[i], 0, first[i]);
+            context = first[i];
+            e->atom[i] = (himc_atom){HIMC_ATOM_SYMBOL, 0, first[i]};
+        }
+    }
+    return end ? end + 3 : NULL;
+}
+
+static void each_form(void (*visit)(example *e))
+{
+    for (int i = 0; i < HIMC_COMMANDS; i++) {
+        example e = {.row = himc_command_table(i)};
+        const char *grammar = e.row->atoms;
+        for (; grammar; e.form++) {
+            grammar = make_example(&e, grammar);
+            visit(&e);
+        }
+    }
+}
+
+static bool parse(const example *e, int count)
+{
+    return himc_command_parse(&command, e->row->receiver, e->row->name, e->atom, count, &error);
+}
+
+// the atoms do not fit this form: one line, and nothing changed, unless another form takes them
+static void refuses(const example *e, int count)
+{
+    static himc_command before;
+    memset(&command, 0x5a, sizeof command);
+    memcpy(&before, &command, sizeof before);
+    error.text[0] = '\0';
+    if (parse(e, count)) {
+        TEST_ASSERT_TRUE_MESSAGE(command.form != e->form, e->row->name);
+        return;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(strlen(error.text) > 10 && !strchr(error.text, '\n'), e->row->name);
+    TEST_ASSERT_EQUAL_STRING_LEN(e->row->name, error.text, strlen(e->row->name));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &command, sizeof before);
+}
+
+// atom `i` in place of the fitting one
+static void refuses_atom(example *e, int i, himc_atom atom)
+{
+    himc_atom good = e->atom[i];
+    e->atom[i] = atom;
+    refuses(e, e->count);
+    e->atom[i] = good;
+}
+
+static void check_choices(example *e)
+{
+    TEST_ASSERT_TRUE_MESSAGE(parse(e, e->count), error.text);
+    TEST_ASSERT_EQUAL_INT(e->row->id, command.id);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(e->form, command.form, e->row->name);
+    for (int i = 0; i < e->count; i++) {
+        const himc_argument *a = e->argument[i];
+        himc_atom good = e->atom[i];
+        char word[64];
+        if (a && !a->words)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(-1, command.choice[i], e->row->name);
+        for (int k = 0; a ? a->words && a->words[k] : cut(e->token[i], k, word); k++) {
+            e->atom[i] = (himc_atom){HIMC_ATOM_SYMBOL, 0, a ? a->words[k] : word};
+            TEST_ASSERT_TRUE_MESSAGE(parse(e, e->count), error.text);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(k, command.choice[i], e->atom[i].symbol);
+            if (e->form == 0 && !a)
+                TEST_ASSERT_EQUAL_STRING(word, himc_command_word(e->row->id, i, k).text);
+        }
+        e->atom[i] = good;
+    }
+}
+
+static void check_kinds(example *e)
+{
+    for (int i = 0; i < e->count; i++) {
+        const himc_argument *a = e->argument[i];
+        bool number = e->atom[i].kind == HIMC_ATOM_NUMBER;
+        if (!number)
+            refuses_atom(e, i, (himc_atom){HIMC_ATOM_NUMBER, 0.5, NULL});
+        if (!a || a->words || number || a->kind == HIMC_ARGUMENT_NOTE)
+            refuses_atom(e, i, (himc_atom){HIMC_ATOM_SYMBOL, 0, "no-such-word"});
+    }
+}
+
+static void check_ranges(example *e)
+{
+    for (int i = 0; i < e->count; i++) {
+        const himc_argument *a = e->argument[i];
+        if (e->atom[i].kind != HIMC_ATOM_NUMBER)
+            continue;
+        const double bad[] = {NAN, INFINITY, -INFINITY, a->low - fabs(a->low) - 1,
+                              a->high + fabs(a->high) + 1};
+        for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+            refuses_atom(e, i, (himc_atom){HIMC_ATOM_NUMBER, bad[k], NULL});
+        if (a->kind == HIMC_ARGUMENT_COUNT)
+            refuses_atom(e, i, (himc_atom){HIMC_ATOM_NUMBER, a->low + 0.5, NULL});
+    }
+}
+
+static void check_counts(example *e)
+{
+    for (int count = 0; count < e->required; count++)
+        refuses(e, count);
+    e->atom[e->count] = (himc_atom){HIMC_ATOM_NUMBER, 0.5, NULL};
+    refuses(e, e->count + 1);
+}
+
+static void test_every_word_of_every_row_parses_to_its_index(void)
+{
+    each_form(check_choices);
+}
+
+static void test_atoms_of_the_wrong_kind_are_refused_in_every_row(void)
+{
+    each_form(check_kinds);
+}
+
+static void test_numbers_out_of_range_or_not_finite_are_refused_in_every_row(void)
+{
+    each_form(check_ranges);
+}
+
+static void test_missing_and_excess_atoms_are_refused_in_every_row(void)
+{
+    each_form(check_counts);
+}
+
+static void test_words_stand_in_the_order_of_their_enums(void)
+{
+    static const struct {
+        himc_command_id id;
+        int value;
+        const char *word;
+    } words[] = {
+        {HIMC_COMMAND_GRIP, HIMC_GRIP_GERMAN, "german"},
+        {HIMC_COMMAND_GRIP, HIMC_GRIP_FRENCH, "french"},
+        {HIMC_COMMAND_MODE, HIMC_PIPELINE_HIMC, "himc"},
+        {HIMC_COMMAND_MODE, HIMC_PIPELINE_ID, "id"},
+        {HIMC_COMMAND_MODE, HIMC_PIPELINE_IK, "ik"},
+        {HIMC_COMMAND_SOLVER, HIMC_SOLVER_DLS, "dls"},
+        {HIMC_COMMAND_SOLVER, HIMC_SOLVER_PINV, "pinv"},
+        {HIMC_COMMAND_SOLVER, HIMC_SOLVER_TRANSPOSE, "transpose"},
+        {HIMC_COMMAND_SOLVER, HIMC_SOLVER_NAKAMURA, "nakamura"},
+        {HIMC_COMMAND_SOLVER, HIMC_SOLVER_SDLS, "sdls"},
+        {HIMC_COMMAND_SOLVER, HIMC_SOLVERS, ""},
+        {HIMC_COMMAND_LAW, HIMC_LAW_PRINTED, "printed"},
+        {HIMC_COMMAND_LAW, HIMC_LAW_FEEDFORWARD, "feedforward"},
+        {HIMC_COMMAND_LAW, HIMC_LAW_COMPUTED_TORQUE, "computed-torque"},
+        {HIMC_COMMAND_LIMITS, HIMC_LIMITS_OFF, "off"},
+        {HIMC_COMMAND_LIMITS, HIMC_LIMITS_ELLIPSOID, "ellipsoid"},
+        {HIMC_COMMAND_LIMITS, HIMC_LIMITS_EULER, "euler"},
+        {HIMC_COMMAND_STRENGTH, 0, "human"},
+        {HIMC_COMMAND_COUPLING, 0, "two-way"},
+        {HIMC_COMMAND_COUPLING, 1, "one-way"},
+        {HIMC_COMMAND_MALLET, DRUM_MALLET_SOFT, "soft"},
+        {HIMC_COMMAND_MALLET, DRUM_MALLET_MEDIUM, "medium"},
+        {HIMC_COMMAND_MALLET, DRUM_MALLET_HARD, "hard"},
+        {HIMC_COMMAND_MALLET, DRUM_MALLET_WOOD, "wood"},
+        {HIMC_COMMAND_TECHNIQUE, HIMC_TECHNIQUE_MODAL, "modal"},
+        {HIMC_COMMAND_TECHNIQUE, HIMC_TECHNIQUE_SIGNAL, "signal"},
+        {HIMC_COMMAND_TECHNIQUE, HIMC_TECHNIQUE_CLIP, "clip"},
+    };
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        TEST_ASSERT_EQUAL_STRING(words[i].word,
+                                 himc_command_word(words[i].id, 0, words[i].value).text);
+    TEST_ASSERT_EQUAL_STRING("head", himc_command_word(HIMC_COMMAND_SUBSCRIBE, 2, 3).text);
+    TEST_ASSERT_EQUAL_STRING("", himc_command_word(HIMC_COMMAND_LAW, 1, 0).text);
+    TEST_ASSERT_EQUAL_STRING("", himc_command_word(HIMC_COMMANDS, 0, 0).text);
+    TEST_ASSERT_EQUAL_STRING("", himc_command_word(HIMC_COMMAND_HIT, 0, 0).text);
+}
+
+static void test_hands_nuances_and_spots_stand_in_the_order_of_their_enums(void)
+{
+    static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent",
+                                          "staccato"};
+    static const char *const spots[] = {"center", "normal", "rim"};
+    char text[80];
+    for (int i = 0; i < HIMC_NUANCES; i++) {
+        snprintf(text, sizeof text, "hit %s %s p %s", i % 2 ? "right" : "left", nuances[i],
+                 spots[i % 3]);
+        TEST_ASSERT_TRUE(perform(text));
+        TEST_ASSERT_EQUAL_INT(i % 2 ? HIMC_RIGHT : HIMC_LEFT, command.stroke.hand);
+        TEST_ASSERT_EQUAL_INT(i, command.stroke.nuance);
+        TEST_ASSERT_EQUAL_INT(i % 3, command.stroke.spot);
+        TEST_ASSERT_EQUAL_STRING(nuances[i], himc_nuance_name((himc_nuance)i));
+        TEST_ASSERT_EQUAL_STRING(spots[i % 3], himc_spot_name((himc_spot)(i % 3)));
+    }
+    TEST_ASSERT_TRUE(perform("hit left vertical-accent p rim"));
+    TEST_ASSERT_EQUAL_INT(HIMC_VERTICAL_ACCENT, command.stroke.nuance);
+    TEST_ASSERT_EQUAL_INT(HIMC_SPOT_RIM, command.stroke.spot);
+    TEST_ASSERT_EQUAL_STRING("left", himc_hand_name(HIMC_LEFT));
+    TEST_ASSERT_EQUAL_STRING("right", himc_hand_name(HIMC_RIGHT));
+    TEST_ASSERT_EQUAL_STRING("none", himc_nuance_name(HIMC_NUANCES));
+}
+
+static void test_commands_say_which_file_they_read_or_write(void)
+{
+    static const struct {
+        const char *text;
+        himc_file_use use;
+    } cases[] = {{"score a.txt", HIMC_FILE_READ},        {"take a.bvh", HIMC_FILE_READ},
+                 {"units a.c3d legato", HIMC_FILE_READ}, {"units clear", HIMC_FILE_NONE},
+                 {"record a.bvh", HIMC_FILE_WRITE},      {"record stop", HIMC_FILE_NONE},
+                 {"tempo 90", HIMC_FILE_NONE},           {"play", HIMC_FILE_NONE}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        int atom = -1;
+        TEST_ASSERT_TRUE(perform(cases[i].text));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].use, himc_command_file(&command, &atom),
+                                      cases[i].text);
+        if (cases[i].use != HIMC_FILE_NONE)
+            TEST_ASSERT_EQUAL_INT(0, atom);
+    }
+    int atom;
+    TEST_ASSERT_TRUE(drum("shape head.mtx"));
+    TEST_ASSERT_EQUAL_INT(HIMC_FILE_READ, himc_command_file(&command, &atom));
+    TEST_ASSERT_TRUE(drum("shape circle"));
+    TEST_ASSERT_EQUAL_INT(HIMC_FILE_NONE, himc_command_file(&command, &atom));
+    TEST_ASSERT_TRUE(drum("shape rectangle 0.5 0.4"));
+    TEST_ASSERT_EQUAL_INT(HIMC_FILE_NONE, himc_command_file(&command, &atom));
+}
+
+static void test_command_made_without_the_parser_is_checked_and_completed(void)
+{
+    static himc_command raw;
+    raw = (himc_command){.id = HIMC_COMMAND_DECAY, .count = 2, .form = 7};
+    raw.atom[0] = (himc_atom){HIMC_ATOM_NUMBER, 0.1, NULL};
+    raw.atom[1] = (himc_atom){HIMC_ATOM_NUMBER, 0.2, NULL};
+    TEST_ASSERT_TRUE(himc_command_check(&command, HIMC_DRUM, &raw, &error));
+    TEST_ASSERT_EQUAL_INT(1, command.form);
+    TEST_ASSERT_TRUE(command.atom[0].number == 0.1); // not rounded to single precision
+    raw.atom[0] = (himc_atom){HIMC_ATOM_SYMBOL, 0, "wood"};
+    raw.id = HIMC_COMMAND_MALLET;
+    raw.count = 1;
+    TEST_ASSERT_TRUE(himc_command_check(&command, HIMC_DRUM, &raw, &error));
+    TEST_ASSERT_EQUAL_INT(DRUM_MALLET_WOOD, command.choice[0]);
+    TEST_ASSERT_TRUE(command.atom[0].symbol == command.storage);
+    raw.count = HIMC_COMMAND_ATOMS + 1;
+    TEST_ASSERT_FALSE(himc_command_check(&command, HIMC_DRUM, &raw, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "with 9 atoms: not from the parser"));
+    raw.id = HIMC_COMMANDS;
+    TEST_ASSERT_FALSE(himc_command_check(&command, HIMC_DRUM, &raw, &error));
+    raw.id = HIMC_COMMAND_PLAY;
+    raw.count = 0;
+    refused(himc_command_check(&command, HIMC_DRUM, &raw, &error),
+            "play: a command for the performer, not for a drum");
 }
 
 static void test_stroke_is_read_with_word_and_number_forms(void)
@@ -295,6 +602,14 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_table_is_complete_and_in_order_of_the_ids);
+    RUN_TEST(test_every_word_of_every_row_parses_to_its_index);
+    RUN_TEST(test_atoms_of_the_wrong_kind_are_refused_in_every_row);
+    RUN_TEST(test_numbers_out_of_range_or_not_finite_are_refused_in_every_row);
+    RUN_TEST(test_missing_and_excess_atoms_are_refused_in_every_row);
+    RUN_TEST(test_words_stand_in_the_order_of_their_enums);
+    RUN_TEST(test_hands_nuances_and_spots_stand_in_the_order_of_their_enums);
+    RUN_TEST(test_commands_say_which_file_they_read_or_write);
+    RUN_TEST(test_command_made_without_the_parser_is_checked_and_completed);
     RUN_TEST(test_stroke_is_read_with_word_and_number_forms);
     RUN_TEST(test_every_form_of_every_command_is_accepted);
     RUN_TEST(test_faults_name_what_value_and_what_is_allowed);

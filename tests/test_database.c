@@ -180,9 +180,9 @@ static sums play_database(himc_pipeline controller, himc_law law, int few,
                           sums nuance[HIMC_NUANCES])
 {
     sums total = {0};
-    printf("%-16s %9s %9s %6s %6s %6s %6s %6s %6s %6s %6s\n", trial_controller_name(controller),
-           "outside %", "all %", "elbow", "whole", "sh deg", "el deg", "wr deg", "m/s", "mm",
-           "deep");
+    printf("%-16s %9s %9s %6s %6s %6s %6s %6s %6s %6s %6s\n",
+           trial_controller_name(controller).text, "outside %", "all %", "elbow", "whole", "sh deg",
+           "el deg", "wr deg", "m/s", "mm", "deep");
     for (int i = 0; i < (is_long() ? HIMC_NUANCES : few); i++) {
         trial_kind kind = {(himc_nuance)i, controller, law};
         nuance[i] = (sums){0};

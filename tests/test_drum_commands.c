@@ -1,10 +1,10 @@
-/// test_drum_commands.c: what a drum is told: it does it at any moment, or refuses it in one line
-/// and plays on as if nothing had been said.
+/// test_drum_commands.c: a drum carries out its commands at any moment, or refuses them in one line
+/// and plays on unchanged.
 #include "one_drum.h"
 
 #include <string.h>
 
-// a command past the parser, as another carrier might make it
+// a command put together without the parser
 static bool raw(himc_command_id id, double a, double b, double c, int count)
 {
     himc_command command = {.id = id, .count = count};
@@ -136,7 +136,7 @@ static void test_drum_refuses_what_no_drum_is_and_plays_on_as_if_nothing_had_bee
 static void test_drum_checks_commands_that_no_parser_has_seen(void)
 {
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_RADIUS, 0, 0, 0, 1));
-    TEST_ASSERT_EQUAL_STRING("radius: 0 m, allowed 0.05 .. 1 m", error.text);
+    TEST_ASSERT_EQUAL_STRING("radius: RADIUS: 0, allowed 0.05 .. 1 m", error.text);
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_RADIUS, NAN, 0, 0, 1));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_TENSION, INFINITY, 0, 0, 1));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_MODES, NAN, 0, 0, 1));

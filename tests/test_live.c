@@ -345,7 +345,7 @@ static void test_what_no_player_can_do_is_refused_in_one_line(void)
                                          {"tempo 0", "BPM"},
                                          {"stroke -1 left legato mf", "BEAT"},
                                          {"loop 2", "0 .. 1"},
-                                         {"grip english", "french german"},
+                                         {"grip english", "german french"},
                                          {"units /no/such/take.c3d legato", "/no/such/take.c3d"},
                                          {"stroke 1.01 left legato mf", "another stroke"}};
     session_do(p, "stroke 1 left legato mf");

@@ -1,4 +1,4 @@
-/// test_manual.c: the manual's tables are those of the library.
+/// test_manual.c: the manual's tables equal the library's.
 ///
 /// With HIMC_WRITE_MANUAL set the test writes them (`make manual`), else it compares.
 #define _GNU_SOURCE

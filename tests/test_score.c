@@ -72,7 +72,7 @@ static void test_faults_are_told_with_file_and_line(void)
     refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
     refused("drum kettle;\n\nkettle radius 0;",
             "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");
-    refused("score other.txt;", "s.txt:1: score: a score cannot load another");
+    refused("score other.txt;", "s.txt:1: score: not allowed in a score");
     refused(
         "stroke 1 left legato f;\nstroke 1.01 left legato f;",
         "s.txt:2: stroke: BEAT: 1.01 is 0.006 s after the last stroke of the left hand, allowed "

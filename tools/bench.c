@@ -64,31 +64,21 @@ static double median(double *value)
     return value[RUNS / 2];
 }
 
-static bool do_command(himc_performance *p, const char *text, himc_error *error)
-{
-    himc_command c;
-    return himc_command_parse_text(&c, HIMC_PERFORMER, text, error) &&
-           himc_performance_command(p, &c, 0, error);
-}
-
-/// A performance of four strokes a second, hands in turn; NULL with the reason.
+/// Four strokes a second, hands in turn.
 static himc_performance *make_performance(himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
     config.sample_rate = RATE;
     config.physics_rate = PHYSICS;
     himc_performance *p = himc_performance_new(&config, error);
-    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
-    bool good =
-        p && drum && himc_performance_add_drum(p, drum, error) && do_command(p, "tempo 120", error);
-    himc_drum_release(drum);
+    bool good = p && cli_add_drum(p, RATE, error) && cli_tell(p, "tempo 120", NULL, error);
     for (int i = 0; good && i < 4 * SECONDS; i++) {
         char text[64];
         snprintf(text, sizeof text, "stroke %g %s legato mf", 1 + i / 2.0,
-                 i % 2 ? "left" : "right");
-        good = do_command(p, text, error);
+                 himc_hand_name(i % 2 ? HIMC_LEFT : HIMC_RIGHT));
+        good = cli_tell(p, text, NULL, error);
     }
-    if (good && do_command(p, "play", error))
+    if (good && cli_tell(p, "play", NULL, error))
         return p;
     himc_performance_free(p);
     return NULL;

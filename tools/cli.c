@@ -1,9 +1,10 @@
 /// cli.c: one table of options per call serves the parser, its error lines and --help, so they
 /// cannot disagree.
 ///
-/// getopt_long does the splitting; it is told to keep quiet, since an error here is one line that
-/// names the call, what was wrong and what is allowed. Options take a value, switches none; given
-/// twice, the last counts, as POSIX tools do.
+/// getopt_long splits the arguments and prints nothing: an error here is one line with the call,
+/// the fault and the allowed values. Options have a value, switches none; the last of two equal
+/// options counts, as in POSIX tools.
+#define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 
 #include <errno.h>
@@ -13,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <time.h>
 
 /// getopt's return value of option i, out of the way of letters and of its own '?' and ':'.
 #define OPTION_BASE 1000
@@ -108,8 +110,12 @@ void cli_help(const cli_call *call)
         char left[64], letter[8] = "    ";
         if (option->letter)
             snprintf(letter, sizeof letter, "-%c, ", option->letter);
+        const himc_command_row *row =
+            option->value ? himc_command_find(HIMC_PERFORMER, option->value) : NULL;
         snprintf(left, sizeof left, "%s--%s %s", letter, option->name,
-                 option->value ? option->value : "");
+                 row             ? row->atoms
+                 : option->value ? option->value
+                                 : "");
         printf("  %-24s %s\n", left, option->does);
     }
 }
@@ -163,12 +169,18 @@ double cli_drum_inches(const himc_score_line *line)
     return line && line->command.count > 1 ? line->command.atom[1].number : CLI_INCHES;
 }
 
-bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
-                      himc_take_options *out, himc_error *error)
+bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
+                      himc_error *error)
 {
+    static const char *const name[] = {"--left-tip", "--right-tip", "--up"};
+    const char *up = value[2];
     *out = himc_take_default();
-    out->left_tip = left_tip;
-    out->right_tip = right_tip;
+    out->left_tip = value[0];
+    out->right_tip = value[1];
+    for (int i = 0; i < 3; i++)
+        if (value[i] && !cli_is_take(path))
+            return himc_error_set(error, "%s: %s is a score, allowed with a take: .bvh .c3d .trc",
+                                  name[i], path);
     if (!up)
         return true;
     if (strcmp(up, "y") && strcmp(up, "z"))
@@ -177,18 +189,33 @@ bool cli_take_options(const char *left_tip, const char *right_tip, const char *u
     return true;
 }
 
-bool cli_take_options_fit(const char *path, const char *left_tip, const char *right_tip,
-                          const char *up, himc_error *error)
-{
-    const char *option = left_tip ? "--left-tip" : right_tip ? "--right-tip" : up ? "--up" : NULL;
-    return !option || cli_is_take(path) ||
-           himc_error_set(error, "%s: %s is a score, allowed with a take: .bvh .c3d .trc", option,
-                          path);
-}
-
 bool cli_is_take(const char *path)
 {
     const char *dot = strrchr(path, '.');
     return dot &&
            (!strcasecmp(dot, ".bvh") || !strcasecmp(dot, ".c3d") || !strcasecmp(dot, ".trc"));
+}
+
+bool cli_tell(himc_performance *performance, const char *text, const char *word, himc_error *error)
+{
+    himc_command command;
+    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
+    bool good = word ? himc_command_parse(&command, HIMC_PERFORMER, text, &atom, 1, error)
+                     : himc_command_parse_text(&command, HIMC_PERFORMER, text, error);
+    return good && himc_performance_command(performance, &command, 0, error);
+}
+
+bool cli_add_drum(himc_performance *performance, double rate, himc_error *error)
+{
+    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, rate, error);
+    bool good = drum && himc_performance_add_drum(performance, drum, error);
+    himc_drum_release(drum);
+    return good;
+}
+
+double cli_now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }

@@ -1,25 +1,26 @@
-/// cli.h: what the calls of the program share: how options are read, how a call fails, how files
-/// are written.
+/// cli.h: shared by the calls of the program: options, failure, files, commands.
 #ifndef CLI_H
 #define CLI_H
 
-#include "himc/score.h"
+#include "himc/performance.h"
 #include "himc/mocap.h"
 
 #include <stdio.h>
 
 /// One option; the table of these is the parser's and the help's.
 typedef struct cli_option {
-    const char *name;  ///< "rate" is --rate
-    char letter;       ///< 'o' is -o; 0 for none
-    const char *value; ///< what follows it, "HZ"; NULL for a switch
+    const char *name; ///< "rate" is --rate
+    char letter;      ///< 'o' is -o; 0 for none
+    const char
+        *value; ///< what follows it, "HZ"; NULL for a switch; a command's name stands for the
+                ///< words of that command
     const char *does;
 } cli_option;
 
 #define CLI_OPTIONS 16
 
-/// What was given: one operand at most, and each option's value or NULL, in the table's order (a
-/// switch's is "").
+/// The command line: at most one operand, and the value of each option or NULL, in the order of the
+/// table ("" for a switch).
 typedef struct cli_arguments {
     const char *operand;
     const char *value[CLI_OPTIONS];
@@ -32,15 +33,15 @@ typedef struct cli_call {
     const char *operand;       ///< "SOURCE", "[SCORE]" when it may be left out, "" for none
     const char *needs;         ///< options that must be given, for the usage line: " -o OUT.wav"
     const char *does;          ///< one line
-    const char *more;          ///< what else --help says; "" for nothing
+    const char *more;          ///< further text of --help, or ""
     const cli_option *options; ///< ends with a name of NULL
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
 extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_serve, cli_bench;
 
-/// Reads the arguments after the call's name; false with one line that says what is wrong and what
-/// is allowed.
+/// Reads the arguments after the call's name; false with one line: the fault and the allowed
+/// values.
 bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error);
 
 /// Prints usage and options.
@@ -49,7 +50,7 @@ void cli_help(const cli_call *call);
 /// One line on stderr, "himc NAME: ..."; returns the exit status 1.
 int cli_fail(const cli_call *call, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/// Returns 0, or fails if what was printed did not reach stdout (a full disk).
+/// Returns 0, or fails if the output did not reach stdout (a full disk).
 int cli_finish(const cli_call *call);
 
 /// The whole number after option `name`, which must lie in [low, high]; left as it is if `text` is
@@ -58,7 +59,7 @@ bool cli_count(const char *name, const char *text, int low, int high, const char
                himc_error *error);
 
 /// A file that appears under its name complete or not at all: it is written beside it and renamed
-/// in the end. What is no regular file (/dev/null, a pipe) is written directly.
+/// in the end. A file that is not regular (/dev/null, a pipe) is written directly.
 typedef struct cli_file {
     char path[4096]; ///< "" when not wanted
     char temp[4096]; ///< where it is written until kept; "" when written directly
@@ -67,33 +68,43 @@ typedef struct cli_file {
 
 /// Opens for writing; does nothing if `path` is NULL.
 bool cli_file_open(cli_file *file, const char *path, himc_error *error);
-/// Brings all to the disk and closes; false, and the temporary file removed, if something did not
-/// arrive.
+/// Writes all to the disk and closes; false, and the temporary file removed, if that fails.
 bool cli_file_close(cli_file *file, himc_error *error);
 /// Gives a closed file its name.
 bool cli_file_keep(cli_file *file, himc_error *error);
-/// Closes and removes what is not kept. Safe on a file in any state, also one that is all zero.
+/// Closes the file and removes it unless it was kept. Safe in any state, also all zero.
 void cli_file_drop(cli_file *file);
 /// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);
 
-/// The drum that is there when a score makes none.
+/// The drum of a score that makes none.
 #define CLI_DRUM "kettle"
 #define CLI_INCHES 23.0
 
+/// Gives the performance that drum.
+bool cli_add_drum(himc_performance *performance, double rate, himc_error *error);
+/// Gives the performance a command: the text, or, if `word` is not NULL, the name `text` with that
+/// one word, which may contain spaces.
+bool cli_tell(himc_performance *performance, const char *text, const char *word, himc_error *error);
+/// Time on the monotonic clock (s).
+double cli_now(void);
+
 /// The first `drum` line of a score, or NULL.
 const himc_score_line *cli_first_drum(const himc_score *score);
-/// The size a `drum` line asks for (inches).
+/// The size in a `drum` line (inches).
 double cli_drum_inches(const himc_score_line *line);
 
-/// How a take is to be read, from the values of --left-tip, --right-tip and --up (each may be
-/// NULL).
-bool cli_take_options(const char *left_tip, const char *right_tip, const char *up,
-                      himc_take_options *out, himc_error *error);
-
-/// False if options for takes are given with a score.
-bool cli_take_options_fit(const char *path, const char *left_tip, const char *right_tip,
-                          const char *up, himc_error *error);
+/// The options of all calls that read a take; their values stand one after the other.
+#define CLI_TAKE_OPTIONS                                                                    \
+    {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else found by name)"}, \
+        {"right-tip", 0, "NAME", "the same, right"},                                        \
+    {                                                                                       \
+        "up", 0, "z|y", "a take's upward axis (else as the file says)"                      \
+    }
+/// How the take at `path` is to be read, from the values of CLI_TAKE_OPTIONS. False if one is
+/// wrong, or given with a score.
+bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
+                      himc_error *error);
 /// True if the name ends as a motion capture's does: .bvh .c3d .trc, in any case.
 bool cli_is_take(const char *path);
 

@@ -12,7 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS };
@@ -38,13 +37,6 @@ typedef struct evaluation {
     double start; ///< (s)
 } evaluation;
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 static bool read_range(const char *text, evaluation *e, himc_error *error)
 {
     int used = 0;
@@ -63,8 +55,8 @@ static bool keep_rows(evaluation *e, const char *word)
     for (int kind = 0; kind < TRIAL_KINDS; kind++) {
         trial_kind k = trial_kind_of(&e->table, trial_index(&e->table, kind, 1));
         bool has = !strcmp(word, himc_nuance_name(k.nuance)) ||
-                   !strcmp(word, trial_controller_name(k.controller)) ||
-                   !strcmp(word, trial_law_name(&k));
+                   !strcmp(word, trial_controller_name(k.controller).text) ||
+                   !strcmp(word, trial_law_name(&k).text);
         known = known || has;
         e->wanted[kind] = e->wanted[kind] && has;
     }
@@ -82,9 +74,10 @@ static bool read_only(const char *text, evaluation *e, himc_error *error)
     for (char *word = strtok_r(words, ",", &rest); word; word = strtok_r(NULL, ",", &rest))
         if (!keep_rows(e, word))
             return himc_error_set(error,
-                                  "--only: %s, allowed: a nuance (legato ...), a controller (ik id "
-                                  "himc), a law (none printed feedforward computed-torque)",
-                                  word);
+                                  "--only: %s, allowed: a nuance (legato ...), a controller (%s), "
+                                  "a law (none|%s)",
+                                  word, himc_command_table(HIMC_COMMAND_MODE)->atoms,
+                                  himc_command_table(HIMC_COMMAND_LAW)->atoms);
     for (int kind = 0; kind < TRIAL_KINDS; kind++)
         if (e->wanted[kind])
             return true;
@@ -133,7 +126,7 @@ static void show_progress(const evaluation *e)
     int full = 30 * e->done / e->todo_count;
     for (int i = 0; i < 30; i++)
         bar[i] = i < full ? '#' : '.';
-    double elapsed = now() - e->start, left = elapsed / e->done * (e->todo_count - e->done);
+    double elapsed = cli_now() - e->start, left = elapsed / e->done * (e->todo_count - e->done);
     fprintf(stderr, "\r[%s] %d of %d trials, %.0f s left \033[K", bar, e->done, e->todo_count,
             left);
     if (e->done == e->todo_count)
@@ -164,7 +157,7 @@ static bool evaluate(evaluation *e, const char *log, himc_error *error)
     if (!evaluate_log_open(&e->log, log, &e->table, error) || !list_todo(e, error))
         return false;
     pool workers = {e->todo_count, e->jobs, sizeof(trial_result), work, done, e};
-    e->start = now();
+    e->start = cli_now();
     return pool_run(&workers, error);
 }
 

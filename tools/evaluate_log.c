@@ -105,7 +105,7 @@ static void print_key(const trial_table *table, int index, FILE *stream)
 {
     trial_kind kind = trial_kind_of(table, index);
     fprintf(stream, "%s,%s,%s", himc_nuance_name(kind.nuance),
-            trial_controller_name(kind.controller), trial_law_name(&kind));
+            trial_controller_name(kind.controller).text, trial_law_name(&kind).text);
 }
 
 void trial_table_print(const trial_table *table, FILE *stream)
@@ -130,8 +130,8 @@ static int find_kind(const trial_table *table, char *const key[3])
     for (int kind = 0; kind < TRIAL_KINDS; kind++) {
         trial_kind k = trial_kind_of(table, trial_index(table, kind, 1));
         if (!strcmp(key[0], himc_nuance_name(k.nuance)) &&
-            !strcmp(key[1], trial_controller_name(k.controller)) &&
-            !strcmp(key[2], trial_law_name(&k)))
+            !strcmp(key[1], trial_controller_name(k.controller).text) &&
+            !strcmp(key[2], trial_law_name(&k).text))
             return kind;
     }
     return -1;

@@ -13,7 +13,7 @@ static const cli_call *const calls[] = {&cli_render, &cli_evaluate, &cli_info,
 
 static void print_help(void)
 {
-    printf("himc %s: a virtual timpanist\n\nusage: himc CALL ...\n\n", HIMC_VERSION);
+    printf("himc %s: a virtual timpanist\n\nusage: himc CALL ...\n\n", himc_version());
     for (size_t i = 0; i < CALLS; i++)
         printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
     printf("\nhimc CALL --help says more; himc --version prints the version.\n");
@@ -63,7 +63,7 @@ int main(int argc, char **argv)
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
         print_help();
     else if (!strcmp(argv[1], "--version"))
-        printf("himc %s\n", HIMC_VERSION);
+        printf("himc %s\n", himc_version());
     else {
         const cli_call *call = find_call(argv[1]);
         if (!call)

@@ -1,4 +1,4 @@
-/// info.c: `himc info`: what is in a take or a score, in a few lines.
+/// info.c: `himc info`: describes a take or a score in a few lines.
 #include "cli.h"
 
 #include "himc/drum.h"
@@ -84,14 +84,7 @@ static bool describe_score(const char *path, himc_error *error)
     return true;
 }
 
-enum { LEFT_TIP, RIGHT_TIP, UP };
-
-static const cli_option options[] = {
-    {"left-tip", 0, "NAME", "the take's point at the left stick's tip (else looked for by name)"},
-    {"right-tip", 0, "NAME", "the same, right"},
-    {"up", 0, "z|y", "the take's upward axis (else as the file says)"},
-    {0},
-};
+static const cli_option options[] = {CLI_TAKE_OPTIONS, {0}};
 
 static bool describe_player(himc_take *take, const himc_take_options *take_options,
                             himc_error *error)
@@ -111,23 +104,20 @@ static bool describe_player(himc_take *take, const himc_take_options *take_optio
     return drum != NULL;
 }
 
-static bool describe_take(const cli_arguments *arguments, himc_error *error)
+static bool describe_take(const char *path, const himc_take_options *take_options,
+                          himc_error *error)
 {
-    himc_take_options take_options;
-    if (!cli_take_options(arguments->value[LEFT_TIP], arguments->value[RIGHT_TIP],
-                          arguments->value[UP], &take_options, error))
-        return false;
-    himc_take *take = himc_take_load(arguments->operand, &take_options, error);
+    himc_take *take = himc_take_load(path, take_options, error);
     if (!take)
         return false;
     himc_take_tip tips[HIMC_HANDS];
-    bool named = take_options.left_tip || take_options.right_tip;
-    if (named && !himc_take_tips(take, &take_options, tips, error)) {
+    bool named = take_options->left_tip || take_options->right_tip;
+    if (named && !himc_take_tips(take, take_options, tips, error)) {
         himc_take_free(take);
         return false;
     }
-    himc_take_describe(take, &take_options, print_line, NULL);
-    bool described = describe_player(take, &take_options, error);
+    himc_take_describe(take, take_options, print_line, NULL);
+    bool described = describe_player(take, take_options, error);
     himc_take_free(take);
     return described;
 }
@@ -135,10 +125,11 @@ static bool describe_take(const cli_arguments *arguments, himc_error *error)
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
-    const char *const *value = arguments->value, *path = arguments->operand;
-    bool good =
-        cli_take_options_fit(path, value[LEFT_TIP], value[RIGHT_TIP], value[UP], &error) &&
-        (cli_is_take(path) ? describe_take(arguments, &error) : describe_score(path, &error));
+    const char *path = arguments->operand;
+    himc_take_options take_options;
+    bool good = cli_take_options(path, arguments->value, &take_options, &error) &&
+                (cli_is_take(path) ? describe_take(path, &take_options, &error)
+                                   : describe_score(path, &error));
     return good ? cli_finish(&cli_info) : cli_fail(&cli_info, "%s", error.text);
 }
 
@@ -146,7 +137,7 @@ const cli_call cli_info = {
     "info",
     "FILE",
     "",
-    "says what is in a score, or in a take (.bvh .c3d .trc)",
+    "describes a score or a take (.bvh .c3d .trc)",
     "Of a take: rate, length, points, gaps, the strikes found in it, the player,\n"
     "where drumhead and seat are placed.",
     options,

@@ -1,5 +1,5 @@
-/// modes.c: `himc modes`: the frequencies and decays of a drum, as a score has it tuned before its
-/// first stroke.
+/// modes.c: `himc modes`: the frequencies and decays of a drum as a score tunes it before the first
+/// stroke.
 ///
 /// The two members of a pair (cosine and sine) sound alike and are one row. T60 is the time in
 /// which a mode falls by 60 dB: ln(1000) over its decay rate.
@@ -10,13 +10,13 @@
 #include <math.h>
 #include <string.h>
 
-/// Modes do not depend on it, but a drum has one.
+/// Every drum has a sample rate (Hz); the modes do not depend on it.
 #define RATE 48000.0
 
 /// Carries out the score's lines for this drum.
 static bool tune(himc_drum *drum, const himc_score *score, const char *path, himc_error *error)
 {
-    himc_drum_set_answered(drum, true); // modes are the same whatever sounds
+    himc_drum_set_answered(drum, true); // the modes do not depend on the technique
     for (int i = 0; i < score->line_count; i++) {
         const himc_score_line *line = &score->lines[i];
         if (strcmp(line->drum, himc_drum_name(drum)))

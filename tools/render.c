@@ -3,29 +3,28 @@
 ///
 /// The command `score` or `take`, then `play` on sample 0, then block after block, just as
 /// `[himc~]` does it in Pd; each sample written is the sum of the drums' samples, rounded to 32-bit
-/// float once, as Pd's signals are. Whether it is over is asked only where a cell of 0.2 s ends,
-/// and blocks end there too, so that nothing depends on --block. It is over when the performer is
-/// done and a whole cell stayed 80 dB below the peak, or 8 s after.
+/// float once, as Pd's signals are. The end is tested only where a cell of 0.2 s ends; blocks end
+/// there too, so that nothing depends on --block. The end: the performer is done and a whole cell
+/// stayed 80 dB below the peak, or 8 s have passed.
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
-#include "himc/performance.h"
 #include "render_tables.h"
 
 #include <errno.h>
 #include <math.h>
 #include <sndfile.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+// chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
-#define SILENCE 1e-4
-#define BLOCK_MAX 8192
+#define SILENCE 1e-4   // of the peak: 80 dB
+#define BLOCK_MAX 8192 // samples; chosen: the longest block of Pd
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
-enum { OUT, RATE, BLOCK, STROKES, MOTION, MODE, LIMITS, LEFT_TIP, RIGHT_TIP, UP };
+enum { OUT, RATE, BLOCK, STROKES, MOTION, MODE, LIMITS, TAKE };
 
 static const cli_option options[] = {
     {"output", 'o', "OUT.wav", "the sound, 32-bit float, one channel: the sum of all drums"},
@@ -33,22 +32,20 @@ static const cli_option options[] = {
     {"block", 0, "N", "samples computed at a time, 1 .. 8192 (64); the result is the same"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
     {"motion", 0, "F.csv", "a row every 4 ms: targets, sticks, joint angles, forces, elbows"},
-    {"mode", 0, "M", "control by himc, id or ik (himc)"},
-    {"limits", 0, "L", "joint limits: ellipsoid, euler or off (off)"},
-    {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else looked for by name)"},
-    {"right-tip", 0, "NAME", "the same, right"},
-    {"up", 0, "z|y", "a take's upward axis (else as the file says)"},
+    {"mode", 0, "mode", "control pipeline (himc)"},
+    {"limits", 0, "limits", "joint limits (off)"},
+    CLI_TAKE_OPTIONS,
     {0},
 };
 
-/// What was asked for.
+/// The arguments.
 typedef struct job {
     const char *source, *mode, *limits;
     int rate, block;
     himc_take_options take;
 } job;
 
-/// What is under way.
+/// The state of the rendering.
 typedef struct rendering {
     himc_performance *performance;
     cli_file wav, strokes, motion;
@@ -78,30 +75,11 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                                       files[k]);
     return cli_count("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
            cli_count("--block", value[BLOCK], 1, BLOCK_MAX, "samples", &out->block, error) &&
-           cli_take_options_fit(out->source, value[LEFT_TIP], value[RIGHT_TIP], value[UP], error) &&
-           cli_take_options(value[LEFT_TIP], value[RIGHT_TIP], value[UP], &out->take, error);
+           cli_take_options(out->source, value + TAKE, &out->take, error);
 }
 
-/// Gives the performer `name` with one word, or without if `word` is NULL.
-static bool tell(himc_performance *performance, const char *name, const char *word,
-                 himc_error *error)
-{
-    himc_command command;
-    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
-    return himc_command_parse(&command, HIMC_PERFORMER, name, &atom, word ? 1 : 0, error) &&
-           himc_performance_command(performance, &command, 0, error);
-}
-
-static bool add_default_drum(himc_performance *performance, double rate, himc_error *error)
-{
-    himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, rate, error);
-    bool good = drum && himc_performance_add_drum(performance, drum, error);
-    himc_drum_release(drum);
-    return good;
-}
-
-/// Looks whether the score makes drums itself, whether it goes round, and whether a WAV file can
-/// hold it.
+/// Finds out if the score makes drums itself and if it loops; false if it is too long for a WAV
+/// file.
 static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, himc_error *error)
 {
     himc_score *score = himc_score_load(wanted->source, error);
@@ -121,33 +99,25 @@ static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, him
     return true;
 }
 
-/// A loop has no end that a file could have.
-static bool end_loop(himc_performance *performance, himc_error *error)
-{
-    himc_command command;
-    himc_atom none = {HIMC_ATOM_NUMBER, 0, "0"};
-    return himc_command_parse(&command, HIMC_PERFORMER, "loop", &none, 1, error) &&
-           himc_performance_command(performance, &command, 0, error);
-}
-
 static bool prepare(himc_performance *performance, const job *wanted, himc_error *error)
 {
     bool take = cli_is_take(wanted->source), makes_drums = false, loops = false;
     himc_performance_make_drums(performance, true);
     himc_performance_take_options(performance, &wanted->take);
-    if (wanted->mode && !tell(performance, "mode", wanted->mode, error))
+    if (wanted->mode && !cli_tell(performance, "mode", wanted->mode, error))
         return false;
     if (!take && !inspect_score(wanted, &makes_drums, &loops, error))
         return false;
-    if (!makes_drums && !add_default_drum(performance, wanted->rate, error))
+    if (!makes_drums && !cli_add_drum(performance, wanted->rate, error))
         return false;
-    if (wanted->limits && !tell(performance, "limits", wanted->limits, error))
+    if (wanted->limits && !cli_tell(performance, "limits", wanted->limits, error))
         return false;
-    if (!tell(performance, take ? "take" : "score", wanted->source, error))
+    if (!cli_tell(performance, take ? "take" : "score", wanted->source, error))
         return false;
     if (loops)
         printf("note: %s: loop: one round is rendered\n", wanted->source);
-    return (!loops || end_loop(performance, error)) && tell(performance, "play", NULL, error);
+    return (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
+           cli_tell(performance, "play", NULL, error);
 }
 
 static bool open_sound(rendering *r, const char *path, int rate, himc_error *error)
@@ -163,13 +133,6 @@ static bool open_sound(rendering *r, const char *path, int rate, himc_error *err
     return true;
 }
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 static void show_progress(double seconds, double elapsed)
 {
     if (isatty(STDERR_FILENO))
@@ -182,7 +145,7 @@ static void clear_progress(void)
         fputs("\r\033[K", stderr);
 }
 
-/// Asks the performer for what happened; strikes go to their table, notes to the user.
+/// Takes the performer's events: strikes go to their table, notes to the user.
 static void take_events(rendering *r)
 {
     himc_event event;
@@ -220,7 +183,7 @@ static void play_block(rendering *r, int n)
     take_events(r);
 }
 
-/// Called where a cell ends: true when there is nothing more to hear.
+/// Called where a cell ends: true if nothing more can be heard.
 static bool is_over(rendering *r, int rate)
 {
     r->peak = fmax(r->peak, r->cell_peak);
@@ -238,7 +201,7 @@ static bool is_over(rendering *r, int rate)
 static double play(rendering *r, const job *wanted)
 {
     int cell = (int)lround(CELL_SECONDS * wanted->rate);
-    double start = now();
+    double start = cli_now();
     do {
         for (int left = cell; left > 0 && !r->failed;) {
             int n = left < wanted->block ? left : wanted->block;
@@ -246,9 +209,9 @@ static double play(rendering *r, const job *wanted)
             left -= n;
         }
         r->too_long = (double)(r->samples + (uint64_t)cell) > WAV_SAMPLES;
-        show_progress((double)r->samples / wanted->rate, now() - start);
+        show_progress((double)r->samples / wanted->rate, cli_now() - start);
     } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
-    double elapsed = now() - start;
+    double elapsed = cli_now() - start;
     clear_progress();
     return elapsed;
 }

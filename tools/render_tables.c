@@ -1,5 +1,5 @@
 /// render_tables.c: rows and numbers as text. Columns carry their unit; a number that is not known
-/// is `nan` in a table and `null` in JSON, which has no word for it.
+/// is `nan` in a table and `null` in JSON, which has no NaN.
 #include "render_tables.h"
 #include "himc/body.h"
 

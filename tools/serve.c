@@ -1,9 +1,9 @@
 /// serve.c: `himc serve`: the physics manager alone, in real time, driven and heard over OSC.
 ///
-/// The sample count is the clock: blocks of 2 ms, each begun when its time has come on the
-/// monotonic clock. One that comes late is made up for by the next ones; when the machine was away
-/// for more than 0.2 s that time is given up, and counted. No sound goes out: sound managers play
-/// what `/himc/strike` says, wherever they are.
+/// The sample count is the clock: blocks of 2 ms, each started at its time on the monotonic clock.
+/// The blocks after a late one start at once until they have caught up; a delay of more than 0.2 s
+/// is given up and counted. No sound goes out: sound managers on other machines play the
+/// `/himc/strike` messages.
 #define _GNU_SOURCE // sched_setscheduler
 #include "cli.h"
 #include "himc/osc.h"
@@ -14,10 +14,10 @@
 #include <string.h>
 #include <time.h>
 
-#define RATE 48000
-#define BLOCK 96
-#define GIVE_UP 0.2
-#define COMMANDS_A_BLOCK 8
+#define RATE 48000         // (Hz)
+#define BLOCK 96           // samples; chosen: 2 ms, short against a reaction to a message
+#define GIVE_UP 0.2        // (s); chosen: catching up with more would be seen as a jump
+#define COMMANDS_A_BLOCK 8 // chosen: none makes a block late
 
 enum { PORT, BIND, FILES, ALLOW };
 
@@ -25,8 +25,8 @@ static const cli_option options[] = {
     {"port", 'p', "P", "UDP port, 0 .. 65535, 0 any free one (9000)"},
     {"bind", 0, "ADDR",
      "numeric address to listen at; 0.0.0.0 is all of this machine's (127.0.0.1)"},
-    {"files", 0, "DIR", "folder that `score` and `take` over the network are confined to (none)"},
-    {"allow", 0, "HOST[,HOST]", "hosts that anyone may subscribe for (only one's own)"},
+    {"files", 0, "DIR", "folder from which `score` and `take` over the network may read (none)"},
+    {"allow", 0, "HOST[,HOST]", "hosts that any host may subscribe (else only itself)"},
     {0},
 };
 
@@ -38,26 +38,10 @@ static void stop(int signal)
     stopped = 1;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void sleep_until(double t)
 {
     struct timespec at = {(time_t)t, (long)((t - floor(t)) * 1e9)};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
-}
-
-static bool tell(himc_performance *performance, const char *name, const char *word,
-                 himc_error *error)
-{
-    himc_command command;
-    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
-    return himc_command_parse(&command, HIMC_PERFORMER, name, &atom, 1, error) &&
-           himc_performance_command(performance, &command, 0, error);
 }
 
 static himc_performance *prepare(const char *source, himc_error *error)
@@ -70,14 +54,11 @@ static himc_performance *prepare(const char *source, himc_error *error)
     himc_performance_make_drums(performance, true);
     himc_score *score = source && !cli_is_take(source) ? himc_score_load(source, error) : NULL;
     bool good = score || !source || cli_is_take(source);
-    if (good && !(score && cli_first_drum(score))) {
-        himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
-        good = drum && himc_performance_add_drum(performance, drum, error);
-        himc_drum_release(drum);
-    }
+    if (good && !(score && cli_first_drum(score)))
+        good = cli_add_drum(performance, RATE, error);
     himc_score_free(score);
     if (good && source)
-        good = tell(performance, cli_is_take(source) ? "take" : "score", source, error);
+        good = cli_tell(performance, cli_is_take(source) ? "take" : "score", source, error);
     if (good)
         return performance;
     himc_performance_free(performance);
@@ -88,7 +69,7 @@ static void play_block(himc_performance *performance, himc_osc *osc)
 {
     char line[HIMC_OSC_LINE];
     himc_event event;
-    double start = now();
+    double start = cli_now();
     himc_osc_receive(osc, performance, COMMANDS_A_BLOCK);
     himc_performance_process(performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
     while (himc_performance_event(performance, &event)) {
@@ -96,12 +77,12 @@ static void play_block(himc_performance *performance, himc_osc *osc)
         if (event.kind == HIMC_EVENT_NOTE)
             fprintf(stderr, "himc serve: %s\n", event.text);
     }
-    himc_osc_publish(osc, performance, now() - start);
+    himc_osc_publish(osc, performance, cli_now() - start);
     while (himc_osc_line(osc, line))
         fprintf(stderr, "himc serve: %s\n", line);
 }
 
-/// What a run was like.
+/// Statistics of a run.
 typedef struct punctuality {
     long blocks, late;       ///< ended after the next was due
     double latest, given_up; ///< (s)
@@ -110,12 +91,12 @@ typedef struct punctuality {
 static punctuality serve(himc_performance *performance, himc_osc *osc)
 {
     punctuality p = {0};
-    double period = (double)BLOCK / RATE, due = now();
+    double period = (double)BLOCK / RATE, due = cli_now();
     while (!stopped) {
         sleep_until(due);
         play_block(performance, osc);
         due += period;
-        double behind = now() - due;
+        double behind = cli_now() - due;
         p.blocks++;
         p.late += behind > 0;
         p.latest = fmax(p.latest, behind);

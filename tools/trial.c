@@ -51,16 +51,16 @@ typedef struct tally {
     himc_body_state body;                           ///< simulated, at the latest tick
 } tally;
 
-const char *trial_controller_name(himc_pipeline controller)
+himc_word trial_controller_name(himc_pipeline controller)
 {
-    static const char *const name[] = {"himc", "id", "ik"};
-    return name[controller];
+    return himc_command_word(HIMC_COMMAND_MODE, 0, (int)controller);
 }
 
-const char *trial_law_name(const trial_kind *kind)
+himc_word trial_law_name(const trial_kind *kind)
 {
-    static const char *const name[] = {"printed", "feedforward", "computed-torque"};
-    return kind->controller == HIMC_PIPELINE_IK ? "none" : name[kind->law];
+    if (kind->controller == HIMC_PIPELINE_IK)
+        return (himc_word){"none"};
+    return himc_command_word(HIMC_COMMAND_LAW, 0, (int)kind->law);
 }
 
 trial_config trial_default(const trial_kind *kind, int number)
@@ -229,7 +229,7 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     char text[64];
     bool published = kind->law == HIMC_LAW_PRINTED && kind->controller == HIMC_PIPELINE_HIMC;
     bool joints = kind->controller == HIMC_PIPELINE_ID && !config->bent;
-    snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller));
+    snprintf(text, sizeof text, "mode %s", trial_controller_name(kind->controller).text);
     if (!do_command(p, error, text) || (published && !do_command(p, error, "posture 0")) ||
         (joints && !do_command(p, error, "bend 0")) ||
         (config->limits && !do_command(p, error, "limits ellipsoid")))
@@ -237,7 +237,7 @@ static bool set_control(himc_performance *p, const trial_config *config, himc_er
     snprintf(text, sizeof text, "gain frequency %.6f", config->gain);
     if (config->gain != 1 && !do_command(p, error, text))
         return false;
-    snprintf(text, sizeof text, "law %s", trial_law_name(kind));
+    snprintf(text, sizeof text, "law %s", trial_law_name(kind).text);
     return kind->controller == HIMC_PIPELINE_IK || do_command(p, error, text);
 }
 
@@ -400,6 +400,6 @@ bool trial_run(const trial_config *config, trial_result *result, himc_error *err
     himc_mocap_free(mocap);
     return good ||
            himc_error_prefix(error, "%s %s %s, trial %d", himc_nuance_name(config->kind.nuance),
-                             trial_controller_name(config->kind.controller),
-                             trial_law_name(&config->kind), config->number);
+                             trial_controller_name(config->kind.controller).text,
+                             trial_law_name(&config->kind).text, config->number);
 }

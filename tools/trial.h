@@ -30,8 +30,8 @@ typedef struct trial_result {
 /// Trials with numbers that differ by this play the same sequence with different disturbances.
 #define TRIAL_SEQUENCES (HIMC_MOCAP_PLAYERS * TRIAL_SPOTS)
 
-const char *trial_controller_name(himc_pipeline controller);
-const char *trial_law_name(const trial_kind *kind); ///< "none" for `ik`
+himc_word trial_controller_name(himc_pipeline controller);
+himc_word trial_law_name(const trial_kind *kind); ///< "none" for `ik`
 
 /// A frame of a trial, captured and simulated, in the library's coordinates.
 typedef struct trial_frame {

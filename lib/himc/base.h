@@ -1,4 +1,5 @@
-/// base.h: what every module shares: errors, hands, the two kinds of functions.
+/// base.h: shared by all modules: version, errors, hands, places of drumheads, the two kinds of
+/// functions.
 ///
 /// Every public function is either *setup* (may allocate, lock, read files; the default) or
 /// marked HIMC_RT: it never allocates, locks, prints or waits, and its time is bounded, so it may
@@ -13,15 +14,23 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Marks a function that is safe in an audio callback; a test interposes malloc and holds it to
-/// that.
+/// Marks a function that is safe in an audio callback; a test with its own malloc checks this.
 #define HIMC_RT
 
-#define HIMC_VERSION "0.1.0"
+#define HIMC_VERSION_MAJOR 0
+#define HIMC_VERSION_MINOR 1
+#define HIMC_VERSION_PATCH 0
+#define HIMC_VERSION_TEXT_(major, minor, patch) #major "." #minor "." #patch
+#define HIMC_VERSION_JOIN_(major, minor, patch) HIMC_VERSION_TEXT_(major, minor, patch)
+/// Version of the headers: "MAJOR.MINOR.PATCH".
+#define HIMC_VERSION HIMC_VERSION_JOIN_(HIMC_VERSION_MAJOR, HIMC_VERSION_MINOR, HIMC_VERSION_PATCH)
+
+/// Version of the library that is linked, "MAJOR.MINOR.PATCH".
+HIMC_RT const char *himc_version(void);
 
 #define HIMC_PI 3.14159265358979323846
 
-/// One line that says what was wrong, the value, what is allowed, and in a file `file:line`.
+/// One line with the fault, the value, the allowed values, and in a file `file:line`.
 typedef struct himc_error {
     char text[512];
 } himc_error;
@@ -40,6 +49,7 @@ bool himc_error_prefix(himc_error *error, const char *format, ...)
 bool himc_check_range(const char *name, double value, double low, double high, const char *unit,
                       himc_error *error);
 
+/// In the order of the argument HAND.
 typedef enum himc_hand { HIMC_LEFT, HIMC_RIGHT, HIMC_HANDS } himc_hand;
 
 /// "left" or "right".

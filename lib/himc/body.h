@@ -171,6 +171,7 @@ HIMC_RT bool himc_body_state_finite(const himc_body_state *state);
 // paper, section 3.1, algorithm 1 and table 1)
 
 /// Shape of the bounds.
+/// In the order of the words of `limits`.
 typedef enum himc_limits_kind {
     HIMC_LIMITS_OFF,
     HIMC_LIMITS_ELLIPSOID, ///< around the mean, in its tangent space (algorithm 1)
@@ -221,6 +222,7 @@ HIMC_RT himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_
 // matrix, independent of the number of joints.
 
 /// How the inverse of the Jacobian J is approximated.
+/// In the order of the words of `solver`.
 typedef enum himc_solver {
     HIMC_SOLVER_DLS,       ///< damped least squares (Wampler 1986): J' (J J' + lambda^2)^-1 e
     HIMC_SOLVER_PINV,      ///< pseudo-inverse, small singular values truncated

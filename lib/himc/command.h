@@ -1,6 +1,7 @@
-/// command.h: the one vocabulary: a name and its atoms, whoever carries it (Pd, OSC, a score file).
+/// command.h: the commands: a name and its atoms, the same from Pure Data, OSC and a score file.
 ///
-/// There is one table and one parser; an error leaves everything as it was and is one line of text.
+/// There is one table (command_rows.h) and one parser. A command that does not fit is refused in
+/// one line of text and changes nothing.
 #ifndef HIMC_COMMAND_H
 #define HIMC_COMMAND_H
 
@@ -15,7 +16,7 @@ typedef struct himc_atom {
     const char *symbol;
 } himc_atom;
 
-/// How a stroke is played (2012 paper, section 3).
+/// How a stroke is played (2012 paper, section 3). In the order of the argument NUANCE.
 typedef enum himc_nuance {
     HIMC_LEGATO,
     HIMC_TENUTO,
@@ -25,15 +26,19 @@ typedef enum himc_nuance {
     HIMC_NUANCES
 } himc_nuance;
 
-/// "legato", "tenuto", "accent", "vertical-accent", "staccato".
+/// The nuance's word in commands; "none" if there is no such nuance.
 const char *himc_nuance_name(himc_nuance nuance);
 
+/// Where on the head a stroke lands. In the order of the argument SPOT.
 typedef enum himc_spot {
     HIMC_SPOT_CENTER,
     HIMC_SPOT_NORMAL,
     HIMC_SPOT_RIM,
-    HIMC_SPOT_XY
+    HIMC_SPOT_XY ///< given by two numbers
 } himc_spot;
+
+/// The spot's word in commands; "" for HIMC_SPOT_XY.
+const char *himc_spot_name(himc_spot spot);
 
 #define HIMC_NAME_SIZE 32
 
@@ -53,105 +58,96 @@ typedef struct himc_stroke {
 /// own x, y.
 HIMC_RT void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y);
 
-/// Who a command is for.
 typedef enum himc_receiver { HIMC_PERFORMER, HIMC_DRUM } himc_receiver;
 
+/// When a command acts; command_rows.h explains each.
+typedef enum himc_command_when {
+    HIMC_WHEN_NOW,
+    HIMC_WHEN_AT_SAMPLE,
+    HIMC_WHEN_HOST,
+    HIMC_WHEN_NETWORK
+} himc_command_when;
+
+/// What else holds for a command.
+typedef enum himc_command_marks {
+    HIMC_AFTER_STROKES = 1, ///< in a score it acts after the strokes are there, others before
+    HIMC_NOT_IN_SCORE = 2,  ///< a score cannot hold it
+    HIMC_WRITES_FILE = 4    ///< its FILE is written; without this mark it is read
+} himc_command_marks;
+
+/// One id for each row of command_rows.h: HIMC_COMMAND_STROKE, HIMC_COMMAND_HIT, ...
 typedef enum himc_command_id {
-    // to the performer
-    HIMC_COMMAND_STROKE,
-    HIMC_COMMAND_HIT,
-    HIMC_COMMAND_TEMPO,
-    HIMC_COMMAND_GRIP,
-    HIMC_COMMAND_LOOP,
-    HIMC_COMMAND_CLEAR,
-    HIMC_COMMAND_PLAY,
-    HIMC_COMMAND_STOP,
-    HIMC_COMMAND_SEEK,
-    HIMC_COMMAND_SCORE,
-    HIMC_COMMAND_TAKE,
-    HIMC_COMMAND_UNITS,
-    HIMC_COMMAND_TARGET,
-    HIMC_COMMAND_MODE,
-    HIMC_COMMAND_SOLVER,
-    HIMC_COMMAND_DAMPING,
-    HIMC_COMMAND_POSTURE,
-    HIMC_COMMAND_BEND,
-    HIMC_COMMAND_ELBOW,
-    HIMC_COMMAND_WEIGHTS,
-    HIMC_COMMAND_LAW,
-    HIMC_COMMAND_GAIN,
-    HIMC_COMMAND_LIMITS,
-    HIMC_COMMAND_STRENGTH,
-    HIMC_COMMAND_RATE,
-    HIMC_COMMAND_COUPLING,
-    HIMC_COMMAND_PLAYER,
-    HIMC_COMMAND_PUSH,
-    HIMC_COMMAND_RECORD,
-    HIMC_COMMAND_INFO,
-    HIMC_COMMAND_RESET,
-    HIMC_COMMAND_MAKE_DRUM, ///< `drum NAME [INCHES]`
-    HIMC_COMMAND_SUBSCRIBE, // the next three are for osc.h
-    HIMC_COMMAND_UNSUBSCRIBE,
-    HIMC_COMMAND_LISTEN,
-    // to a drum
-    HIMC_COMMAND_RADIUS,
-    HIMC_COMMAND_TENSION,
-    HIMC_COMMAND_DENSITY,
-    HIMC_COMMAND_TUNE,
-    HIMC_COMMAND_MODES,
-    HIMC_COMMAND_DECAY,
-    HIMC_COMMAND_AIR,
-    HIMC_COMMAND_KETTLE,
-    HIMC_COMMAND_GLIDE,
-    HIMC_COMMAND_DAMP,
-    HIMC_COMMAND_SHAPE,
-    HIMC_COMMAND_MALLET,
-    HIMC_COMMAND_PLACE,
-    HIMC_COMMAND_PICKUP,
-    HIMC_COMMAND_PICKUPS,
-    HIMC_COMMAND_CHANNEL,
-    HIMC_COMMAND_TECHNIQUE,
-    HIMC_COMMAND_STRIKE,
+#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) HIMC_COMMAND_##ID,
+#include "himc/command_rows.h"
     HIMC_COMMANDS
 } himc_command_id;
 
 #define HIMC_COMMAND_ATOMS 8
 #define HIMC_PATH_SIZE 1024
 
-/// A checked command: right name, right number and kind of atoms, all finite and in range.
+/// A checked command: right name, right number and kind of atoms, all finite and in range. Made by
+/// the parser and copied by himc_command_copy only.
 typedef struct himc_command {
     himc_command_id id;
+    int form;                           ///< of the row's forms, separated by ` | `, the one given
     himc_stroke stroke;                 ///< of `stroke` and `hit`
     int count;                          ///< atoms after the name
     himc_atom atom[HIMC_COMMAND_ATOMS]; ///< symbols point into `storage`
-    char storage[HIMC_PATH_SIZE + 256]; ///< so a command is copied with himc_command_copy only
+    int choice[HIMC_COMMAND_ATOMS]; ///< index of the atom among its allowed words; -1 for a number
+                                    ///< and a free word
+    char storage[HIMC_PATH_SIZE + 256];
 } himc_command;
 
-/// One row of the vocabulary; the manual's table is made of these.
+/// One row of command_rows.h.
 typedef struct himc_command_row {
     himc_command_id id;
     himc_receiver receiver;
+    himc_command_when when;
+    unsigned marks;    ///< of himc_command_marks, joined by |
     const char *name;  ///< "stroke"
-    const char *atoms; ///< the grammar: "BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]", "X Y | air ..."
+    const char *atoms; ///< the grammar
     const char *does;  ///< one sentence
 } himc_command_row;
 
-/// Row `index` of the table, or NULL past its end. Borrowed, static.
-const himc_command_row *himc_command_table(int index);
+/// Row `index` of the table, or NULL past its end. Row i is the command with id i. Borrowed,
+/// static.
+HIMC_RT const himc_command_row *himc_command_table(int index);
+
+/// The row of that name, or NULL. Borrowed, static.
+HIMC_RT const himc_command_row *himc_command_find(himc_receiver receiver, const char *name);
 
 /// Checks `name` and its atoms against the table; false, and `out` untouched, if they do not fit.
-/// Numbers are rounded to single precision, as Pure Data and OSC send them, so that all carriers
-/// give the same bits; a note name becomes its frequency (Hz).
+/// Numbers are rounded to single precision, as Pure Data and OSC send them, so that the same
+/// command gives the same bits from everywhere; a note name becomes its frequency (Hz).
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
                         const himc_atom *atoms, int count, himc_error *error);
 
 /// The same from text: "stroke 2 right accent f rim". Words split at white space, `\ ` keeps a
-/// space as in Pd's text files; what reads wholly as a decimal number is a number ("nan" and "inf"
-/// are words).
+/// space as in Pd's text files. A word that is a decimal number as a whole is a number ("nan" and
+/// "inf" are words).
 bool himc_command_parse_text(himc_command *out, himc_receiver receiver, const char *text,
                              himc_error *error);
 
+/// Checks a command that was put together without the parser: its id, count and atoms are
+/// believed, form, choices and stroke are found again. Numbers are kept as they are.
+bool himc_command_check(himc_command *out, himc_receiver receiver, const himc_command *in,
+                        himc_error *error);
+
 /// Deep copy (the symbols of `out` point into its own storage).
-void himc_command_copy(himc_command *out, const himc_command *in);
+HIMC_RT void himc_command_copy(himc_command *out, const himc_command *in);
+
+/// A word, by value.
+typedef struct himc_word {
+    char text[HIMC_NAME_SIZE];
+} himc_word;
+
+/// Word `choice` of atom `atom` (from 0) in the first form of a command: (HIMC_COMMAND_LAW, 0, 1)
+/// is "feedforward". "" if there is none, and for arguments. Keep the struct, not its `text` alone.
+HIMC_RT himc_word himc_command_word(himc_command_id id, int atom, int choice);
+
+typedef enum himc_file_use { HIMC_FILE_NONE, HIMC_FILE_READ, HIMC_FILE_WRITE } himc_file_use;
+
+/// What a command does with the file it names; `*atom` is the index of the file's name.
+HIMC_RT himc_file_use himc_command_file(const himc_command *command, int *atom);
 
 #endif

@@ -78,15 +78,14 @@ HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
 HIMC_RT void himc_drum_realign(himc_drum *drum, int ahead);
 
 /// How blows become sound: by the head's modes, or by whoever asks for its touches (by signals, or
-/// clips of recorded sound). The head goes on swinging and pushing back in any case.
+/// clips of recorded sound). The head goes on swinging and pushing back in any case. In the order
+/// of the words of `technique`.
 typedef enum himc_technique {
     HIMC_TECHNIQUE_MODAL,
     HIMC_TECHNIQUE_SIGNAL,
     HIMC_TECHNIQUE_CLIP
 } himc_technique;
 
-/// "modal", "signal", "clip".
-const char *himc_technique_name(himc_technique technique);
 /// What `technique` has set; while it is not modal the sound has faded (10 ms).
 HIMC_RT himc_technique himc_drum_technique(const himc_drum *drum);
 /// Whether somebody asks for its touches and sounds them. Until then modal alone is allowed.

@@ -7,6 +7,7 @@
 #define HIMC_MEMBRANE_H
 
 #include "himc/base.h"
+#include "himc/ranges.h"
 
 /// A head of masses and springs, read from a file.
 typedef struct himc_grid himc_grid;
@@ -39,8 +40,6 @@ typedef struct himc_mode {
 } himc_mode;
 
 #define HIMC_MODES_MAX 4000
-#define HIMC_TENSION_MIN 10.0 ///< (N/m)
-#define HIMC_TENSION_MAX 1e5  ///< (N/m)
 
 /// What a hand's whole weight adds to the decay of a bare head (1/s): T60 = 0.1 s.
 #define HIMC_DAMP 69.0
@@ -89,8 +88,6 @@ typedef struct himc_pickup {
 
 /// Listening beyond the drum, 10 degrees up, from 1 m.
 himc_pickup himc_pickup_default(void);
-
-#define HIMC_PICKUPS 8 ///< most that a membrane is heard by at once
 
 typedef struct himc_membrane himc_membrane;
 

@@ -8,6 +8,7 @@
 #define HIMC_PERFORMANCE_H
 
 #include "himc/drum.h"
+#include "himc/ranges.h"
 #include "himc/score.h"
 
 typedef struct himc_performance_config {

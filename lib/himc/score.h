@@ -1,6 +1,6 @@
 /// score.h: a score file: a Pure Data text file whose lines are commands, `;` ends a line.
 ///
-/// Strokes and tempo changes have beats; everything else is done once, in order, when the score is
+/// Strokes and tempo changes have beats; all other lines act once, in order, when the score is
 /// loaded. A line that begins with a drum's name is for that drum. `tempo BPM [BEAT]` holds from
 /// that beat on (0 when not given). At most 200000 strokes, 10000 other lines, 64 MiB; strokes of
 /// one hand at least 40 ms apart; a score cannot load a score.
@@ -8,22 +8,23 @@
 #define HIMC_SCORE_H
 
 #include "himc/command.h"
+#include "himc/ranges.h"
 
-#define HIMC_TEMPO 100 ///< where none is given (beats per minute)
+#define HIMC_TEMPO 100 ///< default (beats per minute); chosen: a walking pace
 
 typedef struct himc_tempo_change {
     double beat; ///< from here on (beats)
-    double bpm;  ///< 40 .. 200 are what the nuances are made for; 1 .. 1000 are taken
+    double bpm;  ///< HIMC_BPM_MIN .. HIMC_BPM_MAX; the nuances are made for 40 .. 200
 } himc_tempo_change;
 
 /// A line that is neither stroke nor tempo.
 typedef struct himc_score_line {
-    char drum[HIMC_NAME_SIZE]; ///< whom it is for; "" is the performer
+    char drum[HIMC_NAME_SIZE]; ///< the drum it is for; "" for the performer
     himc_command command;
     int line; ///< in the file, from 1
 } himc_score_line;
 
-/// Plain and readable; owned arrays. Strokes are sorted by beat (stable).
+/// A score with its arrays, which it owns. Strokes are sorted by beat (stable).
 typedef struct himc_score {
     himc_stroke *strokes;
     int stroke_count;

@@ -119,7 +119,7 @@ loudest=$(awk '$1 == "one-way:" && $2 > max { max = $2 } END { print max + 0 }' 
 report force_by_cord_plays_another_drum \
     "$(awk -v l="$loudest" 'BEGIN { if (!(l > 60 && l < 110)) print l " dB" }')"
 report missing_drum_is_said_once_and_played_silently \
-    "$(lines "himc~: no [membrane~ nobody]: playing on a silent one
+    "$(lines "himc~: no [membrane~ nobody]: its strokes are silent
 himc: strike")"
 
 # --- the other techniques: three blows at 0.7 m/s and three at 4, every 400 ms, the first at 100 ms
@@ -188,7 +188,7 @@ himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum
 report second_drum_of_a_name_stays_nameless \
     "$(lines "membrane~: twice: there is one of this name already: no [himc~] will find this one")"
 report second_performer_on_a_drum_plays_a_silent_one \
-    "$(lines "himc~: [membrane~ twice] is played by another [himc~]: playing on a silent one")"
+    "$(lines "himc~: [membrane~ twice] is played by another [himc~]: its strokes are silent")"
 report nothing_else_was_said_at_load \
     "$(grep -v -e '^error: ' -e '^verbose([01]): ' "$work/log" | grep -v '^himc~ [0-9.]*$')"
 

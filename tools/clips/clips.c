@@ -17,10 +17,7 @@
 #define BLOCK 480
 #define PITCH 146.832 // D3
 
-static const struct {
-    const char *name;
-    double place;
-} spots[] = {{"center", 0}, {"normal", 0.75}, {"rim", 0.92}};
+static const double places[] = {0, 0.75, 0.92}; // of the named spots, from the centre per radius
 
 static const struct {
     const char *name;
@@ -86,11 +83,12 @@ int main(int count, char **argument)
         fail("cannot write clips.txt");
     for (int s = 0; s < 3; s++)
         for (int d = 0; d < 3; d++) {
-            snprintf(name, sizeof name, "%s-%s.wav", spots[s].name, dynamics[d].name);
+            snprintf(name, sizeof name, "%s-%s.wav", himc_spot_name((himc_spot)s),
+                     dynamics[d].name);
             snprintf(path, sizeof path, "%s/%s", argument[1], name);
-            play(spots[s].place, dynamics[d].velocity);
+            play(places[s], dynamics[d].velocity);
             keep(path);
-            fprintf(list, "%g %g %.3f %d %s;\n", spots[s].place, dynamics[d].velocity, PITCH, RATE,
+            fprintf(list, "%g %g %.3f %d %s;\n", places[s], dynamics[d].velocity, PITCH, RATE,
                     name);
         }
     return fclose(list) != 0;

@@ -157,7 +157,8 @@ static void print_measures(const claim *c, int row)
 {
     trial_kind kind = {.law = laws[row / ERRORS]};
     if (row % ERRORS == 0)
-        printf("\n\n# %s, gain %.4f\n", trial_law_name(&kind), row / ERRORS == 0 ? gains[0] : 1);
+        printf("\n\n# %s, gain %.4f\n", trial_law_name(&kind).text,
+               row / ERRORS == 0 ? gains[0] : 1);
     print_point(c, row, 100 * errors[row % ERRORS]);
 }
 

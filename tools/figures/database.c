@@ -88,9 +88,9 @@ int main(void)
         trial_kind kind = {HIMC_LEGATO, HIMC_PIPELINE_HIMC, laws[l]};
         const trial_result *own = &result[l * HIMC_NUANCES * TRIAL_SEQUENCES];
         for (int n = 0; n < HIMC_NUANCES; n++)
-            print_row(&own[n * TRIAL_SEQUENCES], TRIAL_SEQUENCES, trial_law_name(&kind),
+            print_row(&own[n * TRIAL_SEQUENCES], TRIAL_SEQUENCES, trial_law_name(&kind).text,
                       himc_nuance_name((himc_nuance)n));
-        print_row(own, HIMC_NUANCES * TRIAL_SEQUENCES, trial_law_name(&kind), "all");
+        print_row(own, HIMC_NUANCES * TRIAL_SEQUENCES, trial_law_name(&kind).text, "all");
     }
     return 0;
 }

@@ -101,10 +101,11 @@ static void glissando(player *p)
 
 static void mallets(player *p)
 {
-    static const char *const names[] = {"mallet soft", "mallet medium", "mallet hard",
-                                        "mallet wood"};
-    for (int i = 0; i < 4; i++) {
-        say(p, names[i]);
+    himc_word mallet;
+    for (int i = 0; (mallet = himc_command_word(HIMC_COMMAND_MALLET, 0, i)).text[0]; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "mallet %s", mallet.text);
+        say(p, text);
         say(p, "strike -0.219 0 4");
         play(p, 1.4);
     }

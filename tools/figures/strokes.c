@@ -87,7 +87,7 @@ static int find_law(const char *name)
     trial_kind kind = {HIMC_LEGATO, HIMC_PIPELINE_ID, HIMC_LAW_PRINTED};
     for (int law = 0; law < TRIAL_LAWS; law++) {
         kind.law = (himc_law)law;
-        if (!strcmp(name, trial_law_name(&kind)))
+        if (!strcmp(name, trial_law_name(&kind).text))
             return law;
     }
     return -1;

@@ -1,25 +1,36 @@
-/// argument.c: the atoms of the vocabulary and their physical ranges, in one table.
+/// argument.c: the arguments of the commands with their physical ranges, in one table.
 ///
-/// A row of the command table names its atoms in capitals; here each name gets its kind, its range
-/// and its unit. The same name may mean different things after different words, so a row with a
-/// context comes before one without. The ranges are wide but physical: what lies outside cannot be
-/// a drum, a person or a room.
+/// A command row names its arguments in capitals; here each name gets its kind, its range, its unit
+/// and its words. A name may mean different things after different words, so a row with a context
+/// comes before the row without one. Ranges that a struct's check shares are in himc/ranges.h.
 #include "base/argument.h"
+
+#include "himc/ranges.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#define TUNE_LOW 20    // principal mode (Hz); chosen: below the deepest drum ...
+#define TUNE_HIGH 2000 // ... and above the highest (Hz): notes E0 to B6
+
+// in the order of himc_hand, himc_nuance, himc_spot
+static const char *const hands[] = {"left", "right", NULL};
+static const char *const nuances[] = {"legato",          "tenuto",   "accent",
+                                      "vertical-accent", "staccato", NULL};
+static const char *const spots[] = {"center", "normal", "rim", NULL};
+static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
+
 static const himc_argument arguments[] = {
     {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
-    {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", "left right"},
-    {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", "legato tenuto accent vertical-accent staccato"},
-    {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", "ppp pp p mp mf f ff fff"},
-    {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", "center normal rim"},
+    {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
+    {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
+    {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
+    {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"DRUM", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
-    {"BPM", NULL, HIMC_ARGUMENT_NUMBER, 1, 1000, "beats per minute", NULL},
+    {"BPM", NULL, HIMC_ARGUMENT_NUMBER, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute", NULL},
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
     {"JOINT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
@@ -45,38 +56,39 @@ static const himc_argument arguments[] = {
     {"ELBOW", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
     {"WRIST", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
     {"GRIP", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
-    {"HZ", "physics", HIMC_ARGUMENT_NUMBER, 500, 48000, "Hz", NULL},
-    {"HZ", "task", HIMC_ARGUMENT_NUMBER, 50, 2000, "Hz", NULL},
-    {"HZ", "tune", HIMC_ARGUMENT_NUMBER, 20, 2000, "Hz", NULL},
+    {"HZ", "physics", HIMC_ARGUMENT_NUMBER, HIMC_PHYSICS_RATE_MIN, HIMC_PHYSICS_RATE_MAX, "Hz",
+     NULL},
+    {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
+    {"HZ", "tune", HIMC_ARGUMENT_NUMBER, TUNE_LOW, TUNE_HIGH, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},
     {"PORT", NULL, HIMC_ARGUMENT_COUNT, 1, 65535, "", NULL},
-    {"NOTE", NULL, HIMC_ARGUMENT_NOTE, 20, 2000, "Hz", NULL},
+    {"NOTE", NULL, HIMC_ARGUMENT_NOTE, TUNE_LOW, TUNE_HIGH, "Hz", NULL},
     {"HEIGHT", NULL, HIMC_ARGUMENT_NUMBER, 1.2, 2.2, "m", NULL},
-    {"MASS", "player", HIMC_ARGUMENT_NUMBER, 30, 200, "kg", NULL},
+    {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
-    {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, 12, 60, "inches", NULL},
-    {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1, "m", NULL},
-    {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, 10, 1e5, "N/m", NULL},
+    {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "inches", NULL},
+    {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
+    {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", NULL},
     {"DENSITY", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 10, "kg/m^2", NULL},
     {"COUNT", NULL, HIMC_ARGUMENT_COUNT, 1, 2000, "", NULL},
     {"T60", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 100, "s", NULL},
-    {"SIGMA0", NULL, HIMC_ARGUMENT_NUMBER, 0, 1000, "1/s", NULL},
-    {"SIGMA1", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "s", NULL},
+    {"SIGMA0", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_SIGMA0_MAX, "1/s", NULL},
+    {"SIGMA1", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_SIGMA1_MAX, "s", NULL},
     {"K", NULL, HIMC_ARGUMENT_NUMBER, 1e3, 1e13, "N/m^alpha", NULL},
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
     {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10, "m^3", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
-    {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"LENGTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
     {"WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
-    {"CHANNELS", NULL, HIMC_ARGUMENT_COUNT, 1, 8, "", NULL},
-    {"CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, 8, "", NULL},
+    {"CHANNELS", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
+    {"CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
     {"AZIMUTH", NULL, HIMC_ARGUMENT_NUMBER, -6.2832, 6.2832, "rad", NULL},
-    {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, 1.5708, "rad", NULL},
-    {"DISTANCE", NULL, HIMC_ARGUMENT_NUMBER, 0.3, 100, "m", NULL},
-    {"VELOCITY", NULL, HIMC_ARGUMENT_NUMBER, 0, 30, "m/s", NULL},
+    {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_ELEVATION_MAX, "rad", NULL},
+    {"DISTANCE", NULL, HIMC_ARGUMENT_NUMBER, HIMC_PICKUP_DISTANCE_MIN, HIMC_PICKUP_DISTANCE_MAX,
+     "m", NULL},
+    {"VELOCITY", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_STRIKE_VELOCITY_MAX, "m/s", NULL},
 };
 
 const himc_argument *himc_argument_find(const char *name, const char *context)
@@ -89,18 +101,32 @@ const himc_argument *himc_argument_find(const char *name, const char *context)
     return NULL;
 }
 
-int himc_word_index(const char *words, const char *word)
+static int find_word(const char *const *words, const char *word)
 {
-    size_t length = strlen(word);
-    int index = 0;
-    while (words && *words) {
-        size_t n = strcspn(words, " |");
-        if (n == length && strncmp(words, word, n) == 0)
-            return index;
-        words += n + (words[n] != '\0');
-        index++;
-    }
+    for (int i = 0; words && words[i]; i++)
+        if (strcmp(words[i], word) == 0)
+            return i;
     return -1;
+}
+
+int himc_argument_choice(const himc_argument *argument, const himc_atom *atom)
+{
+    return atom->kind == HIMC_ATOM_SYMBOL ? find_word(argument->words, atom->symbol) : -1;
+}
+
+const char *himc_hand_name(himc_hand hand)
+{
+    return hands[hand == HIMC_LEFT ? HIMC_LEFT : HIMC_RIGHT];
+}
+
+const char *himc_nuance_name(himc_nuance nuance)
+{
+    return nuance >= 0 && nuance < HIMC_NUANCES ? nuances[nuance] : "none";
+}
+
+const char *himc_spot_name(himc_spot spot)
+{
+    return spot >= 0 && spot < HIMC_SPOT_XY ? spots[spot] : "";
 }
 
 bool himc_note_frequency(const char *note, double *hz)
@@ -119,7 +145,7 @@ bool himc_note_frequency(const char *note, double *hz)
     return true;
 }
 
-/// A drum's name must survive in a score line, an OSC address and a stroke's last atom.
+// a drum's name must stay itself in a score line, an OSC address and as a stroke's last atom
 static bool is_name(const char *word)
 {
     if (!word[0] || strlen(word) >= HIMC_NAME_SIZE || strpbrk(word, " \t/#*?,;:[]{}\\\"$"))
@@ -127,13 +153,8 @@ static bool is_name(const char *word)
     for (const char *s = word; *s; s++)
         if (iscntrl((unsigned char)*s))
             return false;
-    if (himc_word_index("comment center normal rim", word) >= 0)
-        return false;
-    for (int i = 0; himc_command_table(i); i++)
-        if (himc_command_table(i)->receiver == HIMC_PERFORMER &&
-            strcmp(himc_command_table(i)->name, word) == 0)
-            return false;
-    return true;
+    return strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
+           !himc_command_find(HIMC_PERFORMER, word);
 }
 
 static bool accepts_word(const himc_argument *argument, const char *word)
@@ -144,7 +165,7 @@ static bool accepts_word(const himc_argument *argument, const char *word)
     case HIMC_ARGUMENT_TEXT: return strlen(word) >= argument->low && strlen(word) <= argument->high;
     case HIMC_ARGUMENT_NOTE:
         return himc_note_frequency(word, &hz) && hz >= argument->low && hz <= argument->high;
-    default: return himc_word_index(argument->words, word) >= 0;
+    default: return find_word(argument->words, word) >= 0;
     }
 }
 
@@ -168,11 +189,23 @@ double himc_argument_number(const himc_argument *argument, double number)
     return (float)number == (float)argument->high ? argument->high : (float)number;
 }
 
+// the words of an argument with spaces between them
+static void list_words(const himc_argument *argument, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; argument->words && argument->words[i] && used < size; i++)
+        used +=
+            (size_t)snprintf(text + used, size - used, "%s%s", i ? " " : "", argument->words[i]);
+}
+
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)
 {
     const char *space = argument->unit[0] ? " " : "";
+    char words[128];
+    list_words(argument, words, sizeof words);
     switch (argument->kind) {
-    case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", argument->words); break;
+    case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:
         snprintf(text, size,
                  "a drum's name: up to %d letters and digits, none of the performer's commands",
@@ -183,8 +216,8 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
         break;
     case HIMC_ARGUMENT_NOTE: snprintf(text, size, "a note from E0 to B6 such as A2 or f#3"); break;
     default:
-        snprintf(text, size, "%s%s%g .. %g%s%s%s", argument->words ? argument->words : "",
-                 argument->words ? " or " : "", argument->low, argument->high, space,
-                 argument->unit, argument->kind == HIMC_ARGUMENT_COUNT ? ", whole" : "");
+        snprintf(text, size, "%s%s%g .. %g%s%s%s", words, words[0] ? " or " : "", argument->low,
+                 argument->high, space, argument->unit,
+                 argument->kind == HIMC_ARGUMENT_COUNT ? ", whole" : "");
     }
 }

@@ -1,4 +1,4 @@
-/// argument.h: the words of a command row's `atoms`: what BEAT, HAND, DRUM ... may be.
+/// argument.h: the arguments in the grammar of a command row: what BEAT, HAND, DRUM ... may be.
 #ifndef HIMC_ARGUMENT_H
 #define HIMC_ARGUMENT_H
 
@@ -9,34 +9,34 @@ typedef enum himc_argument_kind {
     HIMC_ARGUMENT_COUNT,  ///< the same, a whole number
     HIMC_ARGUMENT_WORD,   ///< one of `words`
     HIMC_ARGUMENT_NAME,   ///< of a drum
-    HIMC_ARGUMENT_TEXT,   ///< any word up to `high` characters
+    HIMC_ARGUMENT_TEXT,   ///< any word of low .. high characters
     HIMC_ARGUMENT_NOTE    ///< A2, f#3
 } himc_argument_kind;
 
 typedef struct himc_argument {
-    const char *name;    ///< as written in the table: "BEAT"
+    const char *name;    ///< as written in the grammar: "BEAT"
     const char *context; ///< the command or the literal word before it, NULL for any
     himc_argument_kind kind;
     double low, high;
     const char *unit;
-    const char *words; ///< allowed words, separated by spaces, or NULL
+    const char *const *words; ///< allowed words, NULL after the last; or NULL
 } himc_argument;
 
 /// The argument of that name in that context. Borrowed, static; NULL if there is none.
 const himc_argument *himc_argument_find(const char *name, const char *context);
 
-/// Whether the atom fits.
+/// True if the atom fits.
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom);
 
-/// The number of an accepted atom as all hosts have it, in single precision, but for the ends of
-/// the range, which are what the table says: Pd's 2.2 is a little more than 2.2.
+/// Index of the atom among the argument's words, or -1.
+int himc_argument_choice(const himc_argument *argument, const himc_atom *atom);
+
+/// The number of an accepted atom in single precision, as all hosts have it. The ends of the range
+/// stay exactly as in the table: Pd's 2.2 is a little more than 2.2.
 double himc_argument_number(const himc_argument *argument, double number);
 
 /// What would fit, for a person: "0 .. 1 m", "left right".
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size);
-
-/// Position of `word` among `words` (separated by spaces or '|'), or -1.
-int himc_word_index(const char *words, const char *word);
 
 /// Frequency of a note name: letter, any # or b, octave; A4 is 440 Hz (so A2 is 110).
 bool himc_note_frequency(const char *note, double *hz);

@@ -1,4 +1,4 @@
-/// base.c: errors are text for a person; they are written once, where the trouble is seen.
+/// base.c: errors are text for a person, written once, where the fault is found.
 #include "himc/base.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ bool himc_check_range(const char *name, double value, double low, double high, c
                           high, space, unit);
 }
 
-const char *himc_hand_name(himc_hand hand)
+const char *himc_version(void)
 {
-    return hand == HIMC_LEFT ? "left" : "right";
+    return HIMC_VERSION;
 }

@@ -1,9 +1,9 @@
-/// command.c: the vocabulary: one parser.
+/// command.c: the parser of commands.
 ///
-/// It follows the grammar in the rows of command_table.c. If no alternative fits, the error speaks
-/// of the one that came closest. Numbers are held in single precision, as Pure Data and OSC send
-/// them, so that a command is the same to the last bit whoever carries it. Invariant: a refused
-/// command changes nothing.
+/// It follows the grammar in the rows of command_rows.h form by form. If no form fits, the error
+/// line is about the form that came closest. Numbers are held in single precision, as Pure Data and
+/// OSC send them, so that a command is the same to the last bit wherever it comes from. Invariant:
+/// a refused command changes nothing.
 #include "himc/command.h"
 
 #include "base/argument.h"
@@ -16,14 +16,16 @@
 
 #define WORD_SIZE 64
 #define ALLOWED_SIZE 256
+#define LOUDEST 7.0 // dynamic word k of ppp .. fff is k / 7
 
-const char *himc_nuance_name(himc_nuance nuance)
-{
-    static const char *const name[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};
-    return nuance >= 0 && nuance < HIMC_NUANCES ? name[nuance] : "none";
-}
+/// A command's atoms as the grammar understands them.
+typedef struct reading {
+    int form;
+    double number[HIMC_COMMAND_ATOMS];
+    int choice[HIMC_COMMAND_ATOMS];
+} reading;
 
-/// How far an alternative of the grammar was followed, and what stopped it.
+/// How far a form of the grammar was followed, and what stopped it.
 typedef struct attempt {
     int rank; ///< larger is closer
     enum { FITS, WRONG, MISSING, TOO_MANY } end;
@@ -32,15 +34,16 @@ typedef struct attempt {
     char allowed[ALLOWED_SIZE];
 } attempt;
 
-/// The state of following one alternative.
+/// The state of following one form.
 typedef struct walk {
     const char *context; ///< command or last literal word
     const himc_atom *atom;
     int count, at;
-    bool literal;   ///< a literal word fitted
-    double *number; ///< what the atoms that fitted are stored as (HIMC_COMMAND_ATOMS)
+    bool literal; ///< a literal word fitted
+    reading *out; ///< of the atoms that fitted
 } walk;
 
+/// Copies the first token of `grammar` without brackets; returns the rest.
 static const char *next_token(const char *grammar, char token[WORD_SIZE], bool *optional)
 {
     size_t n = strcspn(grammar, " ");
@@ -48,6 +51,36 @@ static const char *next_token(const char *grammar, char token[WORD_SIZE], bool *
     snprintf(token, WORD_SIZE, "%.*s", (int)(n - 2 * (size_t)*optional), grammar + *optional);
     grammar += n;
     return grammar + strspn(grammar, " ");
+}
+
+/// Word `index` of "a|b|c", or "".
+static himc_word cut_word(const char *token, int index)
+{
+    himc_word word = {""};
+    for (; index > 0 && *token; index--) {
+        token += strcspn(token, "|");
+        token += *token == '|';
+    }
+    if (index == 0)
+        snprintf(word.text, sizeof word.text, "%.*s", (int)strcspn(token, "|"), token);
+    return word;
+}
+
+/// Index of `word` in "a|b|c", or -1.
+static int find_word(const char *token, const char *word)
+{
+    for (int i = 0;; i++) {
+        himc_word choice = cut_word(token, i);
+        if (!choice.text[0])
+            return -1;
+        if (strcmp(choice.text, word) == 0)
+            return i;
+    }
+}
+
+static bool is_argument(const char *token)
+{
+    return isupper((unsigned char)token[0]);
 }
 
 /// SPOT as two numbers.
@@ -60,41 +93,57 @@ static bool is_place(const walk *w)
            himc_argument_accepts(x, &w->atom[w->at + 1]);
 }
 
-static void take_atoms(walk *w, const himc_argument *argument, int count)
-{
-    for (; count > 0; count--, w->at++)
-        if (w->at < HIMC_COMMAND_ATOMS && w->atom[w->at].kind == HIMC_ATOM_NUMBER)
-            w->number[w->at] = himc_argument_number(argument, w->atom[w->at].number);
-}
-
-/// Takes the atoms that fit the token; false if the next one does not.
-static bool take(walk *w, const char *token, char allowed[ALLOWED_SIZE])
+/// Takes the next atom as this argument, or as a literal word if `argument` is NULL.
+static void take_atom(walk *w, const himc_argument *argument, int choice)
 {
     const himc_atom *atom = &w->atom[w->at];
-    if (!isupper((unsigned char)token[0])) {
-        snprintf(allowed, ALLOWED_SIZE, "%s", token);
-        for (char *s = allowed; *s; s++)
-            *s = *s == '|' ? ' ' : *s;
-        if (atom->kind != HIMC_ATOM_SYMBOL || himc_word_index(token, atom->symbol) < 0)
-            return false;
-        w->context = atom->symbol;
-        w->literal = true;
-        w->at++;
-        return true;
+    if (w->at < HIMC_COMMAND_ATOMS) {
+        w->out->choice[w->at] = choice;
+        if (argument && atom->kind == HIMC_ATOM_NUMBER)
+            w->out->number[w->at] = himc_argument_number(argument, atom->number);
     }
+    w->at++;
+}
+
+/// Takes the next atom if it is one of the words of a token "a|b|c".
+static bool take_word(walk *w, const char *token, char allowed[ALLOWED_SIZE])
+{
+    const himc_atom *atom = &w->atom[w->at];
+    int choice = atom->kind == HIMC_ATOM_SYMBOL ? find_word(token, atom->symbol) : -1;
+    snprintf(allowed, ALLOWED_SIZE, "%s", token);
+    for (char *s = allowed; *s; s++)
+        *s = *s == '|' ? ' ' : *s;
+    if (choice < 0)
+        return false;
+    w->context = atom->symbol;
+    w->literal = true;
+    take_atom(w, NULL, choice);
+    return true;
+}
+
+/// Takes the atoms that fit the token; false, and `allowed` filled, if the next one does not.
+static bool take(walk *w, const char *token, char allowed[ALLOWED_SIZE])
+{
+    if (!is_argument(token))
+        return take_word(w, token, allowed);
     const himc_argument *argument = himc_argument_find(token, w->context);
     bool spot = strcmp(token, "SPOT") == 0;
     himc_argument_describe(argument, allowed, ALLOWED_SIZE);
     if (spot)
-        snprintf(allowed, ALLOWED_SIZE, "%s or X Y, both -1 .. 1 m", argument->words);
-    bool place = spot && is_place(w);
-    if (!place && !himc_argument_accepts(argument, atom))
+        strncat(allowed, " or X Y, both -1 .. 1 m", ALLOWED_SIZE - strlen(allowed) - 1);
+    if (spot && is_place(w)) {
+        const himc_argument *x = himc_argument_find("X", "stroke");
+        take_atom(w, x, -1);
+        take_atom(w, x, -1);
+        return true;
+    }
+    if (!himc_argument_accepts(argument, &w->atom[w->at]))
         return false;
-    take_atoms(w, place ? himc_argument_find("X", "stroke") : argument, place ? 2 : 1);
+    take_atom(w, argument, himc_argument_choice(argument, &w->atom[w->at]));
     return true;
 }
 
-/// Follows one alternative from `grammar` to its end; returns where the next begins, or NULL.
+/// Follows one form from `grammar` to its end; returns where the next begins, or NULL.
 static const char *follow(const char *grammar, walk w, attempt *result)
 {
     char token[WORD_SIZE], allowed[ALLOWED_SIZE];
@@ -138,7 +187,7 @@ static bool refuse(const himc_command_row *row, const himc_atom *atoms, const at
     char value[WORD_SIZE] = "";
     if (best->end != MISSING)
         print_value(value, sizeof value, &atoms[best->at]);
-    bool named = isupper((unsigned char)best->name[0]);
+    bool named = is_argument(best->name);
     const char *space = row->atoms[0] ? " " : "";
     if (best->end == MISSING)
         return himc_error_set(error, "%s: %s missing, allowed %s %s", row->name, best->name,
@@ -164,12 +213,16 @@ static void keep_closer(attempt *best, const attempt *other)
     }
 }
 
-static bool check(const himc_command_row *row, const himc_atom *atoms, int count,
-                  double number[HIMC_COMMAND_ATOMS], himc_error *error)
+/// Finds the first form that fits.
+static bool check(const himc_command_row *row, const himc_atom *atoms, int count, reading *out,
+                  himc_error *error)
 {
     attempt best = {.rank = -1}, now;
-    walk start = {row->name, atoms, count, 0, false, number};
-    for (const char *grammar = row->atoms; grammar;) {
+    walk start = {row->name, atoms, count, 0, false, out};
+    const char *grammar = row->atoms;
+    for (out->form = 0; grammar; out->form++) {
+        for (int i = 0; i < HIMC_COMMAND_ATOMS; i++)
+            out->choice[i] = -1;
         grammar = follow(grammar, start, &now);
         if (now.end == FITS)
             return true;
@@ -233,23 +286,16 @@ static bool refuse_name(himc_receiver receiver, const char *name, himc_error *er
                           nearest ? "? " : "", names);
 }
 
-static const himc_command_row *find_row(himc_receiver receiver, const char *name)
-{
-    const himc_command_row *row;
-    for (int i = 0; (row = himc_command_table(i)); i++)
-        if (row->receiver == receiver && strcmp(row->name, name) == 0)
-            return row;
-    return NULL;
-}
-
 /// Copies atoms and their symbols; they have been checked, so they fit.
-static void store(himc_command *out, const himc_atom *atoms, const double *number, int count)
+static void store(himc_command *out, const himc_atom *atoms, int count, const reading *read)
 {
     size_t used = 0;
     out->count = count;
+    out->form = read->form;
     for (int i = 0; i < count; i++) {
         double hz;
-        out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, number[i], NULL};
+        out->choice[i] = read->choice[i];
+        out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, read->number[i], NULL};
         if (atoms[i].kind != HIMC_ATOM_SYMBOL)
             continue;
         if (out->id == HIMC_COMMAND_TUNE && himc_note_frequency(atoms[i].symbol, &hz)) {
@@ -263,47 +309,57 @@ static void store(himc_command *out, const himc_atom *atoms, const double *numbe
     }
 }
 
-static int word_of(const char *argument, const himc_atom *atom)
+/// The stroke in the checked atoms of `stroke` and `hit`.
+static himc_stroke read_stroke(const himc_command *c)
 {
-    return himc_word_index(himc_argument_find(argument, "stroke")->words, atom->symbol);
-}
-
-/// The stroke that checked atoms describe.
-static himc_stroke read_stroke(const himc_command *command)
-{
-    const himc_atom *atom = command->atom, *end = atom + command->count;
     himc_stroke stroke = {.spot = HIMC_SPOT_NORMAL};
-    if (command->id == HIMC_COMMAND_STROKE)
-        stroke.beat = (atom++)->number;
-    stroke.hand = (himc_hand)word_of("HAND", atom++);
-    stroke.nuance = (himc_nuance)word_of("NUANCE", atom++);
-    stroke.dynamic = atom->kind == HIMC_ATOM_NUMBER ? atom->number : word_of("DYNAMIC", atom) / 7.0;
-    atom++;
-    if (atom < end && atom->kind == HIMC_ATOM_NUMBER) {
+    int i = 0;
+    if (c->id == HIMC_COMMAND_STROKE)
+        stroke.beat = c->atom[i++].number;
+    stroke.hand = (himc_hand)c->choice[i++];
+    stroke.nuance = (himc_nuance)c->choice[i++];
+    stroke.dynamic = c->choice[i] >= 0 ? c->choice[i] / LOUDEST : c->atom[i].number;
+    i++;
+    if (i < c->count && c->atom[i].kind == HIMC_ATOM_NUMBER) {
         stroke.spot = HIMC_SPOT_XY;
-        stroke.x = (atom++)->number;
-        stroke.y = (atom++)->number;
-    } else if (atom < end && word_of("SPOT", atom) >= 0) {
-        stroke.spot = (himc_spot)word_of("SPOT", atom++);
+        stroke.x = c->atom[i++].number;
+        stroke.y = c->atom[i++].number;
+    } else if (i < c->count && c->choice[i] >= 0) {
+        stroke.spot = (himc_spot)c->choice[i++];
     }
-    if (atom < end)
-        snprintf(stroke.drum, sizeof stroke.drum, "%s", atom->symbol);
+    if (i < c->count)
+        snprintf(stroke.drum, sizeof stroke.drum, "%s", c->atom[i].symbol);
     return stroke;
 }
 
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
                         const himc_atom *atoms, int count, himc_error *error)
 {
-    const himc_command_row *row = find_row(receiver, name);
+    const himc_command_row *row = himc_command_find(receiver, name);
+    reading read = {.form = 0};
     if (!row)
         return refuse_name(receiver, name, error);
-    double number[HIMC_COMMAND_ATOMS] = {0};
-    if (!check(row, atoms, count, number, error))
+    if (!check(row, atoms, count, &read, error))
         return false;
     out->id = row->id;
-    store(out, atoms, number, count);
+    store(out, atoms, count, &read);
     if (row->id == HIMC_COMMAND_STROKE || row->id == HIMC_COMMAND_HIT)
         out->stroke = read_stroke(out);
+    return true;
+}
+
+bool himc_command_check(himc_command *out, himc_receiver receiver, const himc_command *in,
+                        himc_error *error)
+{
+    const himc_command_row *row = himc_command_table((int)in->id);
+    if (!row || in->count < 0 || in->count > HIMC_COMMAND_ATOMS)
+        return himc_error_set(error, "command %d with %d atoms: not from the parser", (int)in->id,
+                              in->count);
+    if (!himc_command_parse(out, receiver, row->name, in->atom, in->count, error))
+        return false;
+    for (int i = 0; i < in->count; i++)
+        if (in->atom[i].kind == HIMC_ATOM_NUMBER)
+            out->atom[i].number = in->atom[i].number;
     return true;
 }
 
@@ -335,4 +391,35 @@ void himc_command_copy(himc_command *out, const himc_command *in)
     for (int i = 0; i < out->count; i++)
         if (out->atom[i].kind == HIMC_ATOM_SYMBOL)
             out->atom[i].symbol = out->storage + (in->atom[i].symbol - in->storage);
+}
+
+himc_word himc_command_word(himc_command_id id, int atom, int choice)
+{
+    const himc_command_row *row = himc_command_table((int)id);
+    const char *grammar = row ? row->atoms : "";
+    char token[WORD_SIZE] = "";
+    bool optional;
+    for (int i = 0; i <= atom; i++) {
+        if (!*grammar || *grammar == '|')
+            return (himc_word){""};
+        grammar = next_token(grammar, token, &optional);
+    }
+    return is_argument(token) ? (himc_word){""} : cut_word(token, choice);
+}
+
+himc_file_use himc_command_file(const himc_command *command, int *atom)
+{
+    const himc_command_row *row = himc_command_table((int)command->id);
+    const char *grammar = row->atoms;
+    char token[WORD_SIZE];
+    bool optional;
+    for (int form = 0; form < command->form; form++)
+        grammar = strstr(grammar, " | ") + 3;
+    for (int i = 0; i < command->count && *grammar && *grammar != '|'; i++) {
+        grammar = next_token(grammar, token, &optional);
+        *atom = i;
+        if (strcmp(token, "FILE") == 0)
+            return row->marks & HIMC_WRITES_FILE ? HIMC_FILE_WRITE : HIMC_FILE_READ;
+    }
+    return HIMC_FILE_NONE;
 }

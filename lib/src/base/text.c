@@ -1,8 +1,8 @@
 /// text.c: Pure Data text: words between white space, `;` ends a statement, `\` quotes a character.
 ///
-/// Numbers are read by hand and not by strtod, which obeys the host program's locale: in half of
-/// Europe it stops at the point of "0.5". Digits are gathered in an integer and scaled once by a
-/// power of ten, exact to the last place of single precision, in which Pure Data would hold them.
+/// Numbers are not read by strtod: it follows the host program's locale and may expect "0,5".
+/// Digits are gathered in an integer and scaled once by a power of ten, exact to the last place of
+/// single precision, in which Pure Data holds numbers.
 #include "base/text.h"
 
 #include <ctype.h>

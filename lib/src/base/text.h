@@ -4,15 +4,15 @@
 
 #include "himc/command.h"
 
-/// Whether all of `word` is a decimal number (".5", "-3", "1e-3"); "nan", "inf" and "0x1" are
-/// words. The point is a point whatever the locale.
+/// True if the whole `word` is a decimal number (".5", "-3", "1e-3"); "nan", "inf" and "0x1" are
+/// words. The decimal point is a point in every locale.
 bool himc_text_number(const char *word, double *number);
 
-/// What a statement of a text file is, once read.
+/// One statement of a text file.
 typedef struct himc_text_statement {
     himc_atom *atom; ///< room for `capacity`; symbols point into `storage`
     int capacity;
-    int count;     ///< words there were, also those beyond the capacity
+    int count;     ///< of words, also those beyond the capacity
     int line;      ///< of its first word, from 1
     char *storage; ///< room for `size` characters
     size_t size;
@@ -20,11 +20,11 @@ typedef struct himc_text_statement {
 } himc_text_statement;
 
 /// Reads the words up to the next `;` or the end. Advances `text` past it and `line` by the
-/// newlines met. False when nothing but white space was left.
+/// newlines in it. False if only white space is left.
 bool himc_text_next(const char **text, int *line, himc_text_statement *statement);
 
-/// One word in an error message: control characters become '?', long ones are cut; writes into
-/// `out`.
+/// Copies a word for an error message into `out`: control characters become '?', long words are
+/// cut.
 void himc_text_printable(char *out, size_t size, const char *word);
 
 #endif

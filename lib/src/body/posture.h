@@ -15,7 +15,7 @@ typedef struct himc_posture_motion {
 } himc_posture_motion;
 
 /// The grip of the sticks. German: palms down, the wrist bends. French: thumbs up, the fingers
-/// move the stick.
+/// move the stick. In the order of the words of `grip`.
 typedef enum himc_grip { HIMC_GRIP_GERMAN, HIMC_GRIP_FRENCH } himc_grip;
 
 /// The slowly changing parts of the posture, without the arms.

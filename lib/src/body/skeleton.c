@@ -7,6 +7,7 @@
 /// and his foot becomes foot and toes (85 : 15). Invariant: the masses sum to the performer's mass
 /// exactly. Table 1 of the 2012 paper sums to 1.28 with both limbs of a pair, so it is scaled to 1.
 #include "himc/body.h"
+#include "himc/ranges.h"
 
 #include <string.h>
 
@@ -104,13 +105,14 @@ himc_skeleton_config himc_skeleton_default(void)
 
 static bool config_valid(const himc_skeleton_config *c, himc_error *error)
 {
-    bool valid = himc_check_range("height", c->height, 1.19, 2.21, "m", error) &&
-                 himc_check_range("mass", c->mass, 30, 200, "kg", error) &&
-                 himc_check_range("stick length", c->stick_length, 0.2, 0.6, "m", error) &&
-                 himc_check_range("shaft mass", c->shaft_mass, 0.005, 0.2, "kg", error) &&
-                 himc_check_range("mallet mass", c->mallet_mass, 0.005, 0.2, "kg", error) &&
-                 himc_check_range("mallet radius", c->mallet_radius, 0.005, 0.05, "m", error) &&
-                 himc_check_range("grip", c->grip, 0.02, 0.5 * c->stick_length, "m", error);
+    bool valid =
+        himc_check_range("height", c->height, 1.19, 2.21, "m", error) &&
+        himc_check_range("mass", c->mass, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", error) &&
+        himc_check_range("stick length", c->stick_length, 0.2, 0.6, "m", error) &&
+        himc_check_range("shaft mass", c->shaft_mass, 0.005, 0.2, "kg", error) &&
+        himc_check_range("mallet mass", c->mallet_mass, 0.005, 0.2, "kg", error) &&
+        himc_check_range("mallet radius", c->mallet_radius, 0.005, 0.05, "m", error) &&
+        himc_check_range("grip", c->grip, 0.02, 0.5 * c->stick_length, "m", error);
     valid = valid && (c->shoulders == 0 ||
                       himc_check_range("shoulders", c->shoulders, 0.2, 0.6, "m", error));
     valid = valid && (c->seat == 0 || himc_check_range("seat", c->seat, 0.3, 1.3, "m", error));

@@ -7,12 +7,14 @@
 #include "himc/body.h"
 #include "body/posture.h"
 
+/// In the order of the words of `mode`.
 typedef enum himc_pipeline {
     HIMC_PIPELINE_HIMC, ///< tips -> inverse kinematics -> inverse dynamics (2012, pipeline 2)
     HIMC_PIPELINE_ID,   ///< joint targets -> inverse dynamics (pipeline 3)
     HIMC_PIPELINE_IK    ///< joint targets shown as they are, no dynamics (pipeline 1)
 } himc_pipeline;
 
+/// In the order of the words of `law`.
 typedef enum himc_law {
     HIMC_LAW_PRINTED,        ///< tau = ks (qt - q) - kd q' (2012 paper, equation 2)
     HIMC_LAW_FEEDFORWARD,    ///< gravity added, and kd (qt' - q') in place of -kd q'

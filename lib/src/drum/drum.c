@@ -28,7 +28,8 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
                        HIMC_NAME_SIZE - 1);
         return NULL;
     }
-    if (!himc_check_range("inches", inches, 12, 60, "in", error) || !check_rate(sample_rate, error))
+    if (!himc_check_range("inches", inches, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "in", error) ||
+        !check_rate(sample_rate, error))
         return NULL;
     himc_head head = himc_head_default();
     head.radius = inches * 0.0254 / 2;
@@ -45,8 +46,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     drum->references = 1;
     drum->level = 1;
     drum->membrane = membrane;
-    himc_drum_mallet_preset("medium", &drum->mallet);
-    snprintf(drum->mallet_name, sizeof drum->mallet_name, "medium");
+    himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
     drum->place = (himc_head_frame){.center = {0.70, 0, 0.85}, .radius = head.radius};
     drum->rate = sample_rate;
     drum->spot_x = -0.75 * head.radius;

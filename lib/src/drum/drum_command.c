@@ -1,8 +1,7 @@
-/// drum_command.c: a drum's commands: each makes the new state aside, has it checked, and only then
-/// takes it.
+/// drum_command.c: a drum's commands, one function for each row of command_rows.h that is for a
+/// drum. Each makes the new state aside, has it checked, and only then takes it.
 #include "drum/drum_state.h"
 
-#include "base/argument.h"
 #include "drum/air.h"
 #include "himc/vec.h"
 
@@ -12,59 +11,27 @@
 
 // Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
 // softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
-// g.
-static const struct {
-    const char *name;
-    himc_mallet_head head;
-} presets[] = {
-    {"soft", {.stiffness = 1e7, .exponent = 2.54, .loss = 0.15, .mass = 0.030, .radius = 0.0175}},
-    {"medium",
-     {.stiffness = 1.6e8, .exponent = 2.54, .loss = 0.10, .mass = 0.030, .radius = 0.0175}},
-    {"hard", {.stiffness = 1e9, .exponent = 2.5, .loss = 0.05, .mass = 0.030, .radius = 0.0175}},
-    {"wood", {.stiffness = 1e10, .exponent = 2.5, .loss = 0.02, .mass = 0.030, .radius = 0.0175}},
+// g. In the order of the words of `mallet`.
+static const himc_mallet_head presets[] = {
+    [DRUM_MALLET_SOFT] =
+        {.stiffness = 1e7, .exponent = 2.54, .loss = 0.15, .mass = 0.030, .radius = 0.0175},
+    [DRUM_MALLET_MEDIUM] =
+        {.stiffness = 1.6e8, .exponent = 2.54, .loss = 0.10, .mass = 0.030, .radius = 0.0175},
+    [DRUM_MALLET_HARD] =
+        {.stiffness = 1e9, .exponent = 2.5, .loss = 0.05, .mass = 0.030, .radius = 0.0175},
+    [DRUM_MALLET_WOOD] =
+        {.stiffness = 1e10, .exponent = 2.5, .loss = 0.02, .mass = 0.030, .radius = 0.0175},
 };
 
-bool himc_drum_mallet_preset(const char *name, himc_mallet_head *head)
+void himc_drum_take_mallet(himc_drum *drum, drum_mallet_preset preset)
 {
-    for (size_t i = 0; i < sizeof presets / sizeof presets[0]; i++) {
-        if (strcmp(presets[i].name, name) == 0) {
-            *head = presets[i].head;
-            return true;
-        }
-    }
-    return false;
+    drum->mallet = presets[preset];
+    drum->mallet_name = himc_command_word(HIMC_COMMAND_MALLET, 0, (int)preset);
 }
 
 static double number(const himc_command *c, int index)
 {
     return c->atom[index].number;
-}
-
-static bool is_symbol(const himc_command *c, int index)
-{
-    return index < c->count && c->atom[index].kind == HIMC_ATOM_SYMBOL;
-}
-
-// the command's atoms are `count` numbers; the table has checked that already when it came by text
-static bool numbers(const himc_command *c, const char *name, int count, himc_error *error)
-{
-    bool good = c->count == count;
-    for (int i = 0; i < c->count; i++)
-        good = good && c->atom[i].kind == HIMC_ATOM_NUMBER;
-    return good ||
-           himc_error_set(error, "%s: takes %d number%s", name, count, count == 1 ? "" : "s");
-}
-
-// the first atom is a whole number in range
-static bool is_whole(const himc_command *c, const char *name, double low, double high,
-                     himc_error *error)
-{
-    if (c->count < 1 || c->atom[0].kind != HIMC_ATOM_NUMBER)
-        return himc_error_set(error, "%s: takes a number", name);
-    return himc_check_range(name, number(c, 0), low, high, "", error) &&
-           (number(c, 0) == floor(number(c, 0)) ||
-            himc_error_set(error, "%s: %g, allowed a whole number %g .. %g", name, number(c, 0),
-                           low, high));
 }
 
 static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
@@ -78,54 +45,59 @@ static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
     return true;
 }
 
-// `radius`, `tension`, `density`: one number of the head
-static bool set_field(himc_drum *drum, const himc_command *c, const char *name, size_t field,
-                      himc_error *error)
+// one number of the head
+static bool set_field(himc_drum *drum, const himc_command *c, size_t field, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
-    if (!numbers(c, name, 1, error))
-        return false;
     memcpy((char *)&head + field, &c->atom[0].number, sizeof(double));
     return set_head(drum, &head, error);
 }
 
-static bool set_modes(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_radius(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return set_field(drum, c, offsetof(himc_head, radius), error);
+}
+
+static bool do_tension(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return set_field(drum, c, offsetof(himc_head, tension), error);
+}
+
+static bool do_density(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return set_field(drum, c, offsetof(himc_head, density), error);
+}
+
+static bool do_glide(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return set_field(drum, c, offsetof(himc_head, glide), error);
+}
+
+static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return set_field(drum, c, offsetof(himc_head, damp), error);
+}
+
+static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
-    if (!is_whole(c, "modes", 1, HIMC_MODES_MAX, error))
-        return false;
     head.modes = (int)number(c, 0);
     return set_head(drum, &head, error);
 }
 
-static bool set_decay(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_decay(himc_drum *drum, const himc_command *c, himc_error *error)
 {
+    enum { T60, BOTH };
     himc_head head = *himc_membrane_head(drum->membrane);
-    if (c->count == 1) {
-        if (!numbers(c, "decay", 1, error) ||
-            !himc_check_range("decay T60", number(c, 0), 0.001, 100, "s", error))
-            return false;
-        head.decay_constant = log(1000) / number(c, 0);
-        head.decay_square = 0;
-    } else {
-        if (!numbers(c, "decay", 2, error))
-            return false;
-        head.decay_constant = number(c, 0);
-        head.decay_square = number(c, 1);
-    }
+    head.decay_constant = c->form == T60 ? log(1000) / number(c, 0) : number(c, 0);
+    head.decay_square = c->form == BOTH ? number(c, 1) : 0;
     return set_head(drum, &head, error);
 }
 
-static bool tune(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_tune(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane);
+    himc_head head = *himc_membrane_head(drum->membrane), lowest = head, highest = head;
     double hz = number(c, 0);
-    if (is_symbol(c, 0) && !himc_note_frequency(c->atom[0].symbol, &hz))
-        return himc_error_set(error, "tune: %s, allowed Hz or a note name as A2, f#3, Bb2",
-                              c->atom[0].symbol);
-    if (c->count != 1)
-        return himc_error_set(error, "tune: takes a frequency or a note name");
-    himc_head lowest = head, highest = head;
     lowest.tension = HIMC_TENSION_MIN;
     highest.tension = HIMC_TENSION_MAX;
     if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
@@ -135,126 +107,95 @@ static bool tune(himc_drum *drum, const himc_command *c, himc_error *error)
     return set_head(drum, &head, error);
 }
 
-static bool set_mallet(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_mallet(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_mallet_head head = drum->mallet;
-    const char *name = "own";
-    if (is_symbol(c, 0)) {
-        name = c->atom[0].symbol;
-        if (!himc_drum_mallet_preset(name, &head))
-            return himc_error_set(
-                error, "mallet: %s, allowed soft medium hard wood, or K ALPHA MASS", name);
+    enum { PRESET, NUMBERS };
+    (void)error;
+    if (c->form == NUMBERS) {
+        drum->mallet =
+            (himc_mallet_head){number(c, 0), number(c, 1), 0, number(c, 2), drum->mallet.radius};
+        drum->mallet_name = (himc_word){"own"};
     } else {
-        if (!numbers(c, "mallet", 3, error) ||
-            !himc_check_range("mallet K", number(c, 0), 1e3, 1e13, "N/m^ALPHA", error) ||
-            !himc_check_range("mallet ALPHA", number(c, 1), 1, 4, "", error) ||
-            !himc_check_range("mallet MASS", number(c, 2), 0.001, 1, "kg", error))
-            return false;
-        head = (himc_mallet_head){number(c, 0), number(c, 1), 0, number(c, 2), drum->mallet.radius};
+        himc_drum_take_mallet(drum, (drum_mallet_preset)c->choice[0]);
     }
-    drum->mallet = head;
-    snprintf(drum->mallet_name, sizeof drum->mallet_name, "%s", name);
     drum->revision++;
     return true;
 }
 
-static bool set_place(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_place(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    static const char *const axes[] = {"place X", "place Y", "place Z"};
-    if (!numbers(c, "place", c->count == 4 ? 4 : 3, error))
-        return false;
-    for (int i = 0; i < 3; i++)
-        if (!himc_check_range(axes[i], number(c, i), -10, 10, "m", error))
-            return false;
-    double tilt = c->count == 4 ? number(c, 3) : drum->place.tilt;
-    if (!himc_check_range("place tilt", tilt, -1.2, 1.2, "rad", error))
-        return false;
+    (void)error;
     drum->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
-    drum->place.tilt = tilt;
+    drum->place.tilt = c->count == 4 ? number(c, 3) : drum->place.tilt;
     drum->placed = true;
     drum->revision++;
     return true;
 }
 
-// `X Y` or `air AZIMUTH ELEVATION DISTANCE`, from atom `first` on
-static bool read_pickup(const himc_command *c, int first, himc_pickup *pickup, himc_error *error)
+// the place from atom `first` on; `pickup` and `channel` have the same two forms
+static himc_pickup read_pickup(const himc_command *c, int first, himc_pickup pickup)
 {
-    int count = c->count - first;
-    bool air = is_symbol(c, first) && strcmp(c->atom[first].symbol, "air") == 0;
-    bool good = count == (air ? 4 : 2);
-    for (int i = first + air; i < c->count; i++)
-        good = good && c->atom[i].kind == HIMC_ATOM_NUMBER;
-    if (!good)
-        return himc_error_set(
-            error, "pickup: %s, allowed X Y or air AZIMUTH ELEVATION DISTANCE (m, rad, rad, m)",
-            is_symbol(c, first) ? c->atom[first].symbol : "something else");
-    pickup->kind = air ? HIMC_PICKUP_AIR : HIMC_PICKUP_POINT;
-    if (air) {
-        pickup->azimuth = number(c, first + 1);
-        pickup->elevation = number(c, first + 2);
-        pickup->distance = number(c, first + 3);
+    enum { AIR, POINT };
+    pickup.kind = c->form == AIR ? HIMC_PICKUP_AIR : HIMC_PICKUP_POINT;
+    if (c->form == AIR) {
+        pickup.azimuth = number(c, first + 1);
+        pickup.elevation = number(c, first + 2);
+        pickup.distance = number(c, first + 3);
     } else {
-        pickup->x = number(c, first);
-        pickup->y = number(c, first + 1);
+        pickup.x = number(c, first);
+        pickup.y = number(c, first + 1);
     }
-    return true;
+    return pickup;
 }
 
-static bool set_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_pickup pickup = *himc_membrane_pickup(drum->membrane);
-    return read_pickup(c, 0, &pickup, error) &&
-           himc_membrane_set_pickup(drum->membrane, &pickup, error);
+    himc_pickup pickup = read_pickup(c, 0, *himc_membrane_pickup(drum->membrane));
+    return himc_membrane_set_pickup(drum->membrane, &pickup, error);
 }
 
-// a new one hears from further round the drum, 60 degrees to the right of the one before
-static bool set_pickups(himc_drum *drum, const himc_command *c, himc_error *error)
+// a new pickup is further round the drum, 60 degrees to the right of the one before
+static bool do_pickups(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_pickup all[HIMC_PICKUPS];
-    int count;
+    int count, wanted = (int)number(c, 0);
     const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
-    if (!is_whole(c, "pickups", 1, HIMC_PICKUPS, error))
-        return false;
     memcpy(all, now, sizeof *all * (size_t)count);
-    for (int i = count; i < (int)number(c, 0); i++) {
+    for (int i = count; i < wanted; i++) {
         all[i] = all[i - 1];
         all[i].kind = HIMC_PICKUP_AIR;
         all[i].distance = fmax(all[i].distance, himc_pickup_default().distance);
         all[i].azimuth = remainder(all[i].azimuth - HIMC_PI / 3, 2 * HIMC_PI);
     }
-    return himc_membrane_set_pickups(drum->membrane, all, (int)number(c, 0), error);
+    return himc_membrane_set_pickups(drum->membrane, all, wanted, error);
 }
 
-static bool set_channel(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_channel(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_pickup all[HIMC_PICKUPS];
-    int count;
+    int count, channel = (int)number(c, 0);
     const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
-    if (!is_whole(c, "channel", 1, count, error))
+    if (!himc_check_range("channel", channel, 1, count, "", error))
         return false;
     memcpy(all, now, sizeof *all * (size_t)count);
-    return read_pickup(c, 1, &all[(int)number(c, 0) - 1], error) &&
-           himc_membrane_set_pickups(drum->membrane, all, count, error);
+    all[channel - 1] = read_pickup(c, 1, all[channel - 1]);
+    return himc_membrane_set_pickups(drum->membrane, all, count, error);
 }
 
-static bool set_air(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_air(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
-    if (!is_whole(c, "air", 0, 1, error))
-        return false;
     head.air = number(c, 0) == 1;
     return set_head(drum, &head, error);
 }
 
-static bool set_kettle(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_kettle(himc_drum *drum, const himc_command *c, himc_error *error)
 {
+    enum { USUAL, VOLUME };
     himc_head head = *himc_membrane_head(drum->membrane);
-    head.kettle = 0;
-    if (is_symbol(c, 0) && c->count == 1 && strcmp(c->atom[0].symbol, "usual") == 0)
-        return set_head(drum, &head, error);
-    if (!numbers(c, "kettle", 1, error) || !himc_air_check(number(c, 0), head.radius, error))
+    if (c->form == VOLUME && !himc_air_check(number(c, 0), head.radius, error))
         return false;
-    head.kettle = number(c, 0);
+    head.kettle = c->form == USUAL ? 0 : number(c, 0);
     return set_head(drum, &head, error);
 }
 
@@ -283,78 +224,55 @@ static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
     return good;
 }
 
-// a round head again is in air again; only a round one may be
-static bool set_shape(himc_drum *drum, const himc_command *c, himc_error *error)
+// only a round head may be in air; one that becomes round again is in air again
+static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
 {
+    enum { CIRCLE, RECTANGLE, FROM_FILE };
     himc_head head = *himc_membrane_head(drum->membrane);
-    const char *word = is_symbol(c, 0) ? c->atom[0].symbol : "";
-    if (strcmp(word, "circle") == 0) {
+    himc_shape shape = {.kind = HIMC_CIRCLE};
+    if (c->form == FROM_FILE)
+        return load_shape(drum, c->atom[0].symbol, error);
+    if (c->form == CIRCLE) {
         head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
-        return take_shape(drum, &(himc_shape){.kind = HIMC_CIRCLE}, &head, error);
+        return take_shape(drum, &shape, &head, error);
     }
-    if (strcmp(word, "rectangle") != 0 && word[0])
-        return load_shape(drum, word, error);
-    if (c->count != 3 || c->atom[1].kind != HIMC_ATOM_NUMBER || c->atom[2].kind != HIMC_ATOM_NUMBER)
-        return himc_error_set(error, "shape: allowed circle, rectangle LENGTH WIDTH, or a file");
-    himc_shape shape = {HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
-    if (!himc_check_range("shape rectangle LENGTH", shape.length, 0.05, 1.4, "m", error) ||
-        !himc_check_range("shape rectangle WIDTH", shape.width, 0.05, 1.4, "m", error))
-        return false;
+    shape = (himc_shape){HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
     head.radius = 0.5 * hypot(shape.length, shape.width);
     return take_shape(drum, &shape, &head, error);
 }
 
-static bool set_technique(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    int wanted = HIMC_TECHNIQUE_MODAL;
-    while (is_symbol(c, 0) && wanted <= HIMC_TECHNIQUE_CLIP &&
-           strcmp(c->atom[0].symbol, himc_technique_name((himc_technique)wanted)) != 0)
-        wanted++;
-    if (c->count != 1 || !is_symbol(c, 0) || wanted > HIMC_TECHNIQUE_CLIP)
-        return himc_error_set(error, "technique: allowed modal signal clip");
+    himc_technique wanted = (himc_technique)c->choice[0];
     if (wanted != HIMC_TECHNIQUE_MODAL && !drum->answered)
         return himc_error_set(error,
                               "technique: %s, allowed modal here: signal and clip are patches, "
                               "[technique~ NAME] in Pure Data",
                               c->atom[0].symbol);
-    drum->technique = (himc_technique)wanted;
+    drum->technique = wanted;
     return true;
 }
 
-static bool strike(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_strike(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    return numbers(c, "strike", 3, error) &&
-           himc_drum_strike_at(drum, 0, number(c, 0), number(c, 1), number(c, 2), error);
+    return himc_drum_strike_at(drum, 0, number(c, 0), number(c, 1), number(c, 2), error);
 }
+
+typedef bool drum_action(himc_drum *drum, const himc_command *command, himc_error *error);
+
+// the action of each row for a drum is do_ and its word
+static drum_action *const actions[HIMC_COMMANDS] = {
+#define ACTION_PERFORMER(ID, word)
+#define ACTION_DRUM(ID, word) [HIMC_COMMAND_##ID] = do_##word,
+#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) ACTION_##receiver(ID, word)
+#include "himc/command_rows.h"
+};
 
 bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error)
 {
-    switch (command->id) {
-    case HIMC_COMMAND_RADIUS:
-        return set_field(drum, command, "radius", offsetof(himc_head, radius), error);
-    case HIMC_COMMAND_TENSION:
-        return set_field(drum, command, "tension", offsetof(himc_head, tension), error);
-    case HIMC_COMMAND_DENSITY:
-        return set_field(drum, command, "density", offsetof(himc_head, density), error);
-    case HIMC_COMMAND_TUNE: return tune(drum, command, error);
-    case HIMC_COMMAND_MODES: return set_modes(drum, command, error);
-    case HIMC_COMMAND_DECAY: return set_decay(drum, command, error);
-    case HIMC_COMMAND_AIR: return set_air(drum, command, error);
-    case HIMC_COMMAND_KETTLE: return set_kettle(drum, command, error);
-    case HIMC_COMMAND_GLIDE:
-        return set_field(drum, command, "glide", offsetof(himc_head, glide), error);
-    case HIMC_COMMAND_DAMP:
-        return set_field(drum, command, "damp", offsetof(himc_head, damp), error);
-    case HIMC_COMMAND_SHAPE: return set_shape(drum, command, error);
-    case HIMC_COMMAND_MALLET: return set_mallet(drum, command, error);
-    case HIMC_COMMAND_PLACE: return set_place(drum, command, error);
-    case HIMC_COMMAND_PICKUP: return set_pickup(drum, command, error);
-    case HIMC_COMMAND_PICKUPS: return set_pickups(drum, command, error);
-    case HIMC_COMMAND_CHANNEL: return set_channel(drum, command, error);
-    case HIMC_COMMAND_TECHNIQUE: return set_technique(drum, command, error);
-    case HIMC_COMMAND_STRIKE: return strike(drum, command, error);
-    default: return himc_error_set(error, "command %d: not one to a drum", (int)command->id);
-    }
+    himc_command checked; // also one that was put together without the parser
+    return himc_command_check(&checked, HIMC_DRUM, command, error) &&
+           actions[checked.id](drum, &checked, error);
 }
 
 void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
@@ -367,6 +285,7 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
              "%d modes (%d audible), "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
              drum->name, head->radius, head->tension, head->density, principal, head->modes,
-             himc_membrane_audible(drum->membrane), drum->mallet_name,
-             himc_technique_name(drum->technique), p->center.x, p->center.y, p->center.z);
+             himc_membrane_audible(drum->membrane), drum->mallet_name.text,
+             himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, p->center.x,
+             p->center.y, p->center.z);
 }

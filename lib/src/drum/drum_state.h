@@ -33,7 +33,7 @@ struct himc_drum {
     int references;
     himc_membrane *membrane;
     himc_mallet_head mallet;
-    char mallet_name[16]; ///< "medium", or "own" when given by numbers
+    himc_word mallet_name; ///< "medium", or "own" when given by numbers
     himc_head_frame place;
     bool placed; ///< by `place`
     unsigned revision;
@@ -70,7 +70,15 @@ HIMC_RT void himc_drum_keep_touch(himc_drum *drum, const himc_stick *stick);
 /// Level of the head's own sound in the coming sample.
 HIMC_RT double himc_drum_loudness(himc_drum *drum);
 
-/// The preset's numbers; false if there is none of that name.
-bool himc_drum_mallet_preset(const char *name, himc_mallet_head *head);
+/// In the order of the words of `mallet`.
+typedef enum drum_mallet_preset {
+    DRUM_MALLET_SOFT,
+    DRUM_MALLET_MEDIUM,
+    DRUM_MALLET_HARD,
+    DRUM_MALLET_WOOD
+} drum_mallet_preset;
+
+/// Gives the drum that mallet, with its name.
+void himc_drum_take_mallet(himc_drum *drum, drum_mallet_preset preset);
 
 #endif

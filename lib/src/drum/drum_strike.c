@@ -18,7 +18,8 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
         !himc_check_range("strike y", y, -drum->place.radius, drum->place.radius, "m", error) ||
         !himc_check_range("strike place, from the centre", hypot(x, y), 0, drum->place.radius, "m",
                           error) ||
-        !himc_check_range("strike velocity", velocity, 0.001, 30, "m/s", error) ||
+        !himc_check_range("strike velocity", velocity, 0.001, HIMC_STRIKE_VELOCITY_MAX, "m/s",
+                          error) ||
         !himc_check_range("strike delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
         return false;
     if (drum->waiting_count == DRUM_WAITING)

@@ -11,12 +11,6 @@
 
 #define FADE 0.010 // (s)
 
-const char *himc_technique_name(himc_technique technique)
-{
-    static const char *const name[] = {"modal", "signal", "clip"};
-    return name[technique];
-}
-
 himc_technique himc_drum_technique(const himc_drum *drum)
 {
     return drum->technique;

@@ -7,6 +7,7 @@
 #include "drum/grid.h"
 
 #include "drum/matrix_file.h"
+#include "himc/ranges.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -213,7 +214,8 @@ static himc_grid *make(parts *p, himc_error *error)
     g->tension = p->tension;
     g->density = p->density;
     set_places(g, &p->places);
-    if (himc_check_range("radius of all places", g->radius, 0.05, 1, "m", error) &&
+    if (himc_check_range("radius of all places", g->radius, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m",
+                         error) &&
         solve(g, p, error))
         return g;
     himc_grid_release(g);

@@ -32,8 +32,10 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
     if (pickup->kind == HIMC_PICKUP_AIR)
         return himc_check_range("pickup azimuth", pickup->azimuth, -2 * HIMC_PI, 2 * HIMC_PI, "rad",
                                 error) &&
-               himc_check_range("pickup elevation", pickup->elevation, 0, 1.5708, "rad", error) &&
-               himc_check_range("pickup distance", pickup->distance, 0.3, 100, "m", error);
+               himc_check_range("pickup elevation", pickup->elevation, 0, HIMC_ELEVATION_MAX, "rad",
+                                error) &&
+               himc_check_range("pickup distance", pickup->distance, HIMC_PICKUP_DISTANCE_MIN,
+                                HIMC_PICKUP_DISTANCE_MAX, "m", error);
     double r = hypot(pickup->x, pickup->y);
     return himc_check_range("pickup place, from the centre", r, 0, head->radius, "m", error);
 }

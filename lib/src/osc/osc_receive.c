@@ -29,7 +29,7 @@ static bool refuse(himc_osc *osc, const osc_address *from, const char *line)
 static bool confine(himc_osc *osc, himc_command *command, himc_error *error)
 {
     char wanted[2 * HIMC_PATH_SIZE];
-    const char *name = command->id == HIMC_COMMAND_SCORE ? "score" : "take";
+    const char *name = himc_command_table((int)command->id)->name;
     struct stat about;
     if (!osc->files)
         return himc_error_set(error, "%s: no file over the network, allowed with --files", name);
@@ -50,16 +50,10 @@ static bool confine(himc_osc *osc, himc_command *command, himc_error *error)
     return good;
 }
 
-// commands that name a file and have no business with one from the network
-static bool names_file(const himc_command *c)
+// from the network only scores and takes may be read, in the folder of `files`
+static bool is_confined(const himc_command *c)
 {
-    const char *word = c->count > 0 && c->atom[0].kind == HIMC_ATOM_SYMBOL ? c->atom[0].symbol : "";
-    switch (c->id) {
-    case HIMC_COMMAND_RECORD: return strcmp(word, "stop") != 0;
-    case HIMC_COMMAND_UNITS: return strcmp(word, "clear") != 0;
-    case HIMC_COMMAND_SHAPE: return strcmp(word, "circle") != 0 && strcmp(word, "rectangle") != 0;
-    default: return false;
-    }
+    return c->id == HIMC_COMMAND_SCORE || c->id == HIMC_COMMAND_TAKE;
 }
 
 // what a command costs of the 1000 a second; those that take long cost more
@@ -97,6 +91,7 @@ static void take_command(himc_osc *osc, osc_order *order)
     himc_error error;
     himc_command *c = &order->command;
     osc_wish wish = {.from = order->from};
+    int atom;
     if (!himc_osc_afford(&osc->commands, cost_of(c->id))) {
         osc_counted(osc, COUNT_FREQUENT, 1);
     } else if (order->receiver == HIMC_PERFORMER && himc_osc_wish_from(&wish, c)) {
@@ -104,10 +99,9 @@ static void take_command(himc_osc *osc, osc_order *order)
         himc_osc_wish(osc, &wish);
     } else if (order->receiver == HIMC_PERFORMER && c->id == HIMC_COMMAND_LISTEN) {
         refuse(osc, &order->from, "listen: not over the network");
-    } else if (names_file(c)) {
+    } else if (himc_command_file(c, &atom) != HIMC_FILE_NONE && !is_confined(c)) {
         refuse(osc, &order->from, "record, units and shapes from files: not over the network");
-    } else if ((c->id == HIMC_COMMAND_SCORE || c->id == HIMC_COMMAND_TAKE) &&
-               !confine(osc, c, &error)) {
+    } else if (is_confined(c) && !confine(osc, c, &error)) {
         refuse(osc, &order->from, error.text);
     } else {
         hand_on(osc, order);

@@ -38,6 +38,7 @@ typedef struct osc_address {
     socklen_t size;
 } osc_address;
 
+// in the order of the words of `subscribe`
 typedef enum osc_what {
     OSC_POSE,
     OSC_TARGETS,

@@ -15,26 +15,19 @@
 #define PATIENCE 60.0 // (s)
 #define DEFAULT_HZ 33.0
 
-static const char *const names[] = {"pose", "targets", "strikes", "head", "vmc", "anything"};
-
-static osc_what find_what(const char *word)
-{
-    int i = 0;
-    while (i < OSC_WHATS && strcmp(names[i], word) != 0)
-        i++;
-    return (osc_what)i;
-}
-
 bool himc_osc_wish_from(osc_wish *wish, const himc_command *c)
 {
+    enum { WITH_PORT, VMC }; // the forms of both commands
     if (c->id != HIMC_COMMAND_SUBSCRIBE && c->id != HIMC_COMMAND_UNSUBSCRIBE)
         return false;
-    int next = 1;
-    bool port = c->count > 1 && c->atom[1].kind == HIMC_ATOM_NUMBER;
+    int next = c->form == VMC ? 1 : 2;
     snprintf(wish->host, sizeof wish->host, "%s", c->atom[0].symbol);
-    wish->port = port ? (int)c->atom[next++].number : HIMC_VMC_PORT;
-    bool word = next < c->count && c->atom[next].kind == HIMC_ATOM_SYMBOL;
-    wish->what = word ? find_what(c->atom[next++].symbol) : OSC_WHATS;
+    wish->port = c->form == VMC ? HIMC_VMC_PORT : (int)c->atom[1].number;
+    wish->what = OSC_WHATS;
+    if (next < c->count && c->choice[next] >= 0)
+        wish->what = c->form == VMC ? OSC_VMC : (osc_what)c->choice[next];
+    if (wish->what != OSC_WHATS)
+        next++;
     wish->hz = next < c->count ? c->atom[next].number : DEFAULT_HZ;
     wish->remove = c->id == HIMC_COMMAND_UNSUBSCRIBE;
     return true;
@@ -44,8 +37,10 @@ bool himc_osc_wish_from(osc_wish *wish, const himc_command *c)
 static void refuse(himc_osc *osc, const osc_wish *wish, const char *why)
 {
     char line[HIMC_OSC_LINE];
-    snprintf(line, sizeof line, "%s: %.200s port %d: %s",
-             wish->remove ? "unsubscribe" : "subscribe", wish->host, wish->port, why);
+    snprintf(
+        line, sizeof line, "%s: %.200s port %d: %s",
+        himc_command_table(wish->remove ? HIMC_COMMAND_UNSUBSCRIBE : HIMC_COMMAND_SUBSCRIBE)->name,
+        wish->host, wish->port, why);
     osc_counted(osc, COUNT_REFUSED, 1);
     if (wish->local)
         himc_osc_tell(osc, "%s", line);

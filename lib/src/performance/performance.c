@@ -360,8 +360,10 @@ static double beyond_reach(const void *performance, himc_hand hand, himc_vec3 pl
 static bool config_valid(const himc_performance_config *c, himc_error *error)
 {
     return himc_check_range("sample rate", c->sample_rate, 8000, 192000, "Hz", error) &&
-           himc_check_range("physics rate", c->physics_rate, 500, 48000, "Hz", error) &&
-           himc_check_range("task rate", c->task_rate, 50, 2000, "Hz", error);
+           himc_check_range("physics rate", c->physics_rate, HIMC_PHYSICS_RATE_MIN,
+                            HIMC_PHYSICS_RATE_MAX, "Hz", error) &&
+           himc_check_range("task rate", c->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz",
+                            error);
 }
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)

@@ -1,8 +1,9 @@
-/// performance_command.c: what each command of the vocabulary does to a performance.
+/// performance_command.c: the performer's commands, one function for each row of command_rows.h
+/// that is for the performer.
 ///
-/// One table, one small function a command. They act between physics steps: one that comes with a
-/// delay waits in a short queue until the step at its sample. A command that cannot be carried
-/// out changes nothing and says why in one line.
+/// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a short queue
+/// until the step at its sample; the others may allocate or read files, and act at once. A command
+/// that cannot be carried out changes nothing and gives the reason in one line.
 #include "performance/performance_state.h"
 
 #include <stdio.h>
@@ -11,19 +12,16 @@
 #define LONGEST_DELAY 8192       // samples
 #define LONGEST_RECORDING 1200.0 // (s)
 
-// which of the words, which the parser has checked
-int himc_performance_word(const char *word, const char *const *words, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (strcmp(word, words[i]) == 0)
-            return i;
-    return 0;
-}
+// the action of each row for the performer is himc_performance_do_ and its word
+#define ACTION_DRUM(ID, word)
+#define ACTION_PERFORMER(ID, word) performance_action himc_performance_do_##word;
+#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) ACTION_##receiver(ID, word)
+#include "himc/command_rows.h"
+#undef ACTION_PERFORMER
 
-static bool do_mode(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_mode(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    static const char *const words[] = {"himc", "id", "ik"};
-    himc_pipeline mode = (himc_pipeline)himc_performance_word(c->atom[0].symbol, words, 3);
+    himc_pipeline mode = (himc_pipeline)c->choice[0];
     (void)error;
     // leaving `ik` the body takes up where the picture was
     if (p->controller.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
@@ -33,30 +31,28 @@ static bool do_mode(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool do_solver(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_solver(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    static const char *const words[HIMC_SOLVERS] = {"dls", "pinv", "transpose", "nakamura", "sdls"};
     (void)error;
-    p->controller.solver =
-        (himc_solver)himc_performance_word(c->atom[0].symbol, words, HIMC_SOLVERS);
+    p->controller.solver = (himc_solver)c->choice[0];
     return true;
 }
 
-static bool do_damping(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_damping(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     p->controller.damping = c->atom[0].number;
     return true;
 }
 
-static bool do_posture(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_posture(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     p->controller.null_space_off = c->atom[0].number == 0;
     return true;
 }
 
-static bool do_bend(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_bend(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     p->unbent = c->atom[0].number == 0;
@@ -64,14 +60,14 @@ static bool do_bend(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     p->controller.elbow = c->atom[0].number != 0;
     return true;
 }
 
-static bool do_weights(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_weights(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
@@ -79,11 +75,10 @@ static bool do_weights(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
-static bool do_law(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_law(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    static const char *const words[] = {"printed", "feedforward", "computed-torque"};
     (void)error;
-    p->controller.law = (himc_law)himc_performance_word(c->atom[0].symbol, words, 3);
+    p->controller.law = (himc_law)c->choice[0];
     return true;
 }
 
@@ -110,11 +105,12 @@ static bool scale_frequencies(himc_performance *p, double factor)
     return true;
 }
 
-static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_gain(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    if (c->count == 1)
+    enum { RESET, FREQUENCY };
+    if (c->form == RESET)
         return reset_gains(p);
-    if (c->count == 2)
+    if (c->form == FREQUENCY)
         return scale_frequencies(p, c->atom[1].number);
     int joint;
     if (!himc_performance_find_joint(c, "gain", &joint, error))
@@ -123,17 +119,13 @@ static bool do_gain(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool do_rate(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_rate(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    bool physics = strcmp(c->atom[0].symbol, "physics") == 0;
+    enum { PHYSICS, TASK };
     double hz = c->atom[1].number;
-    if (physics) {
-        if (!himc_check_range("rate physics", hz, 500, 48000, "Hz", error))
-            return false;
+    if (c->form == PHYSICS) {
         p->config.physics_rate = hz;
     } else {
-        if (!himc_check_range("rate task", hz, 50, 2000, "Hz", error))
-            return false;
         if (p->recording)
             return himc_error_set(error, "rate task: %g: not while recording %s", hz,
                                   himc_recording_path(p->recording));
@@ -143,22 +135,22 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool do_coupling(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_coupling(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
-    p->one_way = strcmp(c->atom[0].symbol, "one-way") == 0;
+    p->one_way = c->choice[0] == HIMC_COUPLING_ONE_WAY;
     return true;
 }
 
-static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_grip(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)error;
-    p->grip = strcmp(c->atom[0].symbol, "french") == 0 ? HIMC_GRIP_FRENCH : HIMC_GRIP_GERMAN;
+    p->grip = (himc_grip)c->choice[0];
     himc_planner_set_grip(p->planner, p->grip);
     return true;
 }
 
-static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_player(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_skeleton_config old = p->body;
     p->body.height = c->atom[0].number;
@@ -184,10 +176,11 @@ static bool finish_recording(himc_performance *p, himc_error *error)
     return written || himc_error_prefix(error, "record");
 }
 
-static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_record(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    enum { STOP };
     const char *path = c->atom[0].symbol;
-    bool stop = strcmp(path, "stop") == 0;
+    bool stop = c->form == STOP;
     if (stop && !p->recording)
         return himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
     if (stop)
@@ -201,7 +194,7 @@ static bool do_record(himc_performance *p, const himc_command *c, himc_error *er
     return p->recording || himc_error_prefix(error, "record");
 }
 
-static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_do_reset(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_skeleton_config old = p->body;
     (void)c;
@@ -246,70 +239,32 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     return true;
 }
 
-static bool do_info(himc_performance *p, const himc_command *c, himc_error *error)
+// carried out by the program around the library, with himc_performance_describe
+static bool leave_to_host(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    (void)p, (void)c, (void)error; // answered by whoever asked, with himc_performance_describe
+    (void)p, (void)c, (void)error;
     return true;
 }
 
-static bool do_network(himc_performance *p, const himc_command *c, himc_error *error)
+static bool refuse_network(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)p;
     return himc_error_set(error, "%s: allowed as a message to [himc~] or over OSC",
-                          c->id == HIMC_COMMAND_SUBSCRIBE     ? "subscribe"
-                          : c->id == HIMC_COMMAND_UNSUBSCRIBE ? "unsubscribe"
-                                                              : "listen");
+                          himc_command_table((int)c->id)->name);
 }
 
 static performance_action *const actions[HIMC_COMMANDS] = {
-    [HIMC_COMMAND_STROKE] = himc_performance_do_stroke,
-    [HIMC_COMMAND_HIT] = himc_performance_do_hit,
-    [HIMC_COMMAND_TEMPO] = himc_performance_do_tempo,
-    [HIMC_COMMAND_CLEAR] = himc_performance_do_clear,
-    [HIMC_COMMAND_GRIP] = do_grip,
-    [HIMC_COMMAND_LOOP] = himc_performance_do_loop,
-    [HIMC_COMMAND_RECORD] = do_record,
-    [HIMC_COMMAND_UNITS] = himc_performance_do_units,
-    [HIMC_COMMAND_PLAY] = himc_performance_do_play,
-    [HIMC_COMMAND_STOP] = himc_performance_do_stop,
-    [HIMC_COMMAND_SEEK] = himc_performance_do_seek,
-    [HIMC_COMMAND_SCORE] = himc_performance_do_score,
-    [HIMC_COMMAND_TAKE] = himc_performance_do_take,
-    [HIMC_COMMAND_TARGET] = himc_performance_do_target,
-    [HIMC_COMMAND_MODE] = do_mode,
-    [HIMC_COMMAND_SOLVER] = do_solver,
-    [HIMC_COMMAND_DAMPING] = do_damping,
-    [HIMC_COMMAND_POSTURE] = do_posture,
-    [HIMC_COMMAND_BEND] = do_bend,
-    [HIMC_COMMAND_ELBOW] = do_elbow,
-    [HIMC_COMMAND_WEIGHTS] = do_weights,
-    [HIMC_COMMAND_LAW] = do_law,
-    [HIMC_COMMAND_GAIN] = do_gain,
-    [HIMC_COMMAND_LIMITS] = himc_performance_do_limits,
-    [HIMC_COMMAND_STRENGTH] = himc_performance_do_strength,
-    [HIMC_COMMAND_RATE] = do_rate,
-    [HIMC_COMMAND_COUPLING] = do_coupling,
-    [HIMC_COMMAND_PLAYER] = do_player,
-    [HIMC_COMMAND_PUSH] = himc_performance_do_push,
-    [HIMC_COMMAND_INFO] = do_info,
-    [HIMC_COMMAND_RESET] = do_reset,
-    [HIMC_COMMAND_MAKE_DRUM] = himc_performance_do_drum,
-    [HIMC_COMMAND_SUBSCRIBE] = do_network,
-    [HIMC_COMMAND_UNSUBSCRIBE] = do_network,
-    [HIMC_COMMAND_LISTEN] = do_network,
+#define ACTION_NOW(word) himc_performance_do_##word
+#define ACTION_AT_SAMPLE(word) himc_performance_do_##word
+#define ACTION_HOST(word) leave_to_host
+#define ACTION_NETWORK(word) refuse_network
+#define ACTION_PERFORMER(ID, word, when) [HIMC_COMMAND_##ID] = ACTION_##when(word),
+#undef ACTION_DRUM
+#define ACTION_DRUM(ID, word, when)
+#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) \
+    ACTION_##receiver(ID, word, when)
+#include "himc/command_rows.h"
 };
-
-// commands that act at their sample; others, which may allocate, read files or be refused for what
-// the parser does not know, act at once
-static bool waits(himc_command_id id)
-{
-    return id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_TARGET || id == HIMC_COMMAND_TEMPO ||
-           id == HIMC_COMMAND_PLAY || id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK ||
-           id == HIMC_COMMAND_MODE || id == HIMC_COMMAND_LAW || id == HIMC_COMMAND_SOLVER ||
-           id == HIMC_COMMAND_DAMPING || id == HIMC_COMMAND_ELBOW || id == HIMC_COMMAND_WEIGHTS ||
-           id == HIMC_COMMAND_COUPLING || id == HIMC_COMMAND_PUSH || id == HIMC_COMMAND_POSTURE ||
-           id == HIMC_COMMAND_BEND;
-}
 
 // drums that a waiting command will want are made now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
@@ -326,7 +281,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     performance_action *act = actions[command->id];
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    if (delay <= 0 || !waits(command->id))
+    if (delay <= 0 || himc_command_table((int)command->id)->when != HIMC_WHEN_AT_SAMPLE)
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);

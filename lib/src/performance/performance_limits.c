@@ -108,6 +108,9 @@ bool himc_performance_learn_bent(const himc_player *player, const himc_track *tr
     return true;
 }
 
+// in the order of the words of `strength`
+enum { STRENGTH_HUMAN, STRENGTH_OFF };
+
 // what has been counted was of other limits
 static void forget_hits(himc_performance *p)
 {
@@ -118,9 +121,8 @@ static void forget_hits(himc_performance *p)
 
 bool himc_performance_do_limits(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    static const char *const words[] = {"off", "ellipsoid", "euler"};
     (void)error;
-    p->limits.kind = (himc_limits_kind)himc_performance_word(c->atom[0].symbol, words, 3);
+    p->limits.kind = (himc_limits_kind)c->choice[0];
     himc_performance_renew_limits(p);
     forget_hits(p);
     return true;
@@ -142,14 +144,15 @@ bool himc_performance_find_joint(const himc_command *c, const char *command, int
 
 bool himc_performance_do_strength(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    enum { ALL, ONE };
     int joint;
-    if (c->count > 1) {
+    if (c->form == ONE) {
         if (!himc_performance_find_joint(c, "strength", &joint, error))
             return false;
         p->controller.strength[joint] = c->atom[1].number;
         return true;
     }
-    p->human = strcmp(c->atom[0].symbol, "human") == 0;
+    p->human = c->choice[0] == STRENGTH_HUMAN;
     memset(p->controller.strength, 0, sizeof p->controller.strength);
     if (p->human)
         himc_controller_set_human_strength(&p->controller, p->body.mass);
@@ -208,25 +211,27 @@ static void describe_strength(const himc_performance *p, void (*line)(void *, co
     }
 }
 
-static const char *strength_word(const himc_performance *p)
+static himc_word strength_word(const himc_performance *p)
 {
     bool any = false;
     for (int j = 0; j < HIMC_JOINTS; j++)
         any = any || p->controller.strength[j] > 0;
-    return p->human ? "human" : any ? "as set" : "off";
+    if (any && !p->human)
+        return (himc_word){"as set"};
+    return himc_command_word(HIMC_COMMAND_STRENGTH, 0, p->human ? STRENGTH_HUMAN : STRENGTH_OFF);
 }
 
 void himc_performance_describe_limits(const himc_performance *p, void (*line)(void *, const char *),
                                       void *user)
 {
-    static const char *const kind[] = {"off", "ellipsoid", "euler"};
     char text[256];
     const himc_saturation_counts *s = &p->saturation;
-    snprintf(text, sizeof text, "limits %s%s, hit %ld times, strength %s", kind[p->limits.kind],
+    snprintf(text, sizeof text, "limits %s%s, hit %ld times, strength %s",
+             himc_command_word(HIMC_COMMAND_LIMITS, 0, (int)p->limits.kind).text,
              p->limits.kind == HIMC_LIMITS_OFF ? ""
              : p->has_learned                  ? " of the take"
                                                : " of table 1",
-             himc_performance_limit_hits(p), strength_word(p));
+             himc_performance_limit_hits(p), strength_word(p).text);
     line(user, text);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (s->hits[j] == 0)

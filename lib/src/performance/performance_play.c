@@ -166,27 +166,23 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
 
 bool himc_performance_do_target(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    himc_hand hand = strcmp(c->atom[0].symbol, "left") == 0 ? HIMC_LEFT : HIMC_RIGHT;
     (void)error;
     himc_performance_target(
-        p, hand, himc_vec3_make(c->atom[1].number, c->atom[2].number, c->atom[3].number));
+        p, (himc_hand)c->choice[0],
+        himc_vec3_make(c->atom[1].number, c->atom[2].number, c->atom[3].number));
     return true;
 }
 
 static bool add_units(himc_performance *p, himc_take *take, const himc_command *c,
                       himc_error *error)
 {
-    static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent",
-                                          "staccato"};
-    static const char *const spots[] = {"center", "normal", "rim"};
     himc_unit units[HIMC_UNITS];
     int count = himc_units_cut(take, &p->take_options, units, HIMC_UNITS, error);
     for (int i = 0; i < count && i < HIMC_UNITS; i++) {
-        units[i].nuance =
-            (himc_nuance)himc_performance_word(c->atom[1].symbol, nuances, HIMC_NUANCES);
+        units[i].nuance = (himc_nuance)c->choice[1];
         units[i].grip = p->grip;
-        if (c->count > 2 && c->atom[2].kind == HIMC_ATOM_SYMBOL)
-            units[i].spot = (himc_spot)himc_performance_word(c->atom[2].symbol, spots, 3);
+        if (c->count > 2 && c->choice[2] >= 0)
+            units[i].spot = (himc_spot)c->choice[2];
     }
     if (count < 0 || !himc_planner_add_units(p->planner, units, count, error))
         return false;
@@ -197,8 +193,9 @@ static bool add_units(himc_performance *p, himc_take *take, const himc_command *
 
 bool himc_performance_do_units(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    enum { CLEAR };
     p->replan = true;
-    if (c->count == 1) {
+    if (c->form == CLEAR) {
         himc_planner_clear_units(p->planner);
         return true;
     }

@@ -187,12 +187,14 @@ static void describe_drums(const himc_performance *p, void (*line)(void *, const
     }
 }
 
+static himc_word word(himc_command_id id, int choice)
+{
+    return himc_command_word(id, 0, choice);
+}
+
 void himc_performance_describe(const himc_performance *p, void (*line)(void *, const char *),
                                void *user)
 {
-    static const char *const mode[] = {"himc", "id", "ik"},
-                             *const solver[] = {"dls", "pinv", "transpose", "nakamura", "sdls"},
-                             *const law[] = {"printed", "feedforward", "computed-torque"};
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
     snprintf(text, sizeof text,
@@ -200,9 +202,12 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
              p->body.height, p->body.mass);
     line(user, text);
     snprintf(text, sizeof text, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
-             mode[p->controller.mode], p->unbent ? " (in id, arms as captured)" : "",
-             solver[p->controller.solver], p->controller.damping, law[p->controller.law],
-             p->one_way ? "one-way" : "two-way");
+             word(HIMC_COMMAND_MODE, (int)p->controller.mode).text,
+             p->unbent ? " (in id, arms as captured)" : "",
+             word(HIMC_COMMAND_SOLVER, (int)p->controller.solver).text, p->controller.damping,
+             word(HIMC_COMMAND_LAW, (int)p->controller.law).text,
+             word(HIMC_COMMAND_COUPLING, p->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY)
+                 .text);
     line(user, text);
     snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz", p->physics_rate,
              p->config.task_rate, p->config.sample_rate);
@@ -211,7 +216,7 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
     describe_drums(p, line, user);
     snprintf(text, sizeof text,
              "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",
-             p->grip == HIMC_GRIP_FRENCH ? "french" : "german", s.hits, 1e3 * s.hit_latency,
+             word(HIMC_COMMAND_GRIP, (int)p->grip).text, s.hits, 1e3 * s.hit_latency,
              1e3 * s.longest_latency);
     line(user, text);
     snprintf(text, sizeof text,

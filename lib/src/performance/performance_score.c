@@ -64,7 +64,7 @@ static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *er
     const char *word = c->count > 0 ? c->atom[0].symbol : "";
     himc_take *take;
     himc_recording *recording;
-    int joint;
+    int joint, file;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
         return !p->make_drums || trial_drum(r, word, c->count > 1 ? c->atom[1].number : 23, error);
@@ -74,21 +74,20 @@ static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *er
         return c->count < 2 || himc_performance_find_joint(c, "strength", &joint, error);
     case HIMC_COMMAND_TAKE:
     case HIMC_COMMAND_UNITS:
-        take = c->id == HIMC_COMMAND_TAKE || c->count > 1
-                   ? himc_take_load(word, &p->take_options, error)
-                   : NULL;
+        if (himc_command_file(c, &file) == HIMC_FILE_NONE)
+            return true; // `units clear`
+        take = himc_take_load(word, &p->take_options, error);
         himc_take_free(take);
-        return take || (c->id == HIMC_COMMAND_UNITS && c->count == 1);
+        return take;
     case HIMC_COMMAND_RECORD:
-        if (p->recording || strcmp(word, "stop") == 0)
+        if (p->recording || himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true;
         recording = himc_recording_new(word, &p->skeleton, p->config.task_rate, 0.1, error);
         himc_recording_free(recording);
         return recording || himc_error_prefix(error, "record");
-    case HIMC_COMMAND_SUBSCRIBE:
-    case HIMC_COMMAND_UNSUBSCRIBE:
-    case HIMC_COMMAND_LISTEN: return himc_performance_command(p, c, 0, error); // always refused
-    default: return true;
+    default: // the network's are always refused
+        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
+               himc_performance_command(p, c, 0, error);
     }
 }
 
@@ -155,10 +154,7 @@ static bool run_line(himc_performance *p, const himc_score_line *line, himc_erro
 // what acts on the strokes or on what plays has its turn when they are there
 static bool comes_after_strokes(const himc_score_line *line)
 {
-    himc_command_id id = line->command.id;
-    return !line->drum[0] &&
-           (id == HIMC_COMMAND_HIT || id == HIMC_COMMAND_CLEAR || id == HIMC_COMMAND_PLAY ||
-            id == HIMC_COMMAND_STOP || id == HIMC_COMMAND_SEEK || id == HIMC_COMMAND_TARGET);
+    return himc_command_table((int)line->command.id)->marks & HIMC_AFTER_STROKES;
 }
 
 static bool run_lines(himc_performance *p, const himc_score *score, bool after, const char *path,

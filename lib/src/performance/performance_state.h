@@ -187,8 +187,8 @@ void himc_performance_forget_touch(himc_performance *p);
 /// Carries out a command now; false, and nothing changed, with the reason.
 typedef bool performance_action(himc_performance *p, const himc_command *command,
                                 himc_error *error);
-/// Which of the words it is; the parser has checked that it is one.
-int himc_performance_word(const char *word, const char *const *words, int count);
+/// In the order of the words of `coupling`.
+typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 void himc_performance_run_due_commands(himc_performance *p);
 
 // performance_score.c

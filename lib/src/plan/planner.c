@@ -178,7 +178,8 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
                             himc_error *error)
 {
     for (int i = 0; i < count; i++) {
-        if (!himc_check_range("tempo", tempi[i].bpm, 1, 1000, "beats per minute", error))
+        if (!himc_check_range("tempo", tempi[i].bpm, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute",
+                              error))
             return false;
         if (!isfinite(tempi[i].beat) || (i > 0 && tempi[i].beat <= tempi[i - 1].beat))
             return himc_error_set(error, "tempo: BEAT: %g is not after the one before",

@@ -1,10 +1,10 @@
 /// score.c: a score file read in one pass: statements to commands, strokes sorted by beat.
 ///
-/// Words are cut by text.c, checked by command.c; here is only what a score adds: lines for drums,
-/// the tempo map, order, and what no player can do. The tempo map is piecewise constant, so seconds
-/// are a sum of 60/bpm times beats, and its inverse the same sum walked the other way. Limits are
-/// there so that a wrong file is refused in a line rather than by the memory running out.
-/// Invariant: either the whole score is good, or nothing of it is kept.
+/// text.c splits words and command.c checks them; this file adds lines for drums, the tempo map,
+/// the order, and the check that a player can play the strokes. The tempo map is piecewise constant:
+/// seconds are the sum of 60/bpm times beats, and the inverse takes the same sum backwards. Limits
+/// of size refuse a wrong file in one line before memory runs out. Invariant: the whole score is
+/// good, or nothing of it is kept.
 #include "himc/score.h"
 
 #include "base/argument.h"
@@ -16,23 +16,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_STROKES 200000
-#define MOST_LINES 10000
-#define MOST_BYTES (64l << 20)
-#define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors' first characters
-#define CLOSEST 0.04                   // two strokes of one hand (s)
+// chosen: more than a day of drumming, and small enough for any machine's memory
+#define SCORE_STROKES_MAX 200000
+#define SCORE_LINES_MAX 10000
+#define SCORE_BYTES_MAX (64l << 20)
+#define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
+#define STROKE_INTERVAL_MIN \
+    0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
 
-/// A score being read; what came from which line is kept for messages.
+/// A score being read, with the line of each stroke for error messages.
 typedef struct reader {
     himc_score *score;
     int *stroke_line;
     int stroke_room, tempo_room, line_room;
-    himc_command command; ///< the statement at hand
+    himc_command command; ///< of the current statement
     int line;
     himc_error *error;
 } reader;
 
-/// Makes room for one more in an array that doubles.
+/// Makes room for one more element; the array doubles.
 static bool grow(void *array, int count, int *room, size_t size, himc_error *error)
 {
     if (count < *room)
@@ -50,8 +52,9 @@ static bool grow(void *array, int count, int *room, size_t size, himc_error *err
 static bool add_stroke(reader *r)
 {
     himc_score *score = r->score;
-    if (score->stroke_count == MOST_STROKES)
-        return himc_error_set(r->error, "stroke: one too many, allowed %d strokes", MOST_STROKES);
+    if (score->stroke_count == SCORE_STROKES_MAX)
+        return himc_error_set(r->error, "stroke: one too many, allowed %d strokes",
+                              SCORE_STROKES_MAX);
     int room = r->stroke_room;
     if (!grow(&r->stroke_line, score->stroke_count, &room, sizeof *r->stroke_line, r->error) ||
         !grow(&score->strokes, score->stroke_count, &r->stroke_room, sizeof *score->strokes,
@@ -74,8 +77,8 @@ static bool add_tempo(reader *r)
         score->tempi[i - 1].bpm = atom[0].number;
         return true;
     }
-    if (score->tempo_count == MOST_LINES)
-        return himc_error_set(r->error, "tempo: one too many, allowed %d", MOST_LINES);
+    if (score->tempo_count == SCORE_LINES_MAX)
+        return himc_error_set(r->error, "tempo: one too many, allowed %d", SCORE_LINES_MAX);
     if (!grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi, r->error))
         return false;
     memmove(score->tempi + i + 1, score->tempi + i,
@@ -85,7 +88,7 @@ static bool add_tempo(reader *r)
     return true;
 }
 
-/// Commands point into themselves, so lines are copied one by one and not moved.
+/// A command points into itself, so lines are copied one by one and not moved.
 static bool grow_lines(reader *r)
 {
     himc_score *score = r->score;
@@ -109,9 +112,9 @@ static bool grow_lines(reader *r)
 static bool add_line(reader *r, const char *drum)
 {
     himc_score *score = r->score;
-    if (score->line_count == MOST_LINES)
+    if (score->line_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, allowed %d besides strokes",
-                              MOST_LINES);
+                              SCORE_LINES_MAX);
     if (!grow_lines(r))
         return false;
     himc_score_line *line = &score->lines[score->line_count++];
@@ -121,17 +124,7 @@ static bool add_line(reader *r, const char *drum)
     return true;
 }
 
-/// Whether `word` is the name of a command for that receiver.
-static bool is_command(himc_receiver receiver, const char *word)
-{
-    const himc_command_row *row;
-    for (int i = 0; (row = himc_command_table(i)); i++)
-        if (row->receiver == receiver && strcmp(row->name, word) == 0)
-            return true;
-    return false;
-}
-
-/// Whether an earlier line of the score made or addressed a drum of that name.
+/// True if an earlier line of the score made or addressed a drum of that name.
 static bool is_known_drum(const himc_score *score, const char *word)
 {
     for (int i = 0; i < score->line_count; i++) {
@@ -143,7 +136,7 @@ static bool is_known_drum(const himc_score *score, const char *word)
     return false;
 }
 
-/// "kettle tune 110": for a drum.
+/// A line for a drum: "kettle tune 110".
 static bool read_drum_line(reader *r, const himc_atom *atom, int count)
 {
     const himc_argument *name = himc_argument_find("NAME", NULL);
@@ -159,10 +152,12 @@ static bool read_performer_line(reader *r, const himc_atom *atom, int count)
     if (!himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
                             r->error))
         return false;
-    switch (r->command.id) {
+    const himc_command_row *row = himc_command_table((int)r->command.id);
+    if (row->marks & HIMC_NOT_IN_SCORE)
+        return himc_error_set(r->error, "%s: not allowed in a score", row->name);
+    switch (row->id) {
     case HIMC_COMMAND_STROKE: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
-    case HIMC_COMMAND_SCORE: return himc_error_set(r->error, "score: a score cannot load another");
     default: return add_line(r, "");
     }
 }
@@ -175,9 +170,9 @@ static bool read_statement(reader *r, const himc_text_statement *s)
         return true;
     if (s->overflow)
         return himc_error_set(r->error, "more than %zu characters without a ;", s->size);
-    bool two_words = count > 1 && !is_command(HIMC_PERFORMER, atom[0].symbol);
+    bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
     if (two_words &&
-        (is_command(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
+        (himc_command_find(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
         return read_drum_line(r, atom, count);
     return read_performer_line(r, atom, count);
 }
@@ -201,7 +196,7 @@ static bool read_all(reader *r, const char *text)
     return true;
 }
 
-/// Beat and place in the file, to sort by.
+/// Sorts by beat, then by place in the file.
 typedef struct sort_key {
     double beat;
     int index;
@@ -265,12 +260,13 @@ static bool check_playable(reader *r)
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
         r->line = r->stroke_line[i];
-        if (seconds - last[stroke->hand] < CLOSEST)
+        if (seconds - last[stroke->hand] < STROKE_INTERVAL_MIN)
             return himc_error_set(
                 r->error,
                 "stroke: BEAT: %g is %.3g s after the last stroke of the %s hand, allowed %g s "
                 "or more",
-                stroke->beat, seconds - last[stroke->hand], himc_hand_name(stroke->hand), CLOSEST);
+                stroke->beat, seconds - last[stroke->hand], himc_hand_name(stroke->hand),
+                STROKE_INTERVAL_MIN);
         last[stroke->hand] = seconds;
     }
     return true;
@@ -303,8 +299,8 @@ static char *read_file(FILE *file, himc_error *error)
     char *text = malloc(room + 1);
     while (text && (got = fread(text + used, 1, room - used, file)) > 0) {
         used += got;
-        if (used > MOST_BYTES) {
-            himc_error_set(error, "too long for a score, allowed %ld MiB", MOST_BYTES >> 20);
+        if (used > SCORE_BYTES_MAX) {
+            himc_error_set(error, "too long for a score, allowed %ld MiB", SCORE_BYTES_MAX >> 20);
             free(text);
             return NULL;
         }

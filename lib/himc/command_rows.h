@@ -1,0 +1,132 @@
+/// command_rows.h: the table of all commands, one row per command.
+///
+/// Everything else follows from these rows: the ids (command.h), the parser and its error lines
+/// (lib/src/base/command.c), the actions of performer and drum, the manual, Pure Data and OSC.
+///
+/// This file has no include guard. Define HIMC_COMMAND_ROW, then include it; it undefines the macro
+/// at its end. The columns of HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does):
+///
+///   ID        the command is HIMC_COMMAND_ID
+///   word      the command's name; its action is the function do_word of the receiver's room
+///   receiver  PERFORMER or DRUM
+///   when      NOW        acts when it arrives: it may allocate, read files, or be refused for a
+///                        reason that the parser cannot know
+///             AT_SAMPLE  acts on its sample, in the audio callback
+///             HOST       the program around the library answers it
+///             NETWORK    the OSC server carries it out
+///   marks     0, or several of himc_command_marks joined by |
+///   atoms     the grammar. Capitals name an argument (lib/src/base/argument.c has its range),
+///             small letters stand for themselves, `a|b` is one word of several, brackets are
+///             optional, ` | ` separates the forms. SPOT is a word or two numbers. Where words are
+///             the names of an enum's values, they stand in the order of that enum.
+///   does      one sentence for the manual
+
+#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
+#define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc"
+
+// to the performer
+HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds one stroke to the score")
+HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
+                 "plays a stroke as soon as it can be prepared")
+HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
+                 "sets the tempo, from that beat or from now on")
+HIMC_COMMAND_ROW(GRIP, grip, PERFORMER, NOW, 0, "german|french",
+                 "sets the grip: palms down (german), or thumbs up (french)")
+HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
+                 "1: the score begins again after its last whole beat")
+HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
+                 "forgets the score and all queued strokes")
+HIMC_COMMAND_ROW(PLAY, play, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
+                 "starts the score from the current beat")
+HIMC_COMMAND_ROW(STOP, stop, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
+                 "stops the score; the sticks come to rest")
+HIMC_COMMAND_ROW(SEEK, seek, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "BEAT", "goes to a beat")
+HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE, "FILE",
+                 "loads a score; while one plays, the new one follows it")
+HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, 0, "FILE", "loads a motion capture and tracks it")
+HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
+                 "cuts strokes out of a take and plays them instead of the built-in ones")
+HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",
+                 "moves a drumstick's tip to a point; it follows a stream of targets")
+HIMC_COMMAND_ROW(MODE, mode, PERFORMER, AT_SAMPLE, 0, "himc|id|ik", "chooses the control pipeline")
+HIMC_COMMAND_ROW(SOLVER, solver, PERFORMER, AT_SAMPLE, 0, "dls|pinv|transpose|nakamura|sdls",
+                 "chooses the inverse kinematics")
+HIMC_COMMAND_ROW(DAMPING, damping, PERFORMER, AT_SAMPLE, 0, "LAMBDA",
+                 "sets the damping of the least squares")
+HIMC_COMMAND_ROW(POSTURE, posture, PERFORMER, AT_SAMPLE, 0, "SWITCH",
+                 "null space of the tips: 1 keeps a natural posture, 0 is unused, as published")
+HIMC_COMMAND_ROW(BEND, bend, PERFORMER, AT_SAMPLE, 0, "SWITCH",
+                 "in `id`: 1 bends a take's arms so that its tips are reached and strokes land, 0 "
+                 "follows the joints as captured, as published")
+HIMC_COMMAND_ROW(ELBOW, elbow, PERFORMER, AT_SAMPLE, 0, "SWITCH",
+                 "1: the elbow's place has priority over the rest of the posture")
+HIMC_COMMAND_ROW(WEIGHTS, weights, PERFORMER, AT_SAMPLE, 0, "SHOULDER ELBOW WRIST GRIP",
+                 "sets how readily each joint turns to bring the tip nearer")
+HIMC_COMMAND_ROW(LAW, law, PERFORMER, AT_SAMPLE, 0, "printed|feedforward|computed-torque",
+                 "chooses the inverse dynamics")
+HIMC_COMMAND_ROW(GAIN, gain, PERFORMER, NOW, 0, "reset | frequency FACTOR | JOINT KS KD",
+                 "sets stiffness and damping of a joint's servo, or the natural frequency of all "
+                 "over the default, or resets all")
+HIMC_COMMAND_ROW(LIMITS, limits, PERFORMER, NOW, 0, "off|ellipsoid|euler",
+                 "limits the joints to the range of the take's player, else of table 1")
+HIMC_COMMAND_ROW(STRENGTH, strength, PERFORMER, NOW, 0, "human|off | JOINT TORQUE",
+                 "sets the largest torque of a joint, or a man's for all joints, or no limit")
+HIMC_COMMAND_ROW(RATE, rate, PERFORMER, NOW, 0, "physics HZ | task HZ",
+                 "sets the rate of simulation or control")
+HIMC_COMMAND_ROW(COUPLING, coupling, PERFORMER, AT_SAMPLE, 0, "two-way|one-way",
+                 "two-way: the head's vibration pushes back on the stick")
+HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
+HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, 0, "SEGMENT FX FY FZ SECONDS",
+                 "pushes a segment of the body with a force for a time")
+HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
+                 "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
+HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
+HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "", "sets everything as when just made")
+HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
+                 "makes a drum, 23 inches by default")
+HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
+                 "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
+                 "sends a stream to an address over OSC, 33 times a second by default; vmc to port "
+                 "39539")
+HIMC_COMMAND_ROW(UNSUBSCRIBE, unsubscribe, PERFORMER, NETWORK, 0,
+                 "HOST PORT [" HIMC_ROW_STREAM "] [HZ] | HOST vmc",
+                 "stops sending that stream, or all streams, to an address")
+HIMC_COMMAND_ROW(LISTEN, listen, PERFORMER, NETWORK, 0, "PORT",
+                 "accepts commands over OSC at that port of this machine; 0 ends it")
+
+// to a drum
+HIMC_COMMAND_ROW(RADIUS, radius, DRUM, NOW, 0, "RADIUS", "sets the head's radius")
+HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, 0, "TENSION", "sets the head's tension")
+HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, 0, "DENSITY", "sets the head's mass per area")
+HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, 0, "HZ | NOTE",
+                 "sets the tension so that the principal mode sounds there")
+HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, 0, "COUNT", "sets the number of modes")
+HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, 0, "T60 | SIGMA0 SIGMA1",
+                 "sets the losses by the decay time, or by both of their parameters")
+HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, 0, "SWITCH", "1: air and kettle load the head")
+HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, 0, "usual | VOLUME",
+                 "sets the volume under the head, or the usual one for its radius")
+HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, 0, "AMOUNT",
+                 "sets how much the tension rises as the head bows out")
+HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, 0, "AMOUNT", "lays a hand on the head")
+HIMC_COMMAND_ROW(SHAPE, shape, DRUM, NOW, 0, "circle | rectangle LENGTH WIDTH | FILE",
+                 "makes a head of another outline, or one of masses and springs from a file")
+HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0, "soft|medium|hard|wood | K ALPHA MASS",
+                 "chooses the mallet, or its stiffness, exponent and mass")
+HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
+                 "sets where the head stands and how it is tilted")
+HIMC_COMMAND_ROW(PICKUP, pickup, DRUM, NOW, 0, "air AZIMUTH ELEVATION DISTANCE | X Y",
+                 "sets where the sound is taken: in the air or on the head")
+HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, 0, "CHANNELS", "sets the number of pickups")
+HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, 0,
+                 "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
+                 "sets where the sound of one pickup is taken")
+HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
+                 "chooses how blows become sound: by the head, or by the patch around it in Pure "
+                 "Data")
+HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes without a performer")
+
+#undef HIMC_ROW_STROKE
+#undef HIMC_ROW_STREAM
+#undef HIMC_COMMAND_ROW
