@@ -1,4 +1,4 @@
-/// place.c: where drumheads stand and where on them strokes fall.
+/// head_frame.c: the axes of a drumhead in the world, and the points on it that strokes fall on.
 ///
 /// A head's frame has x along its plane away from the performer, y to the left, and the normal
 /// up: with e the horizontal unit vector from the world's origin, where the performer sits, to
@@ -6,8 +6,9 @@
 /// spots are fractions of the radius towards the performer; measured strike places lay 0.53, 0.40
 /// and 0.30 m from the player's edge for centre, normal and rim, where players and textbooks put
 /// them at 0, about 3/4 and about 9/10 of the radius.
-#include "plan/planner.h"
 #include "base/head_frame.h"
+
+#include "himc/command.h"
 
 #define NORMAL_SPOT 0.75
 #define RIM_SPOT 0.92

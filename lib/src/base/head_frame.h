@@ -1,4 +1,4 @@
-/// place.h: a drumhead's plane in the world: its axes, and points from one to the other.
+/// head_frame.h: the axes of a drumhead in the world, and points from one frame to the other.
 #ifndef HIMC_HEAD_FRAME_H
 #define HIMC_HEAD_FRAME_H
 

@@ -1,4 +1,4 @@
-/// between.c: quintic Hermite interpolation; one set of six basis values serves every channel.
+/// interpolate.c: quintic Hermite interpolation; one set of six basis values serves every channel.
 ///
 /// With u = (t - t0) / T the six quintics that carry position, velocity and acceleration at each
 /// end, and their two derivatives, are computed once. Joints are interpolated as four-component
@@ -23,9 +23,9 @@ static void half_basis(double u, double h[3][3])
     h[2][2] = 1 - 9 * u + 18 * u2 - 10 * u3;
 }
 
-between himc_interpolate_make(double time, double length)
+himc_interpolation himc_interpolate_make(double time, double length)
 {
-    between b;
+    himc_interpolation b;
     double near[3][3], far[3][3], power[3] = {1, length, length * length};
     half_basis(time / length, near);
     half_basis(1 - time / length, far);
@@ -46,7 +46,7 @@ static himc_vec3 mix3(const double w[6], const himc_target *p, const himc_target
     return himc_vec3_madd(v, w[5], q->a);
 }
 
-himc_target himc_interpolate_points(const between *b, const himc_target *from,
+himc_target himc_interpolate_points(const himc_interpolation *b, const himc_target *from,
                                     const himc_target *to)
 {
     return (himc_target){mix3(b->weight[0], from, to), mix3(b->weight[1], from, to),
@@ -83,7 +83,7 @@ static himc_quat mix4(const double w[6], const spin_state *p, const spin_state *
     return add4(r, w[5], q->second);
 }
 
-joint_state himc_interpolate_joints(const between *b, const joint_state *from,
+joint_state himc_interpolate_joints(const himc_interpolation *b, const joint_state *from,
                                     const joint_state *to)
 {
     double sign = himc_quat_dot(from->q, to->q) < 0 ? -1 : 1;

@@ -237,15 +237,15 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
     for (int k = 0; k < 3; k++) {
         himc_vec3 x[HIMC_HANDS];
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            x[hand] = himc_target_after(&tip[hand], (k - 1) * DIFFERENCE).x;
+            x[hand] = himc_target_after(&tip[hand], (k - 1) * HIMC_DIFFERENCE_STEP).x;
         himc_posture now = *posture;
-        now.trunk_posture = bearing_after(&posture->trunk_posture, (k - 1) * DIFFERENCE);
+        now.trunk_posture = bearing_after(&posture->trunk_posture, (k - 1) * HIMC_DIFFERENCE_STEP);
         himc_posture_at(&now, x, &pose[k]);
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
         motion->joint[j] = pose[1].joint[j];
-        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j], &motion->rate[j],
-                           &motion->acceleration[j]);
+        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j],
+                           HIMC_DIFFERENCE_STEP, &motion->rate[j], &motion->acceleration[j]);
     }
 }
 

@@ -4,7 +4,7 @@
 #ifndef HIMC_POSTURE_H
 #define HIMC_POSTURE_H
 
-#include "plan/planner.h"
+#include "base/quintic.h"
 #include "himc/body.h"
 
 /// A posture and how it moves, joint by joint, in the parent's frame.

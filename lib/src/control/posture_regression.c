@@ -13,6 +13,7 @@
 #include "control/posture_regression_terms.h"
 
 #include "base/difference.h"
+#include "base/quintic.h"
 
 #include <string.h>
 
@@ -196,7 +197,7 @@ void himc_posture_regression_moving(const himc_posture_regression *regression,
     himc_pose pose[3];
     himc_quat own = himc_quat_mul(himc_quat_conj(player->usual), player->mean.joint[TRUNK]);
     for (int i = 0; i < 3; i++) {
-        double dt = (i - 1) * DIFFERENCE;
+        double dt = (i - 1) * HIMC_DIFFERENCE_STEP;
         himc_vec3 then[TAPS][HIMC_HANDS];
         pose[i] = player->mean;
         pose[i].joint[TRUNK] = himc_quat_mul(joint_after(motion, TRUNK, dt), own);
@@ -211,7 +212,7 @@ void himc_posture_regression_moving(const himc_posture_regression *regression,
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
         motion->joint[j] = pose[1].joint[j];
-        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j], &motion->rate[j],
-                           &motion->acceleration[j]);
+        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j],
+                           HIMC_DIFFERENCE_STEP, &motion->rate[j], &motion->acceleration[j]);
     }
 }

@@ -11,6 +11,7 @@
 #include "himc/performance.h"
 #include "himc/mocap.h"
 #include "control/setpoint.h"
+#include "plan/planner.h"
 #include "plan/track.h"
 #include "control/posture_regression.h"
 #include "himc/membrane.h"

@@ -180,7 +180,8 @@ static joint_state captured_joint(const himc_track *track, int j, double t, bool
         from = h->planned[i].last;
         to = h->planned[i].next;
     }
-    between b = himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
+    himc_interpolation b =
+        himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
     return himc_interpolate_joints(&b, &joint[from], &joint[to]);
 }
 
@@ -206,7 +207,7 @@ static joint_state entered_joint(const himc_track *track, int j, double t, bool 
     if (t >= -0.5 * EASE || approach <= 0)
         return warped_joint(track, j, t, cut);
     joint_state first = {.q = track->joint[j][0].q};
-    between b = himc_interpolate_make(fmax(since, 0), approach);
+    himc_interpolation b = himc_interpolate_make(fmax(since, 0), approach);
     return himc_interpolate_joints(&b, &track->before[j], &first);
 }
 
@@ -217,7 +218,7 @@ static joint_state played_joint(const himc_track *track, int j, double t, bool c
         return entered_joint(track, j, t, cut);
     joint_state left = entered_joint(track, j, track->stop, cut), rest = {.q = left.q};
     rest.q = himc_quat_mul(himc_quat_exp(himc_vec3_scale(left.rate, 0.3 * SETTLE)), left.q);
-    between b = himc_interpolate_make(fmin(t - track->stop, SETTLE), SETTLE);
+    himc_interpolation b = himc_interpolate_make(fmin(t - track->stop, SETTLE), SETTLE);
     return himc_interpolate_joints(&b, &left, &rest);
 }
 
