@@ -1,5 +1,5 @@
-/// test_mocap_strokes.c: the motion database beside what was measured on real timpani strokes, and
-/// whether a player nobody learned from moves as the others do.
+/// test_mocap_strokes.c: the motion database against measurements of real timpani strokes, and the
+/// joints of a player predicted from the regression of the others.
 ///
 /// The captured means and deviations are those of the table in mocap/README.md, which the
 /// generator writes: heights and speeds of a point 0.15 m behind the mallet.
@@ -31,7 +31,7 @@ static double mean(himc_nuance nuance, himc_mocap_figure figure)
     return himc_mocap_mean(&all[nuance], figure);
 }
 
-// each nuance's mean within so many of the captured deviations of the captured mean
+// the mean of each nuance is within `most` captured deviations of the captured mean
 static void expect_row(himc_mocap_figure figure, const double captured[HIMC_NUANCES],
                        const double deviation[HIMC_NUANCES], double most)
 {
@@ -117,7 +117,7 @@ static void test_the_accent_is_high_and_narrow_vertical_accent_and_staccato_deep
     }
 }
 
-// the share of the way from impact to apex, of a joint's turn
+// share of a joint's rotation from impact to apex that is done at t
 static double turned(const himc_mocap *m, int joint, double t, double touch, double apex)
 {
     himc_pose low = himc_mocap_pose(m, touch), high = himc_mocap_pose(m, apex),
@@ -145,7 +145,7 @@ static void test_the_elbow_falls_before_the_stick_does(void)
     }
 }
 
-// a habit's take of a sequence; its postures are the caller's to free
+// a sequence as input of a posture regression; the caller frees its postures
 static himc_posture_regression_take postures(const himc_mocap *m)
 {
     int frames = himc_mocap_frames(m);
@@ -159,8 +159,8 @@ static himc_posture_regression_take postures(const himc_mocap *m)
                                           .rate = HIMC_MOCAP_RATE};
 }
 
-// adds the squared angles between a sequence's joints and those its tips alone give; returns how
-// many
+// adds the squared angles between the joints of a sequence and those predicted from its tips;
+// returns their count
 static int add_errors(const himc_posture_regression *regression, const himc_mocap *m,
                       double sum[HIMC_ARM_JOINTS])
 {
@@ -184,7 +184,7 @@ static int add_errors(const himc_posture_regression *regression, const himc_moca
     return count;
 }
 
-// the other players' habit in a nuance, all spots
+// the regression of all players but `unseen` in a nuance, all spots
 static void learn(int unseen, int nuance, himc_posture_regression *regression)
 {
     himc_mocap *m[MOCAP_SEQUENCES];

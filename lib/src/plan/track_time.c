@@ -4,7 +4,7 @@
 /// that between the two ramps the take's time is the time itself.
 #include "plan/track_time.h"
 
-#define BISECTIONS 50 // from 0.2 s to rounding
+#define WARP_BISECTIONS 50 // from 0.2 s to rounding
 
 void himc_track_warp(double length, double t, double at[3])
 {
@@ -34,7 +34,7 @@ double himc_track_unwarp(double length, double taken)
     himc_track_warp(length, taken, at);
     if (at[0] == taken && at[1] == 1)
         return taken;
-    for (int i = 0; i < BISECTIONS; i++) {
+    for (int i = 0; i < WARP_BISECTIONS; i++) {
         double middle = 0.5 * (lo + hi);
         himc_track_warp(length, middle, at);
         if (at[0] < taken)
