@@ -26,7 +26,7 @@
 #define NOISE_RATE 20.0        // of learning the noise: change of its logarithm (1/s)
 #define LEAST_NOISE 1e-6       // (m)
 
-// the tip; chosen: what an arm can do, and a halt that is not a jerk
+// the tip; chosen: within the limits of an arm, and a halt without a jerk
 #define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
 #define BRAKING 20.0          // mean acceleration of the halt (m/s^2)
 #define SHORTEST_HALT 0.15    // (s)

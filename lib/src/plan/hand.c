@@ -13,13 +13,13 @@
 /// prediction at separation.
 #define PREDICTED_RESTITUTION 0.85
 
-// what a hand can do at all: beyond it a stroke is refused; chosen: well beyond captured strokes
+// limits of a hand: beyond them a stroke is refused; chosen: well beyond captured strokes
 // (impacts of up to 10 m/s), so that only the impossible is refused
 #define LEAST_STROKE_TIME 0.02 // from the plan's end to the touch (s)
 #define FASTEST_FALL 9.0       // mean speed of a fall (m/s)
 #define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
 
-// what a hand does; chosen by eye, and so that a hit from rest lands within 0.25 s
+// habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
 #define QUICK_MOVE 80.0         // ... and of one without (m/s^2)
 #define HOME_MOVE 1.5           // ... and of the way home, when there is nothing to play (m/s^2)

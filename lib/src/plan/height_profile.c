@@ -10,7 +10,7 @@
 
 #define TRIAL_SAMPLES 16 // of a trial quintic; chosen: it turns four times at most
 
-// halting; chosen: short, within what a wrist does, and never through the head
+// halting; chosen: as short as a wrist can, and never through the head
 #define BRAKE_TIME 0.12         // (s)
 #define LEAST_BRAKE_TIME 0.02   // (s)
 #define BRAKE_FALL_SHARE 1.2    // of the time the tip would need to reach the head
@@ -43,7 +43,7 @@
 #define RISE_STEEPNESS 2.6     // v T/h of one quintic, at most: it overshoots a little
 #define RISE_LEAST_WAY 0.01    // (m)
 #define RISE_REBOUNDS 1.5      // one quintic may take so many rebounds' time
-#define BRISK_MOVE 25.0        // peak acceleration of what a rise goes on after a rebound (m/s^2)
+#define BRISK_MOVE 25.0        // peak acceleration from a rebound's top to the apex (m/s^2)
 #define OVERSHOOT 1.04         // of the higher end ...
 #define OVERSHOOT_MARGIN 0.004 // ... and so much more, or less than the lower end (m)
 #define HELD_APEX_TIME 0.01    // an apex held for longer is at rest (s)

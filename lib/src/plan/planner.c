@@ -1,4 +1,5 @@
-/// planner.c: what is to be played: drums, motion units, strokes, tempo map and transport.
+/// planner.c: settings, score and transport: drums, motion units, strokes, tempo map, play and
+/// stop.
 ///
 /// Each function here changes the settings or the score (planner_score.c) and then lets the hands
 /// be planned again (planner_motion.c); calls go in that direction only. Memory grows here, in

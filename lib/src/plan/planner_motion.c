@@ -294,8 +294,8 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
                      reason_of(planner, s, result, reason));
 }
 
-/// Plans a hand to `until` while the other one wants to reassign a stroke to it: what it cannot
-/// play is given up.
+/// Plans a hand to `until` while the other one wants to reassign a stroke to it: strokes that it
+/// cannot play are given up.
 static void extend_alone(himc_planner *planner, himc_hand hand, double until)
 {
     timed_stroke refused;

@@ -1,4 +1,4 @@
-/// planner_notes.h: what the planner has to tell the user, in lines and in counts.
+/// planner_notes.h: lines for the user, and counts of strokes that are not played as written.
 #ifndef HIMC_PLANNER_NOTES_H
 #define HIMC_PLANNER_NOTES_H
 

@@ -1,5 +1,5 @@
-/// planner_score.h: the strokes of both hands, the tempo map and the position in them: what is to
-/// be played when. Knows nothing of motion.
+/// planner_score.h: the strokes of both hands, the tempo map and the position in them: which stroke
+/// is due when. Knows nothing of motion.
 #ifndef HIMC_PLANNER_SCORE_H
 #define HIMC_PLANNER_SCORE_H
 

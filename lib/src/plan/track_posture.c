@@ -85,7 +85,7 @@ static void fit_frames(himc_track *track, const himc_pose *pose, int j)
 
 // the levers of an arm in the world
 typedef struct arm {
-    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of what the joint hangs on
+    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of the joint's parent segment
     himc_vec3 lever[HIMC_ARM_JOINTS];  // from the joint to the tip (m)
     himc_vec3 tip;                     // (m)
 } arm;
