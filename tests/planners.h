@@ -1,5 +1,5 @@
-/// planners.h: what tests of tips' planners share: a planner of two drums at a tempo, strokes for
-/// it, and where its tips are.
+/// planners.h: for tests of the planner: a planner with two drums at a tempo, strokes for it, and
+/// the states of its tips.
 #ifndef HIMC_TESTS_PLANNERS_H
 #define HIMC_TESTS_PLANNERS_H
 
@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#define PLANE 0.87 // of the tip at a touch, mallet's radius included (m)
+#define PLANE 0.87 // height of the tip at a touch: head and mallet's radius (m)
 
 static himc_planner *planner;
 static himc_error error;
@@ -62,7 +62,7 @@ static inline void same_state(himc_target a, himc_target b)
     TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(a.a, b.a)) < 1e-4);
 }
 
-/// The time at which the hand's first touch is planned.
+/// Planned time of the hand's first touch (s).
 static inline double first_touch(himc_hand hand)
 {
     himc_stroke s;

@@ -77,7 +77,7 @@ static void test_sound_amplitude_rises_with_the_force_of_three_blows(void)
     }
 }
 
-// a pivoting 45 g stick has 0.0245 .. 0.028 kg at its tip: the forces of the paper ask for about
+// a pivoting 45 g stick has 0.0245 .. 0.028 kg at its tip, so the forces of the paper need about
 // 5 .. 8 m/s
 static void test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives(void)
 {
@@ -89,8 +89,8 @@ static void test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives(vo
     }
 }
 
-// how much louder depends on how the head happens to stand when it is struck, so the blow falls at
-// eight instants spread over two periods of the principal mode; on average energies add
+// the gain depends on the head's phase at the blow, so blows fall at eight instants spread over two
+// periods of the principal mode; on average energies add
 static void test_equal_blow_sounds_louder_on_the_ringing_head(void)
 {
     double calm = loudness[4], force = blow[4].force, ringing = 0;

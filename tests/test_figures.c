@@ -1,10 +1,10 @@
-/// test_figures.c: what the figures of a performance count: strokes on time and on place, tips
+/// test_figures.c: the figures of a performance: strokes on time and on their spot, tip errors
 /// outside contact, recoveries.
 #include "session.h"
 #include "himc/vec.h"
 
-// One stroke at 2 s whose drum is moved just before, when nobody can take it back; how many are
-// said to be played.
+// One stroke at 2 s; its drum is moved just before, when the stroke is committed. Returns the count
+// of played strokes.
 static int played_after(const char *place, double *late, double *beside)
 {
     himc_performance *p = session_new();
@@ -68,14 +68,14 @@ static void test_tips_are_measured_outside_contact_only(void)
     session_play(p, 5, NULL);
     double rms = himc_performance_measure(p).tip_rms;
     printf("tips within %.4f mm RMS, in contact up to %.2f mm off\n", 1e3 * rms, 1e3 * largest);
-    TEST_ASSERT_TRUE(largest > 0.002); // where control lets go
+    TEST_ASSERT_TRUE(largest > 0.002); // in contact, where control lets go
     TEST_ASSERT_TRUE(rms < 1e-4);
     himc_performance_free(p);
 }
 
-// servos act implicitly and hold whatever their gains; 1.7 kN on a stick of some grams, in
-// steps of 2 ms, is more than the engine can follow
-static void test_each_recovery_is_counted_and_the_first_is_said(void)
+// servos are implicit and stable at any gain, but 1.7 kN on a stick of some grams is more than the
+// engine can follow in steps of 2 ms
+static void test_each_recovery_is_counted_and_a_note_tells_the_first(void)
 {
     himc_performance *p = session_new();
     heard h = {0};
@@ -99,6 +99,6 @@ int main(void)
     RUN_TEST(test_strike_more_than_2_cm_off_its_spot_is_not_played);
     RUN_TEST(test_strike_more_than_5_ms_early_is_not_played);
     RUN_TEST(test_tips_are_measured_outside_contact_only);
-    RUN_TEST(test_each_recovery_is_counted_and_the_first_is_said);
+    RUN_TEST(test_each_recovery_is_counted_and_a_note_tells_the_first);
     return UNITY_END();
 }

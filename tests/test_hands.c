@@ -1,5 +1,5 @@
-/// test_hands.c: what one hand cannot play, the other one does, or it is given up, said and
-/// counted.
+/// test_hands.c: a stroke that its hand cannot play is reassigned to the other hand, or given up; a
+/// note says so and it is counted.
 #include "session.h"
 
 #include "body/posture.h"
@@ -30,7 +30,7 @@ static bool was_said(himc_performance *p, double seconds, heard *h, const char *
     return said;
 }
 
-static void test_other_hand_plays_what_one_has_no_time_for(void)
+static void test_stroke_without_time_is_reassigned_to_the_other_hand(void)
 {
     himc_performance *p = with_two_drums(0.2, 0.9);
     heard h = {0};
@@ -51,7 +51,7 @@ static void test_other_hand_plays_what_one_has_no_time_for(void)
     himc_performance_free(p);
 }
 
-static void test_what_neither_hand_can_play_is_given_up_and_missed(void)
+static void test_stroke_that_neither_hand_can_play_is_given_up_and_missed(void)
 {
     himc_performance *p = with_two_drums(0.2, 0.9);
     heard h = {0};
@@ -71,7 +71,8 @@ static void test_what_neither_hand_can_play_is_given_up_and_missed(void)
     himc_performance_free(p);
 }
 
-// where the head's usual spot is in reach of the left hand and not of the right one
+// y of a head with its usual spot in reach of the left hand and not of the right one, 0 if there is
+// none (m)
 static double only_left(double away)
 {
     himc_skeleton_config config = himc_skeleton_default();
@@ -89,7 +90,7 @@ static double only_left(double away)
     return 0;
 }
 
-static void test_nearer_hand_plays_what_the_other_cannot_reach(void)
+static void test_stroke_out_of_reach_is_reassigned_to_the_nearer_hand(void)
 {
     double away = -0.2, y = only_left(away);
     TEST_ASSERT_TRUE(y > 0);
@@ -108,7 +109,7 @@ static void test_nearer_hand_plays_what_the_other_cannot_reach(void)
     himc_performance_free(p);
 }
 
-static void test_stroke_out_of_reach_says_by_how_much_and_is_missed(void)
+static void test_stroke_out_of_reach_of_both_is_missed_and_a_note_says_by_how_much(void)
 {
     himc_performance *p = with_two_drums(3, 0);
     heard h = {0};
@@ -128,8 +129,8 @@ static void test_stroke_out_of_reach_says_by_how_much_and_is_missed(void)
     himc_performance_free(p);
 }
 
-// in a loop, with the tempo changing all the time: each stroke that is lent sounds once
-static void test_lent_strokes_are_played_once_however_often_the_plan_is_made(void)
+// in a loop whose tempo changes all the time, each reassigned stroke sounds once
+static void test_reassigned_strokes_are_played_once_however_often_they_are_planned(void)
 {
     himc_performance *p = with_two_drums(0.2, 0.9);
     heard h = {0};
@@ -153,7 +154,7 @@ static void test_lent_strokes_are_played_once_however_often_the_plan_is_made(voi
     himc_performance_free(p);
 }
 
-static void test_what_was_not_played_as_written_is_summed_up_at_the_end(void)
+static void test_a_note_at_the_end_counts_the_strokes_not_played_as_written(void)
 {
     himc_performance *p = with_two_drums(3, 0);
     heard h = {0};
@@ -163,7 +164,7 @@ static void test_what_was_not_played_as_written_is_summed_up_at_the_end(void)
     session_do(p, "play");
     session_play(p, 12, &h);
     TEST_ASSERT_EQUAL_INT(1, h.dones);
-    TEST_ASSERT_EQUAL_INT(2, h.notes); // the first of them, and how many
+    TEST_ASSERT_EQUAL_INT(2, h.notes); // the first of them, and the count
     TEST_ASSERT_EQUAL_STRING("in all 0 strokes smaller, 0 by the other hand, 5 given up", h.note);
     TEST_ASSERT_EQUAL_INT(5, himc_performance_measure(p).missed);
     heard_free(&h);
@@ -173,11 +174,11 @@ static void test_what_was_not_played_as_written_is_summed_up_at_the_end(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_other_hand_plays_what_one_has_no_time_for);
-    RUN_TEST(test_what_neither_hand_can_play_is_given_up_and_missed);
-    RUN_TEST(test_nearer_hand_plays_what_the_other_cannot_reach);
-    RUN_TEST(test_stroke_out_of_reach_says_by_how_much_and_is_missed);
-    RUN_TEST(test_lent_strokes_are_played_once_however_often_the_plan_is_made);
-    RUN_TEST(test_what_was_not_played_as_written_is_summed_up_at_the_end);
+    RUN_TEST(test_stroke_without_time_is_reassigned_to_the_other_hand);
+    RUN_TEST(test_stroke_that_neither_hand_can_play_is_given_up_and_missed);
+    RUN_TEST(test_stroke_out_of_reach_is_reassigned_to_the_nearer_hand);
+    RUN_TEST(test_stroke_out_of_reach_of_both_is_missed_and_a_note_says_by_how_much);
+    RUN_TEST(test_reassigned_strokes_are_played_once_however_often_they_are_planned);
+    RUN_TEST(test_a_note_at_the_end_counts_the_strokes_not_played_as_written);
     return UNITY_END();
 }

@@ -1,5 +1,5 @@
-/// test_mocap_strokes.c: the motion database beside what was measured on real timpani strokes, and
-/// whether a player nobody learned from moves as the others do.
+/// test_mocap_strokes.c: the motion database against measurements of real timpani strokes, and the
+/// joints of a player predicted from the regression of the others.
 ///
 /// The captured means and deviations are those of the table in mocap/README.md, which the
 /// generator writes: heights and speeds of a point 0.15 m behind the mallet.
@@ -31,7 +31,7 @@ static double mean(himc_nuance nuance, himc_mocap_figure figure)
     return himc_mocap_mean(&all[nuance], figure);
 }
 
-// each nuance's mean within so many of the captured deviations of the captured mean
+// the mean of each nuance is within `most` captured deviations of the captured mean
 static void expect_row(himc_mocap_figure figure, const double captured[HIMC_NUANCES],
                        const double deviation[HIMC_NUANCES], double most)
 {
@@ -117,7 +117,7 @@ static void test_the_accent_is_high_and_narrow_vertical_accent_and_staccato_deep
     }
 }
 
-// the share of the way from impact to apex, of a joint's turn
+// share of a joint's rotation from impact to apex that is done at t
 static double turned(const himc_mocap *m, int joint, double t, double touch, double apex)
 {
     himc_pose low = himc_mocap_pose(m, touch), high = himc_mocap_pose(m, apex),

@@ -1,4 +1,4 @@
-/// test_planner.c: tips' trajectories: on time, smooth, as the nuances ask.
+/// test_planner.c: trajectories of the tips: on time, smooth, and different for each nuance.
 #include "planners.h"
 #include "base/head_frame.h"
 
@@ -30,7 +30,7 @@ static void test_tips_touch_on_time_with_no_acceleration_at_any_tempo(void)
         }
 }
 
-static void test_impact_speeds_are_the_nuances_own_when_there_is_time(void)
+static void test_impact_speeds_are_those_of_the_nuances_when_there_is_time(void)
 {
     static const double forte[HIMC_NUANCES] = {4.3, 4.2, 4.5, 7.5, 2.8};
     for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
@@ -49,7 +49,7 @@ static void test_impact_speeds_are_the_nuances_own_when_there_is_time(void)
     }
 }
 
-/// What a stroke looks like, from the samples before its touch.
+/// Height, depth and rising speed of a stroke, from samples around its touch.
 typedef struct shape {
     double apex, depth, up;
 } shape;
@@ -168,7 +168,7 @@ static double normal_of(himc_vec3 a)
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
-/// The jump of acceleration at a point between two times: the difference left when they meet.
+/// The largest jump of acceleration between two times, found by bisection.
 static double jump_between(himc_hand hand, double t0, double t1)
 {
     himc_vec3 a0 = himc_planner_target(planner, hand, t0).a;
@@ -201,7 +201,7 @@ static void test_acceleration_has_no_jumps_even_when_the_tempo_changes(void)
         double step = normal_of(himc_vec3_sub(now.a, before.a));
         if (step > 1)
             jump = fmax(jump, jump_between(HIMC_RIGHT, t - 1e-4, t));
-        // inside a contact the acceleration is meant to change fast
+        // in a contact the acceleration changes fast by design
         bool any = himc_planner_current(planner, HIMC_RIGHT, t, &s, &drum, &touch);
         if (!any || t < touch || t > touch + 0.0072) {
             range = fmax(range, normal_of(now.a));
@@ -263,7 +263,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_tips_touch_on_time_with_no_acceleration_at_any_tempo);
-    RUN_TEST(test_impact_speeds_are_the_nuances_own_when_there_is_time);
+    RUN_TEST(test_impact_speeds_are_those_of_the_nuances_when_there_is_time);
     RUN_TEST(test_nuances_keep_their_order_of_height_and_depth_at_every_dynamic);
     RUN_TEST(test_staccato_is_pulled_off_faster_than_it_strikes);
     RUN_TEST(test_stroke_before_an_accent_is_lifted_higher);

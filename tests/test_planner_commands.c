@@ -1,5 +1,5 @@
-/// test_planner_commands.c: what a planner is told while it plays and what it tells: its stroke,
-/// its beat, its notes; whatever it is told, the motion stays continuous, finite and the same.
+/// test_planner_commands.c: commands to a planner while it plays, and its reports: current stroke,
+/// beat and notes. Under all commands the motion stays continuous, finite and deterministic.
 #include "allocations.h"
 #include "planners.h"
 
@@ -27,7 +27,7 @@ static void test_current_names_the_stroke_until_its_touch_is_over(void)
     TEST_ASSERT_FALSE(himc_planner_current(planner, HIMC_RIGHT, 3, &s, &drum, &touch));
 }
 
-static void test_first_stroke_too_early_moves_the_beginning_and_says_so(void)
+static void test_first_stroke_without_time_delays_all_beats_and_a_note_says_so(void)
 {
     himc_planner_note note;
     add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
@@ -40,7 +40,7 @@ static void test_first_stroke_too_early_moves_the_beginning_and_says_so(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_planner_beat(planner, 1));
 }
 
-static void test_fast_strokes_are_smaller_and_said_once(void)
+static void test_fast_strokes_are_smaller_and_one_note_says_so(void)
 {
     himc_planner_note note;
     use(200);
@@ -55,7 +55,7 @@ static void test_fast_strokes_are_smaller_and_said_once(void)
     TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
 }
 
-static void test_notes_are_bounded_and_what_is_lost_is_counted(void)
+static void test_32_notes_are_kept_and_lost_ones_are_counted(void)
 {
     himc_planner_note note, last = {""};
     int count = 0;
@@ -73,7 +73,7 @@ static void test_notes_are_bounded_and_what_is_lost_is_counted(void)
     TEST_ASSERT_NOT_NULL(strstr(last.text, "more notes were lost"));
 }
 
-static void test_tempo_change_keeps_the_beat_and_moves_what_is_not_begun(void)
+static void test_tempo_change_keeps_the_beat_and_moves_later_strokes(void)
 {
     himc_stroke s;
     int drum;
@@ -139,7 +139,7 @@ static void test_reach_arrives_and_stays(void)
                               himc_vec3_length(himc_vec3_sub(goal, at(planner, HIMC_RIGHT, 9).x)));
 }
 
-static void test_strokes_that_nobody_can_play_are_refused(void)
+static void test_strokes_nearer_than_40_ms_or_on_no_drum_are_refused(void)
 {
     himc_stroke s = {.beat = 1.05, .hand = HIMC_LEFT};
     add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.5);
@@ -189,7 +189,7 @@ static void test_state_is_continuous_through_every_command(void)
     }
 }
 
-/// A storm of everything; returns a digest of the motion.
+/// Many random commands; returns a digest of the motion.
 static double storm(unsigned seed, int commands)
 {
     double digest = 0, t = 0;
@@ -252,7 +252,7 @@ static void test_tip_thrown_off_a_head_is_halted_within_15_cm(void)
     }
 }
 
-static void test_ten_thousand_random_commands_keep_the_motion_finite_and_near(void)
+static void test_motion_stays_finite_and_near_through_ten_thousand_random_commands(void)
 {
     storm(1, 10000);
 }
@@ -273,6 +273,71 @@ static void test_values_that_are_not_finite_change_nothing(void)
     himc_planner_seek(planner, 1, NAN);
     TEST_ASSERT_FALSE(himc_planner_set_drum(planner, 0, &(himc_head_frame){{NAN, 0, 0}, 0, 0.3}));
     same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
+}
+
+/// A planner of one drum whose hands reach as `beyond` says, with `strokes` of alternating hands.
+static void use_reach(double (*beyond)(const void *body, himc_hand hand, himc_vec3 point),
+                      int strokes)
+{
+    himc_planner_config config = himc_planner_default();
+    config.beyond = beyond;
+    himc_planner_free(planner);
+    planner = himc_planner_new(&config, &error);
+    TEST_ASSERT_NOT_NULL(planner);
+    for (int i = 0; i < strokes; i++)
+        add(planner, 2 + i, (himc_hand)(i & 1), HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+}
+
+static double far_from_both(const void *body, himc_hand hand, himc_vec3 point)
+{
+    (void)body;
+    (void)hand;
+    (void)point;
+    return 0.5;
+}
+
+static double far_from_left(const void *body, himc_hand hand, himc_vec3 point)
+{
+    (void)body;
+    (void)point;
+    return hand == HIMC_LEFT ? 0.5 : 0;
+}
+
+static void test_strokes_that_no_hand_reaches_are_given_up_once_each(void)
+{
+    himc_planner_note note;
+    use_reach(far_from_both, 40);
+    for (double t = 0; t < himc_planner_end(planner); t += 0.01)
+        himc_planner_advance(planner, t);
+    TEST_ASSERT_EQUAL_INT(40, himc_planner_given_up(planner));
+    himc_planner_sum_up(planner);
+    TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_NOT_NULL(strstr(note.text, "given up, out of reach by 0.50 m"));
+    TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_EQUAL_STRING("in all 0 strokes smaller, 0 by the other hand, 40 given up",
+                             note.text);
+}
+
+static void test_strokes_out_of_one_hands_reach_are_all_played_by_the_other(void)
+{
+    int played = 0;
+    double last = -1;
+    use_reach(far_from_left, 40);
+    for (double t = 0; t < himc_planner_end(planner); t += 0.01) {
+        himc_stroke s;
+        int drum;
+        double touch;
+        himc_planner_advance(planner, t);
+        TEST_ASSERT_TRUE(at(planner, HIMC_LEFT, t).x.z > PLANE + 0.01);
+        if (himc_planner_current(planner, HIMC_RIGHT, t, &s, &drum, &touch) && touch > last &&
+            t > touch - 0.01) {
+            last = touch;
+            played++;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(40, played);
+    TEST_ASSERT_EQUAL_INT(0, himc_planner_given_up(planner));
 }
 
 static void test_nothing_is_allocated_while_playing(void)
@@ -306,20 +371,22 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_current_names_the_stroke_until_its_touch_is_over);
-    RUN_TEST(test_first_stroke_too_early_moves_the_beginning_and_says_so);
-    RUN_TEST(test_fast_strokes_are_smaller_and_said_once);
-    RUN_TEST(test_notes_are_bounded_and_what_is_lost_is_counted);
-    RUN_TEST(test_tempo_change_keeps_the_beat_and_moves_what_is_not_begun);
+    RUN_TEST(test_first_stroke_without_time_delays_all_beats_and_a_note_says_so);
+    RUN_TEST(test_fast_strokes_are_smaller_and_one_note_says_so);
+    RUN_TEST(test_32_notes_are_kept_and_lost_ones_are_counted);
+    RUN_TEST(test_tempo_change_keeps_the_beat_and_moves_later_strokes);
     RUN_TEST(test_stop_brings_the_tip_to_rest_and_play_resumes);
     RUN_TEST(test_hit_comes_within_a_quarter_second_from_rest);
     RUN_TEST(test_reach_arrives_and_stays);
-    RUN_TEST(test_strokes_that_nobody_can_play_are_refused);
+    RUN_TEST(test_strokes_nearer_than_40_ms_or_on_no_drum_are_refused);
     RUN_TEST(test_stroke_added_while_playing_is_played);
     RUN_TEST(test_state_is_continuous_through_every_command);
     RUN_TEST(test_tip_thrown_off_a_head_is_halted_within_15_cm);
-    RUN_TEST(test_ten_thousand_random_commands_keep_the_motion_finite_and_near);
+    RUN_TEST(test_motion_stays_finite_and_near_through_ten_thousand_random_commands);
     RUN_TEST(test_the_same_commands_give_the_same_bits);
     RUN_TEST(test_values_that_are_not_finite_change_nothing);
+    RUN_TEST(test_strokes_that_no_hand_reaches_are_given_up_once_each);
+    RUN_TEST(test_strokes_out_of_one_hands_reach_are_all_played_by_the_other);
     RUN_TEST(test_nothing_is_allocated_while_playing);
     return UNITY_END();
 }

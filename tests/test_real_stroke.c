@@ -9,7 +9,7 @@
 
 #include "performance/performance_state.h"
 #include "session.h"
-#include "plan/track_state.h"
+#include "plan/track_time.h"
 
 #define CAPTURE "drumstroke_pearl_240hz/stroke.trc"
 #define NEAR 0.02 // RMS (m)
@@ -39,10 +39,11 @@ static void compare(void *user, const himc_tick *tick)
 {
     comparison *c = user;
     const himc_track *track = c->performance->track;
+    double length = (himc_take_frames(c->take) - 1) / himc_take_rate(c->take);
     double t = tick->time - c->performance->track_start, at[3];
-    if (!(t >= -0.5 * EASE && t <= himc_track_length(track)))
+    if (!(t >= -0.5 * HIMC_TRACK_RAMP && t <= himc_track_length(track)))
         return;
-    himc_track_warp(track, t, at);
+    himc_track_warp(length, t, at);
     himc_vec3 simulated[POINTS] = {tick->body->origin[HIMC_RIGHT_UPPER_ARM],
                                    tick->body->origin[HIMC_RIGHT_FOREARM],
                                    tick->body->origin[HIMC_RIGHT_HAND]};

@@ -1,12 +1,12 @@
-/// test_track.c: a take's tips as targets: impacts kept sharp, smooth everywhere else, rejoined
-/// from the measured state.
+/// test_track.c: the tips of a take as targets: impacts are sharp, all else is smooth, and after an
+/// impact the take is rejoined from the measured state.
 #include "allocations.h"
 #include "tracks.h"
 
 #define RATE 250
 #define RADIUS 0.0175
 
-// right tip alone, in millimetres with y up as TRC has it; the third strike `raised` (m)
+// the right tip alone, in millimetres with y up as in TRC; the third strike is `raised` (m)
 static void make_take_with(double speed, double noise, double raised)
 {
     static char text[60000];
@@ -37,7 +37,7 @@ static void make_take(double speed, double noise)
     make_take_with(speed, noise, 0);
 }
 
-// the take bounces in no time; a contact of 7 ms that joins its falls and rebounds begins so much
+// the take bounces in no time; a contact of 7 ms between the same fall and rebound begins so much
 // earlier (s)
 #define EARLIER 0.0033
 
@@ -70,7 +70,7 @@ static void test_every_strike_of_a_bouncing_take_is_found_near_its_time(void)
     TEST_ASSERT_FALSE(himc_track_current(track, HIMC_LEFT, 0.1, &time, &x, &y));
 }
 
-// speeds of all strikes against the true one; returns the worst part off
+// largest relative error of the impact speed of all strikes
 static double worst_speed(double speed, double noise)
 {
     double worst = 0;
@@ -99,8 +99,8 @@ static void test_impact_speed_survives_noise_of_a_fifth_of_a_millimetre(void)
     TEST_ASSERT_TRUE(worst_speed(4, 0.0002) < 0.05);
 }
 
-// what steps of 10 us leave unexplained by velocity and acceleration: jumps, and a little of the
-// jerk
+// largest errors of extrapolation over steps of 10 us, of position, velocity and acceleration:
+// jumps, and a little of the jerk
 static void largest_jumps(double from, double to, double jump[3])
 {
     double h = 1e-5, time = -1, x, y;
@@ -118,7 +118,7 @@ static void largest_jumps(double from, double to, double jump[3])
     }
 }
 
-static void test_target_is_smooth_but_for_the_contact(void)
+static void test_target_is_smooth_except_at_the_contact(void)
 {
     double jump[3];
     make_take(4, 0.0002);
@@ -152,7 +152,7 @@ static void test_after_separation_the_target_goes_on_from_the_measured_state_and
     TEST_ASSERT_DOUBLE_WITHIN(0.002, 0.9 - EARLIER, again);
 }
 
-static void test_20_ms_after_separation_the_take_is_followed_however_the_stick_left(void)
+static void test_20_ms_after_separation_the_take_is_followed_at_any_speed_of_the_stick(void)
 {
     himc_vec3 rejoined[2];
     for (int i = 0; i < 2; i++) {
@@ -169,7 +169,7 @@ static void test_20_ms_after_separation_the_take_is_followed_however_the_stick_l
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, distance(rejoined[0], rejoined[1]));
 }
 
-static void test_rewind_forgets_the_strikes_and_plays_the_same_bit_by_bit(void)
+static void test_after_rewind_the_track_is_the_same_bit_by_bit(void)
 {
     make_take(4, 0.0002);
     enum { N = 4500 };
@@ -207,7 +207,7 @@ static void test_approach_and_stop_lead_in_and_out_smoothly(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(at(5).x, at(9).x));
 }
 
-static void test_the_take_may_be_freed_and_the_strikes_stand_over_the_spot(void)
+static void test_the_take_may_be_freed_and_the_strikes_are_on_the_usual_spot(void)
 {
     make_take(4, 0);
     himc_vec3 spot = {0.5 - 0.225, -0.015, 0.85 + RADIUS}, mean = {0, 0, 0};
@@ -257,7 +257,7 @@ static void test_a_hand_without_a_tip_rests(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_vec3_length(s.v));
 }
 
-// the one real stroke there is: 240 Hz, downwards at 9.3 m/s, the bounce in the data
+// a real stroke: 240 Hz, downwards at 9.3 m/s, with its bounce
 static void test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth(void)
 {
     const char *path = shared_capture("drumstroke_pearl_240hz/stroke.trc");
@@ -272,8 +272,8 @@ static void test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth(voi
     TEST_ASSERT_EQUAL_INT(1, himc_track_strikes(track, HIMC_RIGHT));
     TEST_ASSERT_TRUE(himc_track_current(track, HIMC_RIGHT, 0, &time, &x, &y));
     double v = at(time - 1e-9).v.z;
-    // the fastest two frames have 9.43; the capture's filter has taken some, a spline loses 13 % of
-    // a blow
+    // the fastest two frames give 9.43 m/s; the capture's filter has taken some, a spline loses
+    // 13 % of a blow
     TEST_ASSERT_DOUBLE_WITHIN(0.07 * 10.1, -10.1, v);
     largest_jumps(0.01, himc_track_length(track) - 0.01, jump);
     TEST_ASSERT_TRUE(jump[0] < 1e-8);
@@ -287,12 +287,12 @@ int main(void)
     RUN_TEST(test_every_strike_of_a_bouncing_take_is_found_near_its_time);
     RUN_TEST(test_impact_speed_is_recovered_within_two_percent);
     RUN_TEST(test_impact_speed_survives_noise_of_a_fifth_of_a_millimetre);
-    RUN_TEST(test_target_is_smooth_but_for_the_contact);
+    RUN_TEST(test_target_is_smooth_except_at_the_contact);
     RUN_TEST(test_after_separation_the_target_goes_on_from_the_measured_state_and_rejoins);
-    RUN_TEST(test_20_ms_after_separation_the_take_is_followed_however_the_stick_left);
-    RUN_TEST(test_rewind_forgets_the_strikes_and_plays_the_same_bit_by_bit);
+    RUN_TEST(test_20_ms_after_separation_the_take_is_followed_at_any_speed_of_the_stick);
+    RUN_TEST(test_after_rewind_the_track_is_the_same_bit_by_bit);
     RUN_TEST(test_approach_and_stop_lead_in_and_out_smoothly);
-    RUN_TEST(test_the_take_may_be_freed_and_the_strikes_stand_over_the_spot);
+    RUN_TEST(test_the_take_may_be_freed_and_the_strikes_are_on_the_usual_spot);
     RUN_TEST(test_one_strike_somewhere_else_does_not_move_the_head);
     RUN_TEST(test_playing_allocates_nothing);
     RUN_TEST(test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth);

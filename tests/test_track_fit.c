@@ -1,8 +1,8 @@
-/// test_track_fit.c: how sure a rate beside a strike is, and the angular velocity of fitted joints.
+/// test_track_fit.c: the error of a rate beside a strike, and the angular velocity of fitted
+/// joints.
 #include "take_players.h"
 
 #include "plan/track.h"
-
 #include "plan/track_fit.h"
 
 #include "unity.h"
@@ -17,8 +17,8 @@ void tearDown(void)
 {
 }
 
-// the standard deviation of the rate at the end of a parabola through n points that shake by 1 m, 1
-// s apart: a fit is linear, so that of unit impulses tells what each point adds
+// standard deviation of the rate at the end of a parabola through n points, 1 s apart, with noise
+// of 1 m: a fit is linear, so unit impulses give the part of each point
 static double rate_error(int n)
 {
     himc_vec3 x[256];
@@ -32,8 +32,8 @@ static double rate_error(int n)
     return sqrt(square);
 }
 
-// 192 / n^3 is what the sum above tends to
-static void test_fits_beside_a_strike_take_the_frames_that_make_their_rate_sure_to_0_03(void)
+// 192 / n^3 is the limit of the sum above
+static void test_fits_beside_a_strike_have_the_frames_for_an_error_of_rate_of_0_03(void)
 {
     static const struct {
         double noise, rate;
@@ -49,7 +49,7 @@ static void test_fits_beside_a_strike_take_the_frames_that_make_their_rate_sure_
     TEST_ASSERT_EQUAL_INT(12, himc_fit_edge(0.1, 250)); // 48 ms and no more
 }
 
-// a quarter second's frames about k, each as a turn from frame k's rotation, on a cubic
+// the cubic fit about frame k of the rotation vectors from frame k's rotation
 static himc_target fitted(const himc_player *player, int k, int rate)
 {
     static himc_vec3 turn[1000];
@@ -60,7 +60,7 @@ static himc_target fitted(const himc_player *player, int k, int rate)
     return himc_fit(turn, himc_fit_window(k, 0, player->frames - 1, &series), 1.0 / rate);
 }
 
-// of a rotation vector, by differences
+// of a moving rotation vector, by differences
 static himc_vec3 angular_velocity(const himc_target *s)
 {
     double h = 1e-6;
@@ -69,9 +69,9 @@ static himc_vec3 angular_velocity(const himc_target *s)
     return himc_vec3_scale(himc_quat_log(himc_quat_mul(after, himc_quat_conj(before))), 0.5 / h);
 }
 
-// a fit does not pass through its own frame: there the rotation vector's rate is not the angular
-// velocity, but for v + r x v / 2 and terms of r^2
-static void test_the_rate_of_a_joint_that_shakes_is_the_angular_velocity_of_its_fit(void)
+// a fit does not pass through its own frame, so the rotation vector r is not 0 there, and the
+// angular velocity is not its rate v but v + r x v / 2 and terms of r^2
+static void test_the_rate_of_a_noisy_joint_is_the_angular_velocity_of_its_fit(void)
 {
     enum { RATE = 250 };
     himc_error error = {""};
@@ -112,7 +112,7 @@ static void test_the_rate_of_a_joint_that_shakes_is_the_angular_velocity_of_its_
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_fits_beside_a_strike_take_the_frames_that_make_their_rate_sure_to_0_03);
-    RUN_TEST(test_the_rate_of_a_joint_that_shakes_is_the_angular_velocity_of_its_fit);
+    RUN_TEST(test_fits_beside_a_strike_have_the_frames_for_an_error_of_rate_of_0_03);
+    RUN_TEST(test_the_rate_of_a_noisy_joint_is_the_angular_velocity_of_its_fit);
     return UNITY_END();
 }

@@ -1,5 +1,5 @@
-/// test_track_posture.c: a take's joints as targets: those captured, bent to the tips where a blow
-/// cuts them out, or left as they are.
+/// test_track_posture.c: the joints of a take as targets: as captured, or bent to the tips around
+/// the blows that are cut out.
 #include "allocations.h"
 #include "take_players.h"
 
@@ -35,7 +35,7 @@ static double distance(himc_vec3 a, himc_vec3 b)
     return himc_vec3_length(himc_vec3_sub(a, b));
 }
 
-// a whole player's take, 3 s at `rate`, its joints to be followed
+// a take of 3 s at `rate` with all joints of a player, and its track
 static void make_played(double rate)
 {
     himc_skeleton_config given = himc_skeleton_default();
@@ -64,7 +64,7 @@ static himc_posture_motion posture_at(double t)
     return m;
 }
 
-// how far the tips of the joint targets are from the tips' own, in place and speed
+// largest distances of the tips of the joint targets from the tips' own targets (m, m/s)
 static void compare_tips(double t, double off[2])
 {
     himc_posture_motion m = posture_at(t);
@@ -79,17 +79,17 @@ static void compare_tips(double t, double off[2])
     }
 }
 
-static void test_joint_targets_carry_the_tips_everywhere_through_every_blow(void)
+static void test_joint_targets_bring_the_tips_to_their_targets_through_every_blow(void)
 {
     double off[2] = {0, 0};
     make_played(250);
     for (double t = -0.2; t < 3.3; t += 0.0013)
         compare_tips(t, off);
     TEST_ASSERT_TRUE(off[0] < 1e-9);
-    TEST_ASSERT_TRUE(off[1] < 2e-3); // the differences' third order
+    TEST_ASSERT_TRUE(off[1] < 2e-3); // the third order of the differences
 }
 
-static void test_after_separation_the_joints_go_with_the_stick_as_it_is(void)
+static void test_after_separation_the_joints_follow_the_measured_stick(void)
 {
     double time, x, y, off[2] = {0, 0};
     make_played(250);
@@ -114,7 +114,7 @@ static himc_posture_motion captured_at(double t)
     return m;
 }
 
-// largest angle between a joint and what it was, from a motion of the joints
+// largest angle between a joint of `motion` and the played one
 static double worst_joint(himc_posture_motion motion(double t), double from, double to)
 {
     double worst = 0;
@@ -142,7 +142,7 @@ static void test_between_blows_the_joints_are_the_captured_ones(void)
     }
 }
 
-// as published: no blow is cut out and no arm bent, so the bounce is what the frames say of it
+// in the mode of the publication no blow is cut out and no arm bent: the bounce is the captured one
 static void test_as_captured_the_joints_bounce_with_the_frames(void)
 {
     make_played(250);
@@ -155,7 +155,7 @@ static void test_as_captured_the_joints_bounce_with_the_frames(void)
     }
 }
 
-static void test_joint_targets_are_smooth_but_for_the_contact(void)
+static void test_joint_targets_are_smooth_except_at_the_contact(void)
 {
     double jump[2] = {0, 0}, h = 1e-4;
     make_played(250);
@@ -181,7 +181,7 @@ static void test_joint_targets_are_smooth_but_for_the_contact(void)
     TEST_ASSERT_TRUE(jump[1] < 0.02);
 }
 
-static void test_joints_come_in_from_where_they_are_and_come_to_rest_after_a_stop(void)
+static void test_joints_approach_from_their_present_state_and_come_to_rest_after_a_stop(void)
 {
     make_played(250);
     himc_posture_motion now = posture_at(2), at_first, later;
@@ -213,8 +213,8 @@ static void test_postures_allocate_nothing(void)
     TEST_ASSERT_EQUAL_INT(0, allocations_seen());
 }
 
-// tips without a player: no joint is the take's
-static void test_joints_that_the_take_does_not_show_are_left_alone(void)
+// a track of tips without a player moves no joint
+static void test_joints_that_the_take_does_not_have_stay_as_they_are(void)
 {
     himc_posture_motion m;
     himc_posture natural;
@@ -238,8 +238,8 @@ static void test_joints_that_the_take_does_not_show_are_left_alone(void)
     }
 }
 
-// a hand that the take shows without a stick: its tip is where no stick of it ends
-static void test_an_arm_without_a_stick_is_bent_from_where_it_is_and_captured_as_it_was(void)
+// a captured arm without a stick: its end is not at the tip
+static void test_an_arm_without_a_stick_is_bent_from_its_present_state(void)
 {
     int shoulder = himc_arm_joint(HIMC_RIGHT, 0), grip = himc_arm_joint(HIMC_RIGHT, 3);
     himc_posture_motion m;
@@ -274,14 +274,14 @@ static void test_an_arm_without_a_stick_is_bent_from_where_it_is_and_captured_as
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_joint_targets_carry_the_tips_everywhere_through_every_blow);
-    RUN_TEST(test_after_separation_the_joints_go_with_the_stick_as_it_is);
+    RUN_TEST(test_joint_targets_bring_the_tips_to_their_targets_through_every_blow);
+    RUN_TEST(test_after_separation_the_joints_follow_the_measured_stick);
     RUN_TEST(test_between_blows_the_joints_are_the_captured_ones);
     RUN_TEST(test_as_captured_the_joints_bounce_with_the_frames);
-    RUN_TEST(test_joint_targets_are_smooth_but_for_the_contact);
-    RUN_TEST(test_joints_come_in_from_where_they_are_and_come_to_rest_after_a_stop);
+    RUN_TEST(test_joint_targets_are_smooth_except_at_the_contact);
+    RUN_TEST(test_joints_approach_from_their_present_state_and_come_to_rest_after_a_stop);
     RUN_TEST(test_postures_allocate_nothing);
-    RUN_TEST(test_joints_that_the_take_does_not_show_are_left_alone);
-    RUN_TEST(test_an_arm_without_a_stick_is_bent_from_where_it_is_and_captured_as_it_was);
+    RUN_TEST(test_joints_that_the_take_does_not_have_stay_as_they_are);
+    RUN_TEST(test_an_arm_without_a_stick_is_bent_from_its_present_state);
     return UNITY_END();
 }

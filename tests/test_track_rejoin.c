@@ -1,5 +1,5 @@
-/// test_track_rejoin.c: strikes at close quarters: when the head is reached, what is left near a
-/// take's end, before the next strike, and at low rates.
+/// test_track_rejoin.c: the way of a tip around a strike: the time of contact, and the way back to
+/// the take near its end, before the next strike and at low rates.
 #include "tracks.h"
 
 #define RADIUS 0.0175
@@ -47,7 +47,7 @@ static double distance(himc_vec3 a, himc_vec3 b)
     return himc_vec3_length(himc_vec3_sub(a, b));
 }
 
-// v t + a t^2 / 3 with an acceleration that fades to nothing meets the head where it is
+// v t + a t^2 / 3, with an acceleration that fades to zero, ends on the head
 static void test_the_approach_ends_on_the_head_without_acceleration(void)
 {
     make_take(beaten, 250, 1000);
@@ -77,8 +77,8 @@ static void goes_on_from(const himc_target *s, double t)
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0, distance(s->a, now.a));
 }
 
-// the last blow at 0.4 s, time itself coming to its end from 0.37 s of 0.424 on
-static void test_near_its_end_the_take_goes_on_as_the_stick_does_though_time_slows_down(void)
+// the last blow is at 0.4 s; the take's time slows down from 0.37 s to its end at 0.424 s
+static void test_near_the_end_the_way_back_begins_in_the_measured_state_though_time_slows_down(void)
 {
     make_take(beaten, 250, 107);
     double time = contact_after(0.2);
@@ -87,7 +87,7 @@ static void test_near_its_end_the_take_goes_on_as_the_stick_does_though_time_slo
     goes_on_from(&s, time + 0.008);
 }
 
-// a stick that was pushed away, up by 0.4 m, or thrown at 40 m/s
+// a stick pushed 0.4 m upwards, and one thrown at 40 m/s
 static void test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed(void)
 {
     make_take(beaten, 250, 250);
@@ -106,15 +106,15 @@ static void test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed(vo
     TEST_ASSERT_TRUE(hardest < 1500 && fastest < 13);
 }
 
-// blows every 60 ms, from 4 cm: the next one is near when the stick has left
+// blows every 60 ms, from 4 cm: after a separation the next blow is near
 static double rolled(double t)
 {
     double since = fmod(t, 0.06), v = 2.5;
     return v * since - v / 0.06 * since * since;
 }
 
-// a stick that leaves late has less than 20 ms until the next strike's fall begins: steps of 10 us
-// stay what velocity and acceleration say
+// a stick that leaves late has less than 20 ms before the next strike's fall begins: over steps of
+// 10 us position agrees with velocity and acceleration
 static void test_the_way_back_ends_before_the_next_strike_begins(void)
 {
     double h = 1e-5;
@@ -136,8 +136,8 @@ static void test_the_way_back_ends_before_the_next_strike_begins(void)
     }
 }
 
-// one that leaves so late that nothing can be bridged any more changes nothing
-static void test_a_stick_that_leaves_too_late_leaves_the_way_as_it_is(void)
+// with too little time for a way back nothing changes
+static void test_a_stick_that_leaves_too_late_changes_nothing(void)
 {
     make_take(rolled, 1000, 1000);
     double time = contact_after(0.2);
@@ -159,7 +159,7 @@ static double beaten_softly(double t)
     return beaten_height(t, 2).x.z;
 }
 
-// frames 40 ms apart: between the last before a strike and the first after it nothing is known
+// frames are 40 ms apart: nothing is known between the last before a strike and the first after it
 static void test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_second(void)
 {
     for (int speed = 2; speed <= 4; speed += 2) {
@@ -189,9 +189,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_approach_ends_on_the_head_without_acceleration);
-    RUN_TEST(test_near_its_end_the_take_goes_on_as_the_stick_does_though_time_slows_down);
+    RUN_TEST(test_near_the_end_the_way_back_begins_in_the_measured_state_though_time_slows_down);
     RUN_TEST(test_the_way_back_ends_before_the_next_strike_begins);
-    RUN_TEST(test_a_stick_that_leaves_too_late_leaves_the_way_as_it_is);
+    RUN_TEST(test_a_stick_that_leaves_too_late_changes_nothing);
     RUN_TEST(test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed);
     RUN_TEST(test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_second);
     return UNITY_END();

@@ -1,4 +1,4 @@
-/// tracks.h: what tests of tracks share: a take and its track before a drum.
+/// tracks.h: for tests of tracks: a take and its track at a drum.
 #ifndef HIMC_TESTS_TRACKS_H
 #define HIMC_TESTS_TRACKS_H
 
@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#define LEVEL 0.85 // of the head (m)
+#define LEVEL 0.85 // height of the head (m)
 
 static const himc_head_frame place = {{0.5, 0, LEVEL}, 0, 0.3};
 static himc_error error;

@@ -1,5 +1,5 @@
-/// quintic.h: the polynomial of fifth degree in space that connects two states of position,
-/// velocity and acceleration; all planned motion consists of such quintics.
+/// quintic.h: targets (position, velocity and acceleration of a point), sums of targets, and the
+/// polynomial of fifth degree that joins two of them; all planned motion is made of these.
 #ifndef HIMC_QUINTIC_H
 #define HIMC_QUINTIC_H
 
@@ -12,11 +12,47 @@ typedef struct himc_target {
     himc_vec3 a; ///< acceleration (m/s^2)
 } himc_target;
 
+/// At rest at `x`.
+HIMC_RT static inline himc_target himc_target_at_rest(himc_vec3 x)
+{
+    return (himc_target){x, {0, 0, 0}, {0, 0, 0}};
+}
+
+/// A motion along the unit vector `n`: distance (m), speed (m/s) and acceleration (m/s^2).
+HIMC_RT static inline himc_target himc_target_along(himc_vec3 n, double x, double v, double a)
+{
+    return (himc_target){himc_vec3_scale(n, x), himc_vec3_scale(n, v), himc_vec3_scale(n, a)};
+}
+
+HIMC_RT static inline himc_target himc_target_add(himc_target a, himc_target b)
+{
+    return (himc_target){himc_vec3_add(a.x, b.x), himc_vec3_add(a.v, b.v), himc_vec3_add(a.a, b.a)};
+}
+
+HIMC_RT static inline himc_target himc_target_sub(himc_target a, himc_target b)
+{
+    return (himc_target){himc_vec3_sub(a.x, b.x), himc_vec3_sub(a.v, b.v), himc_vec3_sub(a.a, b.a)};
+}
+
+/// The target `dt` (s) later at constant acceleration.
+HIMC_RT static inline himc_target himc_target_after(const himc_target *t, double dt)
+{
+    himc_target after = {himc_vec3_madd(himc_vec3_madd(t->x, dt, t->v), 0.5 * dt * dt, t->a),
+                         himc_vec3_madd(t->v, dt, t->a), t->a};
+    return after;
+}
+
+HIMC_RT static inline bool himc_target_finite(const himc_target *t)
+{
+    return himc_vec3_finite(t->x) && himc_vec3_finite(t->v) && himc_vec3_finite(t->a);
+}
+
 typedef struct himc_quintic {
     himc_vec3 c[6]; ///< coefficients of 1, t, ... t^5 (m, m/s, ...)
 } himc_quintic;
 
-/// The quintic from `from` at time 0 to `to` at time `duration` (s, above 0).
+/// The quintic from `from` at time 0 to `to` at `duration` (s, > 0): the three conditions at its
+/// end give its three highest coefficients.
 HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, const himc_target *to,
                                                      double duration)
 {
@@ -43,7 +79,7 @@ HIMC_RT static inline himc_quintic himc_quintic_make(const himc_target *from, co
 #define HIMC_MOVE_PEAK 5.774
 
 /// Duration (s) of such a move over `distance` (m, not negative) with the peak acceleration `peak`
-/// (m/s^2, above 0).
+/// (m/s^2, > 0).
 HIMC_RT static inline double himc_move_time(double distance, double peak)
 {
     return sqrt(HIMC_MOVE_PEAK * distance / peak);
@@ -55,6 +91,7 @@ HIMC_RT static inline himc_target himc_quintic_at(const himc_quintic *q, double 
     // Horner's rule for the value and its first two derivatives; the second comes out halved
     himc_target s = {q->c[5], {0, 0, 0}, {0, 0, 0}};
     for (int i = 4; i >= 0; i--) {
+        // Horner's rule for the value and its first two derivatives (a / 2)
         s.a = himc_vec3_madd(s.v, t, s.a);
         s.v = himc_vec3_madd(s.x, t, s.v);
         s.x = himc_vec3_madd(q->c[i], t, s.x);

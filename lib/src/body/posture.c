@@ -266,8 +266,8 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
         motion->joint[j] = pose[1].joint[j];
-        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j], &motion->rate[j],
-                           &motion->acceleration[j]);
+        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j],
+                           HIMC_DIFFERENCE_STEP, &motion->rate[j], &motion->acceleration[j]);
     }
 }
 

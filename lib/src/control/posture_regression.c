@@ -12,6 +12,7 @@
 #include "control/posture_regression.h"
 
 #include "base/difference.h"
+#include "base/quintic.h"
 
 #include <string.h>
 
@@ -238,7 +239,7 @@ void himc_posture_regression_moving(const himc_posture_regression *regression,
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
         motion->joint[j] = pose[1].joint[j];
-        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j], &motion->rate[j],
-                           &motion->acceleration[j]);
+        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j],
+                           HIMC_DIFFERENCE_STEP, &motion->rate[j], &motion->acceleration[j]);
     }
 }

@@ -1,77 +1,68 @@
-/// follow.c: live targets: a mouse at 10 Hz or a tracker at 1 kHz, made into smooth motion.
+/// follow.c: live targets, from a mouse at 10 Hz to a tracker at 1 kHz, made into smooth motion.
 ///
-/// Each target x_k that comes T after the one before is met T later with the speed v_k the targets
-/// have, on a quintic from wherever the tip is: so the tip lags by one period, whatever the rate,
-/// and moves steadily while the targets do. Faster streams than 1/SHORTEST are met on longer
-/// quintics, carried on by v_k to the same lag; v_k is smoothed over SMOOTHING.
+/// Each target x_k that comes T after the one before is met T later with the velocity v_k of the
+/// targets, on a quintic from the tip's present state: so the tip lags by one period at any rate,
+/// and moves steadily while the targets do. Streams faster than 1/SHORTEST_BLEND are met on longer
+/// quintics, carried on by v_k to the same lag; v_k is smoothed over VELOCITY_TIME.
 ///
 /// A tracker's noise must not be differentiated. It shows in third differences, of variance 20
 /// sigma^2, in which motion nearly cancels; sigma follows their median in steps that a single jump
-/// cannot hurry. Targets that shake are replaced by a parabola fitted to all, weights fading
-/// with a memory tau (Morrison 1969, the critically damped g-h-k filter; it does not lag behind
-/// steady acceleration), which leaves of acceleration sigma_a^2 = 0.187 sigma^2 T / tau^5: tau is
-/// what makes that RESTLESS. A target after a pause is a place to go to. When no more come,
-/// the tip goes on for half a period and comes to rest. Invariant: position, velocity and
-/// acceleration are continuous.
-#include "plan/stroke_plan.h"
-#include "plan/planner_state.h"
+/// cannot hurry. Targets that shake are replaced by a parabola fitted to all, with weights that
+/// fade with a memory tau (Morrison 1969, the critically damped g-h-k filter; it does not lag
+/// behind steady acceleration). The noise that is left in the acceleration is sigma_a^2 = 0.187
+/// sigma^2 T / tau^5; tau is chosen so that sigma_a is NOISE_ACCELERATION. A target after a pause
+/// is a place to go to. When no more targets come, the tip goes on for half a period and comes to
+/// rest. Invariant: position, velocity and acceleration are continuous.
+#include "plan/follow.h"
 
-#define LOST 0.3         // a target later than this after the last begins anew (s)
-#define SHORTEST 0.010   // quintic to meet a target on (s)
-#define SMOOTHING 0.010  // of the speed (s)
-#define RESTLESS 1.0     // acceleration that noise may make (m/s^2)
-#define LONGEST 0.04     // memory (s)
-#define CALMLY 3.0       // times the memory: quintic to meet a target that shakes on
-#define LEARNING 20.0    // of the noise: its logarithm's rate (1/s)
-#define LEAST_NOISE 1e-6 // (m)
-#define PERIODS 0.25     // share of a new period in the estimate
-#define HARDEST 250.0    // peak acceleration to meet a target (m/s^2)
-#define BRAKING 20.0     // (m/s^2)
-#define SHORT_BRAKE 0.15 // (s)
-#define STROKE_AHEAD 0.6 // a stroke so near is played, not the targets (s)
+// the stream; chosen: steady for a mouse (60 Hz) and a tracker (1 kHz) alike, see tests/test_live.c
+#define STREAM_PAUSE 0.3       // a target later than this after the last begins anew (s)
+#define PERIOD_SHARE 0.25      // of a new period in the estimate
+#define VELOCITY_TIME 0.010    // smooths the velocity (s)
+#define SHORTEST_BLEND 0.010   // quintic to meet a target on (s)
+#define NOISE_ACCELERATION 1.0 // that noise may cause (m/s^2)
+#define LONGEST_MEMORY 0.04    // of the filter (s)
+#define BLEND_MEMORIES 3.0     // a target that shakes is met on a quintic of so many memories
+#define NOISE_RATE 20.0        // of learning the noise: change of its logarithm (1/s)
+#define LEAST_NOISE 1e-6       // (m)
 
-void himc_hand_follow(himc_hand_plan *plan, double t, const himc_target *aim, double blend,
-                      double hold)
+// the tip; chosen: within the limits of an arm, and a halt without a jerk
+#define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
+#define BRAKING 20.0          // mean acceleration of the halt (m/s^2)
+#define SHORTEST_HALT 0.15    // (s)
+
+/// Within `blend` seconds the tip is in the state `aim`, goes on so for `hold` seconds and comes to
+/// rest.
+static void follow_aim(himc_hand_plan *plan, double t, const himc_target *aim, double blend,
+                       double hold)
 {
     himc_hand_cut(plan, t);
     t = fmax(t, plan->end);
     himc_target from = himc_hand_at(plan, t), nothing = {0}, held = *aim, rest = {0};
-    double brake = fmax(SHORT_BRAKE, himc_vec3_length(aim->v) / BRAKING);
+    double halt = fmax(SHORTEST_HALT, himc_vec3_length(aim->v) / BRAKING);
     double coast = himc_vec3_length(himc_vec3_sub(aim->x, himc_vec3_madd(from.x, blend, from.v)));
-    blend = fmax(blend, himc_move_time(coast, HARDEST));
+    blend = fmax(blend, himc_move_time(coast, HARDEST_MEETING));
     held.x = himc_vec3_madd(aim->x, hold, aim->v);
-    rest.x = himc_vec3_madd(held.x, 0.5 * brake, held.v);
-    plan->end = t + blend + hold + brake;
-    himc_spline_add(&plan->ground, t, &from, t + blend, aim);
-    himc_spline_add(&plan->ground, t + blend, aim, t + blend + hold, &held);
-    himc_spline_add(&plan->ground, t + blend + hold, &held, plan->end, &rest);
-    himc_spline_add(&plan->lift, t, &nothing, plan->end, &nothing);
+    rest.x = himc_vec3_madd(held.x, 0.5 * halt, held.v);
+    plan->end = t + blend + hold + halt;
+    himc_spline_add(&plan->tangential_path, t, &from, t + blend, aim);
+    himc_spline_add(&plan->tangential_path, t + blend, aim, t + blend + hold, &held);
+    himc_spline_add(&plan->tangential_path, t + blend + hold, &held, plan->end, &rest);
+    himc_spline_add(&plan->height_profile, t, &nothing, plan->end, &nothing);
     plan->home = rest.x;
-    plan->struck = false;
-    plan->away = true;
+    plan->rebounding = false;
+    plan->at_home = true;
 }
 
-// whether a stroke of the hand comes so soon that it must be prepared now
-static bool stroke_near(const himc_planner *planner, const planner_hand *h, double t)
-{
-    int index, round;
-    double next;
-    for (int i = 0; i < h->touches; i++)
-        if (h->touch[i].goal.time > t && h->touch[i].goal.time < t + STROKE_AHEAD)
-            return true;
-    if (h->hits > 0 && h->hit[0].goal.time < t + STROKE_AHEAD)
-        return true;
-    return himc_planner_next(planner, h, 0, &index, &round, &next) && next < t + STROKE_AHEAD;
-}
-
-// one more target's part in what is known of the noise; the median length of third differences of
-// three normal coordinates is 1.5382 sqrt(20) sigma
-static void learn_noise(planner_stream *s, double gap, himc_vec3 x)
+/// Corrects the estimate of the noise by one more target. The median length of third differences of
+/// three normal coordinates is 1.5382 sqrt(20) sigma (chi distribution of three degrees of
+/// freedom).
+static void learn_noise(himc_stream *s, double gap, himc_vec3 x)
 {
     himc_vec3 inner = himc_vec3_sub(s->x, s->before[0]), outer = himc_vec3_sub(x, s->before[1]);
     if (s->heard >= 2) {
         double size = himc_vec3_length(himc_vec3_madd(outer, -3, inner)) / (1.5382 * sqrt(20));
-        double step = exp(fmin(LEARNING * gap, 1));
+        double step = exp(fmin(NOISE_RATE * gap, 1));
         s->noise = fmax(size > s->noise ? s->noise * step : s->noise / step, LEAST_NOISE);
     }
     s->heard++;
@@ -79,33 +70,37 @@ static void learn_noise(planner_stream *s, double gap, himc_vec3 x)
     s->before[0] = s->x;
 }
 
-// the fading parabola
-static void filter(planner_stream *s, double gap, himc_vec3 x)
+/// One step of the fading-memory parabola.
+static void filter(himc_stream *s, double gap, himc_vec3 x)
 {
     himc_target *f = &s->filtered;
-    s->memory = fmin(pow(0.187 * s->noise * s->noise * gap / (RESTLESS * RESTLESS), 0.2), LONGEST);
+    double least = NOISE_ACCELERATION * NOISE_ACCELERATION;
+    s->memory = fmin(pow(0.187 * s->noise * s->noise * gap / least, 0.2), LONGEST_MEMORY);
     double q = exp(-gap / s->memory), p = 1 - q;
-    himc_vec3 v = himc_vec3_madd(f->v, gap, f->a);
-    himc_vec3 now = himc_vec3_madd(himc_vec3_madd(f->x, gap, f->v), 0.5 * gap * gap, f->a);
-    himc_vec3 off = himc_vec3_sub(x, now);
-    f->x = himc_vec3_madd(now, 1 - q * q * q, off);
-    f->v = himc_vec3_madd(v, 1.5 * p * p * (1 + q) / gap, off);
+    himc_target now = himc_target_after(f, gap);
+    himc_vec3 off = himc_vec3_sub(x, now.x);
+    f->x = himc_vec3_madd(now.x, 1 - q * q * q, off);
+    f->v = himc_vec3_madd(now.v, 1.5 * p * p * (1 + q) / gap, off);
     f->a = himc_vec3_madd(f->a, p * p * p / (gap * gap), off);
 }
 
-// what the stream does with one more target; true if it is a stream already
-static bool listen(planner_stream *s, double t, himc_vec3 x)
+void himc_stream_init(himc_stream *s)
+{
+    *s = (himc_stream){.time = -HUGE_VAL};
+}
+
+bool himc_stream_add(himc_stream *s, double t, himc_vec3 x)
 {
     double gap = t - s->time;
-    bool on = gap < LOST;
+    bool on = gap < STREAM_PAUSE;
     if (!on)
-        *s = (planner_stream){.noise = LEAST_NOISE, .filtered = {.x = x}};
+        *s = (himc_stream){.noise = LEAST_NOISE, .filtered = {.x = x}};
     if (on && gap > 0) {
         learn_noise(s, gap, x);
         filter(s, gap, x);
         himc_vec3 v = himc_vec3_scale(himc_vec3_sub(x, s->x), 1 / gap);
-        s->period = s->period > 0 ? s->period + PERIODS * (gap - s->period) : gap;
-        double share = s->moving ? gap / (gap + SMOOTHING) : 1;
+        s->period = s->period > 0 ? s->period + PERIOD_SHARE * (gap - s->period) : gap;
+        double share = s->moving ? gap / (gap + VELOCITY_TIME) : 1;
         s->v = himc_vec3_madd(himc_vec3_scale(s->v, 1 - share), share, v);
         s->moving = true;
     }
@@ -114,39 +109,24 @@ static bool listen(planner_stream *s, double t, himc_vec3 x)
     return on && s->period > 0;
 }
 
-// whether more than one target is worth remembering
-static bool shakes(const planner_stream *s)
+/// True if the noise is worth a filter: its memory is longer than a period.
+static bool shakes(const himc_stream *s)
 {
     return s->memory >= s->period;
 }
 
-// the last target carried on for `ahead`
-static himc_target aim_at(const planner_stream *s, double ahead)
+/// The last target, carried on for `ahead` (s).
+static himc_target aim_at(const himc_stream *s, double ahead)
 {
-    const himc_target *f = &s->filtered;
     if (!shakes(s))
         return (himc_target){himc_vec3_madd(s->x, ahead, s->v), s->v, {0, 0, 0}};
-    himc_vec3 x = himc_vec3_madd(f->x, ahead, f->v);
-    return (himc_target){himc_vec3_madd(x, 0.5 * ahead * ahead, f->a),
-                         himc_vec3_madd(f->v, ahead, f->a), f->a};
+    return himc_target_after(&s->filtered, ahead);
 }
 
-void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+void himc_stream_follow(const himc_stream *s, himc_hand_plan *plan, double t)
 {
-    if (!isfinite(t) || !himc_vec3_finite(x))
-        return;
-    planner_hand *h = &planner->hand[hand];
-    bool stream = listen(&h->stream, t, x);
-    if (stroke_near(planner, h, t))
-        return;
-    himc_planner_cut(planner, hand, t);
-    if (stream && himc_hand_room(&h->plan)) {
-        const planner_stream *s = &h->stream;
-        double blend = fmax(fmax(s->period, SHORTEST), shakes(s) ? CALMLY * s->memory : 0);
-        himc_target aim = aim_at(s, blend - s->period);
-        himc_hand_follow(&h->plan, t, &aim, blend, 0.5 * s->period);
-    } else {
-        himc_hand_reach(&h->plan, x);
-    }
-    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    double blend =
+        fmax(fmax(s->period, SHORTEST_BLEND), shakes(s) ? BLEND_MEMORIES * s->memory : 0);
+    himc_target aim = aim_at(s, blend - s->period);
+    follow_aim(plan, t, &aim, blend, 0.5 * s->period);
 }

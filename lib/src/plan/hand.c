@@ -1,301 +1,357 @@
-/// hand.c: how a tip gets from anywhere to its next touch, as a timpanist's does.
+/// hand.c: the way of a tip from any state to its next touch, as a timpanist's tip goes.
 ///
-/// A chunk is planned in the frame of the head it goes to: the height along the normal n, and the
-/// ground, the rest. The height rises from the rebound to the apex of the *next* stroke
-/// (co-articulation, lift.c), falls with the speed asked for and no acceleration, and turns in the
-/// predicted contact: from -v to e v in 7 ms. The ground swings back towards the player while the
-/// tip rises, forward while it falls, and stands still before the touch. Invariant: position,
-/// velocity and acceleration of the sum are continuous wherever nothing was measured.
+/// A stroke is planned in the frame of its head: the height along the normal n, and the tangential
+/// path, the rest. The height rises from the rebound to the apex of the *next* stroke
+/// (co-articulation, height_profile.c), falls to the touch with the speed asked for and no
+/// acceleration, and reverses in the predicted contact: from -v to e v in 7 ms. The tangential path
+/// swings back towards the player while the tip rises, forward while it falls, and stands still
+/// before the touch. Invariant: position, velocity and acceleration of the sum are continuous
+/// wherever nothing was measured.
 #include "plan/stroke_plan.h"
 
-#define RESTITUTION 0.85
-#define STANDSTILL 0.06    // ground stands still before a touch (s)
-#define LEAST_CHUNK 0.02   // no stroke is (s)
-#define FASTEST_FALL 9.0   // mean speed of a fall (m/s)
-#define HARDEST_MOVE 250.0 // peak acceleration along the ground (m/s^2)
-#define GENTLE_MOVE 12.0   // (m/s^2)
-#define QUICK_MOVE 80.0    // (m/s^2)
-#define RAISED_TIME 0.115  // a raised stick falls at once (s)
-#define ABSORB 0.02        // in which the acceleration a contact left dies out (s)
-#define KNOTS 5            // of a unit's fall
-#define MOST_PIECES 16     // of a chunk
-#define LONGEST_COAST 0.3  // way a tip would go by its speed before it is halted (m) ...
-#define LONGEST_HALT 0.15  // ... and goes meanwhile (m)
-#define SWING_PEAK 60.0    // acceleration of the swing behind the spot (m/s^2)
+/// Restitution of the predicted contact. Chosen; only until the measured state replaces the
+/// prediction at separation.
+#define PREDICTED_RESTITUTION 0.85
 
-static himc_target sum(himc_target a, himc_target b)
-{
-    return (himc_target){himc_vec3_add(a.x, b.x), himc_vec3_add(a.v, b.v), himc_vec3_add(a.a, b.a)};
-}
+// limits of a hand: beyond them a stroke is refused; chosen: well beyond captured strokes
+// (impacts of up to 10 m/s), so that only the impossible is refused
+#define LEAST_STROKE_TIME 0.02 // from the plan's end to the touch (s)
+#define FASTEST_FALL 9.0       // mean speed of a fall (m/s)
+#define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
+
+// habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
+#define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
+#define QUICK_MOVE 80.0         // ... and of one without (m/s^2)
+#define HOME_MOVE 1.5           // ... and of the way home, when there is nothing to play (m/s^2)
+#define MOVE_MARGIN 1.4         // a stroke's swing takes so much longer than a straight move
+#define HURRY_SHARE 0.7         // of the unhurried time that a hurried gesture takes at least
+#define RAISED_SHARE 0.6        // a stick at this share of the stroke's height counts as raised ...
+#define RAISED_TIME 0.115       // ... and can fall at once (s)
+#define LEAVE_HOME_TIME 0.4     // a tip at home takes at least so long to its stroke (s)
+#define LEAST_APPROACH_TIME 0.5 // ... and begins so much before its rise, at least (s)
+#define LEAST_MOVE_TIME 0.06    // of a move in space (s)
+
+// the swing: times and distances along the head; chosen: the order of depths of the five nuances
+// (Bouënard, Gibet & Wanderley 2012, section 3) holds at every dynamic and tempo
+#define STILL_TIME 0.06       // the path stands still before a touch (s) ...
+#define STILL_SHARE 0.3       // ... but for no more than this share of the way forward
+#define FORWARD_TIME 0.2      // the way forward takes as long as the fall, at least this (s) ...
+#define FORWARD_SHARE 0.55    // ... but no more than this share of the time there is
+#define SWING_PEAK 60.0       // peak acceleration of the swing behind the spot (m/s^2)
+#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s)
+#define IDLE_TIME 1.1         // with more time the tip first waits behind the spot (s) ...
+#define IDLE_ARRIVAL 0.65     // ... coming there in this time (s) ...
+#define IDLE_DEPTH 0.3        // ... at this share of the swing's depth ...
+#define IDLE_DEPARTURE 0.45   // ... and leaving so long before the swing's end (s) ...
+#define IDLE_DEPTH_LATER 0.35 // ... from this share: a slow drift, no frozen hand
+
+// a tip that is fast along the head halts first; chosen: see the test of a tip thrown at 16 m/s
+#define COAST_LIMIT 0.3 // way its speed would carry it before it is halted (m) ...
+#define HALT_WAY 0.15   // ... and way it goes meanwhile, at most (m)
+#define HALT_TIME 0.12  // a halt takes no more than this (s) ...
+#define HALT_SHARE 0.4  // ... and no more than this share of the time there is
+
+/// Time in which the acceleration that a contact left fades (s). Chosen: long beside a contact.
+#define ABSORB_TIME 0.02
+#define ABSORB_SHARE 0.2        // ... but no more than this share of the time to the next touch
+#define LEAST_ABSORB_TIME 0.001 // (s)
+
+// a strong rebound that is followed rather than fought; chosen: no reversal within a quarter second
+#define FOLLOW_TIME 0.25         // rises longer than this are shaped, not followed (s)
+#define FOLLOW_FALL_SHARE 0.65   // of the time: the fall after such a rise
+#define FOLLOW_LEAST_LANDING 0.8 // impact speed over mean speed of that fall, at least
+
+// the wait over the last spot; chosen: a slow sway of one or two centimetres looks alive
+#define HOVER_LEAST_HEIGHT 0.05 // lower tips are raised first (m)
+#define HOVER_TIME 1.0          // one sway (s)
+#define HOVER_ARRIVAL 0.6       // coming to the waiting height (s)
+#define HOVER_COAST 0.1         // meanwhile the path goes on for so long at its speed (s)
+#define FREE_REBOUND_TIME 2.0   // a rebound with nothing after it has so much time (s)
+#define BRAKE_LIMIT 1.0         // a halt with nothing after it has so much time (s)
+#define HOME_WAIT 0.5           // a wait at home lasts this long at least (s)
+
+/// A unit's fall is so many quintics. Chosen: more than its shape has numbers (himc_unit.bend).
+#define UNIT_KNOTS 5
+/// Segments of one spline for one stroke, at most: sink 3, rise 2, dwell, fall UNIT_KNOTS, contact,
+/// and some to spare.
+#define MOST_SEGMENTS 16
 
 /// The state at the plan's end in the frame of a head.
-static chunk frame(const himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
+static stroke_plan frame_at_end(const himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
 {
-    himc_target s = himc_hand_at(plan, plan->end);
-    chunk c = {.n = n, .lift_end = plan->end, .ground_end = plan->end};
-    c.at.h = himc_vec3_dot(n, himc_vec3_sub(s.x, spot));
-    c.at.v = himc_vec3_dot(n, s.v);
-    c.at.a = himc_vec3_dot(n, s.a);
-    c.on = difference(s, along(n, c.at.h, c.at.v, c.at.a));
-    return c;
+    himc_target now = himc_hand_at(plan, plan->end);
+    stroke_plan s = {.n = n, .height_end = plan->end, .path_end = plan->end};
+    s.height.h = himc_vec3_dot(n, himc_vec3_sub(now.x, spot));
+    s.height.v = himc_vec3_dot(n, now.v);
+    s.height.a = himc_vec3_dot(n, now.a);
+    s.path = himc_target_sub(now, himc_target_along(n, s.height.h, s.height.v, s.height.a));
+    return s;
 }
 
-static chunk chunk_begin(himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
+static stroke_plan plan_begin(himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
 {
-    chunk c = frame(plan, spot, n);
-    c.plan = plan;
-    return c;
+    stroke_plan s = frame_at_end(plan, spot, n);
+    s.plan = plan;
+    return s;
 }
 
-static void ground_piece(chunk *c, double t, himc_vec3 x)
+static void path_segment(stroke_plan *s, double t, himc_vec3 x)
 {
-    himc_target to = still(x);
-    himc_spline_add(&c->plan->ground, c->ground_end, &c->on, t, &to);
-    c->ground_end = t;
-    c->on = to;
+    himc_target to = himc_target_at_rest(x);
+    himc_spline_add(&s->plan->tangential_path, s->path_end, &s->path, t, &to);
+    s->path_end = t;
+    s->path = to;
 }
 
-/// A tip that is fast and has time halts first: one long quintic would carry it far off.
-static void ground_to(chunk *c, double t, himc_vec3 x)
+/// The tangential path to rest at x. A tip that is fast and has time halts first: one long quintic
+/// would carry it far off.
+static void path_to(stroke_plan *s, double t, himc_vec3 x)
 {
-    double T = t - c->ground_end;
+    double T = t - s->path_end;
     if (T <= 0)
         return;
-    double speed = himc_vec3_length(c->on.v);
-    if (speed * T > LONGEST_COAST) {
-        double halt = fmin(fmin(0.12, 0.4 * T), 2 * LONGEST_HALT / speed);
-        ground_piece(c, c->ground_end + halt, himc_vec3_madd(c->on.x, 0.5 * halt, c->on.v));
+    double speed = himc_vec3_length(s->path.v);
+    if (speed * T > COAST_LIMIT) {
+        double halt = fmin(fmin(HALT_TIME, HALT_SHARE * T), 2 * HALT_WAY / speed);
+        path_segment(s, s->path_end + halt, himc_vec3_madd(s->path.x, 0.5 * halt, s->path.v));
     }
-    ground_piece(c, t, x);
+    path_segment(s, t, x);
 }
 
-static void chunk_finish(chunk *c)
+static void plan_finish(stroke_plan *s)
 {
-    c->plan->end = c->lift_end;
-    ground_to(c, c->lift_end, c->on.x);
+    s->plan->end = s->height_end;
+    path_to(s, s->height_end, s->path.x);
 }
 
-/// The ground: to behind the spot while the tip rises, forward while it falls, still before the
-/// touch.
-static void swing(chunk *c, const himc_goal *goal, const himc_gesture *g, double begin)
+/// The tangential path of a stroke: to behind the spot while the tip rises, forward while it falls,
+/// still before the touch.
+static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, double begin)
 {
-    if (c->plan->away)
-        ground_to(c, begin, c->on.x);
-    double span = goal->time - c->ground_end;
-    double forward = fmin(fmax(g->down, 0.2), 0.55 * span);
-    double back_at = goal->time - forward, quiet = fmin(STANDSTILL, 0.3 * forward);
+    if (s->plan->at_home)
+        path_to(s, begin, s->path.x);
+    double span = goal->time - s->path_end;
+    double forward = fmin(fmax(g->down, FORWARD_TIME), FORWARD_SHARE * span);
+    double back_at = goal->time - forward, still = fmin(STILL_TIME, STILL_SHARE * forward);
     himc_vec3 spot = goal->spot;
-    double shorter = fmin(forward - quiet, back_at - c->ground_end);
+    double shorter = fmin(forward - still, back_at - s->path_end);
     double depth = fmin(g->depth, SWING_PEAK / HIMC_MOVE_PEAK * shorter * shorter);
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
-    double off = himc_vec3_length(himc_vec3_sub(c->on.x, spot));
-    // with no time to go back and forth, straight there
-    if (span < 0.2 && off > depth)
-        back_at = c->ground_end;
-    if (back_at - c->ground_end > 1.1) {
-        ground_to(c, c->ground_end + 0.65, himc_vec3_madd(spot, 0.3 * depth, goal->back));
-        ground_to(c, back_at - 0.45, himc_vec3_madd(spot, 0.35 * depth, goal->back));
+    double off = himc_vec3_length(himc_vec3_sub(s->path.x, spot));
+    if (span < STRAIGHT_TIME && off > depth)
+        back_at = s->path_end;
+    if (back_at - s->path_end > IDLE_TIME) {
+        path_to(s, s->path_end + IDLE_ARRIVAL,
+                himc_vec3_madd(spot, IDLE_DEPTH * depth, goal->back));
+        path_to(s, back_at - IDLE_DEPARTURE,
+                himc_vec3_madd(spot, IDLE_DEPTH_LATER * depth, goal->back));
     }
-    ground_to(c, back_at, behind);
-    ground_to(c, goal->time - quiet, spot);
-    ground_to(c, goal->time, spot);
+    path_to(s, back_at, behind);
+    path_to(s, goal->time - still, spot);
+    path_to(s, goal->time, spot);
 }
 
 void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home)
 {
-    *plan = (himc_hand_plan){.home = home, .end = t, .away = true};
+    *plan = (himc_hand_plan){.home = home, .end = t, .at_home = true};
     plan->last = (himc_goal){.time = -1e9, .spot = home, .normal = {0, 0, 1}, .back = {-1, 0, 0}};
-    himc_target at = still(home), nothing = {0};
-    plan->end = t + 0.5;
-    himc_spline_add(&plan->ground, t, &at, plan->end, &at);
-    himc_spline_add(&plan->lift, t, &nothing, plan->end, &nothing);
+    himc_target at = himc_target_at_rest(home), nothing = {0};
+    plan->end = t + HOME_WAIT;
+    himc_spline_add(&plan->tangential_path, t, &at, plan->end, &at);
+    himc_spline_add(&plan->height_profile, t, &nothing, plan->end, &nothing);
 }
 
 himc_target himc_hand_at(const himc_hand_plan *plan, double t)
 {
-    return sum(himc_spline_at(&plan->ground, t), himc_spline_at(&plan->lift, t));
+    return himc_target_add(himc_spline_at(&plan->tangential_path, t),
+                           himc_spline_at(&plan->height_profile, t));
 }
 
 void himc_hand_cut(himc_hand_plan *plan, double t)
 {
     if (t >= plan->end)
         return;
-    t = fmax(t, plan->ground.segment[0].t0);
-    himc_spline_cut(&plan->ground, t);
-    himc_spline_cut(&plan->lift, t);
+    t = fmax(t, plan->tangential_path.segment[0].t0);
+    himc_spline_cut(&plan->tangential_path, t);
+    himc_spline_cut(&plan->height_profile, t);
     plan->end = t;
-    plan->struck = false;
+    plan->rebounding = false;
     himc_target s = himc_hand_at(plan, t);
-    plan->away = plan->away && himc_vec3_length(s.v) < 1e-6 && himc_vec3_length(s.a) < 1e-6;
+    plan->at_home = plan->at_home && himc_vec3_length(s.v) < 1e-6 && himc_vec3_length(s.a) < 1e-6;
 }
 
 void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state, double next)
 {
-    double T = fmin(ABSORB, fmax(0.2 * (next - t), 0.001));
+    double T = fmin(ABSORB_TIME, fmax(ABSORB_SHARE * (next - t), LEAST_ABSORB_TIME));
     himc_hand_cut(plan, t);
     himc_target on = {himc_vec3_madd(state->x, T, state->v), state->v, {0, 0, 0}};
     himc_target nothing = {0};
-    himc_spline_add(&plan->ground, t, state, t + T, &on);
-    himc_spline_add(&plan->lift, t, &nothing, t + T, &nothing);
+    himc_spline_add(&plan->tangential_path, t, state, t + T, &on);
+    himc_spline_add(&plan->height_profile, t, &nothing, t + T, &nothing);
     plan->end = t + T;
-    plan->struck = true;
-    plan->away = false;
+    plan->rebounding = true;
+    plan->at_home = false;
 }
 
 bool himc_hand_room(const himc_hand_plan *plan)
 {
-    int most = plan->ground.count > plan->lift.count ? plan->ground.count : plan->lift.count;
-    return most + MOST_PIECES <= HIMC_SPLINE_SEGMENTS;
+    int path = plan->tangential_path.count, height = plan->height_profile.count;
+    return (path > height ? path : height) + MOST_SEGMENTS <= HIMC_SPLINE_SEGMENTS;
 }
 
-static double distance_to(const chunk *c, const himc_goal *goal)
+static double distance_to(const stroke_plan *s, const himc_goal *goal)
 {
-    return himc_vec3_length(himc_vec3_sub(goal->spot, c->on.x));
+    return himc_vec3_length(himc_vec3_sub(goal->spot, s->path.x));
 }
 
 double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    chunk c = frame(plan, goal->spot, goal->normal);
-    double T = himc_gesture_time(&goal->gesture, c.at.h);
-    double move = himc_move_time(distance_to(&c, goal), GENTLE_MOVE) + goal->gesture.down;
-    return fmax(T, fmax(move, plan->away ? 0.4 : 0));
+    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    double T = himc_gesture_time(&goal->gesture, s.height.h);
+    double move = himc_move_time(distance_to(&s, goal), GENTLE_MOVE) + goal->gesture.down;
+    return fmax(T, fmax(move, plan->at_home ? LEAVE_HOME_TIME : 0));
 }
 
 double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    chunk c = frame(plan, goal->spot, goal->normal);
-    double T = 0.7 * himc_gesture_time(&goal->gesture, c.at.h);
-    if (c.at.h >= 0.6 * goal->gesture.height)
+    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    double T = HURRY_SHARE * himc_gesture_time(&goal->gesture, s.height.h);
+    if (s.height.h >= RAISED_SHARE * goal->gesture.height)
         T = fmin(T, RAISED_TIME);
-    T = fmax(T, SLOWEST_FALL * c.at.h / goal->gesture.speed); // a soft stroke does not fall fast
-    return fmax(fmax(T, RAISED_TIME), 1.4 * himc_move_time(distance_to(&c, goal), QUICK_MOVE));
+    // a soft stroke does not fall fast
+    T = fmax(T, HIMC_LEAST_LANDING * s.height.h / goal->gesture.speed);
+    return fmax(fmax(T, RAISED_TIME),
+                MOVE_MARGIN * himc_move_time(distance_to(&s, goal), QUICK_MOVE));
 }
 
-/// Whether anyone could be there in time.
-static bool playable(const chunk *c, const himc_goal *goal)
+static bool is_possible(const stroke_plan *s, const himc_goal *goal)
 {
-    double T = goal->time - c->lift_end;
-    if (!(T >= LEAST_CHUNK) || c->at.h / T > FASTEST_FALL)
+    double T = goal->time - s->height_end;
+    if (!(T >= LEAST_STROKE_TIME) || s->height.h / T > FASTEST_FALL)
         return false;
-    return 1.4 * himc_move_time(distance_to(c, goal), HARDEST_MOVE) <= T;
+    return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HARDEST_MOVE) <= T;
 }
 
 bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    chunk c = frame(plan, goal->spot, goal->normal);
-    return playable(&c, goal);
+    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    return is_possible(&s, goal);
 }
 
-/// A strong rebound with little time left is not fought: the stroke goes as high as the rebound
-/// takes it.
-static void go_with(const chunk *c, double t, himc_gesture *g)
+/// A strong rebound with little time left is followed: the stroke goes as high as the rebound takes
+/// it.
+static void follow_rebound(const stroke_plan *s, double t, himc_gesture *g)
 {
-    double T = t - c->lift_end, rise_time = T - g->down - g->dwell;
-    if (c->at.v < 0.3 || rise_time > 0.25 || c->at.h + c->at.v * rise_time / 2.4 < g->height)
+    double T = t - s->height_end, rise_time = T - g->down - g->dwell;
+    double h = s->height.h, v = s->height.v;
+    if (v < HIMC_TURNING_SPEED || rise_time > FOLLOW_TIME ||
+        h + v * rise_time / HIMC_STEEPEST_QUINTIC < g->height)
         return;
     g->dwell = 0;
-    g->down = 0.65 * T;
-    g->height = c->at.h + c->at.v * (T - g->down) / 2.4;
-    g->speed = fmin(fmax(g->speed, 0.8 * g->height / g->down), 2.4 * g->height / g->down);
+    g->down = FOLLOW_FALL_SHARE * T;
+    g->height = h + v * (T - g->down) / HIMC_STEEPEST_QUINTIC;
+    g->speed = fmin(fmax(g->speed, FOLLOW_LEAST_LANDING * g->height / g->down),
+                    HIMC_STEEPEST_QUINTIC * g->height / g->down);
 }
 
-/// The fall from the top: one quintic, or through the knots of a unit's.
-static void fall(chunk *c, double t, const himc_gesture *g, bool from_top)
+/// The fall to the touch: one quintic, or from the apex through the knots of a unit's fall.
+static void fall(stroke_plan *s, double t, const himc_gesture *g, bool from_apex)
 {
     double landing = g->speed * g->down / g->height;
-    for (int k = 1; g->unit && from_top && k < KNOTS; k++) {
-        double f[3], u = (double)k / KNOTS;
+    for (int k = 1; g->unit && from_apex && k < UNIT_KNOTS; k++) {
+        double f[3], u = (double)k / UNIT_KNOTS;
         himc_unit_at(g->unit, u, landing, f);
-        chunk_height knot = {g->height * f[0], g->height * f[1] / g->down,
+        height_state knot = {g->height * f[0], g->height * f[1] / g->down,
                              g->height * f[2] / (g->down * g->down)};
-        himc_stroke_plan_lift_to(c, t - g->down * (1 - u), knot);
+        himc_height_profile_to(s, t - g->down * (1 - u), knot);
     }
-    himc_stroke_plan_lift_to(c, t, (chunk_height){0, -g->speed, 0});
+    himc_height_profile_to(s, t, (height_state){0, -g->speed, 0});
 }
 
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
-    chunk c = chunk_begin(plan, goal->spot, goal->normal);
-    if (!playable(&c, goal))
+    stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
+    if (!is_possible(&s, goal))
         return false;
     himc_gesture g = goal->gesture;
-    double begin = c.lift_end;
-    c.approach = fmax(0.5, himc_move_time(distance_to(&c, goal), GENTLE_MOVE));
-    bool from_top = !himc_stroke_plan_falls(&c, goal->time, &g);
-    if (from_top) {
-        g = himc_gesture_squeeze(goal->gesture, goal->time - plan->end, c.at.h);
-        go_with(&c, goal->time, &g);
+    double begin = s.height_end;
+    s.approach = fmax(LEAST_APPROACH_TIME, himc_move_time(distance_to(&s, goal), GENTLE_MOVE));
+    bool from_apex = !himc_height_profile_falls(&s, goal->time, &g);
+    if (from_apex) {
+        g = himc_gesture_squeeze(goal->gesture, goal->time - plan->end, s.height.h);
+        follow_rebound(&s, goal->time, &g);
         double top = goal->time - g.down - g.dwell;
-        begin = himc_stroke_plan_rise(&c, top, &g);
-        if (c.at.a == 0)
-            himc_stroke_plan_lift_to(&c, top + g.dwell, c.at);
+        begin = himc_height_profile_rise(&s, top, &g);
+        if (s.height.a == 0)
+            himc_height_profile_to(&s, top + g.dwell, s.height);
     }
-    fall(&c, goal->time, &g, from_top);
-    himc_stroke_plan_lift_to(&c, goal->time + HIMC_CONTACT_TIME,
-                             (chunk_height){0, RESTITUTION * g.speed, 0});
-    swing(&c, goal, &g, begin);
-    chunk_finish(&c);
+    fall(&s, goal->time, &g, from_apex);
+    himc_height_profile_to(&s, goal->time + HIMC_CONTACT_TIME,
+                           (height_state){0, PREDICTED_RESTITUTION * g.speed, 0});
+    swing(&s, goal, &g, begin);
+    plan_finish(&s);
     plan->last = *goal;
     plan->last.gesture = g;
-    plan->struck = true;
-    plan->away = false;
+    plan->rebounding = true;
+    plan->at_home = false;
     return true;
 }
 
-/// Moves to a place in space; what way the tip has is first taken from it if it would touch the
-/// head.
-static void go(chunk *c, himc_vec3 x, double gentle)
+/// Moves to a place in space; a fall that would touch the head on the way is halted first.
+static void move_to(stroke_plan *s, himc_vec3 x, double peak)
 {
-    himc_vec3 n = c->n;
-    chunk_height to = {himc_vec3_dot(n, himc_vec3_sub(x, c->plan->last.spot)), 0, 0};
-    double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(c->plan, c->plan->end).x));
-    double T = fmax(himc_move_time(distance, gentle), 0.06);
-    if (c->at.v < -0.3 &&
-        !himc_stroke_plan_stays(c, c->lift_end + T, to, fmin(to.h, 0.5 * c->at.h), HUGE_VAL))
-        himc_stroke_plan_brake(c, c->lift_end + 1);
-    himc_stroke_plan_lift_to(c, c->lift_end + T, to);
-    ground_to(c, c->lift_end, himc_vec3_madd(x, -to.h, n));
+    height_state to = {himc_vec3_dot(s->n, himc_vec3_sub(x, s->plan->last.spot)), 0, 0};
+    double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(s->plan, s->plan->end).x));
+    double T = fmax(himc_move_time(distance, peak), LEAST_MOVE_TIME);
+    if (s->height.v < -HIMC_TURNING_SPEED &&
+        !himc_height_profile_stays(s, s->height_end + T, to, fmin(to.h, 0.5 * s->height.h),
+                                   HUGE_VAL))
+        himc_height_profile_brake(s, s->height_end + BRAKE_LIMIT);
+    himc_height_profile_to(s, s->height_end + T, to);
+    path_to(s, s->height_end, himc_vec3_madd(x, -to.h, s->n));
 }
 
 void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x)
 {
-    chunk c = chunk_begin(plan, plan->last.spot, plan->last.normal);
-    go(&c, x, QUICK_MOVE);
-    chunk_finish(&c);
+    stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
+    move_to(&s, x, QUICK_MOVE);
+    plan_finish(&s);
     plan->home = x;
-    plan->away = true;
-    plan->struck = false;
+    plan->at_home = true;
+    plan->rebounding = false;
 }
 
-/// Over the last spot: comes down to where a hand waits, or sways a little there.
-static void hover(chunk *c)
+/// Over the last spot: comes down to the waiting height, or sways a little there.
+static void hover(stroke_plan *s)
 {
-    bool low = c->at.h < LOW + 2 * SWAY && c->at.h > 0.05;
-    double side = c->plan->swayed ? -1 : 1;
-    himc_vec3 x =
-        himc_vec3_madd(c->on.x, low ? side * SWAY : 0.1, low ? c->plan->last.back : c->on.v);
-    c->plan->swayed = !c->plan->swayed;
-    himc_stroke_plan_lift_to(c, c->lift_end + (low ? 1 : 0.6),
-                             (chunk_height){LOW + (low ? side * SWAY / 2 : 0), 0, 0});
-    ground_to(c, c->lift_end, x);
+    bool low =
+        s->height.h < HIMC_WAIT_HEIGHT + 2 * HIMC_WAIT_SWAY && s->height.h > HOVER_LEAST_HEIGHT;
+    double sway = s->plan->swayed ? -HIMC_WAIT_SWAY : HIMC_WAIT_SWAY;
+    himc_vec3 x = low ? himc_vec3_madd(s->path.x, sway, s->plan->last.back)
+                      : himc_vec3_madd(s->path.x, HOVER_COAST, s->path.v);
+    s->plan->swayed = !s->plan->swayed;
+    himc_height_profile_to(s, s->height_end + (low ? HOVER_TIME : HOVER_ARRIVAL),
+                           (height_state){HIMC_WAIT_HEIGHT + (low ? sway / 2 : 0), 0, 0});
+    path_to(s, s->height_end, x);
 }
 
 void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
 {
-    chunk c = chunk_begin(plan, plan->last.spot, plan->last.normal);
-    if (c.at.v > 0.3)
-        himc_stroke_plan_rebound(&c, c.lift_end + 2, 0.9);
-    else if (c.at.v < -0.3)
-        himc_stroke_plan_brake(&c, c.lift_end + 1);
-    plan->struck = false;
-    if (plan->away) {
-        himc_stroke_plan_lift_to(&c, fmax(until, c.lift_end + 0.5), (chunk_height){c.at.h, 0, 0});
-        ground_to(&c, c.lift_end, c.on.x);
+    stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
+    if (s.height.v > HIMC_TURNING_SPEED)
+        himc_height_profile_rebound(&s, s.height_end + FREE_REBOUND_TIME, HIMC_HIGHEST_REBOUND);
+    else if (s.height.v < -HIMC_TURNING_SPEED)
+        himc_height_profile_brake(&s, s.height_end + BRAKE_LIMIT);
+    plan->rebounding = false;
+    if (plan->at_home) {
+        himc_height_profile_to(&s, fmax(until, s.height_end + HOME_WAIT),
+                               (height_state){s.height.h, 0, 0});
+        path_to(&s, s.height_end, s.path.x);
     } else if (ready) {
-        hover(&c);
+        hover(&s);
     } else {
-        go(&c, plan->home, GENTLE_MOVE / 8);
-        plan->away = true;
+        move_to(&s, plan->home, HOME_MOVE);
+        plan->at_home = true;
     }
-    chunk_finish(&c);
+    plan_finish(&s);
 }

@@ -1,154 +1,202 @@
-/// lift.c: the height of a tip: rebound, waiting, rise to the apex, and when it may just fall.
+/// height_profile.c: the height of a tip over a head: rebound, wait, rise to the apex, and when it
+/// can fall at once.
 ///
 /// With little time the rise is one quintic; with more, the rebound goes as high as its nuance
-/// makes it and floats up; with much, the tip sinks, waits low and is raised again. A trial
-/// quintic is sampled: if it would dip or overshoot, the motion is braked first. A quintic from
-/// speed v at 0 to rest at the height h in the time T rises without turning as long as v T/h <=
-/// 2.5.
+/// makes it and floats on upwards; with much, the tip sinks, waits low and is raised again. Trial
+/// quintics are sampled: one that would dip or overshoot is replaced, or the motion is braked
+/// first. A quintic from the speed v at height 0 to rest at the height h in the time T is monotone
+/// while v T/h <= 2.5 (gesture.h).
 #include "plan/stroke_plan.h"
 
-#define LEAST_DOWN 0.012  // no lift is planned in less (s)
-#define HURRIED_RISE 0.12 // shorter rises are one quintic (s)
-#define SINK_TIME 0.5     // spare time after which a tip sinks (s)
-#define BRISK_MOVE 25.0   // (m/s^2)
+#define TRIAL_SAMPLES 16 // of a trial quintic; chosen: it turns four times at most
 
-static himc_spline_segment trial(const chunk *c, double t, chunk_height to)
+// halting; chosen: as short as a wrist can, and never through the head
+#define BRAKE_TIME 0.12         // (s)
+#define LEAST_BRAKE_TIME 0.02   // (s)
+#define BRAKE_FALL_SHARE 1.2    // of the time the tip would need to reach the head
+#define BRAKE_LEAST_HEIGHT 0.02 // a lower tip is braked as if it were so high (m)
+#define BRAKE_FLOOR 0.2         // it halts above this share of its height
+
+// the rebound; the time it takes is the nuance's (himc_gesture.rebound_time) within these limits,
+// chosen by eye
+#define LEAST_REBOUND_TIME 0.08     // (s)
+#define LONGEST_REBOUND_TIME 0.3    // (s)
+#define REBOUND_SHARE 0.75          // of the time before the apex, at most
+#define REBOUND_LEAST_WAY_TIME 0.09 // the rebound goes at least as high as its speed takes it ...
+#define REBOUND_LEAST_WAY 2.2       // ... in this time, over this factor
+#define BROKEN_RISE_TIME 2.0        // rebound_time of a rise that was broken off
+#define FLOAT_STEEPNESS 1.5         // v T/h of the float from the rebound's top to the next apex
+#define FLOAT_SHARE 0.5             // of the rebound's speed, at most, is left for the float
+
+// the wait before a stroke; chosen by eye
+#define SINK_TIME 0.5          // spare time after which a tip sinks (s)
+#define SINK_FADE 0.5          // with so much more it sinks to the waiting height (s)
+#define SINK_DURATION 0.6      // of the sinking, at most (s) ...
+#define SINK_SHARE 0.5         // ... and this share of the spare time
+#define RAISE_TIME 0.45        // of the last rise, at most (s)
+#define LEAST_WAIT 0.05        // shorter waits are left out (s)
+#define WAIT_LEAST_HEIGHT 0.05 // (m)
+#define WAIT_SHARE 0.9         // the tip waits below this share of the next apex
+
+// the rise; chosen: below 0.12 s nothing but one quintic fits, and 1.04 and 4 mm are not seen
+#define HURRIED_RISE 0.12      // shorter rises are one quintic (s)
+#define RISE_STEEPNESS 2.6     // v T/h of one quintic, at most: it overshoots a little
+#define RISE_LEAST_WAY 0.01    // (m)
+#define RISE_REBOUNDS 1.5      // one quintic may take so many rebounds' time
+#define BRISK_MOVE 25.0        // peak acceleration from a rebound's top to the apex (m/s^2)
+#define OVERSHOOT 1.04         // of the higher end ...
+#define OVERSHOOT_MARGIN 0.004 // ... and so much more, or less than the lower end (m)
+#define HELD_APEX_TIME 0.01    // an apex held for longer is at rest (s)
+#define CALM_RISE 1.5          // a rise from rest in more than so many falls halts at the apex
+
+// the fall at once; chosen: a stick that is high enough and in time is not raised again
+#define LEAST_FALL_TIME 0.012      // falls this short are always tried (s)
+#define LEAST_FALL_HEIGHT 0.01     // (m)
+#define FALLING_SPEED 0.2          // a tip faster downwards has begun to fall (m/s)
+#define FALL_STEEPNESS 2.5         // v T/h of a fall from rest, at most ...
+#define FALLING_STEEPNESS 3.5      // ... and of one that has begun
+#define FALL_OVERSHOOT 1.1         // of the height ...
+#define FALL_OVERSHOOT_MARGIN 0.02 // ... and so much more (m)
+
+static himc_target along_normal(const stroke_plan *s, height_state at)
 {
-    himc_target a = along(c->n, c->at.h, c->at.v, c->at.a), b = along(c->n, to.h, to.v, to.a);
-    return himc_spline_segment_make(c->lift_end, &a, t, &b);
+    return himc_target_along(s->n, at.h, at.v, at.a);
 }
 
-void himc_stroke_plan_lift_to(chunk *c, double t, chunk_height to)
+void himc_height_profile_to(stroke_plan *s, double t, height_state to)
 {
-    if (t <= c->lift_end)
+    if (t <= s->height_end)
         return;
-    himc_target a = along(c->n, c->at.h, c->at.v, c->at.a), b = along(c->n, to.h, to.v, to.a);
-    himc_spline_add(&c->plan->lift, c->lift_end, &a, t, &b);
-    c->lift_end = t;
-    c->at = to;
+    himc_target a = along_normal(s, s->height), b = along_normal(s, to);
+    himc_spline_add(&s->plan->height_profile, s->height_end, &a, t, &b);
+    s->height_end = t;
+    s->height = to;
 }
 
-/// Whether the way to a height stays within bounds.
-bool himc_stroke_plan_stays(const chunk *c, double t, chunk_height to, double low, double high)
+bool himc_height_profile_stays(const stroke_plan *s, double t, height_state to, double low,
+                               double high)
 {
-    himc_spline_segment piece = trial(c, t, to);
-    for (int i = 1; i < 16; i++) {
-        double at = piece.t0 + (t - piece.t0) * i / 16;
-        double h = himc_vec3_dot(c->n, himc_spline_segment_at(&piece, at).x);
+    himc_target a = along_normal(s, s->height), b = along_normal(s, to);
+    himc_spline_segment trial = himc_spline_segment_make(s->height_end, &a, t, &b);
+    for (int i = 1; i < TRIAL_SAMPLES; i++) {
+        double at = trial.t0 + (t - trial.t0) * i / TRIAL_SAMPLES;
+        double h = himc_vec3_dot(s->n, himc_spline_segment_at(&trial, at).x);
         if (h < low || h > high)
             return false;
     }
     return true;
 }
 
-/// Comes to a halt from whatever the height is doing, before `limit`.
-void himc_stroke_plan_brake(chunk *c, double limit)
+void himc_height_profile_brake(stroke_plan *s, double limit)
 {
-    double h = c->at.h, v = c->at.v;
-    double T = v < 0 ? fmin(0.12, 1.2 * fmax(h, 0.02) / -v) : 0.12;
-    T = fmin(fmax(T, 0.02), 0.5 * (limit - c->lift_end));
-    double stop = fmax(h + 0.5 * v * T, 0.2 * h);
-    himc_stroke_plan_lift_to(c, c->lift_end + T, (chunk_height){stop, 0, 0});
+    double h = s->height.h, v = s->height.v;
+    double fall = BRAKE_FALL_SHARE * fmax(h, BRAKE_LEAST_HEIGHT);
+    double T = v < 0 ? fmin(BRAKE_TIME, fall / -v) : BRAKE_TIME;
+    T = fmin(fmax(T, LEAST_BRAKE_TIME), 0.5 * (limit - s->height_end));
+    double stop = fmax(h + 0.5 * v * T, BRAKE_FLOOR * h);
+    himc_height_profile_to(s, s->height_end + T, (height_state){stop, 0, 0});
 }
 
-/// The rebound as its nuance makes it: how high, how fast, and with what speed it floats on to
-/// `next`.
-void himc_stroke_plan_rebound(chunk *c, double top, double next)
+void himc_height_profile_rebound(stroke_plan *s, double top, double next)
 {
-    const himc_gesture *g = &c->plan->last.gesture;
-    double h = c->at.h, v = c->at.v;
+    const himc_gesture *g = &s->plan->last.gesture;
+    double h = s->height.h, v = s->height.v;
     double high = g->rebound * g->height;
-    if (!c->plan->struck)
+    if (!s->plan->rebounding)
         high = h; // a rise that was broken off: only halt it
     // no higher than the next stroke needs it, unless there is time to bounce freely and sink
-    double spare = fmin(fmax((top - c->lift_end - SINK_TIME) / SINK_TIME, 0), 1);
+    double spare = fmin(fmax((top - s->height_end - SINK_TIME) / SINK_TIME, 0), 1);
     if (high > next)
         high = next + spare * (high - next);
-    high = fmax(high, h + v * 0.09 / 2.2);
-    double pull = c->plan->struck ? g->pull : 2.0;
-    double T = fmin(fmax(pull * (high - h) / v, 0.08), 0.3);
-    T = fmin(T, 0.75 * (top - c->lift_end));
-    high = fmin(fmax(high, h + v * T / 2.4), fmax(h, 0.9));
-    double rest = top - c->lift_end - T;
+    high = fmax(high, h + v * REBOUND_LEAST_WAY_TIME / REBOUND_LEAST_WAY);
+    double slowness = s->plan->rebounding ? g->rebound_time : BROKEN_RISE_TIME;
+    double T = fmin(fmax(slowness * (high - h) / v, LEAST_REBOUND_TIME), LONGEST_REBOUND_TIME);
+    T = fmin(T, REBOUND_SHARE * (top - s->height_end));
+    high = fmin(fmax(high, h + v * T / HIMC_STEEPEST_QUINTIC), fmax(h, HIMC_HIGHEST_REBOUND));
+    double rest = top - s->height_end - T;
     double on = 0;
     if (next > high && rest < SINK_TIME)
-        on = fmin(1.5 * (next - high) / rest, 0.5 * v);
-    himc_stroke_plan_lift_to(c, c->lift_end + T, (chunk_height){high, on, 0});
+        on = fmin(FLOAT_STEEPNESS * (next - high) / rest, FLOAT_SHARE * v);
+    himc_height_profile_to(s, s->height_end + T, (height_state){high, on, 0});
 }
 
-/// Sinks, waits low and is raised again, if there is time for that; returns when the last rise
-/// begins.
-static double sink(chunk *c, double top, double next)
+/// If there is time, sinks and waits low; returns the beginning of the last rise.
+static double sink(stroke_plan *s, double top, double next)
 {
-    double spare = top - c->lift_end;
-    double raise = fmin(0.45, 0.5 * spare);
-    if (c->plan->away) {
-        himc_stroke_plan_lift_to(c, top - fmin(c->approach, spare), (chunk_height){c->at.h, 0, 0});
-        return c->lift_end;
+    double spare = top - s->height_end;
+    double raise = fmin(RAISE_TIME, 0.5 * spare);
+    if (s->plan->at_home) {
+        himc_height_profile_to(s, top - fmin(s->approach, spare),
+                               (height_state){s->height.h, 0, 0});
+        return s->height_end;
     }
     if (spare <= SINK_TIME)
-        return c->lift_end;
-    double low = fmax(fmin(LOW, 0.9 * next), 0.05);
-    low += (c->at.h - low) * (1 - fmin((spare - SINK_TIME) / 0.5, 1));
-    double settle = fmin(0.6, 0.5 * spare);
-    himc_stroke_plan_lift_to(c, c->lift_end + settle, (chunk_height){low, 0, 0});
-    if (top - raise - c->lift_end > 0.05)
-        himc_stroke_plan_lift_to(c, top - raise, (chunk_height){low + SWAY, 0, 0});
+        return s->height_end;
+    double low = fmax(fmin(HIMC_WAIT_HEIGHT, WAIT_SHARE * next), WAIT_LEAST_HEIGHT);
+    low += (s->height.h - low) * (1 - fmin((spare - SINK_TIME) / SINK_FADE, 1));
+    double settle = fmin(SINK_DURATION, SINK_SHARE * spare);
+    himc_height_profile_to(s, s->height_end + settle, (height_state){low, 0, 0});
+    if (top - raise - s->height_end > LEAST_WAIT)
+        himc_height_profile_to(s, top - raise, (height_state){low + HIMC_WAIT_SWAY, 0, 0});
     return top - raise;
 }
 
-/// The longest rise that is one quintic (s): not slower than the way is long, nor than the last
-/// nuance has it.
-static double single_rise(const chunk *c, double next)
+/// The longest time (s) that a rise to `next` (m) may take as one quintic: it neither overshoots
+/// much, nor is slower than the last nuance rebounds.
+static double longest_single_rise(const stroke_plan *s, double next)
 {
-    const himc_gesture *last = &c->plan->last.gesture;
-    if (c->at.v <= 0.3)
+    const himc_gesture *last = &s->plan->last.gesture;
+    double h = s->height.h, v = s->height.v;
+    if (v <= HIMC_TURNING_SPEED)
         return SINK_TIME;
-    double longest = 2.6 * fmax(next - c->at.h, 0.01) / c->at.v;
-    if (!c->plan->struck)
+    double longest = RISE_STEEPNESS * fmax(next - h, RISE_LEAST_WAY) / v;
+    if (!s->plan->rebounding)
         return longest;
-    double high = last->rebound * last->height, T = last->pull * high / c->at.v;
-    return fmin(longest, fmax(1.5 * T, T + himc_move_time(fmax(next - high, 0), BRISK_MOVE)));
+    double high = last->rebound * last->height, T = last->rebound_time * high / v;
+    return fmin(longest,
+                fmax(RISE_REBOUNDS * T, T + himc_move_time(fmax(next - high, 0), BRISK_MOVE)));
 }
 
-/// From the chunk's start to the apex of the stroke at time `top`; returns when the preparation
-/// began.
-double himc_stroke_plan_rise(chunk *c, double top, const himc_gesture *g)
+static bool rises_within_bounds(const stroke_plan *s, double top, height_state apex, double high)
 {
-    chunk_height apex = {g->height, 0, -g->arc * g->height / (g->down * g->down)};
-    if (g->dwell > 0.01)
+    return himc_height_profile_stays(s, top, apex, fmin(s->height.h, apex.h) - OVERSHOOT_MARGIN,
+                                     OVERSHOOT * high + OVERSHOOT_MARGIN);
+}
+
+double himc_height_profile_rise(stroke_plan *s, double top, const himc_gesture *g)
+{
+    height_state apex = {g->height, 0, -g->arc * g->height / (g->down * g->down)};
+    if (g->dwell > HELD_APEX_TIME)
         apex.a = 0;
-    double begin = c->lift_end, high = fmax(g->height, c->at.h);
-    if (c->at.v < -0.3)
-        himc_stroke_plan_brake(c, top);
-    bool moving = c->at.v > 0.3;
-    bool single = top - begin < HURRIED_RISE ||
-                  (top - begin <= single_rise(c, g->height) &&
-                   himc_stroke_plan_stays(c, top, apex, fmin(c->at.h, g->height) - 0.004,
-                                          1.04 * high + 0.004));
+    double begin = s->height_end, high = fmax(g->height, s->height.h);
+    if (s->height.v < -HIMC_TURNING_SPEED)
+        himc_height_profile_brake(s, top);
+    bool moving = s->height.v > HIMC_TURNING_SPEED;
+    bool single = top - begin < HURRIED_RISE || (top - begin <= longest_single_rise(s, g->height) &&
+                                                 rises_within_bounds(s, top, apex, high));
     if (!single) {
         if (moving)
-            himc_stroke_plan_rebound(c, top, g->height);
-        begin = sink(c, top, g->height);
-        if (c->at.v == 0 && top - c->lift_end > 1.5 * g->down)
+            himc_height_profile_rebound(s, top, g->height);
+        begin = sink(s, top, g->height);
+        if (s->height.v == 0 && top - s->height_end > CALM_RISE * g->down)
             apex.a = 0;
     }
-    if (!himc_stroke_plan_stays(c, top, apex, fmin(c->at.h, g->height) - 0.004,
-                                1.04 * high + 0.004))
+    if (!rises_within_bounds(s, top, apex, high))
         apex.a = 0;
-    himc_stroke_plan_lift_to(c, top, apex);
+    himc_height_profile_to(s, top, apex);
     return begin;
 }
 
-/// Whether the tip may simply fall from where it is, and how fast it then lands.
-bool himc_stroke_plan_falls(const chunk *c, double t, himc_gesture *g)
+bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)
 {
-    double T = t - c->lift_end, h = c->at.h;
-    double longest = (c->at.v < -0.2 ? 3.5 : 2.5) * h / g->speed;
-    if (h <= 0.01 || T > fmax(longest, LEAST_DOWN))
+    double T = t - s->height_end, h = s->height.h;
+    double steepness = s->height.v < -FALLING_SPEED ? FALLING_STEEPNESS : FALL_STEEPNESS;
+    double longest = steepness * h / g->speed;
+    if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME))
         return false;
-    double speed = fmin(fmax(g->speed, SLOWEST_FALL * h / T), 2.4 * h / T);
-    if (!himc_stroke_plan_stays(c, t, (chunk_height){0, -speed, 0}, -1e-6, 1.1 * h + 0.02))
+    double speed = fmin(fmax(g->speed, HIMC_LEAST_LANDING * h / T), HIMC_STEEPEST_QUINTIC * h / T);
+    if (!himc_height_profile_stays(s, t, (height_state){0, -speed, 0}, -1e-6,
+                                   FALL_OVERSHOOT * h + FALL_OVERSHOOT_MARGIN))
         return false;
     g->speed = speed;
     g->height = h;

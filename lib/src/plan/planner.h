@@ -1,24 +1,23 @@
 /// planner.h: from strokes to the trajectories of the two drumstick tips.
 ///
-/// Each hand's trajectory is made of quintics in space joined with equal position, velocity and
-/// acceleration (C2). The planner knows nothing of bodies or sound: it is told where the drums
-/// stand, how far a hand reaches and, at separation, how the tip really moves. What a player would
-/// not do is made smaller or later, left to the other hand or given up, and a note says so.
+/// Each hand's trajectory is a spline of quintics in space, continuous in position, velocity and
+/// acceleration (C2). The planner knows nothing of bodies or sound; it is told the places of the
+/// drums, the reach of the hands and, at separation, the measured state of the tip. A stroke that a
+/// player could not play is made smaller or later, reassigned to the other hand or given up, and a
+/// note says so.
 #ifndef HIMC_PLANNER_H
 #define HIMC_PLANNER_H
 
 #include "base/quintic.h"
 #include "himc/score.h"
 #include "capture/units.h"
-#include "capture/units.h"
-#include "capture/units.h"
 
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
     himc_vec3 rest[HIMC_HANDS]; ///< where a tip waits when there is nothing to play (m)
-    /// How far beyond that hand's reach a place is (m), 0 within it; HIMC_RT. NULL: all is in
-    /// reach.
-    double (*beyond)(const void *body, himc_hand hand, himc_vec3 place);
+    /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
+    /// NULL: all is in reach.
+    double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
     const void *body; ///< given to `beyond`; borrowed
 } himc_planner_config;
 
@@ -26,7 +25,7 @@ himc_planner_config himc_planner_default(void);
 
 typedef struct himc_planner himc_planner;
 
-/// What the planner wants said to the user; each is one line.
+/// A line for the user.
 typedef struct himc_planner_note {
     char text[160];
 } himc_planner_note;
@@ -34,14 +33,14 @@ typedef struct himc_planner_note {
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error);
 void himc_planner_free(himc_planner *planner);
 
-/// Drum `index` (0 .. HIMC_DRUMS-1) stands there from now on; strokes planned but not begun go to
-/// the new place.
+/// Drum `index` (0 .. HIMC_DRUMS-1) is at `place` from now on; strokes that have not begun go
+/// there. False, and nothing changed, if one of the values is not allowed.
 HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place);
 
-#define HIMC_UNITS 256
+#define HIMC_UNITS 256 ///< chosen: five nuances, two hands, and 25 strokes of each
 
-/// Motion units to be played in place of the built-in strokes of their nuance and hand (copied,
-/// added to those there are). False, and nothing added, if there are more than HIMC_UNITS.
+/// Adds motion units (copied), to be played in place of the built-in strokes of their nuance and
+/// hand. False, and nothing added, if there would be more than HIMC_UNITS.
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
                             himc_error *error);
 /// Back to the built-in strokes.
@@ -57,77 +56,77 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
 /// is.
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                             himc_error *error);
-/// Stops, forgets all strokes and goes to beat 0; sticks under way come to rest.
+/// Stops, drops all strokes and goes to beat 0; moving sticks come to rest.
 void himc_planner_clear(himc_planner *planner);
 
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been
-/// played; does nothing while something is still to come. If the first stroke could not be prepared
-/// in time, all beats are moved later by as much as it needs, and a note says so.
+/// played; does nothing while strokes are still to come. If the first stroke cannot be prepared in
+/// time, all beats are delayed by the missing time, and a note says so.
 HIMC_RT void himc_planner_play(himc_planner *planner, double t);
-/// Stops; a stroke less than 80 ms away is still played, waiting hits are not. `play` goes on from
-/// this beat.
+/// Stops. A stroke less than 80 ms away is still played, waiting hits are dropped. `play` goes on
+/// from this beat.
 HIMC_RT void himc_planner_stop(himc_planner *planner, double t);
 /// Goes to a beat, playing or not.
 HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
-/// Whether the score begins again at the whole beat after its last stroke, until told otherwise.
-/// The tempo map begins again too; a score that is switched off plays to its end.
+/// If `on`, the score and its tempo map begin again at the whole beat after the last stroke. If
+/// not, the round under way is the last.
 HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
-/// The whole beat after the last stroke: where a loop turns round; 0 without strokes.
+/// The whole beat after the last stroke, at which a loop begins again; 0 without strokes.
 HIMC_RT double himc_planner_length(const himc_planner *planner);
-/// What another score must begin at to follow this one: its length, or later if that is past or too
-/// near to prepare for at `t`.
+/// First beat for another score that shall follow this one: its length, or a later beat if that is
+/// past or too near to prepare for at `t`.
 HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
-/// Appends a tempo map (copied) that holds from `beat` on; what the old one says after that is
+/// Appends a tempo map (copied) that holds from `beat` on; later changes of the old one are
 /// dropped.
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                                double beat, himc_error *error);
-/// At this tempo (1 .. 1000 beats per minute) from `t` (s) to the next change the tempo map has.
-/// The motion under way is bent, C2, never jumped; a stroke less than 80 ms away keeps its time.
+/// Sets the tempo (1 .. 1000 beats per minute) from `t` (s) to the next change of the tempo map.
+/// The motion stays C2; a stroke less than 80 ms away keeps its time.
 HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 
-/// A stroke as soon as the gesture allows and no other of that hand is within 0.12 s. Returns the
-/// time at which it will touch (s); infinity if it is given up, because four wait already or there
-/// is no gap.
+/// A stroke as soon as the gesture allows, at least 0.12 s from any other of that hand. Returns the
+/// time of its touch (s); infinity if it is given up, because four wait already or there is no gap.
 HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke,
                                 int drum);
-/// A live target: the tip goes there, smoothly, and stays until the next one or the next stroke.
-/// Targets that come within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows it
-/// one period late and comes to rest when it ends. A stroke less than 0.6 s away is played first.
+/// A live target: the tip goes there smoothly and stays until the next target or stroke. Targets
+/// within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows one period late and
+/// comes to rest when the stream ends. A stroke less than 0.6 s away is played first.
 HIMC_RT void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x);
 
-/// Brings plans up to time `t` (s, never backwards): drops what is past, plans at least 30 ms (in
-/// practice whole strokes) ahead. Call at least every task period.
+/// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
+/// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);
 /// The planned state of a tip at `t` (s), between the last advance and 30 ms after it. Pure.
 HIMC_RT himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, double t);
-/// The tip left the head at `t` in this measured state: the plan goes on from there, C2. Any stroke
-/// planned up to 30 ms later counts as struck. Without this call the plan follows a predicted
+/// The tip left the head at `t` in this measured state: the plan goes on from there, C2. A stroke
+/// planned up to 30 ms later counts as played. Without this call the plan follows a predicted
 /// rebound, 7 ms after the touch. A state that is not finite is ignored.
 HIMC_RT void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
                                     const himc_target *measured);
 
-/// The tip is in this state at `t`, wherever the plan had it: the plan goes on from there, C2. What
-/// was planned is planned anew. A state that is not finite is ignored.
+/// The tip is in this state at `t`, not in the planned one: all is planned again from there, C2. A
+/// state that is not finite is ignored.
 HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand,
                                  const himc_target *state);
 
-/// The stroke that hand is on or about to play at `t`: its drum, spot and planned time of contact.
-/// A stroke is the current one until 50 ms after its time, or half way to the next. False if none.
+/// The current stroke of a hand at `t`, its drum and the planned time of contact: the stroke to be
+/// played next, until 50 ms after its time or half way to the one after it. False if there is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 
-/// Beat at time `t`, or a negative number when stopped. Before the first beat it is that beat; in a
-/// loop it begins again.
+/// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
+/// begins again.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
-/// Time after which nothing is left to play (s): the last stroke and its coming to rest. Infinite
-/// while stopped.
+/// Time at which all has been played and the tips are at rest again (s). Infinite while stopped or
+/// in a loop.
 HIMC_RT double himc_planner_end(const himc_planner *planner);
 /// Strokes of the score given up since the last call.
 HIMC_RT int himc_planner_given_up(himc_planner *planner);
-/// A note of how many strokes since the last `play` were not played as written, if more than one.
+/// Adds a note with the count of strokes since the last `play` that were not played as written, if
+/// there is more than one.
 HIMC_RT void himc_planner_sum_up(himc_planner *planner);
-/// Takes the oldest note; false if there is none. At most 32 are kept; what is lost is counted in
-/// the last.
+/// Takes the oldest note; false if there is none. 32 are kept; the last one counts those that are
+/// lost.
 HIMC_RT bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note);
 
 #endif

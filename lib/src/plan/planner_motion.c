@@ -1,23 +1,66 @@
-/// planner_motion.c: strokes in their order become touches, touches become chunks of motion.
+/// planner_motion.c: strokes become goals, goals become motion of the two tips.
 ///
-/// Each hand's plan is extended chunk by chunk from its own end, always to a point beyond the
-/// horizon. Whatever changes (tempo, score, a hit, what was measured at separation) cuts the plan
+/// Each hand's plan is extended stroke by stroke from its own end, always to a point beyond the
+/// horizon. Every change (of tempo or score, a hit, the measured state at separation) cuts the plan
 /// and extends it again from the state there, so there is one way of planning and all joins are
-/// alike. A touch less than 80 ms away is committed: no player could take it back. Invariant:
-/// strokes of one hand are planned in the order of time, each at most once.
-#include "plan/planner_state.h"
+/// alike. A stroke less than 80 ms away is committed: no player could take it back.
+///
+/// Planning a stroke has a result: planned, too far away, or no time to prepare it. In the last two
+/// cases it is reassigned to the other hand, or given up. Only a stroke of the score is reassigned,
+/// once, and only if the other hand has nothing else within HIT_GAP and is there in time; a player
+/// would rather leave a stroke out than disturb another one. Meanwhile the other hand's own strokes
+/// are not reassigned in turn, so two hands are all that one call plans.
+///
+/// A hit is a stroke with a time instead of a beat; it waits in a short queue of its hand, and so
+/// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
+/// the order of time; each is played once, or given up and counted.
+#include "plan/planner_motion.h"
 #include "base/head_frame.h"
 
-#define FORESIGHT 3.0  // a stroke further away is not prepared yet (s)
-#define EARLY 0.03     // a touch may come this much before its time (s)
-#define AFTERGLOW 0.05 // and is the current one until this much after (s)
-#define REBOUND 0.12   // a rise within this time of a touch is its rebound (s)
-#define SMALL 0.6      // a stroke smaller than this share of its height is worth a word
-#define MOST_TRIES 32
+#include <stdio.h>
 
-static double touch_end(const planner_touch *touch)
+// when a stroke is planned; chosen: a player cannot take back the second half of a fall, and
+// prepares no stroke more than a slow bar ahead
+#define COMMIT_TIME 0.08   // a stroke so near is not changed any more (s)
+#define PREPARED_AHEAD 3.0 // a stroke further away is not prepared yet (s)
+#define MOST_TRIES 32      // of one search; chosen: twice the strokes that can be planned
+
+// the measured touch against the planned one; chosen: a tip bounces once within 0.12 s, and strokes
+// are rarely nearer than 0.1 s
+#define EARLY_TOUCH 0.03  // a touch may come so much before its time (s)
+#define CURRENT_TIME 0.05 // a stroke is the current one until so much after its time (s)
+#define BOUNCE_TIME 0.12  // a rise so soon after a touch is its rebound (s)
+
+// strokes that are reported as smaller; chosen: such a stroke looks and sounds another
+#define SMALL_SHARE 0.6  // of the written height
+#define SMALL_WITHIN 1.0 // of the stroke before (s)
+
+// room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
+#define HIT_GAP 0.12        // to the strokes before and after (s)
+#define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
+#define TARGET_STROKE 0.6   // a stroke so near is prepared, live targets are not followed (s)
+
+// the goal; chosen: half a mallet's radius, a mallet that does not touch the rim of a usual head,
+// and a unit of another spot further off than any of another speed, of another grip further still
+#define UNREACHED 0.01    // a goal so far out of reach is not tried (m)
+#define STRUCK_SHARE 0.97 // of the head's radius: nothing is struck outside it
+#define OTHER_SPOT 10     // as a difference of log speed
+#define OTHER_GRIP 20     // as a difference of log speed
+
+/// What has become of a stroke that was to be planned.
+typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME } plan_result;
+
+void himc_planner_motion_init(himc_planner *planner)
 {
-    return touch->goal.time + HIMC_CONTACT_TIME;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_hand_place(&planner->hand[hand].plan, 0, planner->config.rest[hand]);
+        himc_stream_init(&planner->hand[hand].stream);
+    }
+}
+
+static himc_hand other_hand(himc_hand hand)
+{
+    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
 }
 
 /// The unit that fits best: of that nuance and hand, if possible of that grip and spot, and near in
@@ -31,8 +74,8 @@ static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke
         if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
             continue;
         bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
-        double away =
-            fabs(log(unit->speed / speed)) + 10 * elsewhere + 20 * (unit->grip != planner->grip);
+        double away = fabs(log(unit->speed / speed)) + OTHER_SPOT * elsewhere +
+                      OTHER_GRIP * (unit->grip != planner->grip);
         if (away < least) {
             least = away;
             best = unit;
@@ -50,167 +93,333 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
 
 himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
-    const himc_head_frame *place = &planner->place[drum];
-    double x, y, limit = 0.97 * place->radius;
-    himc_stroke_spot(stroke, place->radius, &x, &y);
+    const himc_head_frame *head = &planner->drum[drum];
+    double x, y, limit = STRUCK_SHARE * head->radius;
+    himc_stroke_spot(stroke, head->radius, &x, &y);
     double r = hypot(x, y);
     if (r > limit) {
-        himc_planner_say(planner, PLANNER_OUTSIDE,
+        himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
                          "%s hand: %.3g %.3g is beyond the rim, struck inside it",
                          himc_hand_name(stroke->hand), x, y);
         x *= limit / r;
         y *= limit / r;
     }
-    himc_goal goal = {.time = t, .normal = himc_head_frame_normal(place)};
-    goal.spot = himc_vec3_madd(himc_head_frame_to_world(place, x, y), planner->config.mallet_radius,
+    himc_goal goal = {.time = t, .normal = himc_head_frame_normal(head)};
+    goal.spot = himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
                                goal.normal);
-    goal.back = himc_vec3_scale(himc_head_frame_away(place), -1);
+    goal.back = himc_vec3_scale(himc_head_frame_away(head), -1);
     goal.gesture = gesture_of(planner, stroke);
     return goal;
 }
 
-/// A lent stroke keeps its beat, a hit its time.
-static double hit_time(const himc_planner *planner, const planner_touch *hit)
+/// A reassigned stroke keeps its beat, a hit its time.
+static double waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
-    if (!hit->lent)
-        return hit->goal.time;
-    double begun = hit->round == 0 ? 0 : hit->round * himc_planner_turn(planner);
-    return begun + himc_planner_time_of(planner, hit->stroke.beat);
+    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat)
+                         : s->goal.time;
 }
 
-/// The first stroke, of the score or a hit, that is not planned yet.
-static bool next_touch(himc_planner *planner, himc_hand hand, planner_touch *touch)
-{
-    planner_hand *h = &planner->hand[hand];
-    int index = 0, round = 0;
-    double t = HUGE_VAL;
-    const planner_stroke *s = himc_planner_next(planner, h, 0, &index, &round, &t);
-    if (h->hits > 0 && hit_time(planner, &h->hit[0]) < t) {
-        *touch = h->hit[0];
-        touch->goal =
-            himc_planner_goal(planner, &touch->stroke, touch->drum, hit_time(planner, touch));
-        return true;
-    }
-    if (!s)
-        return false;
-    *touch = (planner_touch){.stroke = s->stroke, .drum = s->drum, .index = index, .round = round};
-    touch->goal = himc_planner_goal(planner, &s->stroke, s->drum, t);
-    return true;
-}
-
-static void consume(planner_hand *h, const planner_touch *touch)
-{
-    if (touch->index >= 0) {
-        h->next = touch->index + 1;
-        h->round = touch->round;
-        return;
-    }
-    h->hits--;
-    for (int i = 0; i < h->hits; i++)
-        h->hit[i] = h->hit[i + 1];
-}
-
-static double last_time(const planner_hand *h)
-{
-    return h->touches > 0 ? h->touch[h->touches - 1].goal.time : -HUGE_VAL;
-}
-
-/// Whether the stroke, just planned, is much smaller than written.
-static bool is_small(himc_planner *planner, const planner_touch *touch, double since)
-{
-    double high = planner->hand[touch->stroke.hand].plan.last.gesture.height;
-    if (touch->index < 0 || since >= 1 || high >= SMALL * touch->goal.gesture.height)
-        return false;
-    himc_planner_say(planner, PLANNER_SMALLER,
-                     "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
-                     touch->stroke.beat, himc_hand_name(touch->stroke.hand), since, high);
-    return true;
-}
-
-static bool is_settled(const himc_planner *planner, const planner_touch *touch)
-{
-    const planner_hand *h = &planner->hand[touch->stroke.hand];
-    return touch->index >= 0 &&
-           h->list[touch->index].settled == himc_planner_turn_name(planner, touch->round);
-}
-
-/// A stroke that cannot follow the one just planned goes to the other hand while that has time.
-static void look_ahead(himc_planner *planner, himc_hand hand)
+/// The next stroke of a hand, of the score or waiting; false if there is none.
+static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *next)
 {
     const planner_hand *h = &planner->hand[hand];
-    planner_touch next;
-    if (!next_touch(planner, hand, &next) || next.index < 0 || is_settled(planner, &next) ||
-        himc_planner_too_far(planner, &next))
-        return;
-    if (!himc_hand_can_strike(&h->plan, &next.goal))
-        himc_planner_no_time(planner, &next);
+    planner_due due;
+    bool scored = himc_planner_score_next(&planner->score, hand, 0, &due);
+    double t = scored ? due.time : HUGE_VAL;
+    if (h->waiting_count > 0 && waiting_time(planner, &h->waiting[0]) < t) {
+        *next = h->waiting[0];
+        t = waiting_time(planner, next);
+    } else if (scored) {
+        *next = (timed_stroke){.stroke = due.stroke->stroke,
+                               .drum = due.stroke->drum,
+                               .index = due.index,
+                               .round = due.round};
+    } else {
+        return false;
+    }
+    next->goal = himc_planner_goal(planner, &next->stroke, next->drum, t);
+    return true;
 }
 
-static void plan_touch(himc_planner *planner, planner_hand *h, planner_touch *touch)
+/// Takes the next stroke out of the score or of the queue.
+static void take(himc_planner *planner, const timed_stroke *s)
 {
-    double since = touch->goal.time - last_time(h);
-    consume(h, touch);
-    if (is_settled(planner, touch) || himc_planner_too_far(planner, touch))
-        return;
-    if (h->touches == PLANNER_TOUCHES || !himc_hand_strike(&h->plan, &touch->goal)) {
-        himc_planner_no_time(planner, touch);
+    planner_hand *h = &planner->hand[s->stroke.hand];
+    if (s->index >= 0) {
+        himc_planner_score_go(&planner->score, s->stroke.hand, s->index + 1, s->round);
         return;
     }
-    touch->small = is_small(planner, touch, since);
-    h->touch[h->touches] = *touch;
-    h->touch[h->touches++].goal = h->plan.last;
-    look_ahead(planner, touch->stroke.hand);
+    h->waiting_count--;
+    for (int i = 0; i < h->waiting_count; i++)
+        h->waiting[i] = h->waiting[i + 1];
 }
 
-void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)
+/// Puts a planned stroke back where it was taken from; a hit is dropped if no room is left.
+static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
     planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan); i++) {
-        planner_touch touch;
-        bool more = next_touch(planner, hand, &touch);
-        if (more && touch.goal.time < h->plan.end + FORESIGHT)
-            plan_touch(planner, h, &touch);
-        else
-            himc_hand_wait(&h->plan, until, more);
-    }
-}
-
-/// Takes a planned touch back to where it came from.
-static void unplan(planner_hand *h, const planner_touch *touch)
-{
-    if (touch->index >= 0) {
-        h->next = touch->index;
-        h->round = touch->round;
+    if (s->index >= 0) {
+        himc_planner_score_go(&planner->score, hand, s->index, s->round);
         return;
     }
-    if (h->hits == PLANNER_HITS)
+    if (h->waiting_count == PLANNER_WAITING)
         return;
-    for (int i = h->hits++; i > 0; i--)
-        h->hit[i] = h->hit[i - 1];
-    h->hit[0] = *touch;
+    for (int i = h->waiting_count++; i > 0; i--)
+        h->waiting[i] = h->waiting[i - 1];
+    h->waiting[0] = *s;
 }
 
-/// Takes back all touches more than `margin` after t.
-static void unplan_after(planner_hand *h, double t, double margin)
+/// Lets a stroke wait, in the order of time.
+static void queue(planner_hand *h, const timed_stroke *s)
 {
-    while (h->touches > 0 && h->touch[h->touches - 1].goal.time - margin > t)
-        unplan(h, &h->touch[--h->touches]);
+    int i = h->waiting_count++;
+    for (; i > 0 && h->waiting[i - 1].goal.time > s->goal.time; i--)
+        h->waiting[i] = h->waiting[i - 1];
+    h->waiting[i] = *s;
 }
 
-void himc_planner_cut(himc_planner *planner, himc_hand hand, double t)
+static bool is_settled(const himc_planner *planner, const timed_stroke *s)
+{
+    return s->index >= 0 &&
+           himc_planner_score_is_settled(&planner->score, s->stroke.hand, s->index, s->round);
+}
+
+static void settle(himc_planner *planner, const timed_stroke *s)
+{
+    if (s->index >= 0)
+        himc_planner_score_settle(&planner->score, s->stroke.hand, s->index, s->round);
+}
+
+/// How far out of its hand's reach the stroke is (m).
+static double beyond(const himc_planner *planner, const timed_stroke *s)
+{
+    const himc_planner_config *c = &planner->config;
+    return c->beyond ? c->beyond(c->body, s->stroke.hand, s->goal.spot) : 0;
+}
+
+/// "stroke at beat 3 left" or "hit left"
+static const char *name_of(const timed_stroke *s, char text[64])
+{
+    const char *hand = himc_hand_name(s->stroke.hand);
+    if (s->index < 0 && !s->reassigned)
+        snprintf(text, 64, "hit %s", hand);
+    else
+        snprintf(text, 64, "stroke at beat %g %s", s->stroke.beat, hand);
+    return text;
+}
+
+static const char *reason_of(const himc_planner *planner, const timed_stroke *s, plan_result result,
+                             char text[48])
+{
+    if (result == TOO_FAR)
+        snprintf(text, 48, "out of reach by %.2f m", beyond(planner, s));
+    else
+        snprintf(text, 48, "no time to prepare it");
+    return text;
+}
+
+/// Whether the stroke, just planned, is much smaller than written; `since` the one before (s).
+static bool is_small(himc_planner *planner, const timed_stroke *s, double since)
+{
+    double high = planner->hand[s->stroke.hand].plan.last.gesture.height;
+    if (s->index < 0 || since >= SMALL_WITHIN || high >= SMALL_SHARE * s->goal.gesture.height)
+        return false;
+    himc_planner_say(&planner->notes, PLANNER_SMALLER,
+                     "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
+                     s->stroke.beat, himc_hand_name(s->stroke.hand), since, high);
+    return true;
+}
+
+/// Appends a stroke to its hand's plan, if the hand can play it.
+static plan_result plan_stroke(himc_planner *planner, const timed_stroke *s)
+{
+    planner_hand *h = &planner->hand[s->stroke.hand];
+    int n = h->planned_count;
+    double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
+    if (beyond(planner, s) > UNREACHED)
+        return TOO_FAR;
+    if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
+        return NO_TIME;
+    timed_stroke *planned = &h->planned[h->planned_count++];
+    *planned = *s;
+    planned->goal = h->plan.last;
+    planned->small = is_small(planner, s, since);
+    return PLANNED;
+}
+
+/// Whether the stroke of the score after the one just planned can be planned too; asked now, while
+/// the other hand still has time to play it.
+static plan_result check_following(himc_planner *planner, himc_hand hand, timed_stroke *following)
+{
+    if (!next_stroke(planner, hand, following) || following->index < 0 ||
+        is_settled(planner, following))
+        return PLANNED;
+    if (beyond(planner, following) > UNREACHED)
+        return TOO_FAR;
+    return himc_hand_can_strike(&planner->hand[hand].plan, &following->goal) ? PLANNED : NO_TIME;
+}
+
+/// Plans a hand's next stroke, or a wait before it. If the result is not PLANNED, `refused` is the
+/// stroke that cannot be played: that one or the one after it.
+static plan_result plan_next(himc_planner *planner, himc_hand hand, double until,
+                             timed_stroke *refused)
 {
     planner_hand *h = &planner->hand[hand];
-    if (h->plan.end < t)
-        himc_planner_extend(planner, hand, t);
-    unplan_after(h, t, PLANNER_COMMIT);
-    const planner_touch *last = h->touches > 0 ? &h->touch[h->touches - 1] : NULL;
-    if (last && !last->parted)
-        t = fmax(t, touch_end(last));
+    timed_stroke next;
+    bool more = next_stroke(planner, hand, &next);
+    if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
+        himc_hand_wait(&h->plan, until, more);
+        return PLANNED;
+    }
+    take(planner, &next);
+    if (is_settled(planner, &next))
+        return PLANNED;
+    plan_result result = plan_stroke(planner, &next);
+    *refused = next;
+    return result == PLANNED ? check_following(planner, hand, refused) : result;
+}
+
+static bool has_to_plan(const planner_hand *h, double until, int tries)
+{
+    return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
+}
+
+static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
+{
+    char name[64], reason[48];
+    if (s->index >= 0 || s->reassigned)
+        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
+    settle(planner, s);
+    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s", name_of(s, name),
+                     reason_of(planner, s, result, reason));
+}
+
+/// Plans a hand to `until` while the other one wants to reassign a stroke to it: strokes that it
+/// cannot play are given up.
+static void extend_alone(himc_planner *planner, himc_hand hand, double until)
+{
+    timed_stroke refused;
+    for (int i = 0; has_to_plan(&planner->hand[hand], until, i); i++) {
+        plan_result result = plan_next(planner, hand, until, &refused);
+        if (result != PLANNED)
+            give_up(planner, &refused, result);
+    }
+}
+
+/// Takes back all strokes more than `margin` after t.
+static void unplan_after(himc_planner *planner, himc_hand hand, double t, double margin)
+{
+    planner_hand *h = &planner->hand[hand];
+    while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time - margin > t)
+        put_back(planner, hand, &h->planned[--h->planned_count]);
+}
+
+/// The plan, which reaches to t, ends there, or after the contact of a committed stroke.
+static void cut_plan(himc_planner *planner, himc_hand hand, double t)
+{
+    planner_hand *h = &planner->hand[hand];
+    unplan_after(planner, hand, t, COMMIT_TIME);
+    const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
+    if (last && !last->separated)
+        t = fmax(t, last->goal.time + HIMC_CONTACT_TIME);
     himc_hand_cut(&h->plan, t);
     if (!last)
         return;
     h->plan.last = last->goal;
-    h->plan.struck = h->plan.end - last->goal.time < REBOUND;
+    h->plan.rebounding = h->plan.end - last->goal.time < BOUNCE_TIME;
+}
+
+/// Moves a time behind any stroke of the hand that is too near; false if there is no gap.
+static bool find_gap(const himc_planner *planner, himc_hand hand, double *t)
+{
+    const planner_hand *h = &planner->hand[hand];
+    for (int tries = 0; tries < MOST_TRIES; tries++) {
+        double clash = -HUGE_VAL;
+        for (int i = 0; i < h->waiting_count; i++)
+            if (fabs(h->waiting[i].goal.time - *t) < HIT_GAP)
+                clash = fmax(clash, h->waiting[i].goal.time);
+        for (int i = 0; i < MOST_TRIES; i++) {
+            planner_due due;
+            if (!himc_planner_score_next(&planner->score, hand, i, &due) || due.time > *t + HIT_GAP)
+                break;
+            if (due.time > *t - HIT_GAP)
+                clash = fmax(clash, due.time);
+        }
+        if (clash == -HUGE_VAL)
+            return true;
+        *t = clash + HIT_GAP_MARGIN * HIT_GAP;
+    }
+    return false;
+}
+
+/// Whether the hand can play a stroke beside its own; its plan ends as early as it can.
+static bool can_take(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
+{
+    const planner_hand *h = &planner->hand[hand];
+    double t = s->goal.time, gap = t;
+    return h->waiting_count < PLANNER_WAITING && beyond(planner, s) <= UNREACHED &&
+           find_gap(planner, hand, &gap) && gap == t &&
+           t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
+}
+
+/// The other hand takes a stroke of the score, if it has nothing to do and is near enough.
+static bool reassign(himc_planner *planner, const timed_stroke *s)
+{
+    himc_hand other = other_hand(s->stroke.hand);
+    planner_hand *h = &planner->hand[other];
+    double from = planner->now + PLANNER_AHEAD;
+    timed_stroke taken = *s;
+    if (s->reassigned || s->index < 0)
+        return false;
+    if (h->plan.end < from)
+        extend_alone(planner, other, from);
+    cut_plan(planner, other, from);
+    taken.index = -1;
+    taken.reassigned = true;
+    taken.stroke.hand = other;
+    taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->goal.time);
+    bool can = can_take(planner, other, &taken);
+    if (can)
+        queue(h, &taken);
+    extend_alone(planner, other, from + PLANNER_HORIZON);
+    return can;
+}
+
+static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
+{
+    char name[64], reason[48];
+    if (!reassign(planner, s)) {
+        give_up(planner, s, result);
+        return;
+    }
+    himc_planner_notes_count(&planner->notes, PLANNER_REASSIGNED);
+    settle(planner, s);
+    himc_planner_say(&planner->notes, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
+                     name_of(s, name), reason_of(planner, s, result, reason),
+                     himc_hand_name(other_hand(s->stroke.hand)));
+}
+
+void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)
+{
+    timed_stroke refused;
+    for (int i = 0; has_to_plan(&planner->hand[hand], until, i); i++) {
+        plan_result result = plan_next(planner, hand, until, &refused);
+        if (result != PLANNED)
+            reassign_or_give_up(planner, &refused, result);
+    }
+}
+
+void himc_planner_cut(himc_planner *planner, himc_hand hand, double t)
+{
+    if (planner->hand[hand].plan.end < t)
+        himc_planner_extend(planner, hand, t);
+    cut_plan(planner, hand, t);
+}
+
+void himc_planner_cut_both(himc_planner *planner, double t)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        himc_planner_cut(planner, (himc_hand)hand, t);
 }
 
 void himc_planner_replan(himc_planner *planner, double t)
@@ -221,19 +430,142 @@ void himc_planner_replan(himc_planner *planner, double t)
     }
 }
 
+void himc_planner_rebase(himc_planner *planner, double t)
+{
+    int round = himc_planner_score_rebase(&planner->score, t);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            h->waiting[i].round -= round;
+        for (int i = 0; i < h->planned_count; i++)
+            h->planned[i].round -= round;
+    }
+}
+
+void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index)
+{
+    planner_hand *h = &planner->hand[hand];
+    for (int i = 0; i < h->planned_count; i++)
+        h->planned[i].index += h->planned[i].index >= index;
+}
+
+void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand)
+{
+    planner->hand[hand].waiting_count = 0;
+}
+
+void himc_planner_detach(himc_planner *planner, himc_hand hand)
+{
+    planner_hand *h = &planner->hand[hand];
+    for (int i = 0; i < h->planned_count; i++)
+        h->planned[i].index = -1;
+}
+
+double himc_planner_lateness(himc_planner *planner)
+{
+    double late = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const himc_hand_plan *plan = &planner->hand[hand].plan;
+        planner_due due;
+        if (!himc_planner_score_next(&planner->score, (himc_hand)hand, 0, &due))
+            continue;
+        himc_goal goal =
+            himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
+        late = fmax(late, plan->end + himc_hand_time(plan, &goal) - due.time);
+    }
+    return late;
+}
+
+double himc_planner_last_time(const himc_planner *planner)
+{
+    double last = -HUGE_VAL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            last = fmax(last, h->waiting[i].goal.time);
+        if (h->planned_count > 0)
+            last = fmax(last, h->planned[h->planned_count - 1].goal.time);
+    }
+    return last;
+}
+
+int himc_planner_last_round(const himc_planner *planner, int round)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            if (planner->hand[hand].planned[i].round > round)
+                round = planner->hand[hand].planned[i].round;
+    return round;
+}
+
+double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke, int drum)
+{
+    planner_hand *h = &planner->hand[stroke->hand];
+    if (drum < 0 || drum >= HIMC_DRUMS || !isfinite(t))
+        return HUGE_VAL;
+    himc_planner_cut(planner, stroke->hand, t);
+    timed_stroke hit = {.stroke = *stroke, .drum = drum, .index = -1};
+    hit.goal = himc_planner_goal(planner, stroke, drum, t);
+    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal);
+    if (h->waiting_count == PLANNER_WAITING || !find_gap(planner, stroke->hand, &touch)) {
+        himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
+                         himc_hand_name(stroke->hand));
+        touch = HUGE_VAL;
+    } else {
+        hit.goal.time = touch;
+        queue(h, &hit);
+    }
+    himc_planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
+    return touch;
+}
+
+/// Whether a stroke of the hand is so near that it must be prepared now.
+static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t)
+{
+    const planner_hand *h = &planner->hand[hand];
+    planner_due due;
+    for (int i = 0; i < h->planned_count; i++)
+        if (h->planned[i].goal.time > t && h->planned[i].goal.time < t + TARGET_STROKE)
+            return true;
+    if (h->waiting_count > 0 && h->waiting[0].goal.time < t + TARGET_STROKE)
+        return true;
+    return himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < t + TARGET_STROKE;
+}
+
+void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    if (!isfinite(t) || !himc_vec3_finite(x))
+        return;
+    planner_hand *h = &planner->hand[hand];
+    bool stream = himc_stream_add(&h->stream, t, x);
+    if (stroke_is_near(planner, hand, t))
+        return;
+    himc_planner_cut(planner, hand, t);
+    if (stream && himc_hand_room(&h->plan))
+        himc_stream_follow(&h->stream, &h->plan, t);
+    else
+        himc_hand_reach(&h->plan, x);
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+}
+
+/// Drops the strokes that are past but the last, and the motion before `now`.
+static void drop_past(planner_hand *h, double now)
+{
+    int past = 0;
+    while (past + 1 < h->planned_count && h->planned[past].goal.time + CURRENT_TIME < now)
+        past++;
+    for (int i = past; past > 0 && i < h->planned_count; i++)
+        h->planned[i - past] = h->planned[i];
+    h->planned_count -= past;
+    himc_spline_drop(&h->plan.tangential_path, now);
+    himc_spline_drop(&h->plan.height_profile, now);
+}
+
 void himc_planner_advance(himc_planner *planner, double t)
 {
     planner->now = fmax(planner->now, t);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planner_hand *h = &planner->hand[hand];
-        int past = 0;
-        while (past + 1 < h->touches && h->touch[past].goal.time + AFTERGLOW < planner->now)
-            past++;
-        for (int i = past; past > 0 && i < h->touches; i++)
-            h->touch[i - past] = h->touch[i];
-        h->touches -= past;
-        himc_spline_drop(&h->plan.ground, planner->now);
-        himc_spline_drop(&h->plan.lift, planner->now);
+        drop_past(&planner->hand[hand], planner->now);
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
 }
@@ -243,21 +575,15 @@ himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, dou
     return himc_hand_at(&planner->hand[hand].plan, t);
 }
 
-static bool is_finite(double t, const himc_target *s)
-{
-    return isfinite(t) && himc_vec3_finite(s->x) && himc_vec3_finite(s->v) &&
-           himc_vec3_finite(s->a);
-}
-
 void himc_planner_resume(himc_planner *planner, double t, himc_hand hand, const himc_target *state)
 {
     planner_hand *h = &planner->hand[hand];
-    if (!is_finite(t, state))
+    if (!isfinite(t) || !himc_target_finite(state))
         return;
-    unplan_after(h, t, 0);
-    h->touches = 0;
+    unplan_after(planner, hand, t, 0);
+    h->planned_count = 0;
     himc_hand_restart(&h->plan, t, state, HUGE_VAL);
-    h->plan.struck = false;
+    h->plan.rebounding = false;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
@@ -265,46 +591,48 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
                             const himc_target *measured)
 {
     planner_hand *h = &planner->hand[hand];
-    planner_touch next;
-    if (!is_finite(t, measured))
+    timed_stroke next;
+    if (!isfinite(t) || !himc_target_finite(measured))
         return;
-    unplan_after(h, t, EARLY);
-    bool more = next_touch(planner, hand, &next);
+    unplan_after(planner, hand, t, EARLY_TOUCH);
+    bool more = next_stroke(planner, hand, &next);
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);
-    if (h->touches > 0) {
-        planner_touch *last = &h->touch[h->touches - 1];
-        planner->smaller += last->small && !last->parted;
-        last->parted = true;
+    if (h->planned_count > 0) {
+        timed_stroke *last = &h->planned[h->planned_count - 1];
+        if (last->small && !last->separated)
+            himc_planner_notes_count(&planner->notes, PLANNER_SMALLER);
+        last->separated = true;
         h->plan.last = last->goal;
-        h->plan.struck = t - last->goal.time < REBOUND;
+        h->plan.rebounding = t - last->goal.time < BOUNCE_TIME;
     }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
-/// Until when a touch is the current one, given the next.
-static double window_end(const planner_touch *touch, double next)
+/// A stroke is the current one until this time, `next` the time of the one after it.
+static double current_until(const timed_stroke *s, double next)
 {
-    return touch->goal.time + fmin(AFTERGLOW, 0.5 * (next - touch->goal.time));
+    return s->goal.time + fmin(CURRENT_TIME, 0.5 * (next - s->goal.time));
 }
 
 bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                           himc_stroke *stroke, int *drum, double *contact_time)
 {
     const planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < h->touches; i++) {
-        double next = i + 1 < h->touches ? h->touch[i + 1].goal.time : HUGE_VAL;
-        if (t > window_end(&h->touch[i], next))
+    for (int i = 0; i < h->planned_count; i++) {
+        const timed_stroke *s = &h->planned[i];
+        double next = i + 1 < h->planned_count ? s[1].goal.time : HUGE_VAL;
+        if (t > current_until(s, next))
             continue;
-        *stroke = h->touch[i].stroke;
-        *drum = h->touch[i].drum;
-        *contact_time = h->touch[i].goal.time;
+        *stroke = s->stroke;
+        *drum = s->drum;
+        *contact_time = s->goal.time;
         return true;
     }
-    int index, round;
-    const planner_stroke *s = himc_planner_next(planner, h, 0, &index, &round, contact_time);
-    if (!s)
+    planner_due due;
+    if (!himc_planner_score_next(&planner->score, hand, 0, &due))
         return false;
-    *stroke = s->stroke;
-    *drum = s->drum;
+    *stroke = due.stroke->stroke;
+    *drum = due.stroke->drum;
+    *contact_time = due.time;
     return true;
 }

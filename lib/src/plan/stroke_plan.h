@@ -1,60 +1,61 @@
-/// chunk.h: a stretch of one tip's motion while it is planned, in the frame of a drumhead.
+/// stroke_plan.h: the motion of one tip up to its next touch while it is planned, in the frame of a
+/// drumhead: the height along the normal and, apart from it, the tangential path.
 #ifndef HIMC_STROKE_PLAN_H
 #define HIMC_STROKE_PLAN_H
 
 #include "plan/hand.h"
 
-#define LOW 0.12         // where it waits (m)
-#define SWAY 0.008       // (m)
-#define SLOWEST_FALL 0.9 // speed of a touch over the mean speed of its fall, at the least
+/// Height of a tip that waits over the head (m). Chosen: high enough not to touch a ringing head,
+/// low enough to look at rest.
+#define HIMC_WAIT_HEIGHT 0.12
+/// Amplitude of a waiting tip's sway (m). Chosen: visible, and small beside the height.
+#define HIMC_WAIT_SWAY 0.008
+/// Impact speed over the mean speed of the fall, at least. Chosen: with less the tip would have to
+/// slow down before the touch, and no player brakes a stroke.
+#define HIMC_LEAST_LANDING 0.9
+/// A tip slower than this neither rises nor falls (m/s). Chosen: at half this mean speed a halt of
+/// 0.12 s takes less than 2 cm.
+#define HIMC_TURNING_SPEED 0.3
 
-/// Height and its derivatives along a normal.
-typedef struct chunk_height {
+/// No rebound is planned to go above this height (m). Chosen: a player's raised arm.
+#define HIMC_HIGHEST_REBOUND 0.9
+
+/// Height (m) and its derivatives (m/s, m/s^2) along a normal.
+typedef struct height_state {
     double h, v, a;
-} chunk_height;
+} height_state;
 
-/// The chunk being built: its frame and where its two chains have got to.
-typedef struct chunk {
+/// The stroke being planned: its frame and the ends of its two splines so far.
+typedef struct stroke_plan {
     himc_hand_plan *plan;
-    himc_vec3 n;
-    double lift_end, ground_end;
-    chunk_height at;
-    himc_target on;
-    double approach; ///< time to come from far (s)
-} chunk;
+    himc_vec3 n;         ///< normal of the head
+    double height_end;   ///< the height profile is planned to here (s) ...
+    height_state height; ///< ... and has this state there
+    double path_end;     ///< the tangential path is planned to here (s) ...
+    himc_target path;    ///< ... and has this state there
+    double approach;     ///< time to come from far away (s)
+} stroke_plan;
 
-static inline himc_target along(himc_vec3 n, double h, double v, double a)
-{
-    return (himc_target){himc_vec3_scale(n, h), himc_vec3_scale(n, v), himc_vec3_scale(n, a)};
-}
+/// Appends a quintic to the height `to` at t; nothing if t is not after the profile's end.
+HIMC_RT void himc_height_profile_to(stroke_plan *s, double t, height_state to);
 
-static inline himc_target still(himc_vec3 x)
-{
-    return (himc_target){x, {0, 0, 0}, {0, 0, 0}};
-}
+/// True if that quintic stays between `low` and `high` (m).
+HIMC_RT bool himc_height_profile_stays(const stroke_plan *s, double t, height_state to, double low,
+                                       double high);
 
-static inline himc_target difference(himc_target a, himc_target b)
-{
-    return (himc_target){himc_vec3_sub(a.x, b.x), himc_vec3_sub(a.v, b.v), himc_vec3_sub(a.a, b.a)};
-}
+/// Brings the height to rest, before `limit` (s).
+HIMC_RT void himc_height_profile_brake(stroke_plan *s, double limit);
 
-/// On to a height at t.
-HIMC_RT void himc_stroke_plan_lift_to(chunk *c, double t, chunk_height to);
+/// The rebound of the last touch as its nuance makes it, before an apex of height `next` (m) at
+/// `top` (s).
+HIMC_RT void himc_height_profile_rebound(stroke_plan *s, double top, double next);
 
-/// Whether the way to a height stays within bounds.
-HIMC_RT bool himc_stroke_plan_stays(const chunk *c, double t, chunk_height to, double low,
-                                    double high);
+/// From the profile's end to the apex of the stroke at `top` (s); returns the beginning of the last
+/// rise (s).
+HIMC_RT double himc_height_profile_rise(stroke_plan *s, double top, const himc_gesture *g);
 
-/// Comes to a halt from whatever the height is doing, before `limit` (s).
-HIMC_RT void himc_stroke_plan_brake(chunk *c, double limit);
-
-/// The rebound as its nuance makes it, with an apex `next` (m) to be reached at `top` (s).
-HIMC_RT void himc_stroke_plan_rebound(chunk *c, double top, double next);
-
-/// To the apex of the stroke at time `top` (s); returns when the preparation began.
-HIMC_RT double himc_stroke_plan_rise(chunk *c, double top, const himc_gesture *g);
-
-/// Whether the tip may simply fall from where it is to touch at t, and how it then does.
-HIMC_RT bool himc_stroke_plan_falls(const chunk *c, double t, himc_gesture *g);
+/// True if the tip can fall from its present height and touch at t; `g` then has the height and the
+/// speed of that fall.
+HIMC_RT bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g);
 
 #endif

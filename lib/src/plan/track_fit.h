@@ -1,22 +1,23 @@
-/// track_fit.h: smooth derivatives of what was sampled, one-sided beside a strike; private.
+/// track_fit.h: smooth derivatives of samples, one-sided beside a strike; private.
 #ifndef HIMC_TRACK_FIT_H
 #define HIMC_TRACK_FIT_H
 
 #include "base/quintic.h"
 
-/// Frames that one fit uses, `k` the one it is for, the coefficients it may have (1 .. 4), and how
-/// far from k weights fall to nothing (frames; 0: all weigh the same).
+/// The frames first .. last of one fit, for frame `k`; its coefficients, at most (1 .. 4), and the
+/// distance from k at which weights are zero (frames; 0: all weights are equal).
 typedef struct fit_window {
     int first, k, last, order, reach;
 } fit_window;
 
-/// What is fitted: `frames` at `rate` (Hz), and the frames of one-sided fits beside a strike.
+/// A series to be fitted: `frames` at `rate` (Hz), `edge` the frames of one-sided fits beside a
+/// strike.
 typedef struct fit_series {
     int frames, edge;
     double rate;
 } fit_series;
 
-/// `edge` for points that shake by `noise` (m).
+/// `edge` for points with the standard deviation `noise` (m).
 int himc_fit_edge(double noise, double rate);
 /// The window of frame `k` of the stretch lo .. hi.
 fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series);

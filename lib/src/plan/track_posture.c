@@ -1,32 +1,38 @@
 /// track_posture.c: the joints of a take as targets that go with the tips.
 ///
-/// Frame by frame the rotations q_i about frame k, as vectors log(q_i q_k^-1), are fitted like the
-/// tips (track_fit.c), so joints and tips lose the same noise; quintics join the frames. An arm's
-/// frames around its own strikes are left out as its tip's are, and bridged. What the capture
-/// cannot tell there, the tip's path can: it is carried on to the head before a blow, and starts
-/// after it from the stick as it really is. So the arm is bent to the tip, by the rotations of
-/// least effort
+/// Around each frame k the rotations q_i, as vectors log(q_i q_k^-1), are fitted like the tips
+/// (track_fit.c), so joints and tips lose the same noise; quintics join the frames. The frames of
+/// an arm around its own strikes are left out, as its tip's are, and bridged. There the tip's path
+/// is known and the arm's is not: the path is carried on to the head before a blow and starts from
+/// the measured state after it. So the arm is bent to the tip, by the rotations of least effort
 ///     min sum |theta_k|^2 / w_k  with  sum theta_k x r_k = e:   theta_k = w_k r_k x l,
 ///     (sum w_k (|r_k|^2 1 - r_k r_k')) l = e,
 /// r_k the levers from the joints to the tip, w_k larger towards the stick, as a hand corrects;
-/// repeated, since it is the linear part of the way. Rates come from differences of that map.
-/// As published, joints are neither cut nor bent: a second fit, of all frames. An arm whose tip is
-/// a finger's end is no arm with a stick: bent, it would be bent out of shape, and has the natural
-/// posture instead.
+/// repeated, since it is the linear part of the way. Rates come from differences of that map. In
+/// the mode that follows joints as published, joints are neither cut nor bent: a second fit, of all
+/// frames. An arm whose tip is a finger's end holds no stick: bent to the tip it would be out of
+/// shape, so it has the natural posture instead.
 #include "plan/track_state.h"
+#include "plan/track_time.h"
 
+#include "base/difference.h"
 #include "body/stretch.h"
 
 #include <stdlib.h>
 
-#define BENDS 5            // Gauss-Newton steps: quadratic, from 5 cm to rounding ...
-#define MOST_BENDS 40      // ... and more, if the tip is still ...
-#define BENT 1e-8          // ... farther from its place (m)
-#define LARGEST_BEND 0.1   // of the tip, one step (m)
-#define DAMPING 1e-8       // of a straight arm (m^2)
-#define DIFFERENCE 5e-4    // step of the differences (s)
-#define EMPTY 0.15         // so far from its tip, mostly, a stick is none of the take's (m)
-#define LOOKED_AT 201      // of its frames
+// bending an arm to its tip, by Gauss-Newton steps; chosen: convergence is quadratic, five steps go
+// from 5 cm to rounding
+#define BENDS 5              // steps ...
+#define MOST_BENDS 40        // ... and more, if the tip is still ...
+#define BENT_WITHIN 1e-8     // ... farther from its place (m)
+#define LARGEST_BEND 0.1     // of the tip, in one step (m): the linear part of the way
+#define BEND_DAMPING 1e-8    // of a straight arm (m^2): below a tenth of a millimetre
+#define BEND_DIFFERENCE 5e-4 // step of the differences (s): an error of 1 mm/s at a blow
+
+// an arm without a stick; chosen: half a stick's length
+#define NO_STICK 0.15      // median distance of an arm's end from its tip (m)
+#define SAMPLED_FRAMES 201 // of the take, for that median
+
 #define LARGEST_WINDOW 512 // frames of one fit: 50 ms at 10 kHz
 
 static int hand_of(int joint)
@@ -54,7 +60,7 @@ static joint_state fit_joint(const himc_pose *pose, int j, fit_window w, double 
                          himc_vec3_add(s.a, himc_vec3_cross(half, s.a))};
 }
 
-// frames lo to hi, which know of no others
+// fits frames lo .. hi without any others
 static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, int lo, int hi,
                         joint_state *joint)
 {
@@ -63,23 +69,23 @@ static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, i
         joint[k] = fit_joint(pose, j, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
 }
 
-// stretch by stretch, as the tip of the joint's arm is cut; others in one
+// the joints of an arm stretch by stretch, as its tip is cut; others in one
 static void fit_frames(himc_track *track, const himc_pose *pose, int j)
 {
     const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
     int gaps = h ? h->bridge_count : 0, lo = 0;
     for (int i = 0; i <= gaps; i++) {
-        fit_stretch(track, pose, j, lo, i < gaps ? h->planned[i].last : track->frames - 1,
-                    track->joint[j]);
-        lo = i < gaps ? h->planned[i].next : 0;
+        fit_stretch(track, pose, j, lo, i < gaps ? h->built[i].last : track->frames - 1,
+                    track->joints.joint[j]);
+        lo = i < gaps ? h->built[i].next : 0;
     }
-    if (track->uncut[j])
-        fit_stretch(track, pose, j, 0, track->frames - 1, track->uncut[j]);
+    if (track->joints.uncut[j])
+        fit_stretch(track, pose, j, 0, track->frames - 1, track->joints.uncut[j]);
 }
 
-// an arm's joints in the world
+// the levers of an arm in the world
 typedef struct arm {
-    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of what the joint hangs on
+    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of the joint's parent segment
     himc_vec3 lever[HIMC_ARM_JOINTS];  // from the joint to the tip (m)
     himc_vec3 tip;                     // (m)
 } arm;
@@ -108,21 +114,21 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// whether an arm that is not all known ends elsewhere than its tip in most frames
+// true if an arm that is not all known ends elsewhere than its tip in most frames
 static bool is_empty(const himc_track *track, const himc_player *player,
                      const himc_skeleton *skeleton, himc_hand hand)
 {
     int known = himc_player_known_arm(player, hand);
-    double off[LOOKED_AT];
+    double off[SAMPLED_FRAMES];
     if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
         return false;
-    for (int i = 0; i < LOOKED_AT; i++) {
-        int f = (int)((double)(track->frames - 1) * i / (LOOKED_AT - 1));
+    for (int i = 0; i < SAMPLED_FRAMES; i++) {
+        int f = (int)((double)(track->frames - 1) * i / (SAMPLED_FRAMES - 1));
         himc_vec3 tip = arm_of(skeleton, &player->pose[f], hand).tip;
         off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
     }
-    qsort(off, LOOKED_AT, sizeof *off, compare);
-    return off[LOOKED_AT / 2] > EMPTY;
+    qsort(off, SAMPLED_FRAMES, sizeof *off, compare);
+    return off[SAMPLED_FRAMES / 2] > NO_STICK;
 }
 
 bool himc_track_fit_postures(himc_track *track, const himc_player *player)
@@ -130,27 +136,35 @@ bool himc_track_fit_postures(himc_track *track, const himc_player *player)
     for (int j = 0; j < TRACK_JOINTS; j++) {
         if (!player->pose || !player->known[j] || (is_arm(j) && !track->hand[hand_of(j)].present))
             continue;
-        track->joint[j] = malloc((size_t)track->frames * sizeof *track->joint[j]);
+        track->joints.joint[j] = malloc((size_t)track->frames * sizeof *track->joints.joint[j]);
         if (is_arm(j))
-            track->uncut[j] = malloc((size_t)track->frames * sizeof *track->uncut[j]);
-        if (!track->joint[j] || (is_arm(j) && !track->uncut[j]))
+            track->joints.uncut[j] = malloc((size_t)track->frames * sizeof *track->joints.uncut[j]);
+        if (!track->joints.joint[j] || (is_arm(j) && !track->joints.uncut[j]))
             return false;
-        track->known[j] = true;
+        track->joints.known[j] = true;
         fit_frames(track, player->pose, j);
-        track->before[j] = (joint_state){.q = track->joint[j][0].q};
+        track->joints.before[j] = (joint_state){.q = track->joints.joint[j][0].q};
     }
     himc_skeleton skeleton;
     if (!player->pose || !himc_skeleton_init(&skeleton, &player->config, NULL))
         return !player->pose;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        track->empty[hand] = is_empty(track, player, &skeleton, (himc_hand)hand);
+        track->joints.empty[hand] = is_empty(track, player, &skeleton, (himc_hand)hand);
     return true;
+}
+
+void himc_track_free_postures(himc_track *track)
+{
+    for (int j = 0; j < TRACK_JOINTS; j++) {
+        free(track->joints.joint[j]);
+        free(track->joints.uncut[j]);
+    }
 }
 
 bool himc_track_has_posture(const himc_track *track)
 {
     for (int j = 0; j < TRACK_JOINTS; j++)
-        if (track->known[j])
+        if (track->joints.known[j])
             return true;
     return false;
 }
@@ -161,7 +175,7 @@ static int gap_at(const hand_track *h, double u)
     int lo = 0, hi = h->bridge_count;
     while (lo < hi) {
         int mid = (lo + hi) / 2;
-        if (h->planned[mid].next > u)
+        if (h->built[mid].next > u)
             hi = mid;
         else
             lo = mid + 1;
@@ -171,14 +185,14 @@ static int gap_at(const hand_track *h, double u)
 
 static joint_state captured_joint(const himc_track *track, int j, double t, bool cut)
 {
-    const joint_state *joint = is_arm(j) && !cut ? track->uncut[j] : track->joint[j];
+    const joint_state *joint = is_arm(j) && !cut ? track->joints.uncut[j] : track->joints.joint[j];
     double u = fmin(fmax(t * track->rate, 0), track->frames - 1);
     int from = u < track->frames - 2 ? (int)u : track->frames - 2, to = from + 1;
     const hand_track *h = is_arm(j) && cut ? &track->hand[hand_of(j)] : NULL;
     int i = h ? gap_at(h, u) : 0;
-    if (h && i < h->bridge_count && h->planned[i].last <= u) {
-        from = h->planned[i].last;
-        to = h->planned[i].next;
+    if (h && i < h->bridge_count && h->built[i].last <= u) {
+        from = h->built[i].last;
+        to = h->built[i].next;
     }
     himc_interpolation b =
         himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
@@ -188,7 +202,7 @@ static joint_state captured_joint(const himc_track *track, int j, double t, bool
 static joint_state warped_joint(const himc_track *track, int j, double t, bool cut)
 {
     double at[3];
-    himc_track_warp(track, t, at);
+    himc_track_warp(himc_track_take_length(track), t, at);
     joint_state s = captured_joint(track, j, at[0], cut);
     s.acceleration = himc_vec3_madd(himc_vec3_scale(s.acceleration, at[1] * at[1]), at[2], s.rate);
     s.rate = himc_vec3_scale(s.rate, at[1]);
@@ -200,45 +214,48 @@ static double approach_time(const himc_track *track)
     return fmax(track->hand[HIMC_LEFT].approach_time, track->hand[HIMC_RIGHT].approach_time);
 }
 
-// with the way in before the first frame
+// with the approach before the first frame
 static joint_state entered_joint(const himc_track *track, int j, double t, bool cut)
 {
-    double approach = approach_time(track), since = t + 0.5 * EASE + approach;
-    if (t >= -0.5 * EASE || approach <= 0)
+    double approach = approach_time(track), since = t + 0.5 * HIMC_TRACK_RAMP + approach;
+    if (t >= -0.5 * HIMC_TRACK_RAMP || approach <= 0)
         return warped_joint(track, j, t, cut);
-    joint_state first = {.q = track->joint[j][0].q};
+    joint_state first = {.q = track->joints.joint[j][0].q};
     himc_interpolation b = himc_interpolate_make(fmax(since, 0), approach);
-    return himc_interpolate_joints(&b, &track->before[j], &first);
+    return himc_interpolate_joints(&b, &track->joints.before[j], &first);
 }
 
-// and the way out after a stop
+// and the halt after a stop
 static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
 {
     if (t < track->stop)
         return entered_joint(track, j, t, cut);
     joint_state left = entered_joint(track, j, track->stop, cut), rest = {.q = left.q};
-    rest.q = himc_quat_mul(himc_quat_exp(himc_vec3_scale(left.rate, 0.3 * SETTLE)), left.q);
-    himc_interpolation b = himc_interpolate_make(fmin(t - track->stop, SETTLE), SETTLE);
+    rest.q = himc_quat_mul(
+        himc_quat_exp(himc_vec3_scale(left.rate, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT)), left.q);
+    himc_interpolation b =
+        himc_interpolate_make(fmin(t - track->stop, HIMC_TRACK_HALT), HIMC_TRACK_HALT);
     return himc_interpolate_joints(&b, &left, &rest);
 }
 
 void himc_track_approach_posture(himc_track *track, const himc_posture_motion *now)
 {
     for (int j = 0; j < TRACK_JOINTS; j++)
-        track->before[j] = (joint_state){now->joint[j], now->rate[j], now->acceleration[j]};
+        track->joints.before[j] = (joint_state){now->joint[j], now->rate[j], now->acceleration[j]};
 }
 
-// one step; how far the tip was from its place before it (m)
+// one step; returns the tip's distance from its place before it (m)
 static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip,
                         himc_pose *pose)
 {
+    // chosen: a hand corrects a stick more than a shoulder does
     static const double share[HIMC_ARM_JOINTS] = {0.1, 0.2, 0.5, 1};
     arm a = arm_of(skeleton, pose, hand);
     himc_vec3 e = himc_vec3_sub(tip, a.tip);
     double far = himc_vec3_length(e);
     if (far > LARGEST_BEND)
         e = himc_vec3_scale(e, LARGEST_BEND / far);
-    himc_mat3 gram = {{{DAMPING, 0, 0}, {0, DAMPING, 0}, {0, 0, DAMPING}}};
+    himc_mat3 gram = {{{BEND_DAMPING, 0, 0}, {0, BEND_DAMPING, 0}, {0, 0, BEND_DAMPING}}};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         double r[3] = {a.lever[k].x, a.lever[k].y, a.lever[k].z};
         double square = himc_vec3_dot(a.lever[k], a.lever[k]);
@@ -265,11 +282,11 @@ static void bend_arm(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 ti
     himc_target asked = {.x = tip};
     tip = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
     double far = INFINITY;
-    for (int i = 0; i < BENDS || (i < MOST_BENDS && far > BENT); i++)
+    for (int i = 0; i < BENDS || (i < MOST_BENDS && far > BENT_WITHIN); i++)
         far = bend_once(skeleton, hand, tip, pose);
 }
 
-// the joints `dt` later, going on as they move, the arms bent to the tips of that time
+// the joints `dt` later at constant acceleration, the arms bent to the tips of that time
 static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_motion *m,
                             const himc_target tip[HIMC_HANDS], double dt)
 {
@@ -280,8 +297,7 @@ static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_mo
         pose.joint[j] = himc_quat_mul(himc_quat_exp(turn), m->joint[j]);
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_vec3 x = himc_vec3_madd(himc_vec3_madd(tip[hand].x, dt, tip[hand].v), 0.5 * dt * dt,
-                                     tip[hand].a);
+        himc_vec3 x = himc_target_after(&tip[hand], dt).x;
         bend_arm(skeleton, (himc_hand)hand, x, &pose);
     }
     return pose;
@@ -290,17 +306,13 @@ static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_mo
 static void bend_arms(const himc_skeleton *skeleton, const himc_target tip[HIMC_HANDS],
                       himc_posture_motion *m)
 {
-    himc_pose before = pose_after(skeleton, m, tip, -DIFFERENCE),
+    himc_pose before = pose_after(skeleton, m, tip, -BEND_DIFFERENCE),
               now = pose_after(skeleton, m, tip, 0),
-              after = pose_after(skeleton, m, tip, DIFFERENCE);
+              after = pose_after(skeleton, m, tip, BEND_DIFFERENCE);
     for (int j = HIMC_LEFT_UPPER_ARM - 1; j < TRACK_JOINTS; j++) {
-        himc_quat back = himc_quat_conj(now.joint[j]);
-        himc_vec3 to = himc_quat_log(himc_quat_mul(after.joint[j], back)),
-                  from = himc_quat_log(himc_quat_mul(before.joint[j], back));
         m->joint[j] = now.joint[j];
-        m->rate[j] = himc_vec3_scale(himc_vec3_sub(to, from), 0.5 / DIFFERENCE);
-        m->acceleration[j] =
-            himc_vec3_scale(himc_vec3_add(to, from), 1 / (DIFFERENCE * DIFFERENCE));
+        himc_differentiate(before.joint[j], now.joint[j], after.joint[j], BEND_DIFFERENCE,
+                           &m->rate[j], &m->acceleration[j]);
     }
 }
 
@@ -308,7 +320,7 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
                         const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
     for (int j = 0; j < TRACK_JOINTS; j++) {
-        if (!track->known[j] || (tip && is_arm(j) && track->empty[hand_of(j)]))
+        if (!track->joints.known[j] || (tip && is_arm(j) && track->joints.empty[hand_of(j)]))
             continue;
         joint_state s = played_joint(track, j, t, tip != NULL);
         motion->joint[j] = s.q;

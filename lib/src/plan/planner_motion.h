@@ -1,0 +1,82 @@
+/// planner_motion.h: the state of the planner, and the functions that plan motion from it.
+///
+/// Owners: planner.c writes the settings (config, drums, units, grip), planner_score.c the score,
+/// planner_notes.c the notes, and planner_motion.c the hands and the clock.
+#ifndef HIMC_PLANNER_MOTION_H
+#define HIMC_PLANNER_MOTION_H
+
+#include "plan/follow.h"
+#include "plan/planner.h"
+#include "plan/planner_notes.h"
+#include "plan/planner_score.h"
+
+#define PLANNER_WAITING 4  ///< strokes that wait for a hand; chosen: a player remembers no more
+#define PLANNER_PLANNED 16 ///< strokes planned ahead; chosen: never reached at 40 ms a stroke
+/// Motion is planned so far beyond the last advance at least (s); chosen: twice PLANNER_COMMIT.
+#define PLANNER_HORIZON 0.15
+/// Calls that carry no time change the plan from this long after the last advance (s); chosen: more
+/// than the longest period of advance, 10 ms.
+#define PLANNER_AHEAD 0.03
+
+/// A stroke with its time and gesture, waiting to be planned or planned.
+typedef struct timed_stroke {
+    himc_stroke stroke;
+    int drum;
+    int index;       ///< in the hand's part of the score, -1 for a hit or a reassigned stroke
+    int round;       ///< of the loop
+    bool reassigned; ///< it is from the other hand's part of the score
+    bool separated;  ///< the tip has left the head again
+    bool small;      ///< played much smaller than written
+    himc_goal goal;  ///< once planned, with the gesture as it will be played
+} timed_stroke;
+
+typedef struct planner_hand {
+    timed_stroke waiting[PLANNER_WAITING]; ///< hits and reassigned strokes, sorted by time
+    int waiting_count;
+    timed_stroke planned[PLANNER_PLANNED]; ///< and the last one that is past
+    int planned_count;
+    himc_stream stream;
+    himc_hand_plan plan;
+} planner_hand;
+
+struct himc_planner {
+    himc_planner_config config;
+    himc_head_frame drum[HIMC_DRUMS];
+    himc_unit unit[HIMC_UNITS];
+    int unit_count, grip;
+    planner_score score;
+    planner_notes notes;
+    planner_hand hand[HIMC_HANDS];
+    double now; ///< of the last advance (s)
+};
+
+/// Both hands wait at rest.
+HIMC_RT void himc_planner_motion_init(himc_planner *planner);
+/// Where and how a tip plays a stroke on a drum at t.
+HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
+                                    double t);
+/// Takes back the strokes planned after t that can still be changed; the plan then ends at t or
+/// soon after.
+HIMC_RT void himc_planner_cut(himc_planner *planner, himc_hand hand, double t);
+/// Plans a hand to `until` (s) at least.
+HIMC_RT void himc_planner_extend(himc_planner *planner, himc_hand hand, double until);
+/// Cuts both hands at t ...
+HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
+/// ... and plans them again from there.
+HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
+/// Makes the round of the loop at `t` round 0, before its length changes.
+HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
+/// A stroke has been put into the hand's score at `index`: later ones move up by one.
+HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
+/// Drops the strokes that wait for a hand.
+HIMC_RT void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand);
+/// The planned strokes of a hand are no longer in its score.
+HIMC_RT void himc_planner_detach(himc_planner *planner, himc_hand hand);
+/// How much too late the hands would be for their next strokes (s); 0 if they are not.
+HIMC_RT double himc_planner_lateness(himc_planner *planner);
+/// Time of the last stroke that waits or is planned (s); -infinity if there is none.
+HIMC_RT double himc_planner_last_time(const himc_planner *planner);
+/// The last round of a planned stroke, at least `round`.
+HIMC_RT int himc_planner_last_round(const himc_planner *planner, int round);
+
+#endif

@@ -1,0 +1,81 @@
+/// planner_notes.c: lines for the user, in a ring that does not grow.
+///
+/// Each kind is said once per play, so that a fast passage does not say the same thing a hundred
+/// times; the counts tell the rest at the end. What finds no room is counted in the last line.
+#include "plan/planner_notes.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void put(planner_notes *notes, const char *format, va_list args)
+{
+    if (notes->count == PLANNER_NOTES) {
+        himc_planner_note *last = &notes->line[(notes->first + PLANNER_NOTES - 1) % PLANNER_NOTES];
+        snprintf(last->text, sizeof last->text, "%d more notes were lost", ++notes->lost + 1);
+        return;
+    }
+    himc_planner_note *note = &notes->line[(notes->first + notes->count++) % PLANNER_NOTES];
+    vsnprintf(note->text, sizeof note->text, format, args);
+}
+
+void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
+{
+    if (notes->said[kind])
+        return;
+    notes->said[kind] = true;
+    va_list args;
+    va_start(args, format);
+    put(notes, format, args);
+    va_end(args);
+}
+
+void himc_planner_notes_count(planner_notes *notes, planner_kind kind)
+{
+    notes->strokes[kind]++;
+    notes->given_up += kind == PLANNER_GIVEN_UP;
+}
+
+void himc_planner_notes_begin(planner_notes *notes)
+{
+    memset(notes->said, 0, sizeof notes->said);
+    memset(notes->strokes, 0, sizeof notes->strokes);
+}
+
+static void say_always(planner_notes *notes, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void say_always(planner_notes *notes, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    put(notes, format, args);
+    va_end(args);
+}
+
+void himc_planner_notes_sum_up(planner_notes *notes)
+{
+    int smaller = notes->strokes[PLANNER_SMALLER], other = notes->strokes[PLANNER_REASSIGNED],
+        given_up = notes->strokes[PLANNER_GIVEN_UP];
+    if (smaller + other + given_up > 1)
+        say_always(notes, "in all %d strokes smaller, %d by the other hand, %d given up", smaller,
+                   other, given_up);
+}
+
+bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note)
+{
+    if (notes->count == 0)
+        return false;
+    *note = notes->line[notes->first];
+    notes->first = (notes->first + 1) % PLANNER_NOTES;
+    if (--notes->count == 0)
+        notes->lost = 0;
+    return true;
+}
+
+int himc_planner_notes_given_up(planner_notes *notes)
+{
+    int count = notes->given_up;
+    notes->given_up = 0;
+    return count;
+}

@@ -1,0 +1,46 @@
+/// planner_notes.h: lines for the user, and counts of strokes that are not played as written.
+#ifndef HIMC_PLANNER_NOTES_H
+#define HIMC_PLANNER_NOTES_H
+
+#include "plan/planner.h"
+
+#define PLANNER_NOTES 32 ///< kept until they are taken
+
+typedef enum planner_kind {
+    PLANNER_SMALLER,
+    PLANNER_GIVEN_UP,
+    PLANNER_REASSIGNED,
+    PLANNER_LATE,
+    PLANNER_CROWDED,
+    PLANNER_OUTSIDE,
+    PLANNER_KINDS
+} planner_kind;
+
+typedef struct planner_notes {
+    himc_planner_note line[PLANNER_NOTES]; ///< a ring
+    int first, count, lost;
+    bool said[PLANNER_KINDS];   ///< since play
+    int strokes[PLANNER_KINDS]; ///< counted since play
+    int given_up;               ///< strokes given up since himc_planner_notes_given_up
+} planner_notes;
+
+/// Adds a line, unless one of its kind has been added since play.
+HIMC_RT void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/// Counts a stroke of the score that is not played as written.
+HIMC_RT void himc_planner_notes_count(planner_notes *notes, planner_kind kind);
+
+/// At play: counts from 0, and each kind may be said again.
+HIMC_RT void himc_planner_notes_begin(planner_notes *notes);
+
+/// Adds a line of the counts, if there is more than one stroke in them.
+HIMC_RT void himc_planner_notes_sum_up(planner_notes *notes);
+
+/// Takes the oldest line; false if there is none.
+HIMC_RT bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note);
+
+/// Strokes given up since the last call.
+HIMC_RT int himc_planner_notes_given_up(planner_notes *notes);
+
+#endif

@@ -1,0 +1,308 @@
+/// planner_score.c: beats and seconds.
+///
+/// Strokes are kept for each hand, sorted by beat, since a hand only ever asks for its next one.
+/// While playing, beat b is at the time origin + S(b), S being the sum of 60/bpm over the tempo
+/// map. A change of tempo at beat b replaces the map up to b and moves the origin so that b stays
+/// where it is. In a loop whose round has the length L, beat b of round k is at origin + k S(L) +
+/// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
+/// strictly, so every time has one beat.
+#include "plan/planner_score.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CLOSEST_STROKES 0.04     // of one hand (s); chosen: faster than any roll of one hand
+#define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
+#define FIRST_ROOM 256           // strokes; then the room doubles
+#define BEAT_ROUNDING 1e-9       // of a beat to go to (beats)
+#define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
+#define MOST_ROUNDS 1e9          // they fit an int
+
+bool himc_planner_score_init(planner_score *score)
+{
+    *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1};
+    if (score->tempi)
+        score->tempi[0] = (himc_tempo_change){0, HIMC_TEMPO};
+    return score->tempi != NULL;
+}
+
+void himc_planner_score_free(planner_score *score)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        free(score->part[hand].list);
+    free(score->tempi);
+}
+
+static double seconds_to(const planner_score *score, double beat)
+{
+    return himc_score_seconds(score->tempi, score->tempo_count, beat);
+}
+
+/// The first stroke after `beat`, or with `from` the first at it or after it.
+static int first_after(const planner_part *part, double beat, bool from)
+{
+    int low = 0, high = part->count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        double at = part->list[middle].stroke.beat;
+        if (from ? at < beat : at <= beat)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static double gap(const planner_score *score, double a, double b)
+{
+    return fabs(seconds_to(score, b) - seconds_to(score, a));
+}
+
+static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum, int at,
+                         himc_error *error)
+{
+    const planner_part *part = &score->part[stroke->hand];
+    if (drum < 0 || drum >= HIMC_DRUMS)
+        return himc_error_set(error, "stroke: drum number %d, allowed 0 .. %d", drum,
+                              HIMC_DRUMS - 1);
+    if (part->count >= MOST_HAND_STROKES)
+        return himc_error_set(error, "stroke: one too many, allowed %d for a hand",
+                              MOST_HAND_STROKES);
+    double least = HUGE_VAL;
+    if (at > 0)
+        least = gap(score, part->list[at - 1].stroke.beat, stroke->beat);
+    if (at < part->count)
+        least = fmin(least, gap(score, part->list[at].stroke.beat, stroke->beat));
+    if (least < CLOSEST_STROKES)
+        return himc_error_set(
+            error,
+            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, allowed %g s or more",
+            stroke->beat, least, himc_hand_name(stroke->hand), CLOSEST_STROKES);
+    return true;
+}
+
+static bool grow(planner_part *part, himc_error *error)
+{
+    if (part->count < part->room)
+        return true;
+    int wanted = part->room ? 2 * part->room : FIRST_ROOM;
+    planner_stroke *list = realloc(part->list, (size_t)wanted * sizeof *list);
+    if (!list)
+        return himc_error_set(error, "stroke: out of memory for %d", wanted);
+    part->list = list;
+    part->room = wanted;
+    return true;
+}
+
+int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
+                             himc_error *error)
+{
+    planner_part *part = &score->part[stroke->hand];
+    int at = first_after(part, stroke->beat, false);
+    return check_stroke(score, stroke, drum, at, error) && grow(part, error) ? at : -1;
+}
+
+void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
+{
+    planner_part *part = &score->part[stroke->hand];
+    planner_stroke *at = part->list + index;
+    memmove(at + 1, at, (size_t)(part->count - index) * sizeof *at);
+    *at = (planner_stroke){*stroke, drum, 0};
+    part->count++;
+    if (index < part->next)
+        part->next++;
+}
+
+void himc_planner_score_clear(planner_score *score, himc_hand hand)
+{
+    planner_part *part = &score->part[hand];
+    part->count = part->next = part->round = 0;
+}
+
+himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi, int count,
+                                                 himc_error *error)
+{
+    for (int i = 0; i < count; i++) {
+        if (!himc_check_range("tempo", tempi[i].bpm, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute",
+                              error))
+            return NULL;
+        if (!isfinite(tempi[i].beat) || (i > 0 && tempi[i].beat <= tempi[i - 1].beat)) {
+            himc_error_set(error, "tempo: BEAT: %g is not after the one before", tempi[i].beat);
+            return NULL;
+        }
+    }
+    himc_tempo_change *copy = count > 0 ? malloc((size_t)count * sizeof *copy) : NULL;
+    if (!copy) {
+        himc_error_set(error, "tempo: %d changes, allowed 1 or more", count);
+        return NULL;
+    }
+    memcpy(copy, tempi, (size_t)count * sizeof *copy);
+    return copy;
+}
+
+void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count)
+{
+    free(score->tempi);
+    score->tempi = tempi;
+    score->tempo_count = count;
+}
+
+bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
+                                   double beat, himc_error *error)
+{
+    int kept = 1;
+    while (kept < score->tempo_count && score->tempi[kept].beat < beat)
+        kept++;
+    himc_tempo_change *all = malloc((size_t)(kept + count) * sizeof *all);
+    if (!all)
+        return himc_error_set(error, "tempo: out of memory for %d changes", kept + count);
+    memcpy(all, score->tempi, (size_t)kept * sizeof *all);
+    for (int i = 0; i < count; i++)
+        all[kept + i] = (himc_tempo_change){tempi[i].beat + beat, tempi[i].bpm};
+    himc_planner_score_take_tempi(score, all, kept + count);
+    return true;
+}
+
+void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
+{
+    int past = 1;
+    while (past < score->tempo_count && score->tempi[past].beat <= beat)
+        past++;
+    score->tempo_count -= past - 1;
+    memmove(score->tempi + 1, score->tempi + past,
+            (size_t)(score->tempo_count - 1) * sizeof *score->tempi);
+    score->tempi[0] = (himc_tempo_change){0, bpm};
+}
+
+void himc_planner_score_hold(planner_score *score, double t, double beat)
+{
+    score->origin = t - seconds_to(score, beat);
+}
+
+void himc_planner_score_start(planner_score *score, double t)
+{
+    score->playing = true;
+    score->starts++;
+    score->rounds = 0;
+    himc_planner_score_hold(score, t, score->beat);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int next = first_after(&score->part[hand], score->beat - BEAT_ROUNDING, true);
+        himc_planner_score_go(score, (himc_hand)hand, next, 0);
+    }
+}
+
+void himc_planner_score_delay(planner_score *score, double late)
+{
+    score->origin += late;
+}
+
+void himc_planner_score_stop(planner_score *score, double beat)
+{
+    score->beat = beat;
+    score->playing = false;
+}
+
+void himc_planner_score_seek(planner_score *score, double beat)
+{
+    score->beat = beat;
+}
+
+void himc_planner_score_loop(planner_score *score, bool on, int rounds)
+{
+    score->rounds = rounds;
+    score->loop = on;
+}
+
+int himc_planner_score_rebase(planner_score *score, double t)
+{
+    int round = himc_planner_score_round_at(score, t);
+    score->starts += round != 0;
+    score->origin += round * himc_planner_score_round_length(score);
+    score->rounds -= round;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        score->part[hand].round -= round;
+    return round;
+}
+
+void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round)
+{
+    score->part[hand].next = index;
+    score->part[hand].round = round;
+}
+
+bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
+                             planner_due *due)
+{
+    const planner_part *part = &score->part[hand];
+    if (!score->playing || part->count == 0)
+        return false;
+    long at = (long)part->next + ahead;
+    due->round = part->round + (int)(at / part->count);
+    due->index = (int)(at % part->count);
+    if (!score->loop && due->round > score->rounds)
+        return false;
+    due->stroke = &part->list[due->index];
+    due->time = himc_planner_score_time(score, due->round, due->stroke->stroke.beat);
+    return true;
+}
+
+/// Names a round of the loop, through all starts of the transport; never 0.
+static long round_name(const planner_score *score, int round)
+{
+    return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
+}
+
+void himc_planner_score_settle(planner_score *score, himc_hand hand, int index, int round)
+{
+    score->part[hand].list[index].settled = round_name(score, round);
+}
+
+bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand, int index, int round)
+{
+    return score->part[hand].list[index].settled == round_name(score, round);
+}
+
+double himc_planner_score_last_beat(const planner_score *score)
+{
+    double beat = -1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_part *part = &score->part[hand];
+        if (part->count > 0)
+            beat = fmax(beat, part->list[part->count - 1].stroke.beat);
+    }
+    return beat;
+}
+
+double himc_planner_score_length(const planner_score *score)
+{
+    return floor(himc_planner_score_last_beat(score)) + 1;
+}
+
+double himc_planner_score_round_length(const planner_score *score)
+{
+    return seconds_to(score, himc_planner_score_length(score));
+}
+
+int himc_planner_score_round_at(const planner_score *score, double t)
+{
+    double length = himc_planner_score_round_length(score);
+    bool repeats = score->loop || score->rounds > 0;
+    if (!repeats || !(length > 0) || t < score->origin)
+        return 0;
+    double round = fmin(floor((t - score->origin) / length + ROUND_ROUNDING), MOST_ROUNDS);
+    return score->loop ? (int)round : (int)fmin(round, score->rounds);
+}
+
+double himc_planner_score_time(const planner_score *score, int round, double beat)
+{
+    double begun = round == 0 ? 0 : round * himc_planner_score_round_length(score);
+    return begun + (score->origin + seconds_to(score, beat));
+}
+
+double himc_planner_score_beat_at(const planner_score *score, double t)
+{
+    double begun = score->origin +
+                   himc_planner_score_round_at(score, t) * himc_planner_score_round_length(score);
+    return himc_score_beat(score->tempi, score->tempo_count, t - begun);
+}

@@ -1,0 +1,104 @@
+/// planner_score.h: the strokes of both hands, the tempo map and the position in them: which stroke
+/// is due when. Knows nothing of motion.
+#ifndef HIMC_PLANNER_SCORE_H
+#define HIMC_PLANNER_SCORE_H
+
+#include "himc/score.h"
+
+typedef struct planner_stroke {
+    himc_stroke stroke;
+    int drum;
+    long settled; ///< names the round in which it was reassigned or given up last; 0: none
+} planner_stroke;
+
+/// The strokes of one hand.
+typedef struct planner_part {
+    planner_stroke *list; ///< owned, sorted by beat
+    int count, room;
+    int next;  ///< first of the list that is not planned ...
+    int round; ///< ... and its round of the loop
+} planner_part;
+
+typedef struct planner_score {
+    planner_part part[HIMC_HANDS];
+    himc_tempo_change *tempi; ///< owned
+    int tempo_count;
+    bool playing;
+    double origin; ///< time of beat 0 while playing (s)
+    double beat;   ///< where play begins or began
+    bool loop;
+    int rounds; ///< without loop: the last round to be played
+    int starts; ///< of the transport, so far
+} planner_score;
+
+/// A stroke of the score with its place in it.
+typedef struct planner_due {
+    const planner_stroke *stroke;
+    int index, round;
+    double time; ///< (s)
+} planner_due;
+
+/// False without memory.
+bool himc_planner_score_init(planner_score *score);
+void himc_planner_score_free(planner_score *score);
+
+/// Checks a stroke and makes room for it: its index in its hand's list, or -1 with the reason.
+int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
+                             himc_error *error);
+/// Puts a stroke at that index.
+void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke,
+                               int drum);
+/// Drops the strokes of a hand.
+void himc_planner_score_clear(planner_score *score, himc_hand hand);
+
+/// A checked copy of a tempo map, or NULL with the reason.
+himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi, int count,
+                                                 himc_error *error);
+/// Replaces the tempo map by one on the heap, which it then owns.
+void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count);
+/// The tempo map up to `beat`, then another shifted to begin there; false without memory.
+bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
+                                   double beat, himc_error *error);
+/// One tempo up to the first change after `beat`.
+HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
+/// Moves the origin so that `beat` is at `t`.
+HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
+
+/// Begins to play at score->beat at `t`.
+HIMC_RT void himc_planner_score_start(planner_score *score, double t);
+/// All beats are `late` seconds later.
+HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
+/// Stops at that beat.
+HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
+/// Play begins at that beat.
+HIMC_RT void himc_planner_score_seek(planner_score *score, double beat);
+/// Begins or ends a loop; without it `rounds` is the last round to be played.
+HIMC_RT void himc_planner_score_loop(planner_score *score, bool on, int rounds);
+/// Makes the round of the loop at `t` round 0, before its length changes; returns its number so
+/// far.
+HIMC_RT int himc_planner_score_rebase(planner_score *score, double t);
+/// The next stroke of a hand is this one.
+HIMC_RT void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round);
+/// The stroke `ahead` strokes after the next of a hand; false if there is none.
+HIMC_RT bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
+                                     planner_due *due);
+
+/// The stroke has been reassigned or given up in that round: it is not planned again in it.
+HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand, int index, int round);
+HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand, int index,
+                                           int round);
+
+/// Last beat of the score, -1 without strokes.
+HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
+/// The whole beat after the last stroke.
+HIMC_RT double himc_planner_score_length(const planner_score *score);
+/// Length of a round of the loop (s).
+HIMC_RT double himc_planner_score_round_length(const planner_score *score);
+/// The round of the loop at `t`, 0 before it begins.
+HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
+/// Time of a beat in a round (s).
+HIMC_RT double himc_planner_score_time(const planner_score *score, int round, double beat);
+/// Beat at `t`, in its round.
+HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
+
+#endif
