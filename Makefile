@@ -43,6 +43,7 @@ MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/genera
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
+REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
 BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
@@ -136,6 +137,12 @@ test-asan: deps ## the tests in C under the address and undefined behaviour sani
 check-asan: $(UNIT) $(if $(TOOL_O),$(PROGRAM))
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT)
 
+test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
+	@$(MAKE) check-realtime
+
+check-realtime: all $(REALTIME)
+	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh $(REALTIME) $(wildcard tests/realtime/test_*.sh)
+
 bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
@@ -177,9 +184,9 @@ format: ## let clang-format lay out all C files
 	clang-format -i $(SOURCES)
 
 help: ## this list
-	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan bench check-bench \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-realtime check-realtime bench check-bench \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -257,7 +264,7 @@ $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD
-$(UNIT) $(LONG): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
+$(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
@@ -283,4 +290,4 @@ include tools/figures/figures.mk
 check-figures: $(FIGURES)
 
 -include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
-         $(addsuffix .d,$(UNIT) $(LONG) $(BENCH))
+         $(addsuffix .d,$(UNIT) $(LONG) $(REALTIME) $(BENCH))

@@ -1,14 +1,21 @@
-/// osc_ear.h: what tests of OSC share: a performance with its himc_osc, an ear (a socket that hears
-/// what is sent to it, bundles taken apart) and a mouth (the same socket, sending as a stranger).
+/// osc_ear.h: shared by the tests of OSC: a performance with its himc_osc, and an ear: a socket that
+/// receives what is sent to it, bundles taken apart, and sends to the himc_osc as a stranger.
+///
+/// Time is simulated: one block of 4 ms moves the clock of the himc_osc by 4 ms, and its network is
+/// served by the test itself, so that each test gives the same on any machine. Only the system's
+/// loopback is waited for, by counting packets, at most a minute. With OSC_REAL_TIME (for
+/// tests/realtime) the himc_osc has its thread, and a block lasts 4 ms of the wall clock.
 #ifndef HIMC_TESTS_OSC_EAR_H
 #define HIMC_TESTS_OSC_EAR_H
 
 #define _GNU_SOURCE
 #include "himc/osc.h"
-#include "osc/osc_state.h"
+#include "osc/stepped.h"
 
 #include <arpa/inet.h>
+#include <endian.h>
 #include <lo/lo.h>
+#include <math.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <stdio.h>
@@ -20,12 +27,20 @@
 #include <unistd.h>
 
 #define SEEN 4096
+#define PATIENCE 60 // for an event that is sure to come (s)
+#define EPOCH 1.7e9 // of the simulated wall clock (s since 1970)
+
+#ifdef OSC_REAL_TIME
+static const bool real_time = true;
+#else
+static const bool real_time = false;
+#endif
 
 // a message as it was received
 typedef struct seen {
     char path[64];
     lo_message message;
-    size_t packet; // bytes of the packet it came in
+    uint64_t time_tag; // of its bundle, 0 without
 } seen;
 
 // liblo's arguments lie at multiples of 4 bytes, whatever its union says
@@ -53,6 +68,10 @@ static himc_performance *performance;
 static int ear, ear_port;
 static seen heard[SEEN];
 static int heard_count;
+static long said, heard_packets; // since the himc_osc was made
+static bool others_hear;         // the himc_osc sends to others than the ear
+static double simulated;         // monotonic clock (s)
+static double clock_step;        // by which each look moves it (s)
 
 static inline void forget(void)
 {
@@ -75,7 +94,7 @@ static inline int open_ear(int *port)
     return fd;
 }
 
-static inline void hear_element(char *data, size_t size, size_t packet)
+static inline void hear_element(char *data, size_t size, uint64_t time_tag)
 {
     if (memcmp(data, "#bundle", 8) != 0) {
         lo_message m = lo_message_deserialise(data, size, NULL);
@@ -85,24 +104,38 @@ static inline void hear_element(char *data, size_t size, size_t packet)
         seen *s = &heard[heard_count++];
         snprintf(s->path, sizeof s->path, "%.63s", data);
         s->message = m;
-        s->packet = packet;
+        s->time_tag = time_tag;
         return;
     }
+    memcpy(&time_tag, data + 8, 8);
+    time_tag = be64toh(time_tag);
     for (size_t at = 16; at < size;) {
         uint32_t n;
         memcpy(&n, data + at, 4);
         n = ntohl(n);
-        hear_element(data + at + 4, n, packet);
+        hear_element(data + at + 4, n, time_tag);
         at += 4 + n;
     }
 }
 
-static inline void hear(int fd)
+// all packets that are there; how many
+static inline long hear(int fd)
 {
-    char data[65536];
+    _Alignas(8) char data[65536];
     ssize_t size;
-    while ((size = recv(fd, data, sizeof data, 0)) >= 0)
-        hear_element(data, (size_t)size, (size_t)size);
+    long packets = 0;
+    for (; (size = recv(fd, data, sizeof data, 0)) >= 0; packets++)
+        hear_element(data, (size_t)size, 0);
+    heard_packets += fd == ear ? packets : 0;
+    return packets;
+}
+
+// the same, but waits for the first
+static inline long wait_and_hear(int fd)
+{
+    struct pollfd at = {fd, POLLIN, 0};
+    TEST_ASSERT_EQUAL_INT_MESSAGE(1, poll(&at, 1, 1000 * PATIENCE), "no packet comes");
+    return hear(fd);
 }
 
 static inline void rest(double seconds)
@@ -110,19 +143,76 @@ static inline void rest(double seconds)
     nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * (seconds - (time_t)seconds))}, NULL);
 }
 
-// plays in real time, listening
-static inline void play(double seconds)
+static inline double system_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static inline double simulated_monotonic(void *user)
+{
+    (void)user;
+    return simulated += clock_step;
+}
+
+static inline double simulated_wall(void *user)
+{
+    (void)user;
+    return EPOCH + simulated;
+}
+
+/// Serves the network until CONDITION, or for PATIENCE; the simulated clock stands still.
+#define AWAIT(condition)                                                                       \
+    for (double begun = system_seconds(); !(condition);) {                                     \
+        TEST_ASSERT_TRUE_MESSAGE(system_seconds() - begun < PATIENCE, "in vain: " #condition); \
+        serve();                                                                               \
+        rest(1e-4);                                                                            \
+    }
+
+static inline void serve(void)
+{
+    if (!real_time)
+        himc_osc_step(osc);
+    hear(ear);
+}
+
+static inline long taken(void)
+{
+    himc_osc_counts c = himc_osc_count(osc);
+    return c.packets + c.overrun;
+}
+
+/// All that was said has arrived, and all that was sent to the ear.
+static inline void settle(void)
+{
+    AWAIT(taken() >= said);
+    AWAIT(others_hear || heard_packets >= himc_osc_count(osc).sent);
+}
+
+static inline void play_block(void)
 {
     himc_event event;
+    simulated += 0.004;
+    himc_osc_receive(osc, performance, 64);
+    himc_performance_process(performance, 192, (double *[HIMC_HANDS]){NULL, NULL});
+    while (himc_performance_event(performance, &event))
+        himc_osc_event(osc, &event);
+    himc_osc_publish(osc, performance, 1e-4);
+}
+
+static inline void play(double seconds)
+{
+    if (!real_time)
+        settle();
     for (int i = 0; i < seconds * 250; i++) {
-        himc_osc_receive(osc, performance, 64);
-        himc_performance_process(performance, 192, (double *[HIMC_HANDS]){NULL, NULL});
-        while (himc_performance_event(performance, &event))
-            himc_osc_event(osc, &event);
-        himc_osc_publish(osc, performance, 1e-4);
-        rest(0.003);
-        hear(ear);
+        play_block();
+        if (real_time)
+            rest(0.003);
+        serve();
     }
+    if (!real_time)
+        settle();
 }
 
 static inline int count(const char *path)
@@ -162,7 +252,7 @@ static inline void send_bytes(const void *data, size_t size)
     struct sockaddr_in to = {.sin_family = AF_INET,
                              .sin_addr.s_addr = htonl(INADDR_LOOPBACK),
                              .sin_port = htons((uint16_t)himc_osc_port(osc))};
-    sendto(ear, data, size, 0, (struct sockaddr *)&to, sizeof to);
+    said += sendto(ear, data, size, 0, (struct sockaddr *)&to, sizeof to) >= 0;
 }
 
 // "path types atom ..."
@@ -195,12 +285,16 @@ static inline void subscribe(const char *what)
 static inline void start(const himc_osc_config *config)
 {
     himc_error error;
+    osc_clock clock = {simulated_monotonic, simulated_wall, NULL};
     himc_performance_config settings = himc_performance_default();
     performance = himc_performance_new(&settings, &error);
     himc_drum *drum = himc_drum_new("kettle", 23, 48000, &error);
     TEST_ASSERT_TRUE(himc_performance_add_drum(performance, drum, &error));
     himc_drum_release(drum);
-    osc = himc_osc_new(config, &error);
+    said = heard_packets = 0;
+    others_hear = false;
+    clock_step = 0;
+    osc = real_time ? himc_osc_new(config, &error) : himc_osc_new_stepped(config, &clock, &error);
     if (!osc)
         TEST_FAIL_MESSAGE(error.text);
     himc_performance_on_tick(performance, himc_osc_tick, osc);

@@ -1,13 +1,21 @@
 /// storm.c: packets for test_storm.sh: valid, malformed and random ones in turn, at a steady rate.
 ///
-///     storm PORT SECONDS RATE
+///     storm PORT COUNT RATE BEFORE
 ///
 /// to 127.0.0.1, from two sockets. Valid are commands of all costs to performer and drum, in range,
 /// also such as make a head of 200 modes anew; malformed are such packets with some bytes changed
-/// or cut short; random are bytes. Prints how many of each the system took. The same every time.
+/// or cut short; random are bytes. The same every time.
+///
+/// A third socket subscribes, so that it gets /himc/status. The storm begins when the first status
+/// has come, and the program ends when the counters in it know every packet: those of this storm
+/// and the BEFORE ones sent to the port earlier, be they taken, lost at the socket (overrun) or lost
+/// in the system's queue of packets. Prints one line, NAME VALUE ...: `sent`, `pace` (packets/s),
+/// `dropped` (in the system's queue), and the counters. Status 1 if that takes a minute or more.
 #define _GNU_SOURCE // sendmmsg
 #include <arpa/inet.h>
 #include <lo/lo.h>
+#include <poll.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +25,7 @@
 
 #define SIZE 256
 #define BURST 100
+#define PATIENCE 60 // (s)
 #define COMMANDS ((int)(sizeof commands / sizeof *commands))
 
 typedef struct packet {
@@ -128,25 +137,25 @@ static long send_burst(int fd, packet *burst, int count)
     return sent > 0 ? sent : 0;
 }
 
-int main(int argc, char **argv)
+static long queue_dropped(void)
 {
-    static packet valid[COMMANDS], burst[BURST];
-    int fd[2];
+    unsigned long sum = 0, dropped;
+    char line[256];
+    FILE *file = fopen("/proc/net/softnet_stat", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (sscanf(line, "%*x %lx", &dropped) == 1)
+            sum += dropped;
+    if (file)
+        fclose(file);
+    return (long)sum;
+}
+
+static long send_storm(const int fd[2], const packet valid[COMMANDS], long count, double rate)
+{
+    static packet burst[BURST];
     long sent = 0, kind = 0;
-    if (argc != 4)
-        return 2;
-    struct sockaddr_in to = {.sin_family = AF_INET,
-                             .sin_addr.s_addr = htonl(INADDR_LOOPBACK),
-                             .sin_port = htons((uint16_t)atoi(argv[1]))};
-    for (int i = 0; i < COMMANDS; i++)
-        valid[i] = command(i);
-    for (int i = 0; i < 2; i++) {
-        fd[i] = socket(AF_INET, SOCK_DGRAM, 0);
-        if (connect(fd[i], (struct sockaddr *)&to, sizeof to) != 0)
-            return 2;
-    }
-    double seconds = atof(argv[2]), rate = atof(argv[3]), begin = now(), next = begin;
-    for (long n = 0; next < begin + seconds; n++) {
+    double next = now();
+    for (long n = 0; n < count / BURST; n++) {
         for (int i = 0; i < BURST; i++, kind++) {
             int index = (int)chance(COMMANDS);
             burst[i] = kind % 3 == 0   ? valid[index]
@@ -159,9 +168,96 @@ int main(int argc, char **argv)
         if (early > 0)
             nanosleep(&(struct timespec){0, (long)(1e9 * early)}, NULL);
     }
-    printf("%ld %.0f\n", sent + 1, (double)sent / (now() - begin));
-    // what the system lost is told with the next packet that it takes
-    nanosleep(&(struct timespec){0, 300000000}, NULL);
-    send_burst(fd[0], &valid[0], 1);
-    return 0;
+    return sent;
+}
+
+// the next status, if one comes within `ms`
+static lo_message hear_status(int ear, int ms)
+{
+    _Alignas(8) char data[8192];
+    struct pollfd at = {ear, POLLIN, 0};
+    while (poll(&at, 1, ms) > 0) {
+        ssize_t size = recv(ear, data, sizeof data, 0);
+        // a bundle of one message
+        if (size > 40 && strcmp(data + 20, "/himc/status") == 0)
+            return lo_message_deserialise(data + 20, (size_t)size - 20, NULL);
+    }
+    return NULL;
+}
+
+static double value(lo_message status, const char *name)
+{
+    lo_arg **a = lo_message_get_argv(status);
+    float value = -1;
+    for (int i = 0; i + 1 < lo_message_get_argc(status); i += 2)
+        if (strcmp(&a[i]->s, name) == 0)
+            memcpy(&value, a[i + 1], sizeof value);
+    return value;
+}
+
+static long subscribe(int ear)
+{
+    struct sockaddr_in at;
+    socklen_t length = sizeof at;
+    packet p = {.size = SIZE};
+    lo_message m = lo_message_new();
+    getsockname(ear, (struct sockaddr *)&at, &length);
+    lo_message_add(m, "sis", "127.0.0.1", ntohs(at.sin_port), "strikes");
+    lo_message_serialise(m, "/himc/subscribe", p.data, &p.size);
+    lo_message_free(m);
+    return send_burst(ear, &p, 1);
+}
+
+static void report(lo_message status, long sent, double pace, long dropped)
+{
+    static const char *const counters[] = {"packets", "overrun",  "malformed", "foreign",
+                                           "refused", "frequent", "commands"};
+    printf("sent %ld pace %.0f dropped %ld", sent, pace, dropped);
+    for (size_t i = 0; i < sizeof counters / sizeof *counters; i++)
+        printf(" %s %.0f", counters[i], value(status, counters[i]));
+    printf("\n");
+}
+
+int main(int argc, char **argv)
+{
+    static packet valid[COMMANDS];
+    int fd[3]; // the last one hears
+    if (argc != 5)
+        return 2;
+    struct sockaddr_in to = {.sin_family = AF_INET,
+                             .sin_addr.s_addr = htonl(INADDR_LOOPBACK),
+                             .sin_port = htons((uint16_t)atoi(argv[1]))};
+    for (int i = 0; i < COMMANDS; i++)
+        valid[i] = command(i);
+    for (int i = 0; i < 3; i++) {
+        fd[i] = socket(AF_INET, SOCK_DGRAM, 0);
+        if (connect(fd[i], (struct sockaddr *)&to, sizeof to) != 0)
+            return 2;
+    }
+    lo_message status = NULL;
+    long sent = 0, before = atol(argv[4]), dropped = queue_dropped();
+    for (int i = 0; !status && i < PATIENCE; i++) {
+        sent += subscribe(fd[2]);
+        status = hear_status(fd[2], 1000);
+    }
+    if (!status)
+        return 1;
+    double begun = now();
+    long storm = send_storm(fd, valid, atol(argv[2]), atof(argv[3]));
+    double pace = (double)storm / (now() - begun);
+    bool all = false;
+    sent += storm;
+    for (begun = now(); !all && now() - begun < PATIENCE;) {
+        // the system reports its losses with the next packet that it takes
+        sent += send_burst(fd[0], &valid[0], 1);
+        lo_message newer = hear_status(fd[2], 1000);
+        if (!newer)
+            continue;
+        lo_message_free(status);
+        status = newer;
+        long arrived = before + sent - (queue_dropped() - dropped);
+        all = value(status, "packets") + value(status, "overrun") >= (double)arrived;
+    }
+    report(status, sent, pace, queue_dropped() - dropped);
+    return !all;
 }

@@ -9,7 +9,7 @@ if ! "$VMCP_PYTHON" -c 'import vmcp.events' 2>/dev/null; then
     exit 0
 fi
 port=$((20000 + $$ % 20000)) # ours, should two of these run at once
-timeout 60 "$HIMC_BUILD/bin/himc" serve --port $port >/dev/null &
+timeout 300 "$HIMC_BUILD/bin/himc" serve --port $port >/dev/null &
 server=$!
 "$VMCP_PYTHON" - $port <<'EOF'
 import socket, struct, sys, time
@@ -50,7 +50,7 @@ ask = pad("/himc/subscribe") + pad(",sis") + pad("127.0.0.1") + struct.pack(">i"
 hit = pad("/himc/hit") + pad(",sss") + pad("left") + pad("accent") + pad("ff")
 ear.sendto(hit, ("127.0.0.1", int(sys.argv[1])))
 bones, places, mallets, notes, times, faults, state, root = {}, {}, {}, [], [], [], 0, 0
-end = time.time() + 8
+end = time.time() + 60  # for all to come; it takes a second
 while time.time() < end and (len(bones) < 21 or len(mallets) < 2 or len(notes) < 2):
     ear.sendto(ask, ("127.0.0.1", int(sys.argv[1])))
     try:

@@ -322,7 +322,8 @@ static void run_one(void)
     clock_gettime(CLOCK_MONOTONIC, &before);
     LLVMFuzzerTestOneInput(input, size);
     clock_gettime(CLOCK_MONOTONIC, &after);
-    require(after.tv_sec - before.tv_sec < 20, "an input takes less than 20 s");
+    // an input takes milliseconds; this is for one that never ends, on any machine
+    require(after.tv_sec - before.tv_sec < 60, "an input takes less than 60 s");
     free(input);
 }
 

@@ -13,7 +13,7 @@ tests=0 failures=0
 play_pd() { # play_pd PATCH [OPTION...]: what Pd says goes to $work/log
     local patch=$1
     shift
-    timeout 300 pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch \
+    timeout "${TEST_TIMEOUT:-600}" pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch \
         -path "$build/externals/himc" "$@" -open "$patch" >"$work/log" 2>&1 </dev/null
 }
 

@@ -15,7 +15,7 @@ tests=0 failures=0 ignored=0
 play_pd() { # play_pd PATCH [OPTION...]: what Pd says goes to $work/log
     local patch=$1
     shift
-    timeout "${TEST_TIMEOUT:-120}" pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$build/externals/himc" \
+    timeout "${TEST_TIMEOUT:-600}" pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$build/externals/himc" \
         -path "$root/patches/lib" -path "$root/patches/techniques" -path "$build/clips" "$@" -open "$patch" >"$work/log" 2>&1 </dev/null
 }
 
@@ -223,7 +223,7 @@ pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$build/external
     -send "himc-test $PWD" -open reopen.pd >"$work/log" 2>&1 </dev/null &
 pd=$!
 memory() { # memory COUNT: the most Pd has held until so many patches have been opened (kB)
-    for ((wait = 0; wait < 400; wait++)); do
+    for ((wait = 0; wait < 1200; wait++)); do
         if grep -q "^opened: $1\$" "$work/log"; then
             awk '/VmHWM/ { print $2 }' /proc/$pd/status
             return

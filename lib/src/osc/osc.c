@@ -1,54 +1,118 @@
-/// osc.c: the thread that talks to the network, so that nobody else has to.
+/// osc.c: a performance on the network: the host's side, the network thread, and the rings between.
 ///
-/// It waits at the sockets for 2 ms at most while there are subscribers (20 ms otherwise), takes
-/// what came in, and sends what the host has left in its ring. The host makes no system call to
-/// wake it: a strike leaves within 2 ms. Everything taken from outside is paid for from buckets
-/// (so much a second, so much at once); who is beyond that is counted before being read, and the
-/// thread then rests a millisecond, so that a flood costs the machine little.
+/// The host's side (an audio callback, Pd's scheduler) only copies into rings or out of them. The
+/// time t of the samples and the wall clock W are joined by an offset W - t. It is followed slowly
+/// (a second or so), because a host computes blocks in bursts and the sound is steady; it jumps
+/// when the two are 0.1 s apart (the sound was off).
+///
+/// The network thread waits at the sockets for 2 ms at most while there are subscriptions (20 ms
+/// otherwise), takes the packets that arrived, and sends the states that the host left in the ring.
+/// The host makes no system call to wake it: a strike leaves within 2 ms. All that arrives is paid
+/// for from buckets (so much a second, so much at once); packets beyond that are counted and not
+/// read, and the thread then rests a millisecond, so that a flood costs the machine little.
 #define _GNU_SOURCE // setpriority of one thread is Linux's own
-#include "osc/osc_state.h"
+#include "himc/osc.h"
+#include "himc/body.h"
+#include "himc/membrane.h"
+#include "osc/decode.h"
+#include "osc/stepped.h"
+#include "osc/subscribe.h"
 
-#include <poll.h>
+#include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
-#include <unistd.h>
 
-#define RECORDS 1024
-#define ORDERS 512
-#define LINES 64
-#define NICE 5 // sound goes first
+#define RECORDS 1024         // chosen: poses of 4 s at 250 Hz
+#define COMMANDS_WAITING 512 // chosen: half a second of 1000 points
+#define LINES 64             // chosen
+#define NICE 5               // chosen: sound goes first
+#define PACKETS_AT_ONCE 256  // read in one pass; chosen: then states are sent again
+#define PACKET_SIZE 65536    // largest of UDP (bytes)
+#define WAIT_SUBSCRIBED 2    // (ms) chosen: a strike leaves within it
+#define WAIT_IDLE 20         // (ms) chosen
+#define REST 1000000         // in a flood (ns) chosen
 
-himc_osc_config himc_osc_default(void)
+#define PACKETS_PER_SECOND 8000.0 // chosen: reading these takes the thread a few per cent of a core
+#define POINTS_PER_SECOND 1000.0  // of commands; chosen: 4 targets at 250 Hz
+#define POINTS_AT_ONCE 4000.0     // chosen: a score of 1000 strokes, sent one by one
+#define LINES_PER_SECOND 50.0     // of answers; chosen: less goes out than comes in
+#define WORK_SHARE 0.1            // of the host's time, for commands; chosen
+#define WORK_AT_ONCE 0.05         // (s) chosen: two heads of 2000 modes
+
+#define OFFSET_FOLLOW 0.002 // of the distance, each block; chosen: 1 s for blocks of 2 ms
+#define OFFSET_JUMP 0.1     // (s) chosen: sound was off, not late
+#define BLOCK_WORK 2e-4     // no further command in a block once they took so long (s); chosen
+#define STATUS_PERIOD 1.0   // (s) chosen
+#define SET_BACK 2.0        // (s) a next time so far ahead: the clock was set back; chosen
+
+typedef struct osc_bucket {
+    double level, rate, size, last;
+} osc_bucket;
+
+typedef struct osc_line {
+    osc_address to;
+    bool error; // else an information
+    char text[HIMC_OSC_LINE];
+} osc_line;
+
+// from host to network
+typedef struct osc_record {
+    enum { RECORD_STATE, RECORD_LINE, RECORD_CHANGE } kind;
+    union {
+        osc_state state;
+        osc_line line;
+        osc_change change;
+    };
+} osc_record;
+
+// from network to host
+typedef struct osc_order {
+    osc_address from;
+    osc_request request;
+} osc_order;
+
+// owned by the host's thread
+typedef struct osc_host {
+    double offset;               // W - t (s)
+    double next_pose, next_head; // (s, of the performance)
+    double next_status;          // (s, wall clock)
+    double published;            // wall clock of the last block (s)
+    double busy;                 // computing since the last status (s)
+    bool status_sent;
+    long strikes;                  // so far
+    osc_bucket work;               // time of commands (s)
+    unsigned revision[HIMC_DRUMS]; // of the drums, as last sent
+} osc_host;
+
+struct himc_osc {
+    osc_clock clock;
+    osc_ring records, orders, lines;
+    osc_counters counts;
+    osc_host host;
+
+    // owned by the network thread
+    pthread_t thread;
+    bool stepped, running;
+    _Atomic bool stop;
+    osc_network network;
+    osc_subscriptions subscriptions;
+    osc_bucket packets, points, answers;
+    osc_packets line; // the answer being sent
+    char *files;      // real path, or NULL
+};
+
+static double monotonic(const himc_osc *osc)
 {
-    return (himc_osc_config){.port = HIMC_OSC_PORT};
+    return osc->clock.monotonic(osc->clock.user);
 }
 
-double himc_osc_clock(int clock)
+static bool afford(osc_bucket *b, double now, double cost)
 {
-    struct timespec t;
-    clock_gettime((clockid_t)clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-void himc_osc_tell(himc_osc *osc, const char *format, ...)
-{
-    char *line = himc_osc_ring_slot(&osc->lines);
-    if (!line)
-        return;
-    va_list args;
-    va_start(args, format);
-    vsnprintf(line, HIMC_OSC_LINE, format, args);
-    va_end(args);
-    himc_osc_ring_push(&osc->lines);
-}
-
-bool himc_osc_afford(osc_bucket *b, double cost)
-{
-    double now = himc_osc_clock(CLOCK_MONOTONIC);
     b->level += b->rate * (now - b->last);
     b->level = b->level > b->size ? b->size : b->level;
     b->last = now;
@@ -58,46 +122,431 @@ bool himc_osc_afford(osc_bucket *b, double cost)
     return true;
 }
 
-void himc_osc_answer(himc_osc *osc, const osc_address *to, bool error, const char *text)
+// --- the host's side: states out
+
+static osc_state *begin(himc_osc *osc, int kind, double time)
 {
-    if (!himc_osc_afford(&osc->answers, 1))
-        return;
-    osc_packets *p = &osc->packet[0][0];
-    osc->packed[0][0] = false;
-    himc_osc_pack_begin(p, SMALL_PACKET, false, 0);
-    himc_osc_pack(p, error ? "/himc/error" : "/himc/info", "s", text);
-    if (p->count)
-        himc_osc_send_to(osc, to, p->data[0], p->size[0]);
+    osc_record *r = himc_osc_ring_slot(&osc->records);
+    if (!r)
+        return NULL;
+    r->kind = RECORD_STATE;
+    r->state.kind = kind;
+    r->state.time = time;
+    r->state.wall = time + osc->host.offset;
+    return &r->state;
 }
 
-static void wait_for_packets(himc_osc *osc, bool resting)
+static void end(himc_osc *osc)
 {
-    struct pollfd at[] = {{osc->in, POLLIN, 0}, {osc->out[0], POLLIN, 0}, {osc->out[1], POLLIN, 0}};
-    bool busy = atomic_load_explicit(&osc->count[COUNT_SUBSCRIPTIONS], memory_order_relaxed) > 0;
-    if (resting)
-        nanosleep(&(struct timespec){0, 1000000}, NULL);
+    himc_osc_ring_push(&osc->records);
+}
+
+static void put(float out[3], himc_vec3 v)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+static void put_name(char out[HIMC_NAME_SIZE], himc_drum *drum)
+{
+    const char *name = himc_drum_name(drum);
+    memcpy(out, name, strnlen(name, HIMC_NAME_SIZE - 1) + 1);
+}
+
+// true if one of `hz` a second is due; then sets the time of the next
+static bool due(double *next, int hz, double t)
+{
+    if (hz <= 0 || (t < *next && *next - t < SET_BACK))
+        return false;
+    *next = fmax(*next + 1.0 / hz, t + 0.5 / hz);
+    return true;
+}
+
+static void put_pose(osc_pose *pose, const himc_tick *tick)
+{
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        himc_quat q = tick->body->orientation[i];
+        put(pose->origin[i], tick->body->origin[i]);
+        put(pose->orientation[i], himc_quat_vector(q));
+        pose->orientation[i][3] = (float)q.w;
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        put(pose->target[hand], tick->target[hand]);
+        put(pose->tip[hand], tick->body->tip[hand]);
+    }
+}
+
+void himc_osc_tick(void *object, const himc_tick *tick)
+{
+    himc_osc *osc = object;
+    int hz = atomic_load_explicit(&osc->subscriptions.pose_hz, memory_order_relaxed);
+    if (!due(&osc->host.next_pose, hz, tick->time))
+        return;
+    osc_state *state = begin(osc, STATE_POSE, tick->time);
+    if (!state)
+        return;
+    put_pose(&state->pose, tick);
+    end(osc);
+}
+
+void himc_osc_event(himc_osc *osc, const himc_event *event)
+{
+    osc_host *h = &osc->host;
+    bool strike = event->kind == HIMC_EVENT_STRIKE;
+    if (!strike && event->kind != HIMC_EVENT_BEAT)
+        return;
+    h->strikes += strike; // also one that finds the ring full
+    double time = strike ? event->strike.time : h->published - h->offset;
+    osc_state *state = begin(osc, strike ? STATE_STRIKE : STATE_BEAT, time);
+    if (!state)
+        return;
+    if (strike)
+        state->strike = (osc_strike){event->strike, h->strikes};
     else
-        poll(at, 3, busy ? 2 : 20);
+        state->beat = event->beat;
+    end(osc);
+}
+
+static void put_head(himc_osc *osc, himc_drum *drum, double time)
+{
+    himc_membrane *membrane = himc_drum_membrane(drum);
+    int modes = himc_membrane_head(membrane)->modes;
+    osc_state *state = begin(osc, STATE_HEAD, time);
+    if (!state)
+        return;
+    put_name(state->head.name, drum);
+    state->head.count = modes < HEAD_MODES ? modes : HEAD_MODES;
+    for (int i = 0; i < state->head.count; i++) {
+        double q, v;
+        himc_membrane_state(membrane, i, &q, &v);
+        state->head.amplitude[i] = (float)q;
+    }
+    end(osc);
+}
+
+static void put_drum(himc_osc *osc, himc_drum *drum, double time)
+{
+    const himc_head_frame *place = himc_drum_head_frame(drum);
+    const himc_head *head = himc_membrane_head(himc_drum_membrane(drum));
+    osc_state *state = begin(osc, STATE_DRUM, time);
+    if (!state)
+        return;
+    put_name(state->drum.name, drum);
+    put(state->drum.place, place->center);
+    state->drum.place[3] = (float)place->tilt;
+    state->drum.place[4] = (float)place->radius;
+    state->drum.hz = sqrt(head->tension / himc_head_tension_for(head, 1));
+    end(osc);
+}
+
+static void put_status(himc_osc *osc, const himc_performance_stats *stats, double elapsed)
+{
+    osc_state *state = begin(osc, STATE_STATUS, stats->seconds);
+    if (!state)
+        return;
+    state->status.stats = *stats;
+    state->status.strikes = osc->host.strikes;
+    state->status.load = elapsed > 0 ? osc->host.busy / elapsed : 0;
+    end(osc);
+}
+
+void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
+{
+    osc_host *h = &osc->host;
+    himc_performance_stats stats = himc_performance_measure(performance);
+    double now = osc->clock.wall(osc->clock.user), t = stats.seconds, apart = now - t - h->offset;
+    h->offset += fabs(apart) > OFFSET_JUMP ? apart : OFFSET_FOLLOW * apart;
+    h->published = t + h->offset;
+    h->busy += busy;
+    int hz = atomic_load_explicit(&osc->subscriptions.head_hz, memory_order_relaxed);
+    bool heads = due(&h->next_head, hz, t);
+    bool status = now >= h->next_status || h->next_status > now + SET_BACK;
+    himc_drum *drum;
+    for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
+        if (heads)
+            put_head(osc, drum, t);
+        if (status || h->revision[i] != himc_drum_revision(drum))
+            put_drum(osc, drum, t);
+        h->revision[i] = himc_drum_revision(drum);
+    }
+    if (!status)
+        return;
+    put_status(osc, &stats, h->status_sent ? now - h->next_status + STATUS_PERIOD : 0);
+    h->status_sent = true;
+    h->busy = 0;
+    h->next_status = now + STATUS_PERIOD;
+}
+
+// --- the host's side: commands in
+
+bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *error)
+{
+    osc_record *r = himc_osc_ring_slot(&osc->records);
+    if (!r)
+        return himc_error_set(error, "too many subscriptions at once: this one is dropped");
+    r->kind = RECORD_CHANGE;
+    memset(&r->change, 0, sizeof r->change);
+    if (!himc_osc_change_from(&r->change, command))
+        return himc_error_set(error, "allowed here: subscribe unsubscribe");
+    r->change.local = true;
+    end(osc);
+    return true;
+}
+
+// the sender of a command, for the lines of an answer
+typedef struct sender {
+    himc_osc *osc;
+    const osc_address *address;
+    bool error;
+} sender;
+
+static void answer(void *object, const char *line)
+{
+    sender *s = object;
+    osc_record *r = himc_osc_ring_slot(&s->osc->records);
+    if (!r)
+        return;
+    r->kind = RECORD_LINE;
+    r->line.to = *s->address;
+    r->line.error = s->error;
+    snprintf(r->line.text, sizeof r->line.text, "%s", line);
+    end(s->osc);
+}
+
+static bool carry_out(himc_performance *performance, const osc_request *request, himc_error *error)
+{
+    himc_drum *drum;
+    char names[120] = "";
+    if (request->receiver == HIMC_PERFORMER)
+        return himc_performance_command(performance, &request->command, 0, error);
+    for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
+        if (strcmp(himc_drum_name(drum), request->drum) == 0)
+            return himc_drum_command(drum, &request->command, error) ||
+                   himc_error_prefix(error, "%s", request->drum);
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, " %s", himc_drum_name(drum));
+    }
+    return himc_error_set(error, "%s: no drum of that name, allowed:%s", request->drum,
+                          names[0] ? names : " none, make one with drum");
+}
+
+static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
+{
+    sender from = {osc, &order->from, false};
+    himc_error error = {""};
+    const osc_request *request = &order->request;
+    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_INFO) {
+        himc_performance_describe(performance, answer, &from);
+    } else if (!carry_out(performance, request, &error)) {
+        from.error = true;
+        himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
+        answer(&from, error.text);
+    }
+}
+
+// a head of 2000 modes takes 25 ms to make anew; a sender of such commands one after the other must
+// not take the time of the sound, so what they take is paid for from a bucket of seconds
+void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
+{
+    const osc_order *order;
+    double spent = 0;
+    for (int i = 0; i < most && (order = himc_osc_ring_peek(&osc->orders)); i++) {
+        if (spent > BLOCK_WORK || !afford(&osc->host.work, monotonic(osc), 0))
+            return;
+        double start = monotonic(osc);
+        obey(osc, performance, order);
+        himc_osc_ring_pop(&osc->orders);
+        double took = monotonic(osc) - start;
+        osc->host.work.level -= took;
+        spent += took;
+    }
+}
+
+bool himc_osc_line(himc_osc *osc, char line[HIMC_OSC_LINE])
+{
+    const char *oldest = himc_osc_ring_peek(&osc->lines);
+    if (!oldest)
+        return false;
+    memcpy(line, oldest, HIMC_OSC_LINE);
+    himc_osc_ring_pop(&osc->lines);
+    return true;
+}
+
+himc_osc_counts himc_osc_count(const himc_osc *osc)
+{
+    const osc_counters *c = &osc->counts;
+    return (himc_osc_counts){.packets = himc_osc_read(c, COUNT_PACKETS),
+                             .commands = himc_osc_read(c, COUNT_COMMANDS),
+                             .malformed = himc_osc_read(c, COUNT_MALFORMED),
+                             .foreign = himc_osc_read(c, COUNT_FOREIGN),
+                             .refused = himc_osc_read(c, COUNT_REFUSED),
+                             .frequent = himc_osc_read(c, COUNT_FREQUENT),
+                             .overrun = himc_osc_read(c, COUNT_OVERRUN),
+                             .sent = himc_osc_read(c, COUNT_SENT),
+                             .unsent = himc_osc_read(c, COUNT_UNSENT),
+                             .lost = osc->records.lost + osc->orders.lost + osc->lines.lost,
+                             .subscriptions = osc->subscriptions.count};
+}
+
+// --- the network thread
+
+static void send_line(himc_osc *osc, const osc_address *to, bool error, const char *text)
+{
+    if (!afford(&osc->answers, monotonic(osc), 1))
+        return;
+    osc_packets *p = &osc->line;
+    himc_osc_encode_begin(p, SMALL_PACKET, false, 0);
+    himc_osc_encode_line(p, error, text);
+    if (p->count)
+        himc_osc_network_send(&osc->network, to, p->data[0], p->size[0]);
+}
+
+static void refuse(himc_osc *osc, const osc_address *to, const char *line)
+{
+    himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
+    if (to)
+        send_line(osc, to, true, line);
+    else
+        himc_osc_tell(&osc->lines, "%s", line);
+}
+
+static void subscribe(himc_osc *osc, const osc_change *change)
+{
+    himc_error error;
+    if (!himc_osc_subscribe(&osc->subscriptions, change, &error))
+        refuse(osc, change->local ? NULL : &change->from, error.text);
+}
+
+static void hand_on(himc_osc *osc, const osc_address *from, const osc_request *request)
+{
+    osc_order *slot = himc_osc_ring_slot(&osc->orders);
+    if (!slot) {
+        himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
+        return;
+    }
+    slot->from = *from;
+    himc_osc_request_copy(&slot->request, request);
+    himc_osc_ring_push(&osc->orders);
+    himc_osc_add(&osc->counts, COUNT_COMMANDS, 1);
+}
+
+static void take_request(himc_osc *osc, const osc_address *from, osc_request *request)
+{
+    himc_error error;
+    osc_change change = {.from = *from};
+    if (!afford(&osc->points, monotonic(osc), himc_osc_request_cost(request))) {
+        himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
+    } else if (request->receiver == HIMC_PERFORMER &&
+               himc_osc_change_from(&change, &request->command)) {
+        himc_osc_add(&osc->counts, COUNT_COMMANDS, 1);
+        subscribe(osc, &change);
+    } else if (!himc_osc_request_admit(request, osc->files, &error)) {
+        refuse(osc, from, error.text);
+    } else {
+        hand_on(osc, from, request);
+    }
+}
+
+static void take_message(void *object, osc_verdict verdict, osc_request *request,
+                         const himc_error *error)
+{
+    sender *s = object;
+    switch (verdict) {
+    case OSC_REQUEST: take_request(s->osc, s->address, request); break;
+    case OSC_MALFORMED: himc_osc_add(&s->osc->counts, COUNT_MALFORMED, 1); break;
+    case OSC_FOREIGN: himc_osc_add(&s->osc->counts, COUNT_FOREIGN, 1); break;
+    case OSC_WRONG: refuse(s->osc, s->address, error->text); break;
+    }
+}
+
+// true if more packets arrive than are accepted
+static bool take_packets(himc_osc *osc)
+{
+    _Alignas(8) char data[PACKET_SIZE];
+    bool flood = false;
+    osc_address from;
+    long size;
+    for (int i = 0; i < PACKETS_AT_ONCE; i++) {
+        if ((size = himc_osc_network_receive(&osc->network, &from, data, sizeof data)) < 0)
+            break;
+        if (afford(&osc->packets, monotonic(osc), 1)) {
+            himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false});
+        } else {
+            himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
+            flood = true;
+        }
+    }
+    himc_osc_network_discard(&osc->network);
+    return flood;
+}
+
+static void send_record(himc_osc *osc, const osc_record *r)
+{
+    himc_osc_counts counts;
+    switch (r->kind) {
+    case RECORD_STATE:
+        counts = himc_osc_count(osc);
+        himc_osc_deliver(&osc->subscriptions, &r->state, &counts, monotonic(osc));
+        break;
+    case RECORD_LINE: send_line(osc, &r->line.to, r->line.error, r->line.text); break;
+    case RECORD_CHANGE: subscribe(osc, &r->change); break;
+    }
+}
+
+bool himc_osc_step(himc_osc *osc)
+{
+    const osc_record *record;
+    bool flood = take_packets(osc);
+    himc_osc_subscribe_found(&osc->subscriptions);
+    for (int i = 0; i < RECORDS && (record = himc_osc_ring_peek(&osc->records)); i++) {
+        send_record(osc, record);
+        himc_osc_ring_pop(&osc->records);
+    }
+    himc_osc_forget_unreachable(&osc->subscriptions, monotonic(osc));
+    return flood;
 }
 
 static void *run(void *object)
 {
     himc_osc *osc = object;
-    bool resting = false;
+    bool flood = false;
     setpriority(PRIO_PROCESS, 0, NICE);
     while (!atomic_load_explicit(&osc->stop, memory_order_acquire)) {
-        const osc_record *record;
-        wait_for_packets(osc, resting);
-        resting = himc_osc_take_packets(osc);
-        himc_osc_resolved(osc);
-        for (int i = 0; i < RECORDS && (record = himc_osc_ring_peek(&osc->records)); i++) {
-            himc_osc_send_record(osc, record);
-            himc_osc_ring_pop(&osc->records);
-        }
-        himc_osc_read_errors(osc, himc_osc_refused);
-        himc_osc_forget_gone(osc, himc_osc_clock(CLOCK_MONOTONIC));
+        if (flood)
+            nanosleep(&(struct timespec){0, REST}, NULL);
+        else
+            himc_osc_network_wait(&osc->network,
+                                  osc->subscriptions.count > 0 ? WAIT_SUBSCRIBED : WAIT_IDLE);
+        flood = himc_osc_step(osc);
     }
     return NULL;
+}
+
+// --- beginning and end
+
+himc_osc_config himc_osc_default(void)
+{
+    return (himc_osc_config){.port = HIMC_OSC_PORT};
+}
+
+static double read_clock(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double system_monotonic(void *user)
+{
+    (void)user;
+    return read_clock(CLOCK_MONOTONIC);
+}
+
+static double system_wall(void *user)
+{
+    (void)user;
+    return read_clock(CLOCK_REALTIME);
 }
 
 static bool set_files(himc_osc *osc, const char *folder, himc_error *error)
@@ -111,38 +560,60 @@ static bool set_files(himc_osc *osc, const char *folder, himc_error *error)
     return true;
 }
 
-static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *error)
+static void fill_buckets(himc_osc *osc)
 {
-    double now = himc_osc_clock(CLOCK_MONOTONIC);
-    osc->packets = (osc_bucket){8000, 8000, 8000, now};
-    osc->commands = (osc_bucket){4000, 1000, 4000, now};
-    osc->answers = (osc_bucket){50, 50, 50, now};
-    osc->work = (osc_bucket){0.05, 0.1, 0.05, now};
-    if (!himc_osc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
-        !himc_osc_ring_init(&osc->orders, sizeof(osc_order), ORDERS) ||
-        !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))
-        return himc_error_set(error, "osc: out of memory");
-    if (!set_files(osc, config->files, error) || !himc_osc_listen(osc, config, error))
-        return false;
-    osc->allowed_count = himc_osc_allowed_hosts(osc, config->allow, error);
-    if (osc->allowed_count < 0)
-        return false;
-    osc->running = pthread_create(&osc->thread, NULL, run, osc) == 0;
-    return osc->running || himc_error_set(error, "osc: no thread to be had");
+    double now = monotonic(osc);
+    osc->packets = (osc_bucket){PACKETS_PER_SECOND, PACKETS_PER_SECOND, PACKETS_PER_SECOND, now};
+    osc->points = (osc_bucket){POINTS_AT_ONCE, POINTS_PER_SECOND, POINTS_AT_ONCE, now};
+    osc->answers = (osc_bucket){LINES_PER_SECOND, LINES_PER_SECOND, LINES_PER_SECOND, now};
+    osc->host.work = (osc_bucket){WORK_AT_ONCE, WORK_SHARE, WORK_AT_ONCE, now};
 }
 
-himc_osc *himc_osc_new(const himc_osc_config *config, himc_error *error)
+static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *error)
+{
+    osc_subscriptions *s = &osc->subscriptions;
+    fill_buckets(osc);
+    s->network = &osc->network;
+    s->counts = &osc->counts;
+    s->lines = &osc->lines;
+    if (!himc_osc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
+        !himc_osc_ring_init(&osc->orders, sizeof(osc_order), COMMANDS_WAITING) ||
+        !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))
+        return himc_error_set(error, "osc: out of memory");
+    if (!set_files(osc, config->files, error) ||
+        !himc_osc_network_open(&osc->network, config->bind, config->port, &osc->counts, error) ||
+        !himc_osc_allow(s, config->allow, error))
+        return false;
+    osc->running = !osc->stepped && pthread_create(&osc->thread, NULL, run, osc) == 0;
+    return osc->running || osc->stepped || himc_error_set(error, "osc: the system gave no thread");
+}
+
+static himc_osc *make(const himc_osc_config *config, const osc_clock *clock, bool stepped,
+                      himc_error *error)
 {
     himc_osc *osc = calloc(1, sizeof *osc);
     if (!osc) {
         himc_error_set(error, "osc: out of memory");
         return NULL;
     }
-    osc->in = osc->out[0] = osc->out[1] = -1;
+    osc->network = (osc_network){.in = -1, .out = {-1, -1}};
+    osc->clock = *clock;
+    osc->stepped = stepped;
     if (prepare(osc, config, error))
         return osc;
     himc_osc_free(osc);
     return NULL;
+}
+
+himc_osc *himc_osc_new(const himc_osc_config *config, himc_error *error)
+{
+    return make(config, &(osc_clock){system_monotonic, system_wall, NULL}, false, error);
+}
+
+himc_osc *himc_osc_new_stepped(const himc_osc_config *config, const osc_clock *clock,
+                               himc_error *error)
+{
+    return make(config, clock, true, error);
 }
 
 static void stop_thread(himc_osc *osc)
@@ -153,35 +624,40 @@ static void stop_thread(himc_osc *osc)
     osc->running = false;
 }
 
-static void put_wish(himc_osc *osc, const osc_wish *wish)
+static void put_change(himc_osc *osc, const osc_change *change)
 {
     osc_record *r = himc_osc_ring_slot(&osc->records);
     if (!r)
         return;
-    r->kind = RECORD_WISH;
-    r->wish = *wish;
-    himc_osc_ring_push(&osc->records);
+    r->kind = RECORD_CHANGE;
+    r->change = *change;
+    end(osc);
 }
 
-// what the old one has granted, and what it was still asked for; its thread stands still
+// the subscriptions of the old one, and the changes that still wait in its ring, after the end of
+// its thread
 static void hand_over(himc_osc *old, himc_osc *osc)
 {
     const osc_record *r;
-    for (const osc_subscriber *s = old->subscriber; s < old->subscriber + SUBSCRIBERS; s++)
-        if (s->used)
-            put_wish(osc,
-                     &(osc_wish){.what = s->what, .hz = s->hz, .granted = true, .from = s->to});
+    const osc_subscription *one = old->subscriptions.subscription;
+    for (int i = 0; i < SUBSCRIPTIONS; i++, one++)
+        if (one->used)
+            put_change(osc,
+                       &(osc_change){
+                           .stream = one->stream, .hz = one->hz, .granted = true, .from = one->to});
     for (; (r = himc_osc_ring_peek(&old->records)); himc_osc_ring_pop(&old->records))
-        if (r->kind == RECORD_WISH)
-            put_wish(osc, &r->wish);
-    osc->strikes = old->strikes;
+        if (r->kind == RECORD_CHANGE)
+            put_change(osc, &r->change);
+    osc->host.strikes = old->host.strikes;
 }
 
 himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error)
 {
-    himc_osc *osc = himc_osc_new(config, error);
-    if (!osc || !old)
-        return osc;
+    if (!old)
+        return himc_osc_new(config, error);
+    himc_osc *osc = make(config, &old->clock, old->stepped, error);
+    if (!osc)
+        return NULL;
     stop_thread(old);
     hand_over(old, osc);
     himc_osc_free(old);
@@ -193,19 +669,16 @@ void himc_osc_free(himc_osc *osc)
     if (!osc)
         return;
     stop_thread(osc);
-    himc_osc_resolve_drop(osc);
-    int fd[] = {osc->in, osc->out[0], osc->out[1]};
-    for (int i = 0; i < 3; i++)
-        if (fd[i] >= 0)
-            close(fd[i]);
-    free(osc->records.data);
-    free(osc->orders.data);
-    free(osc->lines.data);
+    himc_osc_subscriptions_free(&osc->subscriptions);
+    himc_osc_network_close(&osc->network);
+    himc_osc_ring_free(&osc->records);
+    himc_osc_ring_free(&osc->orders);
+    himc_osc_ring_free(&osc->lines);
     free(osc->files);
     free(osc);
 }
 
 int himc_osc_port(const himc_osc *osc)
 {
-    return osc->port;
+    return osc->network.port;
 }

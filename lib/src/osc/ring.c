@@ -1,18 +1,27 @@
-/// osc_ring.c: a ring between two threads that never wait for each other.
+/// ring.c: a ring between two threads that never wait for each other.
 ///
-/// One writes, one reads; each moves its own index and only looks at the other's. The release of
-/// `written` makes a slot's contents visible to whoever acquires it, and the same with `read` for
-/// its reuse. A full ring refuses and counts: what is late is worth less than what comes next.
-#include "osc/osc_state.h"
+/// One thread writes, the other reads; each moves its own index and only reads the other's. The
+/// release of `written` makes the contents of a slot visible to the reader that acquires it; the
+/// release of `read` does the same for the reuse of the slot. A full ring refuses and counts the
+/// record, so the host never waits; the oldest records are kept.
+#include "osc/ring.h"
 
 #include <stdlib.h>
 
+#define CACHE_LINE 64 // (bytes) slots begin on one, so that the two threads rarely share a line
+
 bool himc_osc_ring_init(osc_ring *ring, size_t slot, size_t count)
 {
-    ring->slot = (slot + 63) / 64 * 64;
+    ring->slot = (slot + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
     ring->count = count;
     ring->data = calloc(count, ring->slot);
     return ring->data != NULL;
+}
+
+void himc_osc_ring_free(osc_ring *ring)
+{
+    free(ring->data);
+    ring->data = NULL;
 }
 
 void *himc_osc_ring_slot(osc_ring *ring)

@@ -1,0 +1,207 @@
+/// decode.c: OSC packets as commands: bundles taken apart (OSC 1.0: "#bundle", time tag, then size
+/// and element in turn), messages read by liblo, commands checked by the one parser, so that the
+/// audio thread gets only commands that fit the table.
+///
+/// The time tag of a bundle is ignored: commands act when they arrive, so that nobody can pile up
+/// commands for later. `score` and `take` read only a regular file that lies in the given folder
+/// after all links are followed; in every other case the error is the same, so that it tells
+/// nothing about the disk. Messages that we send ourselves are not answered, so that two servers
+/// never answer each other forever.
+#define _GNU_SOURCE // realpath
+#include "osc/decode.h"
+
+#include <lo/lo.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define BUNDLE_DEPTH 4                 // chosen: bundles in bundles; nobody needs more than one
+#define ATOMS (2 * HIMC_COMMAND_ATOMS) // read; more than any command has, and the parser says so
+
+// --- packets
+
+// false if an atom is neither a number nor a word
+static bool read_atoms(lo_message message, himc_atom atom[ATOMS], int *count)
+{
+    const char *types = lo_message_get_types(message);
+    lo_arg **args = lo_message_get_argv(message);
+    int n = lo_message_get_argc(message);
+    *count = n < ATOMS ? n : ATOMS;
+    for (int i = 0; i < *count; i++) {
+        lo_type type = (lo_type)types[i];
+        if (lo_is_numerical_type(type))
+            atom[i] = (himc_atom){HIMC_ATOM_NUMBER, (double)lo_hires_val(type, args[i]), NULL};
+        else if (lo_is_string_type(type))
+            atom[i] = (himc_atom){HIMC_ATOM_SYMBOL, 0, (const char *)args[i]};
+        else
+            return false;
+    }
+    return true;
+}
+
+// "/himc/NAME" or "/membrane/DRUM/NAME"; false if it is neither
+static bool read_path(const char *path, osc_request *request, const char **name)
+{
+    if (strncmp(path, "/himc/", 6) == 0) {
+        request->receiver = HIMC_PERFORMER;
+        *name = path + 6;
+        return !strchr(*name, '/');
+    }
+    if (strncmp(path, "/membrane/", 10) != 0)
+        return false;
+    const char *drum = path + 10, *slash = strchr(drum, '/');
+    if (!slash || slash == drum || slash - drum >= HIMC_NAME_SIZE)
+        return false;
+    request->receiver = HIMC_DRUM;
+    snprintf(request->drum, sizeof request->drum, "%.*s", (int)(slash - drum), drum);
+    *name = slash + 1;
+    return !strchr(*name, '/');
+}
+
+static bool sent_by_us(himc_receiver receiver, const char *name)
+{
+    static const char *const sent[] = {"error", "pose",   "body", "targets", "strike",
+                                       "beat",  "status", "head", "info"};
+    if (receiver == HIMC_DRUM)
+        return strcmp(name, "head") == 0;
+    for (size_t i = 0; i < sizeof sent / sizeof *sent; i++)
+        if (strcmp(sent[i], name) == 0)
+            return true;
+    return false;
+}
+
+static osc_verdict read_message(const char *path, lo_message message, osc_request *request,
+                                himc_error *error)
+{
+    himc_atom atom[ATOMS];
+    const char *name;
+    int count;
+    if (!read_path(path, request, &name))
+        return OSC_FOREIGN;
+    if (!read_atoms(message, atom, &count))
+        return OSC_MALFORMED;
+    if (himc_command_parse(&request->command, request->receiver, name, atom, count, error))
+        return OSC_REQUEST;
+    if (sent_by_us(request->receiver, name))
+        return OSC_FOREIGN;
+    if (request->receiver == HIMC_DRUM)
+        himc_error_prefix(error, "%s", request->drum);
+    return OSC_WRONG;
+}
+
+static void decode_message(char *data, size_t size, osc_sink *sink, void *object)
+{
+    int result = 0;
+    osc_request request = {.drum = ""};
+    himc_error error;
+    lo_message message =
+        size >= 8 && data[0] == '/' ? lo_message_deserialise(data, size, &result) : NULL;
+    osc_verdict verdict = message ? read_message(data, message, &request, &error) : OSC_MALFORMED;
+    sink(object, verdict, &request, &error);
+    lo_message_free(message);
+}
+
+static void decode_element(char *data, size_t size, int depth, osc_sink *sink, void *object)
+{
+    if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
+        decode_message(data, size, sink, object);
+        return;
+    }
+    for (size_t at = 16; at < size;) {
+        const unsigned char *b = (const unsigned char *)data + at;
+        uint32_t length = 0;
+        if (size - at >= 4)
+            length = (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+        at += 4;
+        if (length == 0 || length % 4 || at > size || length > size - at || depth == BUNDLE_DEPTH) {
+            sink(object, OSC_MALFORMED, NULL, NULL);
+            return;
+        }
+        decode_element(data + at, length, depth + 1, sink, object);
+        at += length;
+    }
+}
+
+void himc_osc_decode(char *data, size_t size, osc_sink *sink, void *object)
+{
+    if (size % 4)
+        sink(object, OSC_MALFORMED, NULL, NULL);
+    else
+        decode_element(data, size, 0, sink, object);
+}
+
+void himc_osc_request_copy(osc_request *out, const osc_request *in)
+{
+    out->receiver = in->receiver;
+    memcpy(out->drum, in->drum, sizeof out->drum);
+    himc_command_copy(&out->command, &in->command);
+}
+
+// --- the commands that a stranger may give
+
+// chosen by the time they take: `target` comes often and takes microseconds, a head or a body is
+// made anew in 1 ms or more, a file is read from the disk
+double himc_osc_request_cost(const osc_request *request)
+{
+    switch (request->command.id) {
+    case HIMC_COMMAND_TARGET: return 1;
+    case HIMC_COMMAND_SCORE:
+    case HIMC_COMMAND_TAKE: return 250;
+    case HIMC_COMMAND_MODES:
+    case HIMC_COMMAND_PLAYER:
+    case HIMC_COMMAND_RESET:
+    case HIMC_COMMAND_INFO:
+    case HIMC_COMMAND_SUBSCRIBE:
+    case HIMC_COMMAND_MAKE_DRUM: return 15;
+    default: return 4;
+    }
+}
+
+// over the network only scores and takes are read, in the folder of `files`
+static bool is_confined(const himc_command *c)
+{
+    return c->id == HIMC_COMMAND_SCORE || c->id == HIMC_COMMAND_TAKE;
+}
+
+static bool lies_in(const char *real, const char *folder)
+{
+    size_t length = strlen(folder);
+    struct stat about;
+    return strncmp(real, folder, length) == 0 && (real[length] == '/' || length == 1) &&
+           strlen(real) < HIMC_PATH_SIZE && stat(real, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+// looks for the file of `score` or `take` in the folder, and names it by its real path
+static bool confine(himc_command *command, const char *folder, himc_error *error)
+{
+    char wanted[2 * HIMC_PATH_SIZE];
+    const char *name = himc_command_table((int)command->id)->name;
+    if (!folder)
+        return himc_error_set(error, "%s: no file over the network, allowed with --files", name);
+    snprintf(wanted, sizeof wanted, "%s/%s", folder, command->atom[0].symbol);
+    char *real = realpath(wanted, NULL);
+    if (!real || !lies_in(real, folder)) {
+        free(real);
+        return himc_error_set(error, "%s: no such file in the folder given by --files", name);
+    }
+    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, real};
+    himc_command found;
+    bool good = himc_command_parse(&found, HIMC_PERFORMER, name, &atom, 1, error);
+    if (good)
+        himc_command_copy(command, &found);
+    free(real);
+    return good;
+}
+
+bool himc_osc_request_admit(osc_request *request, const char *folder, himc_error *error)
+{
+    himc_command *c = &request->command;
+    int atom;
+    if (request->receiver == HIMC_PERFORMER && c->id == HIMC_COMMAND_LISTEN)
+        return himc_error_set(error, "listen: not over the network");
+    if (himc_command_file(c, &atom) != HIMC_FILE_NONE && !is_confined(c))
+        return himc_error_set(error, "record, units and shapes from files: not over the network");
+    return !is_confined(c) || confine(c, folder, error);
+}

@@ -1,0 +1,38 @@
+/// decode.h: OSC packets as commands, and the commands that a stranger may give. Bytes in, values
+/// out: no socket, no clock.
+#ifndef HIMC_OSC_DECODE_H
+#define HIMC_OSC_DECODE_H
+
+#include "himc/command.h"
+
+/// A command from the network; to be copied with himc_osc_request_copy only.
+typedef struct osc_request {
+    himc_receiver receiver;
+    char drum[HIMC_NAME_SIZE]; ///< if the receiver is a drum
+    himc_command command;
+} osc_request;
+
+typedef enum osc_verdict {
+    OSC_REQUEST,   ///< a command that fits the table
+    OSC_MALFORMED, ///< not OSC, or an atom that is neither number nor word
+    OSC_FOREIGN,   ///< an address that is none of ours, or one that only we send
+    OSC_WRONG      ///< a command with an error
+} osc_verdict;
+
+/// One message of a packet. `request` is for OSC_REQUEST, `error` for OSC_WRONG.
+typedef void osc_sink(void *object, osc_verdict verdict, osc_request *request,
+                      const himc_error *error);
+
+/// Gives each message of a packet to `sink`. `data` is aligned to 8 bytes; liblo may swap it.
+void himc_osc_decode(char *data, size_t size, osc_sink *sink, void *object);
+
+void himc_osc_request_copy(osc_request *out, const osc_request *in);
+
+/// Points of the 1000 a second that a command costs.
+double himc_osc_request_cost(const osc_request *request);
+
+/// True if a stranger may give this command. A file is looked for in `folder` (a real path, or
+/// NULL: no file) and its name replaced by its real path.
+bool himc_osc_request_admit(osc_request *request, const char *folder, himc_error *error);
+
+#endif

@@ -1,0 +1,318 @@
+/// encode.c: the performer's state as OSC 1.0. liblo writes each message; several go into a bundle
+/// with the time of the state. A packet that would grow beyond its limit is closed and another is
+/// begun, with the same time tag, so that no packet is fragmented on the way.
+///
+/// The second half writes the body as a humanoid avatar (Virtual Motion Capture protocol,
+/// protocol.vmc.info), for programs that know bones by Unity's names.
+///
+/// World: x right, y up, z forward, left-handed: a vector (x, y, z) becomes (-y, z, x). That is a
+/// reflection, so the axis of a rotation is reversed: (x, y, z, w) becomes (y, -z, -x, w).
+/// Rest: a humanoid rests in the T, arms straight out, palms down; in our zero pose they hang. A
+/// quarter turn A about x takes the arm of a T to a hanging arm, so the rotation of a bone in the
+/// world is R A, and in the frame of its parent (R_p A_p)^-1 R A. Invariant: adding up the positions
+/// and rotations sent, from the root along the bones, gives our joints, mirrored.
+#include "osc/encode.h"
+#include "himc/body.h"
+
+#include <lo/lo.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define BUNDLE_HEAD 16      // "#bundle" and the time tag (OSC 1.0) (bytes)
+#define FULL_VELOCITY 200.0 // chosen: force of a strike that is a note of full velocity (N)
+
+// --- packets
+
+uint64_t himc_osc_time_tag(double wall)
+{
+    double whole = floor(wall);
+    // 70 years of 365 days and 17 leap days lie between 1900 and 1970 (RFC 868)
+    return ((uint64_t)whole + 2208988800u) << 32 | (uint64_t)((wall - whole) * 4294967296.0);
+}
+
+static void put32(unsigned char *at, uint32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        at[i] = (unsigned char)(value >> (24 - 8 * i));
+}
+
+void himc_osc_encode_begin(osc_packets *p, size_t limit, bool bundle, double wall)
+{
+    p->limit = limit;
+    p->bundle = bundle;
+    p->count = 0;
+    p->time_tag = himc_osc_time_tag(wall);
+}
+
+static bool open_packet(osc_packets *p)
+{
+    if (p->count == PACKETS)
+        return false;
+    p->size[p->count] = 0;
+    if (p->bundle) {
+        unsigned char *at = p->data[p->count];
+        memcpy(at, "#bundle", 8);
+        put32(at + 8, (uint32_t)(p->time_tag >> 32));
+        put32(at + 12, (uint32_t)p->time_tag);
+        p->size[p->count] = BUNDLE_HEAD;
+    }
+    p->count++;
+    return true;
+}
+
+static void add_message(osc_packets *p, const char *path, lo_message message)
+{
+    size_t size = lo_message_length(message, path), length = p->bundle ? 4 : 0;
+    if (size + BUNDLE_HEAD + 4 > p->limit)
+        return;
+    if (p->count == 0 || !p->bundle || p->size[p->count - 1] + length + size > p->limit)
+        if (!open_packet(p))
+            return;
+    unsigned char *at = p->data[p->count - 1] + p->size[p->count - 1];
+    if (p->bundle)
+        put32(at, (uint32_t)size);
+    lo_message_serialise(message, path, at + length, NULL);
+    p->size[p->count - 1] += length + size;
+}
+
+// one message; types: s text, i int, f double
+static void add(osc_packets *p, const char *path, const char *types, ...)
+{
+    lo_message message = lo_message_new();
+    if (!message)
+        return;
+    va_list args;
+    va_start(args, types);
+    for (; *types; types++) {
+        if (*types == 's')
+            lo_message_add_string(message, va_arg(args, const char *));
+        else if (*types == 'i')
+            lo_message_add_int32(message, va_arg(args, int));
+        else
+            lo_message_add_float(message, (float)va_arg(args, double));
+    }
+    va_end(args);
+    add_message(p, path, message);
+    lo_message_free(message);
+}
+
+// --- states
+
+void himc_osc_encode_pose(osc_packets *p, const osc_pose *pose)
+{
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        const float *x = pose->origin[i], *q = pose->orientation[i];
+        add(p, "/himc/body", "sfffffff", himc_segment_name(i), x[0], x[1], x[2], q[3], q[0], q[1],
+            q[2]);
+    }
+}
+
+void himc_osc_encode_targets(osc_packets *p, const osc_pose *pose)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const float *x = pose->target[hand];
+        add(p, "/himc/targets", "sfff", himc_hand_name((himc_hand)hand), x[0], x[1], x[2]);
+    }
+}
+
+void himc_osc_encode_strike(osc_packets *p, const osc_strike *strike)
+{
+    const himc_strike *s = &strike->strike;
+    // a float's time is exact to 1 ms for two hours only; whole and fraction are for half a year
+    double whole = floor(s->time);
+    add(p, "/himc/strike", "fssfffffsiif", s->time, himc_hand_name(s->hand), s->drum, s->x, s->y,
+        s->velocity, s->force, s->duration, s->nuance, (int)strike->number, (int)whole,
+        s->time - whole);
+}
+
+void himc_osc_encode_beat(osc_packets *p, double beat)
+{
+    add(p, "/himc/beat", "f", beat);
+}
+
+void himc_osc_encode_head(osc_packets *p, const osc_head *head)
+{
+    char path[64];
+    lo_message message = lo_message_new();
+    if (!message)
+        return;
+    for (int i = 0; i < head->count; i++)
+        lo_message_add_float(message, head->amplitude[i]);
+    snprintf(path, sizeof path, "/membrane/%s/head", head->name);
+    add_message(p, path, message);
+    lo_message_free(message);
+}
+
+void himc_osc_encode_drum(osc_packets *p, const osc_drum *drum)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/membrane/%s/place", drum->name);
+    add(p, path, "fffff", drum->place[0], drum->place[1], drum->place[2], drum->place[3],
+        drum->place[4]);
+}
+
+void himc_osc_encode_status(osc_packets *p, const osc_status *status, const himc_osc_counts *c)
+{
+    const himc_performance_stats *s = &status->stats;
+    const struct {
+        const char *name;
+        double value;
+    } pair[] = {{"sound", s->sample_rate},
+                {"physics", s->physics_rate},
+                {"task", s->task_rate},
+                {"load", status->load},
+                {"seconds", s->seconds},
+                {"strokes", s->strokes},
+                {"played", s->played},
+                {"strikes", (double)status->strikes},
+                {"recoveries", (double)s->recoveries},
+                {"limit_hits", (double)s->limit_hits},
+                {"packets", (double)c->packets},
+                {"commands", (double)c->commands},
+                {"malformed", (double)c->malformed},
+                {"foreign", (double)c->foreign},
+                {"refused", (double)c->refused},
+                {"frequent", (double)c->frequent},
+                {"overrun", (double)c->overrun},
+                {"sent", (double)c->sent},
+                {"unsent", (double)c->unsent},
+                {"lost", (double)c->lost}};
+    lo_message message = lo_message_new();
+    if (!message)
+        return;
+    for (size_t i = 0; i < sizeof pair / sizeof *pair; i++) {
+        lo_message_add_string(message, pair[i].name);
+        lo_message_add_float(message, (float)pair[i].value);
+    }
+    add_message(p, "/himc/status", message);
+    lo_message_free(message);
+}
+
+void himc_osc_encode_line(osc_packets *p, bool error, const char *text)
+{
+    add(p, error ? "/himc/error" : "/himc/info", "s", text);
+}
+
+// --- the avatar
+
+typedef struct bone {
+    const char *name;
+    int segment, parent; // parent: a bone, -1 for the root
+    int arm;             // +1 left, -1 right, 0 none
+    double along;        // share of the way from the joint of `segment` to that of `towards`
+    int towards;
+} bone;
+
+enum {
+    HIPS,
+    SPINE,
+    CHEST,
+    NECK,
+    HEAD,
+    SHOULDER_L,
+    SHOULDER_R,
+    UPPER_ARM_L,
+    UPPER_ARM_R,
+    LOWER_ARM_L,
+    LOWER_ARM_R,
+    HAND_L,
+    HAND_R,
+    UPPER_LEG_L,
+    UPPER_LEG_R,
+    LOWER_LEG_L,
+    LOWER_LEG_R,
+    FOOT_L,
+    FOOT_R,
+    TOES_L,
+    TOES_R,
+    BONES
+};
+
+// a parent stands before its children; shares chosen: chest and shoulders where a rig has them
+static const bone bones[BONES] = {
+    {"Hips", HIMC_PELVIS, -1, 0, 0, 0},
+    {"Spine", HIMC_TRUNK, HIPS, 0, 0, 0},
+    {"Chest", HIMC_TRUNK, SPINE, 0, 0.4, HIMC_NECK},
+    {"Neck", HIMC_NECK, CHEST, 0, 0, 0},
+    {"Head", HIMC_HEAD, NECK, 0, 0, 0},
+    {"LeftShoulder", HIMC_TRUNK, CHEST, 0, 0.85, HIMC_LEFT_UPPER_ARM},
+    {"RightShoulder", HIMC_TRUNK, CHEST, 0, 0.85, HIMC_RIGHT_UPPER_ARM},
+    {"LeftUpperArm", HIMC_LEFT_UPPER_ARM, SHOULDER_L, 1, 0, 0},
+    {"RightUpperArm", HIMC_RIGHT_UPPER_ARM, SHOULDER_R, -1, 0, 0},
+    {"LeftLowerArm", HIMC_LEFT_FOREARM, UPPER_ARM_L, 1, 0, 0},
+    {"RightLowerArm", HIMC_RIGHT_FOREARM, UPPER_ARM_R, -1, 0, 0},
+    {"LeftHand", HIMC_LEFT_HAND, LOWER_ARM_L, 1, 0, 0},
+    {"RightHand", HIMC_RIGHT_HAND, LOWER_ARM_R, -1, 0, 0},
+    {"LeftUpperLeg", HIMC_LEFT_UPPER_LEG, HIPS, 0, 0, 0},
+    {"RightUpperLeg", HIMC_RIGHT_UPPER_LEG, HIPS, 0, 0, 0},
+    {"LeftLowerLeg", HIMC_LEFT_LOWER_LEG, UPPER_LEG_L, 0, 0, 0},
+    {"RightLowerLeg", HIMC_RIGHT_LOWER_LEG, UPPER_LEG_R, 0, 0, 0},
+    {"LeftFoot", HIMC_LEFT_FOOT, LOWER_LEG_L, 0, 0, 0},
+    {"RightFoot", HIMC_RIGHT_FOOT, LOWER_LEG_R, 0, 0, 0},
+    {"LeftToes", HIMC_LEFT_TOES, FOOT_L, 0, 0, 0},
+    {"RightToes", HIMC_RIGHT_TOES, FOOT_R, 0, 0, 0},
+};
+
+static himc_vec3 vector(const float x[3])
+{
+    return himc_vec3_make(x[0], x[1], x[2]);
+}
+
+static himc_quat rotation(const osc_pose *pose, int segment)
+{
+    const float *q = pose->orientation[segment];
+    return (himc_quat){q[3], q[0], q[1], q[2]};
+}
+
+// the beginning of a bone and its rotation away from the T, in our world
+static void locate_bone(const osc_pose *pose, const bone *b, himc_vec3 *x, himc_quat *q)
+{
+    *x = vector(pose->origin[b->segment]);
+    *x = himc_vec3_madd(*x, b->along, himc_vec3_sub(vector(pose->origin[b->towards]), *x));
+    himc_quat from_t = himc_quat_exp(himc_vec3_make(-b->arm * HIMC_PI / 2, 0, 0));
+    *q = himc_quat_mul(rotation(pose, b->segment), from_t);
+}
+
+// a position and a rotation in Unity's world
+static void add_transform(osc_packets *p, const char *path, const char *name, himc_vec3 x,
+                          himc_quat q)
+{
+    add(p, path, "sfffffff", name, -x.y, x.z, x.x, q.y, -q.z, -q.x, q.w);
+}
+
+void himc_osc_encode_vmc_pose(osc_packets *p, const osc_pose *pose, double time)
+{
+    static const char *const mallet[] = {"left-mallet", "right-mallet"};
+    himc_vec3 x[BONES];
+    himc_quat q[BONES];
+    add(p, "/VMC/Ext/OK", "iiii", 1, 3, 0, 1); // loaded, calibrated, mode, tracking
+    add(p, "/VMC/Ext/T", "f", time);
+    add_transform(p, "/VMC/Ext/Root/Pos", "root", (himc_vec3){0, 0, 0}, himc_quat_identity());
+    for (int i = 0; i < BONES; i++) {
+        const bone *b = &bones[i];
+        locate_bone(pose, b, &x[i], &q[i]);
+        himc_vec3 offset = x[i];
+        himc_quat relative = q[i];
+        if (b->parent >= 0) {
+            himc_quat back = himc_quat_conj(q[b->parent]);
+            offset = himc_quat_rotate(back, himc_vec3_sub(x[i], x[b->parent]));
+            relative = himc_quat_mul(back, q[i]);
+        }
+        add_transform(p, "/VMC/Ext/Bone/Pos", b->name, offset, relative);
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        add_transform(p, "/VMC/Ext/Tra/Pos", mallet[hand], vector(pose->tip[hand]),
+                      rotation(pose, himc_stick_segment((himc_hand)hand)));
+}
+
+void himc_osc_encode_vmc_strike(osc_packets *p, const himc_strike *strike, double hz)
+{
+    // MIDI: key 69 is A4, 440 Hz
+    double key = round(69 + 12 * log2(hz / 440)), velocity = strike->force / FULL_VELOCITY;
+    int note = key < 0 ? 0 : key > 127 ? 127 : (int)key;
+    velocity = velocity > 1 ? 1 : velocity;
+    add(p, "/VMC/Ext/Midi/Note", "iiif", 1, (int)strike->hand, note, velocity);
+    add(p, "/VMC/Ext/Midi/Note", "iiif", 0, (int)strike->hand, note, 0.0);
+}

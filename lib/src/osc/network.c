@@ -1,0 +1,343 @@
+/// network.c: UDP sockets, addresses, names. Our own sockets and not liblo's, because a server of
+/// liblo always binds to every address of the machine.
+///
+/// Packets to the network that we listen at leave from the listening socket, so that a receiver can
+/// answer; all others leave from sockets that only send. No call waits but the one named so. The
+/// system reports a port where nobody listens on the error queue (IP_RECVERR), with the address
+/// that the packet was meant for.
+///
+/// An IPv4 address mapped into IPv6 (::ffff:a.b.c.d) is compared as the IPv4 address, so that a
+/// host is one host.
+#define _GNU_SOURCE // the error queue and the count of dropped packets are Linux's own
+#include "osc/network.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <linux/errqueue.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#define RECEIVE_BUFFER (1 << 20) // (bytes) chosen: 0.1 s of the 100,000 packets/s of the storm test
+#define DISCARD_AT_ONCE 256      // packets; chosen: as many as are read of the listening socket
+#define SEND_ATTEMPTS 3 // the first failures may report earlier packets; there are 3 sockets
+
+// --- addresses
+
+typedef union socket_address {
+    struct sockaddr any;
+    struct sockaddr_in v4;
+    struct sockaddr_in6 v6;
+    struct sockaddr_storage storage;
+} socket_address;
+
+static socklen_t to_socket(const osc_address *a, socket_address *out)
+{
+    memset(out, 0, sizeof *out);
+    if (a->v6) {
+        out->v6.sin6_family = AF_INET6;
+        out->v6.sin6_port = htons(a->port);
+        out->v6.sin6_scope_id = a->scope;
+        memcpy(&out->v6.sin6_addr, a->host, 16);
+        return sizeof out->v6;
+    }
+    out->v4.sin_family = AF_INET;
+    out->v4.sin_port = htons(a->port);
+    memcpy(&out->v4.sin_addr, a->host, 4);
+    return sizeof out->v4;
+}
+
+static osc_address from_socket(const socket_address *in)
+{
+    osc_address a = {.v6 = in->any.sa_family == AF_INET6};
+    if (a.v6) {
+        a.port = ntohs(in->v6.sin6_port);
+        a.scope = in->v6.sin6_scope_id;
+        memcpy(a.host, &in->v6.sin6_addr, 16);
+    } else {
+        a.port = ntohs(in->v4.sin_port);
+        memcpy(a.host, &in->v4.sin_addr, 4);
+    }
+    return a;
+}
+
+// IPv4 if it is IPv4 mapped into IPv6
+static osc_address unmapped(const osc_address *a)
+{
+    static const unsigned char prefix[12] = {[10] = 0xff, [11] = 0xff};
+    osc_address four = {.port = a->port};
+    if (!a->v6 || memcmp(a->host, prefix, 12) != 0)
+        return *a;
+    memcpy(four.host, a->host + 12, 4);
+    return four;
+}
+
+static bool resolve(const char *host, int port, int flags, osc_address *out)
+{
+    char service[16];
+    struct addrinfo hints = {.ai_socktype = SOCK_DGRAM, .ai_flags = flags}, *found;
+    socket_address at = {0};
+    snprintf(service, sizeof service, "%d", port);
+    if (getaddrinfo(host, service, &hints, &found) != 0)
+        return false;
+    memcpy(&at, found->ai_addr, found->ai_addrlen);
+    freeaddrinfo(found);
+    *out = from_socket(&at);
+    *out = unmapped(out);
+    return true;
+}
+
+bool himc_osc_address_parse(const char *host, int port, osc_address *out)
+{
+    bool here = strcmp(host, "localhost") == 0;
+    return resolve(here ? "127.0.0.1" : host, port, AI_NUMERICHOST | AI_NUMERICSERV, out);
+}
+
+bool himc_osc_address_find(const char *host, int port, osc_address *out)
+{
+    return resolve(host, port, AI_NUMERICSERV, out);
+}
+
+bool himc_osc_address_loopback(const osc_address *a)
+{
+    static const unsigned char loopback6[16] = {[15] = 1};
+    return a->v6 ? memcmp(a->host, loopback6, 16) == 0 : a->host[0] == 127;
+}
+
+static bool same_number(const osc_address *a, const osc_address *b)
+{
+    return a->v6 == b->v6 && memcmp(a->host, b->host, a->v6 ? 16 : 4) == 0;
+}
+
+bool himc_osc_address_same_host(const osc_address *x, const osc_address *y)
+{
+    osc_address a = unmapped(x), b = unmapped(y);
+    return same_number(&a, &b) || (himc_osc_address_loopback(&a) && himc_osc_address_loopback(&b));
+}
+
+bool himc_osc_address_same(const osc_address *x, const osc_address *y)
+{
+    osc_address a = unmapped(x), b = unmapped(y);
+    return same_number(&a, &b) && a.port == b.port;
+}
+
+void himc_osc_address_print(const osc_address *address, char text[80])
+{
+    osc_address a = unmapped(address);
+    socket_address at;
+    socklen_t size = to_socket(&a, &at);
+    char host[64], port[8];
+    if (getnameinfo(&at.any, size, host, sizeof host, port, sizeof port,
+                    NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+        snprintf(text, 80, "?");
+    else
+        snprintf(text, 80, a.v6 ? "[%s]:%s" : "%s:%s", host, port);
+}
+
+// --- sockets
+
+static int open_socket(int family)
+{
+    int fd = socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), on = 1,
+        size = RECEIVE_BUFFER;
+    if (fd < 0)
+        return -1;
+    // all of these are useful, none is required
+    if (family == AF_INET6)
+        setsockopt(fd, IPPROTO_IPV6, IPV6_RECVERR, &on, sizeof on);
+    else
+        setsockopt(fd, IPPROTO_IP, IP_RECVERR, &on, sizeof on);
+    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+    setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+    return fd;
+}
+
+bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_counters *counts,
+                           himc_error *error)
+{
+    osc_address address;
+    socket_address at;
+    *n = (osc_network){.in = -1, .out = {-1, -1}, .counts = counts};
+    bind_to = bind_to ? bind_to : "127.0.0.1";
+    if (port < 0)
+        return true;
+    if (port > 65535)
+        return himc_error_set(error, "port: %d, allowed 0 .. 65535", port);
+    if (!himc_osc_address_parse(bind_to, port, &address))
+        return himc_error_set(error, "bind: %.80s, allowed a numeric address of this machine",
+                              bind_to);
+    n->in_v6 = address.v6;
+    n->in_loopback = himc_osc_address_loopback(&address);
+    n->in = open_socket(n->in_v6 ? AF_INET6 : AF_INET);
+    socklen_t size = to_socket(&address, &at);
+    if (n->in < 0 || bind(n->in, &at.any, size) != 0) {
+        if (errno == EADDRINUSE)
+            return himc_error_set(error, "port %d is taken by another program, allowed a free one",
+                                  port);
+        return himc_error_set(error, "%.80s port %d: %s", bind_to, port, strerror(errno));
+    }
+    size = sizeof at;
+    getsockname(n->in, &at.any, &size);
+    n->port = from_socket(&at).port;
+    return true;
+}
+
+void himc_osc_network_close(osc_network *n)
+{
+    int fd[] = {n->in, n->out[0], n->out[1]};
+    for (int i = 0; i < 3; i++)
+        if (fd[i] >= 0)
+            close(fd[i]);
+    n->in = n->out[0] = n->out[1] = -1;
+}
+
+void himc_osc_network_wait(osc_network *n, int milliseconds)
+{
+    struct pollfd at[] = {{n->in, POLLIN, 0}, {n->out[0], POLLIN, 0}, {n->out[1], POLLIN, 0}};
+    poll(at, 3, milliseconds);
+}
+
+// the socket that packets to this address leave from, -1 if there is none
+static int socket_to(osc_network *n, const osc_address *to)
+{
+    if (n->in >= 0 && to->v6 == n->in_v6 && (!n->in_loopback || himc_osc_address_loopback(to)))
+        return n->in;
+    int *out = &n->out[to->v6];
+    if (*out < 0)
+        *out = open_socket(to->v6 ? AF_INET6 : AF_INET);
+    return *out;
+}
+
+bool himc_osc_network_send(osc_network *n, const osc_address *to, const void *data, size_t size)
+{
+    int fd = socket_to(n, to);
+    socket_address at;
+    socklen_t length = to_socket(to, &at);
+    ssize_t sent = -1;
+    for (int i = 0; fd >= 0 && sent < 0 && i < SEND_ATTEMPTS; i++)
+        sent = sendto(fd, data, size, MSG_DONTWAIT, &at.any, length);
+    bool good = sent == (ssize_t)size;
+    himc_osc_add(n->counts, good ? COUNT_SENT : COUNT_UNSENT, 1);
+    return good;
+}
+
+// adds the packets that the system dropped since the last report
+static void count_overrun(osc_network *n, struct msghdr *m)
+{
+    for (struct cmsghdr *c = CMSG_FIRSTHDR(m); c; c = CMSG_NXTHDR(m, c))
+        if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
+            uint32_t dropped;
+            memcpy(&dropped, CMSG_DATA(c), sizeof dropped);
+            himc_osc_add(n->counts, COUNT_OVERRUN, (long)(uint32_t)(dropped - n->overrun));
+            n->overrun = dropped;
+        }
+}
+
+static ssize_t read_message(osc_network *n, int fd, int flags, osc_address *from, void *data,
+                            size_t size)
+{
+    _Alignas(struct cmsghdr) char control[512];
+    socket_address at = {0};
+    struct iovec part = {data, size};
+    struct msghdr m = {.msg_name = &at,
+                       .msg_namelen = sizeof at,
+                       .msg_iov = &part,
+                       .msg_iovlen = 1,
+                       .msg_control = control,
+                       .msg_controllen = sizeof control};
+    ssize_t got = fd < 0 ? -1 : recvmsg(fd, &m, flags | MSG_DONTWAIT);
+    if (got < 0)
+        return -1;
+    *from = from_socket(&at);
+    if (flags & MSG_ERRQUEUE)
+        return got;
+    count_overrun(n, &m);
+    himc_osc_add(n->counts, COUNT_PACKETS, 1);
+    return got;
+}
+
+long himc_osc_network_receive(osc_network *n, osc_address *from, void *data, size_t size)
+{
+    return read_message(n, n->in, 0, from, data, size);
+}
+
+void himc_osc_network_discard(osc_network *n)
+{
+    char data[16];
+    osc_address from;
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < DISCARD_AT_ONCE; i++) {
+            if (read_message(n, n->out[k], 0, &from, data, sizeof data) < 0)
+                break;
+            himc_osc_add(n->counts, COUNT_FOREIGN, 1);
+        }
+}
+
+bool himc_osc_network_unreachable(osc_network *n, osc_address *to)
+{
+    char data[64];
+    int fd[] = {n->in, n->out[0], n->out[1]};
+    for (int i = 0; i < 3; i++)
+        if (read_message(n, fd[i], MSG_ERRQUEUE, to, data, sizeof data) >= 0)
+            return true;
+    return false;
+}
+
+// --- names
+
+// shared by the thread of the look-up and the caller; the last of the two frees it
+struct osc_lookup {
+    _Atomic int users;
+    _Atomic bool done;
+    bool found;
+    char host[256];
+    int port;
+    osc_address to;
+};
+
+void himc_osc_lookup_free(osc_lookup *lookup)
+{
+    if (atomic_fetch_sub(&lookup->users, 1) == 1)
+        free(lookup);
+}
+
+static void *look_up(void *object)
+{
+    osc_lookup *l = object;
+    l->found = himc_osc_address_find(l->host, l->port, &l->to);
+    atomic_store(&l->done, true);
+    himc_osc_lookup_free(l);
+    return NULL;
+}
+
+osc_lookup *himc_osc_lookup_start(const char *host, int port)
+{
+    osc_lookup *l = calloc(1, sizeof *l);
+    pthread_t thread;
+    if (!l)
+        return NULL;
+    l->users = 2;
+    l->port = port;
+    snprintf(l->host, sizeof l->host, "%s", host);
+    if (pthread_create(&thread, NULL, look_up, l) != 0) {
+        free(l);
+        return NULL;
+    }
+    pthread_detach(thread);
+    return l;
+}
+
+bool himc_osc_lookup_done(const osc_lookup *lookup, bool *found, osc_address *to)
+{
+    if (!atomic_load(&lookup->done))
+        return false;
+    *found = lookup->found;
+    *to = lookup->to;
+    return true;
+}

@@ -1,0 +1,380 @@
+/// subscribe.c: which address gets which state, how often, and who may ask for it.
+///
+/// Over the network a host may subscribe itself or one of --allow, by numeric address only, so that
+/// no stranger can make this machine ask a name server. The user of this machine may subscribe any
+/// host. An address where nobody listens is tried once a second and forgotten after a minute, with
+/// one line for the user.
+///
+/// A state is encoded once for all its subscribers: in one packet for this machine, and in packets
+/// below 1400 bytes for the others, so that none is fragmented on the way.
+#include "osc/subscribe.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define DEFAULT_HZ 33.0       // chosen: one pose a frame of 30 a second
+#define FORGET_AFTER 60.0     // (s) chosen: long enough to restart a receiver
+#define RETRY_PERIOD 1.0      // (s) chosen
+#define REACHED_AFTER 2.5     // (s) without a report; chosen: two tries and a half
+#define UNKNOWN_DRUM_HZ 110.0 // (Hz) chosen: A2, for a strike before its drum is known
+#define REPORTS_AT_ONCE 192   // read at a time; chosen: 64 for each socket
+
+void himc_osc_tell(osc_ring *lines, const char *format, ...)
+{
+    char *line = himc_osc_ring_slot(lines);
+    if (!line)
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, HIMC_OSC_LINE, format, args);
+    va_end(args);
+    himc_osc_ring_push(lines);
+}
+
+// --- changes of the table
+
+bool himc_osc_change_from(osc_change *change, const himc_command *c)
+{
+    enum { WITH_PORT, VMC }; // the forms of both commands
+    if (c->id != HIMC_COMMAND_SUBSCRIBE && c->id != HIMC_COMMAND_UNSUBSCRIBE)
+        return false;
+    int next = c->form == VMC ? 1 : 2;
+    snprintf(change->host, sizeof change->host, "%s", c->atom[0].symbol);
+    change->port = c->form == VMC ? HIMC_VMC_PORT : (int)c->atom[1].number;
+    change->stream = STREAM_ANY;
+    if (next < c->count && c->choice[next] >= 0)
+        change->stream = c->form == VMC ? STREAM_VMC : (osc_stream)c->choice[next];
+    if (change->stream != STREAM_ANY)
+        next++;
+    change->hz = next < c->count ? c->atom[next].number : DEFAULT_HZ;
+    change->remove = c->id == HIMC_COMMAND_UNSUBSCRIBE;
+    return true;
+}
+
+static const char *command_of(const osc_change *change)
+{
+    return himc_command_table(change->remove ? HIMC_COMMAND_UNSUBSCRIBE : HIMC_COMMAND_SUBSCRIBE)
+        ->name;
+}
+
+static bool refuse(const osc_change *change, himc_error *error, const char *why)
+{
+    return himc_error_set(error, "%s: %.200s port %d: %s", command_of(change), change->host,
+                          change->port, why);
+}
+
+static bool is_allowed(const osc_subscriptions *s, const osc_change *change, const osc_address *to)
+{
+    bool good = change->local || himc_osc_address_same_host(to, &change->from);
+    for (int i = 0; i < s->allowed_count && !good; i++)
+        good = himc_osc_address_same_host(to, &s->allowed[i]);
+    return good;
+}
+
+// after a change of the table: the rates that the host has to send at, and the first of each address
+static void update(osc_subscriptions *s)
+{
+    double pose = 0, head = 0;
+    int count = 0;
+    for (int i = 0; i < SUBSCRIPTIONS; i++) {
+        osc_subscription *one = &s->subscription[i];
+        one->first = one->used && one->stream != STREAM_VMC;
+        for (int k = 0; k < i && one->first; k++)
+            one->first = !(s->subscription[k].first &&
+                           himc_osc_address_same(&s->subscription[k].to, &one->to));
+        if (!one->used)
+            continue;
+        count++;
+        if (one->stream == STREAM_HEAD)
+            head = fmax(head, one->hz);
+        else if (one->stream != STREAM_STRIKES)
+            pose = fmax(pose, one->hz);
+    }
+    atomic_store(&s->pose_hz, (int)ceil(pose));
+    atomic_store(&s->head_hz, (int)ceil(head));
+    atomic_store(&s->count, count);
+}
+
+static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const osc_address *to,
+                        himc_error *error)
+{
+    int removed = 0;
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && (change->stream == STREAM_ANY || one->stream == change->stream) &&
+            himc_osc_address_same(&one->to, to)) {
+            one->used = false;
+            removed++;
+        }
+    update(s);
+    return removed || refuse(change, error, "not subscribed");
+}
+
+static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
+                        himc_error *error)
+{
+    osc_subscription *place = NULL;
+    if (change->remove)
+        return unsubscribe(s, change, to, error);
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
+        if (one->used && one->stream == change->stream && himc_osc_address_same(&one->to, to)) {
+            place = one;
+            break;
+        }
+        if (!one->used && !place)
+            place = one;
+    }
+    if (!place)
+        return refuse(change, error, "256 subscriptions already, allowed no more");
+    *place = (osc_subscription){.used = true,
+                                .to = *to,
+                                .stream = change->stream,
+                                .hz = change->hz,
+                                .local = himc_osc_address_loopback(to)};
+    update(s);
+    return true;
+}
+
+static bool look_up(osc_subscriptions *s, const osc_change *change)
+{
+    for (struct osc_pending *p = s->pending; p < s->pending + LOOKUPS; p++)
+        if (!p->lookup) {
+            p->change = *change;
+            p->lookup = himc_osc_lookup_start(change->host, change->port);
+            return p->lookup != NULL;
+        }
+    return false;
+}
+
+bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, himc_error *error)
+{
+    osc_address to;
+    if (change->granted)
+        return make_change(s, change, &change->from, error);
+    if (himc_osc_address_parse(change->host, change->port, &to))
+        return is_allowed(s, change, &to)
+                   ? make_change(s, change, &to, error)
+                   : refuse(change, error, "allowed is your own address, or one given by --allow");
+    if (!change->local)
+        return refuse(change, error, "allowed over the network is a numeric address");
+    return look_up(s, change) || refuse(change, error, "too many names are being looked up");
+}
+
+void himc_osc_subscribe_found(osc_subscriptions *s)
+{
+    osc_address to;
+    himc_error error;
+    bool found;
+    for (struct osc_pending *p = s->pending; p < s->pending + LOOKUPS; p++) {
+        if (!p->lookup || !himc_osc_lookup_done(p->lookup, &found, &to))
+            continue;
+        himc_osc_lookup_free(p->lookup);
+        p->lookup = NULL;
+        if (!found) {
+            himc_osc_tell(s->lines, "%s: %.200s: no host of that name", command_of(&p->change),
+                          p->change.host);
+        } else if (!make_change(s, &p->change, &to, &error)) {
+            himc_osc_add(s->counts, COUNT_REFUSED, 1);
+            himc_osc_tell(s->lines, "%s", error.text);
+        }
+    }
+}
+
+bool himc_osc_allow(osc_subscriptions *s, const char *hosts, himc_error *error)
+{
+    while (hosts && *hosts) {
+        char host[256];
+        size_t n = strcspn(hosts, ",");
+        snprintf(host, sizeof host, "%.*s", (int)n, hosts);
+        if (s->allowed_count == ALLOWED_HOSTS)
+            return himc_error_set(error, "allow: %s is one host too many, allowed 32", host);
+        osc_address *a = &s->allowed[s->allowed_count++];
+        if (n >= sizeof host ||
+            (!himc_osc_address_parse(host, 1, a) && !himc_osc_address_find(host, 1, a)))
+            return himc_error_set(error, "allow: %s: no host of that name", host);
+        hosts += n + (hosts[n] == ',');
+    }
+    return true;
+}
+
+void himc_osc_subscriptions_free(osc_subscriptions *s)
+{
+    for (struct osc_pending *p = s->pending; p < s->pending + LOOKUPS; p++)
+        if (p->lookup)
+            himc_osc_lookup_free(p->lookup);
+}
+
+// --- addresses where nobody listens
+
+static void mark_unreachable(osc_subscriptions *s, const osc_address *to, double now)
+{
+    char text[80];
+    bool told = false;
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
+        if (!one->used || !himc_osc_address_same(&one->to, to))
+            continue;
+        told = told || one->unreachable_since > 0;
+        if (one->unreachable_since <= 0)
+            one->unreachable_since = now;
+        one->unreachable_last = now;
+        one->due = fmax(one->due, now + RETRY_PERIOD);
+        if (told)
+            continue;
+        himc_osc_address_print(to, text);
+        himc_osc_tell(s->lines,
+                      "%s: unreachable, or nobody listens; tried once a second, forgotten after "
+                      "%g s",
+                      text, FORGET_AFTER);
+        told = true;
+    }
+}
+
+void himc_osc_forget_unreachable(osc_subscriptions *s, double now)
+{
+    osc_address to;
+    bool forgotten = false;
+    for (int i = 0; i < REPORTS_AT_ONCE && himc_osc_network_unreachable(s->network, &to); i++)
+        mark_unreachable(s, &to, now);
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
+        if (!one->used || one->unreachable_since <= 0)
+            continue;
+        if (now - one->unreachable_since > FORGET_AFTER) {
+            one->used = false;
+            forgotten = true;
+        } else if (now - one->unreachable_last > REACHED_AFTER) {
+            one->unreachable_since = 0;
+        }
+    }
+    if (forgotten)
+        update(s);
+}
+
+// --- states out
+
+static void send_packets(osc_subscriptions *s, const osc_address *to, const osc_packets *p,
+                         double now)
+{
+    for (int i = 0; i < p->count; i++)
+        if (!himc_osc_network_send(s->network, to, p->data[i], p->size[i]))
+            mark_unreachable(s, to, now);
+}
+
+// true if the next packet is due; half a period early is early enough, so that two clocks of the
+// same rate do not beat
+static bool due(osc_subscription *one, double now)
+{
+    if (now < one->due)
+        return false;
+    double period = one->unreachable_since > 0 ? RETRY_PERIOD : 1 / one->hz;
+    one->due = fmax(one->due + period, now + 0.5 * period);
+    return true;
+}
+
+static const osc_packets *encoded_pose(osc_subscriptions *s, const osc_state *state,
+                                       const osc_subscription *one)
+{
+    bool vmc = one->stream == STREAM_VMC;
+    osc_packets *p = &s->packets[vmc][one->local];
+    if (s->encoded[vmc][one->local])
+        return p;
+    s->encoded[vmc][one->local] = true;
+    himc_osc_encode_begin(p, one->local ? LARGE_PACKET : SMALL_PACKET, true, state->wall);
+    if (vmc)
+        himc_osc_encode_vmc_pose(p, &state->pose, state->time);
+    else
+        himc_osc_encode_pose(p, &state->pose);
+    return p;
+}
+
+static void deliver_pose(osc_subscriptions *s, const osc_state *state, osc_packets *targets,
+                         double now)
+{
+    himc_osc_encode_targets(targets, &state->pose);
+    memset(s->encoded, 0, sizeof s->encoded);
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
+        if (!one->used || one->stream == STREAM_STRIKES || one->stream == STREAM_HEAD ||
+            !due(one, now))
+            continue;
+        bool only_targets = one->stream == STREAM_TARGETS;
+        send_packets(s, &one->to, only_targets ? targets : encoded_pose(s, state, one), now);
+    }
+}
+
+// to each address once that subscribed to anything but vmc
+static void send_once(osc_subscriptions *s, const osc_packets *p, double now)
+{
+    for (int i = 0; i < SUBSCRIPTIONS; i++)
+        if (s->subscription[i].used && s->subscription[i].first)
+            send_packets(s, &s->subscription[i].to, p, now);
+}
+
+static double principal_mode(const osc_subscriptions *s, const char *drum)
+{
+    for (int i = 0; i < s->drums; i++)
+        if (strcmp(s->drum[i].name, drum) == 0)
+            return s->drum[i].hz;
+    return UNKNOWN_DRUM_HZ;
+}
+
+static void deliver_strike(osc_subscriptions *s, const osc_state *state, osc_packets *p, double now)
+{
+    const himc_strike *strike = &state->strike.strike;
+    osc_packets vmc;
+    himc_osc_encode_strike(p, &state->strike);
+    himc_osc_encode_begin(&vmc, SMALL_PACKET, true, state->wall);
+    himc_osc_encode_vmc_strike(&vmc, strike, principal_mode(s, strike->drum));
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && one->stream == STREAM_STRIKES)
+            send_packets(s, &one->to, p, now);
+        else if (one->used && one->stream == STREAM_VMC)
+            send_packets(s, &one->to, &vmc, now);
+}
+
+static void deliver_head(osc_subscriptions *s, const osc_head *head, osc_packets *p, double now)
+{
+    himc_osc_encode_head(p, head);
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
+        if (!one->used || one->stream != STREAM_HEAD)
+            continue;
+        // the heads of several drums come together; all are due when the first is, which has just
+        // put the next time a period ahead
+        bool first = head->name[0] && strcmp(s->drum[0].name, head->name) == 0;
+        if (first ? due(one, now) : now + 0.4 / one->hz < one->due)
+            send_packets(s, &one->to, p, now);
+    }
+}
+
+static void deliver_drum(osc_subscriptions *s, const osc_drum *drum, osc_packets *p, double now)
+{
+    int i = 0;
+    while (i < s->drums && strcmp(s->drum[i].name, drum->name) != 0)
+        i++;
+    if (i == HIMC_DRUMS)
+        return;
+    s->drums += i == s->drums;
+    s->drum[i] = *drum;
+    himc_osc_encode_drum(p, drum);
+    send_once(s, p, now);
+}
+
+void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
+                      double now)
+{
+    osc_packets p;
+    himc_osc_encode_begin(&p, SMALL_PACKET, true, state->wall);
+    switch (state->kind) {
+    case STATE_POSE: deliver_pose(s, state, &p, now); break;
+    case STATE_STRIKE: deliver_strike(s, state, &p, now); break;
+    case STATE_HEAD: deliver_head(s, &state->head, &p, now); break;
+    case STATE_DRUM: deliver_drum(s, &state->drum, &p, now); break;
+    case STATE_BEAT:
+        himc_osc_encode_beat(&p, state->beat);
+        send_once(s, &p, now);
+        break;
+    case STATE_STATUS:
+        himc_osc_encode_status(&p, &state->status, counts);
+        send_once(s, &p, now);
+        break;
+    }
+}

@@ -1,0 +1,103 @@
+/// subscribe.h: the subscriptions: which address gets which state, how often, and who may ask for
+/// it. Sends the states too. Belongs to the network thread, but for `pose_hz`, `head_hz` and
+/// `count`, which any thread may read.
+#ifndef HIMC_OSC_SUBSCRIBE_H
+#define HIMC_OSC_SUBSCRIBE_H
+
+#include "osc/encode.h"
+#include "osc/network.h"
+
+#define SUBSCRIPTIONS 256 // chosen: 50 receivers of all kinds
+#define LOOKUPS 8         // chosen: names looked up at once
+#define ALLOWED_HOSTS 32  // chosen: hosts of --allow
+
+/// In the order of the words of `subscribe`.
+typedef enum osc_stream {
+    STREAM_POSE,
+    STREAM_TARGETS,
+    STREAM_STRIKES,
+    STREAM_HEAD,
+    STREAM_VMC,
+    STREAMS,
+    STREAM_ANY = STREAMS ///< when unsubscribing
+} osc_stream;
+
+/// A change of the table that somebody asked for: `subscribe` or `unsubscribe`.
+typedef struct osc_change {
+    char host[256];
+    int port;
+    osc_stream stream;
+    double hz;
+    bool remove;
+    bool local;       ///< by the user of this machine
+    bool granted;     ///< by the himc_osc before this one, for the address `from`
+    osc_address from; ///< the sender, unless local or granted
+} osc_change;
+
+/// A state of the performer, from the host to the network.
+typedef struct osc_state {
+    enum { STATE_POSE, STATE_STRIKE, STATE_BEAT, STATE_HEAD, STATE_DRUM, STATE_STATUS } kind;
+    double time; ///< of the performance (s)
+    double wall; ///< the same on the wall clock (s since 1970)
+    union {
+        osc_pose pose;
+        osc_strike strike;
+        double beat;
+        osc_head head;
+        osc_drum drum;
+        osc_status status;
+    };
+} osc_state;
+
+typedef struct osc_subscription {
+    bool used;
+    bool first; ///< first of its address that is not vmc: gets the states sent once per address
+    bool local; ///< on loopback
+    osc_address to;
+    osc_stream stream;
+    double hz, due;                             ///< (Hz; s, monotonic clock)
+    double unreachable_since, unreachable_last; ///< (s); 0 while somebody listens
+} osc_subscription;
+
+typedef struct osc_subscriptions {
+    _Atomic int pose_hz, head_hz; ///< highest rates asked for (Hz), 0 none
+    _Atomic int count;
+
+    osc_network *network; ///< borrowed, as are the next two
+    osc_counters *counts; ///< of the whole himc_osc
+    osc_ring *lines;      ///< for the user of this machine
+    osc_subscription subscription[SUBSCRIPTIONS];
+    struct osc_pending {
+        osc_lookup *lookup; ///< or NULL
+        osc_change change;
+    } pending[LOOKUPS];
+    osc_address allowed[ALLOWED_HOSTS];
+    int allowed_count;
+    osc_drum drum[HIMC_DRUMS]; ///< as last sent
+    int drums;
+    osc_packets packets[2][2]; ///< of a pose, a vmc pose; small, large
+    bool encoded[2][2];        ///< of the pose being sent
+} osc_subscriptions;
+
+/// The change that a command asks for; false if it is another command.
+bool himc_osc_change_from(osc_change *change, const himc_command *command);
+
+/// Hosts, separated by commas, that anyone may subscribe for; may wait for a name server.
+bool himc_osc_allow(osc_subscriptions *s, const char *hosts, himc_error *error);
+/// Makes a change, or begins to look up its host; false with one line if it is refused.
+bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, himc_error *error);
+/// Makes the changes of which the look-up is over.
+void himc_osc_subscribe_found(osc_subscriptions *s);
+void himc_osc_subscriptions_free(osc_subscriptions *s);
+
+/// Sends a state to its subscribers, and the counters with a status; `now` on the monotonic clock
+/// (s).
+void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
+                      double now);
+/// Reads the reports of addresses where nobody listens; forgets those that stay so.
+void himc_osc_forget_unreachable(osc_subscriptions *s, double now);
+
+/// A line for the user of this machine.
+void himc_osc_tell(osc_ring *lines, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+#endif
