@@ -200,11 +200,21 @@ static bool read_pickup(const himc_command *c, int first, himc_pickup *pickup, h
     return true;
 }
 
+// pickup `index` from the command's atoms from `first` on; the others stay
+static bool change_pickup(himc_drum *drum, const himc_command *c, int first, int index,
+                          himc_error *error)
+{
+    himc_pickup all[HIMC_PICKUPS];
+    int count;
+    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
+    memcpy(all, now, sizeof *all * (size_t)count);
+    return read_pickup(c, first, &all[index], error) &&
+           himc_membrane_set_pickups(drum->membrane, all, count, error);
+}
+
 static bool set_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_pickup pickup = *himc_membrane_pickup(drum->membrane);
-    return read_pickup(c, 0, &pickup, error) &&
-           himc_membrane_set_pickup(drum->membrane, &pickup, error);
+    return change_pickup(drum, c, 0, 0, error);
 }
 
 // a new one hears from further round the drum, 60 degrees to the right of the one before
@@ -227,14 +237,10 @@ static bool set_pickups(himc_drum *drum, const himc_command *c, himc_error *erro
 
 static bool set_channel(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_pickup all[HIMC_PICKUPS];
     int count;
-    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
-    if (!is_whole(c, "channel", 1, count, error))
-        return false;
-    memcpy(all, now, sizeof *all * (size_t)count);
-    return read_pickup(c, 1, &all[(int)number(c, 0) - 1], error) &&
-           himc_membrane_set_pickups(drum->membrane, all, count, error);
+    himc_membrane_pickups(drum->membrane, &count);
+    return is_whole(c, "channel", 1, count, error) &&
+           change_pickup(drum, c, 1, (int)number(c, 0) - 1, error);
 }
 
 static bool set_air(himc_drum *drum, const himc_command *c, himc_error *error)
@@ -312,7 +318,7 @@ static bool set_technique(himc_drum *drum, const himc_command *c, himc_error *er
         wanted++;
     if (c->count != 1 || !is_symbol(c, 0) || wanted > HIMC_TECHNIQUE_CLIP)
         return himc_error_set(error, "technique: allowed modal signal clip");
-    if (wanted != HIMC_TECHNIQUE_MODAL && !drum->answered)
+    if (wanted != HIMC_TECHNIQUE_MODAL && !drum->external_sound)
         return himc_error_set(error,
                               "technique: %s, allowed modal here: signal and clip are patches, "
                               "[technique~ NAME] in Pure Data",

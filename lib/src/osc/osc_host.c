@@ -5,7 +5,7 @@
 /// the two have parted by 0.1 s (the sound was off).
 #define _POSIX_C_SOURCE 200809L
 #include "osc/osc_state.h"
-#include "himc/membrane.h"
+#include "drum/drum_performer.h"
 
 #include <math.h>
 #include <stdio.h>
