@@ -1,5 +1,5 @@
-/// test_drum.c: strikes exact to the sample, the same bits in blocks of any size, time, rates, and no
-/// allocation.
+/// test_drum.c: strikes exact to the sample, the same bits in blocks of any size, time, rates, and
+/// no allocation.
 #include "allocations.h"
 #include "one_drum.h"
 

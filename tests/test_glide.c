@@ -22,8 +22,8 @@ static void remake(double rate)
     TEST_ASSERT_NOT_NULL_MESSAGE(membrane, error.text);
 }
 
-// Christian et al.'s 26 inch head; the mass of its air is included by the factor 1/0.66^2; film 0.19
-// mm
+// Christian et al.'s 26 inch head; the mass of its air is included by the factor 1/0.66^2; film
+// 0.19 mm
 void setUp(void)
 {
     head = himc_head_default();

@@ -280,8 +280,8 @@ static double rayleigh(const himc_mode *mode, const himc_pickup *p, double *quar
     return 1.21 / (2 * HIMC_PI * p->distance) * re;
 }
 
-// sound from nearer parts arrives earlier: p = re q''(t) + im (q'' a quarter of a period earlier), which is -w
-// q' for q'' = -w^2 q
+// sound from nearer parts arrives earlier: p = re q''(t) + im (q'' a quarter of a period earlier),
+// which is -w q' for q'' = -w^2 q
 static void test_membrane_air_pickup_agrees_with_rayleighs_integral(void)
 {
     head.decay_constant = head.decay_square = 0;

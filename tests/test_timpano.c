@@ -104,8 +104,9 @@ static void test_timpano_decays_in_the_order_of_real_ones(void)
     TEST_ASSERT_TRUE(t60(0, 1) < 0.35 && t60(0, 2) < 0.35);
 }
 
-// Half a wave fits the kettle's depth at 466 Hz. The mode just below moves with that air, which loses
-// nothing in a rigid kettle; those above and well below move the air outside and decay at once.
+// Half a wave fits the kettle's depth at 466 Hz. The mode just below moves with that air, which
+// loses nothing in a rigid kettle; those above and well below move the air outside and decay at
+// once.
 static void test_timpano_concentric_modes_decay_at_once_except_near_the_kettles_resonance(void)
 {
     double a = 0.2921, depth = himc_air_kettle(a) / (HIMC_PI * a * a);

@@ -14,12 +14,12 @@
 ///
 /// A's poles are the kettle's own resonances, x^2 = beta_s^2 + (q pi a/L)^2. Between two of them
 /// the eigenvalues of the real part of D(x) fall as x grows (Foster 1924), so sign changes between
-/// poles find every root and no iteration can reach a wrong one. A root is then made complex, with A
-/// and K taken at Re x. Many roots belong to the kettle: the root that a force of shape n excites
+/// poles find every root and no iteration can reach a wrong one. A root is then made complex, with
+/// A and K taken at Re x. Many roots belong to the kettle: the root that a force of shape n excites
 /// most has the smallest inertia c'(-dD/dx)c/(2 x N_n c_n^2). Where a sloshing of the kettle splits
 /// a shape into two roots of similar inertia, within a factor of two, the lower one is taken: it
-/// rings long, the upper decays in a tenth of a second, and the lower was measured (314 Hz for (1,2)
-/// of a 26 inch drum, here 311 and 352).
+/// rings long, the upper decays in a tenth of a second, and the lower was measured (314 Hz for
+/// (1,2) of a 26 inch drum, here 311 and 352).
 #include "galerkin.h"
 
 #include "drum/bessel.h"

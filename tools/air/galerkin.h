@@ -1,8 +1,8 @@
 /// galerkin.h: the modes of a head over its kettle in air, solved in full, to make and to check the
 /// table of lib/src/drum/air.c.
 ///
-/// Frequencies are x = w a/c, and a drum is three numbers: epsilon = rho a/sigma, L/a and the tension
-/// tau = T/(sigma c^2). Setup functions; they need LAPACK.
+/// Frequencies are x = w a/c, and a drum is three numbers: epsilon = rho a/sigma, L/a and the
+/// tension tau = T/(sigma c^2). Setup functions; they need LAPACK.
 #ifndef HIMC_AIR_GALERKIN_H
 #define HIMC_AIR_GALERKIN_H
 

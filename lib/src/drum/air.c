@@ -31,7 +31,8 @@
 
 // half to twice the usual kettle; chosen: docs/air.md gives the errors in this range
 #define KETTLE_RANGE 2.0
-// So far beyond the table's tensions (ln 4) and epsilons (ln 2) its correction ends; chosen: smooth.
+// So far beyond the table's tensions (ln 4) and epsilons (ln 2) its correction ends; chosen:
+// smooth.
 #define TENSION_MARGIN 1.3862943611
 #define LOADING_MARGIN 0.6931471806
 // added mass of a mode by that of an infinite membrane; chosen: the table's higher modes

@@ -9,8 +9,8 @@
 HIMC_RT int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks, int count,
                                int n);
 
-/// Moves a stick by one sample (h in s) without contact, as himc_contact_step does to a stick out of
-/// reach.
+/// Moves a stick by one sample (h in s) without contact, as himc_contact_step does to a stick out
+/// of reach.
 HIMC_RT void himc_stick_fly(himc_stick *stick, double h);
 
 #endif

@@ -1,5 +1,5 @@
-/// drum_command.c: a drum's commands: each makes the new state aside, has it checked, and only then
-/// takes it.
+/// drum_command.c: a drum's commands. Each builds the new state beside the old one, checks it, and
+/// only then replaces it.
 #include "drum/drum_state.h"
 
 #include "base/argument.h"
@@ -10,9 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#define PICKUP_STEP (HIMC_PI / 3) // (rad) of azimuth; chosen: six pickups surround the drum
+
 // Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
-// softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
-// g.
+// softer felt loses more. The mass, 30 g, is that of a free stick's head and the part of the stick
+// that moves with it; the radius is that of a timpani stick; both chosen.
 static const struct {
     const char *name;
     himc_mallet_head head;
@@ -45,7 +47,7 @@ static bool is_symbol(const himc_command *c, int index)
     return index < c->count && c->atom[index].kind == HIMC_ATOM_SYMBOL;
 }
 
-// the command's atoms are `count` numbers; the table has checked that already when it came by text
+// true if the command's atoms are `count` numbers; commands from text are checked already
 static bool numbers(const himc_command *c, const char *name, int count, himc_error *error)
 {
     bool good = c->count == count;
@@ -55,7 +57,7 @@ static bool numbers(const himc_command *c, const char *name, int count, himc_err
            himc_error_set(error, "%s: takes %d number%s", name, count, count == 1 ? "" : "s");
 }
 
-// the first atom is a whole number in range
+// true if the first atom is a whole number in range
 static bool is_whole(const himc_command *c, const char *name, double low, double high,
                      himc_error *error)
 {
@@ -217,7 +219,7 @@ static bool set_pickup(himc_drum *drum, const himc_command *c, himc_error *error
     return change_pickup(drum, c, 0, 0, error);
 }
 
-// a new one hears from further round the drum, 60 degrees to the right of the one before
+// each new pickup is PICKUP_STEP to the right of the one before
 static bool set_pickups(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_pickup all[HIMC_PICKUPS];
@@ -230,7 +232,7 @@ static bool set_pickups(himc_drum *drum, const himc_command *c, himc_error *erro
         all[i] = all[i - 1];
         all[i].kind = HIMC_PICKUP_AIR;
         all[i].distance = fmax(all[i].distance, himc_pickup_default().distance);
-        all[i].azimuth = remainder(all[i].azimuth - HIMC_PI / 3, 2 * HIMC_PI);
+        all[i].azimuth = remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI);
     }
     return himc_membrane_set_pickups(drum->membrane, all, (int)number(c, 0), error);
 }
@@ -264,7 +266,8 @@ static bool set_kettle(himc_drum *drum, const himc_command *c, himc_error *error
     return set_head(drum, &head, error);
 }
 
-static bool take_shape(himc_drum *drum, const himc_shape *shape, himc_head *head, himc_error *error)
+static bool replace_shape(himc_drum *drum, const himc_shape *shape, himc_head *head,
+                          himc_error *error)
 {
     head->air = head->air && shape->kind == HIMC_CIRCLE;
     if (!himc_membrane_set_shape(drum->membrane, shape, head, error))
@@ -284,19 +287,19 @@ static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
     head.tension = shape.grid->tension;
     head.density = shape.grid->density;
     head.modes = head.modes < shape.grid->modes ? head.modes : shape.grid->modes;
-    bool good = take_shape(drum, &shape, &head, error) || himc_error_prefix(error, "%s", path);
+    bool good = replace_shape(drum, &shape, &head, error) || himc_error_prefix(error, "%s", path);
     himc_grid_release(shape.grid);
     return good;
 }
 
-// a round head again is in air again; only a round one may be
+// a head that becomes round again has air again; other outlines have none
 static bool set_shape(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
     const char *word = is_symbol(c, 0) ? c->atom[0].symbol : "";
     if (strcmp(word, "circle") == 0) {
         head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
-        return take_shape(drum, &(himc_shape){.kind = HIMC_CIRCLE}, &head, error);
+        return replace_shape(drum, &(himc_shape){.kind = HIMC_CIRCLE}, &head, error);
     }
     if (strcmp(word, "rectangle") != 0 && word[0])
         return load_shape(drum, word, error);
@@ -307,7 +310,7 @@ static bool set_shape(himc_drum *drum, const himc_command *c, himc_error *error)
         !himc_check_range("shape rectangle WIDTH", shape.width, 0.05, 1.4, "m", error))
         return false;
     head.radius = 0.5 * hypot(shape.length, shape.width);
-    return take_shape(drum, &shape, &head, error);
+    return replace_shape(drum, &shape, &head, error);
 }
 
 static bool set_technique(himc_drum *drum, const himc_command *c, himc_error *error)

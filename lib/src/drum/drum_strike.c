@@ -1,12 +1,12 @@
 /// drum_strike.c: strikes without a performer, and the onsets of all contacts.
 ///
 /// A free mallet is launched where the head is at that moment, so its first sample has its first
-/// force and a strike is exact to the sample. It has no weight: in the few milliseconds of a contact
-/// gravity changes nothing, and so even the gentlest mallet leaves the head again. Then its report
-/// is queued.
+/// force and a strike is exact to the sample. It has no weight: in the few milliseconds of a
+/// contact gravity changes nothing, and so even the gentlest mallet leaves the head again. Then its
+/// report is queued.
 ///
-/// The 2009 papers let a blow sound by any of three techniques: this modal one, signals, or clips of
-/// recorded sound. The other two need a contact's onset, not its report, which comes when the
+/// The 2009 papers let a blow sound by any of three techniques: this modal one, signals, or clips
+/// of recorded sound. The other two need a contact's onset, not its report, which comes when the
 /// contact is over and its force known. So an onset has the position, the velocity, and the pitch
 /// to which the head is tuned. Contact, head and body are the same with every technique; the head's
 /// own sound goes off in 10 ms, and comes back, as far as the head still vibrates, with `modal`.
@@ -15,8 +15,8 @@
 #include <math.h>
 
 #define GONE 0.005           // (m) above the head at rest and rising: the contact is over; chosen
-#define LONGEST_LIFE 1.0     // (s) of a mallet, whatever it does; chosen: no contact is so long
-#define LEAST_VELOCITY 0.001 // (m/s) of a strike; chosen: far below hearing
+#define LONGEST_LIFE 1.0     // (s) of a mallet, whatever it does; chosen
+#define LEAST_VELOCITY 0.001 // (m/s) of a strike; chosen
 #define MOST_VELOCITY 30.0   // (m/s) chosen
 
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,

@@ -1,14 +1,15 @@
 /// grid.c: from a head's file, masses and springs, to modes.
 ///
-/// Files. A table is rows of numbers, or a file in the Matrix Market exchange format (Boisvert, Pozo
-/// & Remington 1996): a banner, % comments, a line of sizes, then entries: "row column value" of a
-/// coordinate file, values column by column of an array; of a symmetric one the lower triangle.
+/// Files. A table is rows of numbers, or a file in the Matrix Market exchange format (Boisvert,
+/// Pozo & Remington 1996): a banner, % comments, a line of sizes, then entries: "row column value"
+/// of a coordinate file, values column by column of an array; of a symmetric one the lower
+/// triangle.
 ///
 /// Modes. K v = w^2 M v, by LAPACK's dsygvx: Cholesky's M = L L' (which fails if M is not
 /// positive), the standard problem of L^-1 K L^-T, its lowest eigenvalues. A membrane's K grows
 /// with its tension and its M with its density, so w = z/radius sqrt(T/sigma) with z = radius
-/// sqrt(w0^2 sigma0/T0) serves any other tension and density, as a Bessel zero does for a round head
-/// (modes.c).
+/// sqrt(w0^2 sigma0/T0) serves any other tension and density, as a Bessel zero does for a round
+/// head (modes.c).
 #include "drum/grid.h"
 
 #include <ctype.h>

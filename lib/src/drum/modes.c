@@ -38,8 +38,8 @@
 #define SAME_WAVENUMBER 1e-5 // s this near to m pi is moved by twice as much: the limit is smooth
 #define RECTANGLE_MARGIN 4   // modes; chosen: with two wavenumbers of the short side, enough
 
-// One entry of the list, shared by the two modes of a pair: z is radius times wavenumber (of a round
-// head the zero j_mn), norm the integral of phi^2 per pi a^2.
+// One entry of the list, shared by the two modes of a pair: z is radius times wavenumber (of a
+// round head the zero j_mn), norm the integral of phi^2 per pi a^2.
 typedef struct entry {
     int m, n;
     double z, norm;

@@ -55,7 +55,8 @@ static double radiation(const himc_mode *mode, const himc_head *head, const himc
            overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
-// the weights of a head that is not round: the integral itself, in phase and a quarter of a period apart
+// the weights of a head that is not round: the integral itself, in phase and a quarter of a period
+// apart
 static pickup_weights of_outline(const himc_pickup *pickup, const himc_head *head,
                                  const himc_modes *modes, int index, const himc_mode *mode)
 {
