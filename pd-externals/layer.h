@@ -62,7 +62,7 @@ static inline void layer_play(t_layer *layer, int channels, int n, double in[3][
             himc_membrane_push(layer->l_membrane, in[1][i], in[2][i], in[0][i]);
         for (int k = 0; k < HIMC_PICKUPS; k++)
             rest[k] = heard[k] + i;
-        himc_membrane_run_all(layer->l_membrane, run, rest, seen + i);
+        himc_membrane_run(layer->l_membrane, run, rest, seen + i);
     }
     for (int i = 0; i < n; i++) {
         double level = layer_declick(layer);

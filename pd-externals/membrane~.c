@@ -41,9 +41,9 @@ typedef struct t_membrane {
     himc_contact_report x_report;
     t_clock *x_touch_clock; /* runs when x_touch is to be sent */
     bool x_touching;
-    himc_touch x_touch;
-    himc_technique x_technique; /* in the last message */
-    long x_refused;             /* samples of force or place that were not finite */
+    himc_contact_onset x_touch;
+    himc_technique x_technique; /* that was told last */
+    long x_refused;             /* samples of force or place that were not numbers */
     bool x_apart;               /* runs at another sample rate than its performer */
     bool x_told;                /* the user, of either, since the graph was built */
 } t_membrane;
@@ -90,7 +90,7 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
         x->x_layer.l_silent = himc_drum_technique(drum) != HIMC_TECHNIQUE_MODAL;
         layer_play(&x->x_layer, x->x_channels, n, in, out);
     } else {
-        himc_drum_advance(drum, n, NULL, 0, NULL, in[0], in[1], in[2]);
+        himc_drum_advance(drum, n, in[0], in[1], in[2]);
         membrane_read(x, n, out);
     }
     x->x_stream.s_count += (uint64_t)n;
@@ -106,7 +106,7 @@ static bool membrane_troubled(const t_membrane *x)
 Called when the stream is at the end of a block. */
 static void membrane_await_touch(t_membrane *x)
 {
-    if (x->x_touching || !himc_drum_touch_next(x->x_link.l_drum, &x->x_touch))
+    if (x->x_touching || !himc_drum_contact_next(x->x_link.l_drum, &x->x_touch))
         return;
     x->x_touching = true;
     double samples = (double)x->x_touch.at + x->x_stream.s_length - (double)x->x_stream.s_count;
@@ -188,9 +188,9 @@ static void membrane_send_strike(t_membrane *x, const himc_contact_report *r)
 /* A message that is sent may come back as a command, so the state is written first. */
 static void membrane_touch_tick(t_membrane *x)
 {
-    const himc_touch t = x->x_touch;
+    const himc_contact_onset t = x->x_touch;
     const double time = (double)t.at / himc_drum_rate(x->x_link.l_drum);
-    const double value[] = {time, t.x, t.y, t.velocity, t.place, t.pitch};
+    const double value[] = {time, t.x, t.y, t.velocity, t.distance, t.pitch};
     x->x_touching = false;
     membrane_await_touch(x);
     membrane_send(x, "touch", value);
@@ -317,7 +317,7 @@ static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer,
         layer->l_membrane =
             himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, error);
     if (layer->l_membrane) {
-        himc_drum_set_answered(drum, true);
+        himc_drum_set_external_sound(drum, true);
         return drum;
     }
     himc_drum_release(drum);

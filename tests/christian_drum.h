@@ -1,12 +1,9 @@
-/// christian_drum.h: what tests of air share: the 26 inch timpano of Christian et al. (1984),
-/// solved, and its frequencies as solved independently.
+/// christian_drum.h: the 26 inch timpano of Christian et al. (1984) for tests of air: solved by
+/// tools/air, and its frequencies by an independent solution.
 #ifndef HIMC_TESTS_CHRISTIAN_DRUM_H
 #define HIMC_TESTS_CHRISTIAN_DRUM_H
 
-#include "drum/air.h"
-
 #include "../tools/air/galerkin.h"
-#include "drum/air_table.h"
 
 #include "unity.h"
 
@@ -40,7 +37,7 @@ static inline const himc_air_order *order_of(int m)
     return &order[m];
 }
 
-// of Christian's drum
+// resonance (m, n) of Christian's drum
 static inline himc_air_root christian(int m, int n)
 {
     static himc_air_root root[21][HIMC_AIR_RANKS];
@@ -52,7 +49,7 @@ static inline himc_air_root christian(int m, int n)
     return root[m][n - 1];
 }
 
-// (Hz)
+// its frequency (Hz)
 static inline double pitch(himc_air_root root)
 {
     return root.x * HIMC_AIR_SPEED / (2 * HIMC_PI * A);

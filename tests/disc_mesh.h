@@ -23,7 +23,7 @@ static int ring_start(int k)
     return k == 0 ? 0 : 1 + 3 * k * (k - 1);
 }
 
-// adds a triangle's share; area scaled so that the polygon has the disc's
+// adds the stiffness and mass of a triangle
 static void add_triangle(disc_mesh *d, int a, int b, int c, double tension, double density)
 {
     int p[3] = {a, b, c};
@@ -103,7 +103,7 @@ static void write_rows(const char *path, const disc_mesh *d, const double *value
     fclose(f);
 }
 
-// the head's files in `folder`; the head's own is head.txt there
+// writes the head's files into `folder`; the head itself is head.txt
 static void disc_mesh_write(const disc_mesh *d, const char *folder, double tension, double density)
 {
     char path[300];

@@ -1,12 +1,10 @@
-/// one_drum.h: what tests of a drum share: one, made anew for each test, what it is told and what
-/// it sounds like.
+/// one_drum.h: a drum for tests, made anew for each, with helpers for commands and sound.
 #ifndef HIMC_TESTS_ONE_DRUM_H
 #define HIMC_TESTS_ONE_DRUM_H
 
-#include "himc/drum.h"
+#include "drum/drum_performer.h"
 
 #include "unity.h"
-#include "himc/membrane.h"
 
 #include <math.h>
 
@@ -44,7 +42,7 @@ static inline void says(const char *text)
 
 static inline void advance(int n)
 {
-    himc_drum_advance(drum, n, NULL, 0, NULL, NULL, NULL, NULL);
+    himc_drum_advance(drum, n, NULL, NULL, NULL);
 }
 
 static inline double peak(const double *x, int n)
@@ -57,7 +55,7 @@ static inline double peak(const double *x, int n)
     return most;
 }
 
-// Two sticks and a force from outside that moves, two strikes under way, in blocks of `block`.
+// Two sticks, two strikes and an outside force whose point moves, in blocks of `block` samples.
 static inline void scene(int block, double *out, double *place, double *force0)
 {
     tearDown();
@@ -83,7 +81,8 @@ static inline void scene(int block, double *out, double *place, double *force0)
     for (int done = 0; done < LENGTH; done += block) {
         int n = LENGTH - done < block ? LENGTH - done : block;
         double *forces[] = {force0 + done, force1 + done};
-        himc_drum_advance(drum, n, sticks, 2, forces, outside + done, x + done, y + done);
+        himc_outside_force from = {outside + done, x + done, y + done};
+        himc_drum_advance_sticks(drum, n, sticks, 2, forces, &from);
     }
     himc_drum_read(drum, 0, LENGTH, out, place);
 }

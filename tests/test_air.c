@@ -1,5 +1,5 @@
-/// test_air.c: what air does to a head: the table against the solver and independent figures, the
-/// closed forms around it, the kettle, any head.
+/// test_air.c: the effect of air on a head: the table against the solver and independent figures,
+/// the closed forms around it, the kettle, any head.
 #include "christian_drum.h"
 
 #include "drum/bessel.h"
@@ -44,7 +44,7 @@ static himc_air_load usual_load(const himc_head *head, int m, int n)
     return load_at(head, himc_air_kettle(head->radius), m, n);
 }
 
-// mode (m, n) as the membrane gets it
+// mode (m, n) as a membrane has it
 static himc_mode mode_of(const himc_head *head, int m, int n)
 {
     himc_air air = himc_air_around(head, himc_air_kettle(head->radius));
@@ -55,13 +55,13 @@ static himc_mode mode_of(const himc_head *head, int m, int n)
     return himc_air_mode(&air, head, &bare);
 }
 
-static void test_the_table_gives_the_same_ratios(void)
+static void test_table_agrees_with_the_independent_solution(void)
 {
     himc_head head = head_of(A, 3990);
     for (int i = 0; i < COUNT(PITCH); i++) {
         double f = usual_load(&head, PITCH[i].m, PITCH[i].n).frequency *
                    bare_pitch(&head, PITCH[i].m, PITCH[i].n);
-        // (1,2) meets the kettle's sloshing nearby, between two nodes of the table
+        // (1,2) is near the kettle's sloshing, between two nodes of the table
         double within = PITCH[i].m == 1 && PITCH[i].n == 2 ? 20 : 2;
         TEST_ASSERT_DOUBLE_WITHIN(within, 0, cents(f, PITCH[i].value));
     }
@@ -117,8 +117,8 @@ static void test_tuned_drums_have_the_frequencies_and_decays_of_the_independent_
         for (int k = 0; k < 9; k++) {
             himc_mode mode = mode_of(&head, PLAYED_MODE[k][0], PLAYED_MODE[k][1]);
             double ratio = PLAYED[i][3 + k], ring = PLAYED[i][12 + k];
-            // (2,2) comes near the kettle's second sloshing, and its decay turns between two nodes
-            // of the table
+            // (2,2) is near the kettle's second sloshing, and its decay has an extremum between two
+            // nodes of the table
             bool sloshes = k == 6;
             TEST_ASSERT_DOUBLE_WITHIN(0.0005 + (sloshes ? 0.005 : 0.0005) * ratio, ratio,
                                       mode.frequency / principal);
@@ -128,7 +128,7 @@ static void test_tuned_drums_have_the_frequencies_and_decays_of_the_independent_
     }
 }
 
-static void test_entries_of_the_table_are_what_the_solver_finds(void)
+static void test_entries_of_the_table_agree_with_the_solver(void)
 {
     unsigned dice = 20;
     for (int i = 0; i < 8; i++) {
@@ -168,7 +168,7 @@ static void test_between_nodes_and_drums_the_preferred_modes_are_within_a_cent(v
         }
 }
 
-static void test_a_pedal_meets_no_step_and_pitch_never_falls(void)
+static void test_pitch_rises_without_a_step_over_all_tensions(void)
 {
     const double step = 1.003;
     for (int m = 0; m <= 12; m++)
@@ -200,8 +200,8 @@ static double incline(double tension, double side, int m, int n)
 
 static void test_table_and_closed_forms_meet_without_a_bend(void)
 {
-    double fade = HIMC_AIR_TABLE_LOW / 4, top = HIMC_AIR_TABLE_HIGH * 4;
-    double seams[] = {fade, HIMC_AIR_TABLE_LOW, HIMC_AIR_TABLE_HIGH, top};
+    double bottom = HIMC_AIR_TABLE_LOW / 4, top = HIMC_AIR_TABLE_HIGH * 4;
+    double seams[] = {bottom, HIMC_AIR_TABLE_LOW, HIMC_AIR_TABLE_HIGH, top};
     for (int i = 0; i < COUNT(seams); i++)
         for (int m = 0; m < HIMC_AIR_ORDERS; m += 2)
             for (int n = 1; n <= 3; n++)
@@ -214,7 +214,7 @@ static void test_modes_without_a_table_are_within_12_cents(void)
     static const int MODE[][2] = {{7, 1}, {8, 2}, {8, 4}, {10, 1}, {12, 2}, {15, 1}, {5, 4}};
     himc_head head = head_of(A, 3990);
     himc_air air = himc_air_around(&head, V);
-    air.fade = 0;
+    air.weight = 0;
     for (int i = 0; i < COUNT(MODE); i++) {
         int m = MODE[i][0], n = MODE[i][1];
         double f =
@@ -223,7 +223,7 @@ static void test_modes_without_a_table_are_within_12_cents(void)
     }
 }
 
-static void test_mass_is_what_gives_the_frequency(void)
+static void test_mass_follows_from_stiffness_and_frequency(void)
 {
     static const double MASS[6] = {2.282, 1.801, 1.600, 1.484, 1.408, 1.354};
     himc_head head = head_of(A, 3990);
@@ -275,7 +275,7 @@ static void test_other_kettles_keep_the_preferred_modes_within_a_fifth_of_a_semi
         }
 }
 
-static void test_heads_alike_in_their_own_measures_sound_alike(void)
+static void test_heads_equal_in_dimensionless_measures_sound_equal(void)
 {
     himc_head one = head_of(A, 3990), two = one;
     two.radius *= 1.3;
@@ -286,7 +286,7 @@ static void test_heads_alike_in_their_own_measures_sound_alike(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * a.radiation, a.radiation, 1.3 * b.radiation);
 }
 
-static void test_any_head_in_its_ranges_gets_finite_slower_damped_modes(void)
+static void test_any_head_in_range_has_finite_slower_damped_modes(void)
 {
     unsigned dice = 7;
     for (int i = 0; i < 5000; i++) {
@@ -309,7 +309,7 @@ static void test_any_head_in_its_ranges_gets_finite_slower_damped_modes(void)
     }
 }
 
-static void test_a_kettle_out_of_range_is_refused_by_name(void)
+static void test_kettle_out_of_range_is_refused_with_its_range(void)
 {
     himc_error error;
     TEST_ASSERT_TRUE(himc_air_check(0.14, A, &error));
@@ -329,20 +329,20 @@ void tearDown(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_the_table_gives_the_same_ratios);
+    RUN_TEST(test_table_agrees_with_the_independent_solution);
     RUN_TEST(test_decays_are_in_the_order_of_a_timpano);
     RUN_TEST(test_tuned_drums_have_the_frequencies_and_decays_of_the_independent_solution);
-    RUN_TEST(test_entries_of_the_table_are_what_the_solver_finds);
+    RUN_TEST(test_entries_of_the_table_agree_with_the_solver);
     RUN_TEST(test_between_nodes_and_drums_the_preferred_modes_are_within_a_cent);
-    RUN_TEST(test_a_pedal_meets_no_step_and_pitch_never_falls);
+    RUN_TEST(test_pitch_rises_without_a_step_over_all_tensions);
     RUN_TEST(test_table_and_closed_forms_meet_without_a_bend);
     RUN_TEST(test_modes_without_a_table_are_within_12_cents);
-    RUN_TEST(test_mass_is_what_gives_the_frequency);
+    RUN_TEST(test_mass_follows_from_stiffness_and_frequency);
     RUN_TEST(test_mass_of_the_principal_modes_is_within_a_tenth_of_the_residue);
     RUN_TEST(test_the_kettle_is_a_spring_to_the_lowest_mode_alone);
     RUN_TEST(test_other_kettles_keep_the_preferred_modes_within_a_fifth_of_a_semitone);
-    RUN_TEST(test_heads_alike_in_their_own_measures_sound_alike);
-    RUN_TEST(test_any_head_in_its_ranges_gets_finite_slower_damped_modes);
-    RUN_TEST(test_a_kettle_out_of_range_is_refused_by_name);
+    RUN_TEST(test_heads_equal_in_dimensionless_measures_sound_equal);
+    RUN_TEST(test_any_head_in_range_has_finite_slower_damped_modes);
+    RUN_TEST(test_kettle_out_of_range_is_refused_with_its_range);
     return UNITY_END();
 }

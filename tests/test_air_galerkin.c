@@ -18,7 +18,7 @@ static const double INNER[7][4] = {
     {.15600, .10489, .07957, .06418}, {.13110, .09187, .07142, .05856},
     {.11340, .08201, .06499, .05401}};
 
-static void test_air_at_rest_weighs_what_the_independent_table_says(void)
+static void test_added_mass_at_rest_agrees_with_the_independent_table(void)
 {
     double real[HIMC_AIR_BASIS][HIMC_AIR_BASIS], loss[HIMC_AIR_BASIS][HIMC_AIR_BASIS];
     double inside[HIMC_AIR_BASIS][HIMC_AIR_BASIS];
@@ -72,7 +72,7 @@ static double radiation_series(int m, double x)
            (1 + x * x * (2 * m + 2) / (2 * m + 3.0) * (2 / (alpha * alpha) - 1 / (2 * (m + 1.0))));
 }
 
-static void test_radiation_is_of_a_monopole_dipole_quadrupole(void)
+static void test_radiation_grows_as_of_a_monopole_dipole_quadrupole(void)
 {
     static const double AT[4] = {0.763, 0.904, 1.364, 1.798},
                         WITHIN[4] = {0.003, 0.004, 0.012, 0.03};
@@ -83,7 +83,7 @@ static void test_radiation_is_of_a_monopole_dipole_quadrupole(void)
     }
 }
 
-static void test_power_far_away_is_the_power_that_the_head_loses(void)
+static void test_power_far_away_equals_the_loss_of_the_head(void)
 {
     // |p| = rho/R a^2 alpha J_{m+1} J_m(s)/(alpha^2 - s^2) |q''|, s = x sin th, squared over the
     // half sphere by Simpson's rule
@@ -120,14 +120,14 @@ static void test_26_inch_ratios_are_within_18_cents_rms_of_the_measured_ones(voi
         all += c * c;
         preferred += PITCH[i].n == 1 && PITCH[i].m >= 2 ? c * c : 0;
     }
-    // nine ratios and four: (1,1) is the measure
+    // the ratios to (1,1): nine, and four
     printf("%.1f cents over (2..5,1), %.1f over the first ten\n", sqrt(preferred / 4),
            sqrt(all / 9));
     TEST_ASSERT_TRUE(sqrt(preferred / 4) <= 10);
     TEST_ASSERT_TRUE(sqrt(all / 9) <= 18);
 }
 
-static void test_radiation_alone_rings_as_long_as_the_independent_solution_says(void)
+static void test_ring_times_by_radiation_agree_with_the_independent_solution(void)
 {
     static const expected RING[] = {{0, 1, .106}, {1, 1, 1.35}, {2, 1, 4.26}, {0, 2, .199},
                                     {3, 1, 15.6}, {4, 1, 59.7}, {2, 2, .93},  {5, 1, 234},
@@ -149,12 +149,12 @@ void tearDown(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_air_at_rest_weighs_what_the_independent_table_says);
+    RUN_TEST(test_added_mass_at_rest_agrees_with_the_independent_table);
     RUN_TEST(test_added_mass_grows_with_frequency_as_fitted);
-    RUN_TEST(test_radiation_is_of_a_monopole_dipole_quadrupole);
-    RUN_TEST(test_power_far_away_is_the_power_that_the_head_loses);
+    RUN_TEST(test_radiation_grows_as_of_a_monopole_dipole_quadrupole);
+    RUN_TEST(test_power_far_away_equals_the_loss_of_the_head);
     RUN_TEST(test_26_inch_frequencies_are_within_a_tenth_of_a_hertz_of_the_independent_solution);
     RUN_TEST(test_26_inch_ratios_are_within_18_cents_rms_of_the_measured_ones);
-    RUN_TEST(test_radiation_alone_rings_as_long_as_the_independent_solution_says);
+    RUN_TEST(test_ring_times_by_radiation_agree_with_the_independent_solution);
     return UNITY_END();
 }

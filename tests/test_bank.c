@@ -1,3 +1,4 @@
+/// test_bank.c: the exact step of oscillators, readouts, responses, and equal bits in any blocks.
 #include "drum/bank.h"
 
 #include "unity.h"
@@ -12,16 +13,16 @@
 static himc_bank *bank;
 static himc_oscillator o[COUNT];
 static _Alignas(64) double memory[6][8];
-static double heard[4096], seen[4096];
-static himc_readout sound = {memory[0], memory[1]}, place = {memory[2], memory[3]};
-static double *shape = memory[4], *none = memory[5];
+static double velocities[4096], displacements[4096];
+static himc_readout velocity = {memory[0], memory[1]}, displacement = {memory[2], memory[3]};
+static double *shape = memory[4], *zeros = memory[5];
 
-static void aim(void)
+static void set_readouts(void)
 {
     for (int i = 0; i < COUNT; i++)
         shape[i] = 0.3 + 0.1 * i;
-    himc_bank_readout(bank, none, shape, &sound);
-    himc_bank_readout(bank, shape, NULL, &place);
+    himc_bank_readout(bank, zeros, shape, &velocity);
+    himc_bank_readout(bank, shape, NULL, &displacement);
 }
 
 void setUp(void)
@@ -30,7 +31,7 @@ void setUp(void)
         o[i] = (himc_oscillator){2 * HIMC_PI * (100 + 310 * i), 3 + i, 0.01 / (1 + i)};
     bank = himc_bank_new(COUNT, NULL);
     himc_bank_set(bank, o, COUNT, RATE);
-    aim();
+    set_readouts();
 }
 
 void tearDown(void)
@@ -40,9 +41,9 @@ void tearDown(void)
 
 static void run(int n, int at)
 {
-    const himc_readout *const taps[] = {&sound, &place};
-    double *const read[] = {heard + at, seen + at};
-    himc_bank_run(bank, n, taps, 2, read);
+    const himc_readout *const readouts[] = {&velocity, &displacement};
+    double *const out[] = {velocities + at, displacements + at};
+    himc_bank_run(bank, n, readouts, 2, out);
 }
 
 // q and v of an oscillator that starts at (q0, v0) under the constant force f, by the textbook
@@ -75,7 +76,7 @@ static void test_bank_step_is_the_exact_solution_free_and_forced(void)
     }
 }
 
-static void test_bank_taps_read_what_the_states_say(void)
+static void test_bank_readouts_are_the_weighted_states(void)
 {
     double expected_v = 0, expected_q = 0;
     for (int i = 0; i < COUNT; i++) {
@@ -83,22 +84,22 @@ static void test_bank_taps_read_what_the_states_say(void)
         expected_q += shape[i] * 1e-3 * i;
         expected_v += shape[i] * (1.0 - i);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_displacement(bank, &place));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_read(bank, &place));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-13, expected_v, himc_bank_read(bank, &sound));
-    double next = himc_bank_peek(bank, &sound);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_displacement(bank, &displacement));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_read(bank, &displacement));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, expected_v, himc_bank_read(bank, &velocity));
+    double next = himc_bank_peek(bank, &velocity);
     run(1, 0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-13, next, heard[0]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_displacement(bank, &place), seen[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, next, velocities[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_displacement(bank, &displacement), displacements[0]);
 }
 
-static void test_bank_response_is_what_a_newton_adds(void)
+static void test_bank_response_is_the_change_by_one_newton(void)
 {
     himc_bank_push(bank, shape, 1);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-18, himc_bank_displacement(bank, &place),
-                              himc_bank_response(bank, shape, &place));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_read(bank, &sound),
-                              himc_bank_response(bank, shape, &sound));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-18, himc_bank_displacement(bank, &displacement),
+                              himc_bank_response(bank, shape, &displacement));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_read(bank, &velocity),
+                              himc_bank_response(bank, shape, &velocity));
 }
 
 static void test_bank_work_of_a_force_is_the_energy_gained(void)
@@ -106,13 +107,13 @@ static void test_bank_work_of_a_force_is_the_energy_gained(void)
     for (int i = 0; i < COUNT; i++)
         o[i].decay = 0;
     himc_bank_set(bank, o, COUNT, RATE);
-    aim();
+    set_readouts();
     double work = 0, before = 0;
     for (int n = 0; n < 2000; n++) {
         double force = 10 * sin(0.01 * n);
         run(1, 0);
         himc_bank_push(bank, shape, force);
-        double after = himc_bank_displacement(bank, &place);
+        double after = himc_bank_displacement(bank, &displacement);
         work += force * (after - before);
         before = after;
     }
@@ -121,63 +122,64 @@ static void test_bank_work_of_a_force_is_the_energy_gained(void)
 
 static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
 {
-    double *reference = malloc(sizeof heard);
+    double *reference = malloc(sizeof velocities);
     for (int k = 0; k < 4; k++) {
         static const int sizes[] = {4096, 1, 5, 777};
         tearDown();
         setUp();
         o[6].decay = 800; // comes to rest on the way
         himc_bank_set(bank, o, COUNT, RATE);
-        aim();
+        set_readouts();
         himc_bank_push(bank, shape, 100);
         for (int done = 0; done < 4096; done += sizes[k]) {
             int n = 4096 - done < sizes[k] ? 4096 - done : sizes[k];
             run(n, done);
         }
         if (k == 0)
-            memcpy(reference, heard, sizeof heard);
-        TEST_ASSERT_EQUAL_MEMORY(reference, heard, sizeof heard);
+            memcpy(reference, velocities, sizeof velocities);
+        TEST_ASSERT_EQUAL_MEMORY(reference, velocities, sizeof velocities);
     }
     free(reference);
 }
 
-static void test_bank_reads_as_many_taps_as_asked_and_each_as_if_alone(void)
+static void test_bank_gives_each_of_several_readouts_as_if_alone(void)
 {
     static double read[5][500], alone[2][500];
-    const himc_readout *const taps[] = {&place, &sound, &place, &sound, &sound};
+    const himc_readout *const readouts[] = {&displacement, &velocity, &displacement, &velocity,
+                                            &velocity};
     double *const out[] = {read[0], read[1], read[2], read[3], read[4]};
     himc_bank_push(bank, shape, 100);
-    himc_bank_run(bank, 500, taps, 5, out);
+    himc_bank_run(bank, 500, readouts, 5, out);
     tearDown();
     setUp();
     himc_bank_push(bank, shape, 100);
     for (int i = 0; i < 500; i++) {
         double *const one[] = {&alone[0][i], &alone[1][i]};
-        himc_bank_run(bank, 1, taps, 2, one);
+        himc_bank_run(bank, 1, readouts, 2, one);
     }
     for (int k = 0; k < 5; k++)
-        TEST_ASSERT_EQUAL_MEMORY(alone[taps[k] == &sound], read[k], sizeof read[k]);
+        TEST_ASSERT_EQUAL_MEMORY(alone[readouts[k] == &velocity], read[k], sizeof read[k]);
 }
 
 // Q = sum a q^2/2 and its gradient, by hand
-static void test_bank_tells_what_a_spring_on_the_sum_of_squares_meets(void)
+static void test_bank_coupling_of_a_spring_on_the_sum_of_squares_is_exact(void)
 {
     static _Alignas(64) double a[8], weight[8], g[8];
-    double q0[COUNT], q1[COUNT], v, climb = 0, compliance = 0;
-    himc_tension_coupling pull = {.shape = g};
+    double q0[COUNT], q1[COUNT], v, change = 0, compliance = 0;
+    himc_tension_coupling coupling = {.shape = g};
     for (int i = 0; i < COUNT; i++) {
         a[i] = 1 + i * i;
         himc_bank_excite(bank, i, 1e-3 * (i + 1), 0.2 * i - 0.5);
         himc_bank_state(bank, i, &q0[i], &v);
     }
-    himc_bank_weigh(bank, a, weight);
-    himc_bank_run_coupled(bank, weight, &pull);
+    himc_bank_coupling_weights(bank, a, weight);
+    himc_bank_run_coupled(bank, weight, &coupling);
     for (int i = 0; i < COUNT; i++) {
         double slope = 0, before, after;
         himc_bank_state(bank, i, &q1[i], &v);
         slope = 0.5 * a[i] * (q0[i] + q1[i]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-15, slope, g[i]);
-        climb += 0.5 * a[i] * (q1[i] * q1[i] - q0[i] * q0[i]);
+        change += 0.5 * a[i] * (q1[i] * q1[i] - q0[i] * q0[i]);
         before = q1[i];
         for (int k = 0; k < 8; k++)
             shape[k] = k == i ? g[i] : 0;
@@ -185,11 +187,11 @@ static void test_bank_tells_what_a_spring_on_the_sum_of_squares_meets(void)
         himc_bank_state(bank, i, &after, &v);
         compliance += g[i] * (after - before);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * fabs(climb), climb, pull.climb);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * compliance, compliance, pull.compliance);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12 * fabs(change), change, coupling.change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * compliance, compliance, coupling.compliance);
 }
 
-static void test_bank_leaves_out_what_would_alias(void)
+static void test_bank_silences_oscillators_that_would_alias(void)
 {
     o[5].omega = 2 * HIMC_PI * 0.4899 * RATE;
     o[6].omega = 2 * HIMC_PI * 0.4901 * RATE;
@@ -225,27 +227,27 @@ static void test_bank_comes_to_exact_rest(void)
     for (int i = 0; i < COUNT; i++)
         o[i].decay = 60;
     himc_bank_set(bank, o, COUNT, RATE);
-    aim();
+    set_readouts();
     for (int k = 0; k < 12; k++)
         run(4096, 0);
-    TEST_ASSERT_EQUAL_DOUBLE(0, heard[4095]);
+    TEST_ASSERT_EQUAL_DOUBLE(0, velocities[4095]);
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_bank_energy(bank));
     himc_bank_push(bank, shape, 1);
     run(1, 0);
-    TEST_ASSERT_TRUE(heard[0] != 0);
+    TEST_ASSERT_TRUE(velocities[0] != 0);
 }
 
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_bank_step_is_the_exact_solution_free_and_forced);
-    RUN_TEST(test_bank_taps_read_what_the_states_say);
-    RUN_TEST(test_bank_response_is_what_a_newton_adds);
+    RUN_TEST(test_bank_readouts_are_the_weighted_states);
+    RUN_TEST(test_bank_response_is_the_change_by_one_newton);
     RUN_TEST(test_bank_work_of_a_force_is_the_energy_gained);
     RUN_TEST(test_bank_runs_give_the_same_bits_in_any_blocks);
-    RUN_TEST(test_bank_reads_as_many_taps_as_asked_and_each_as_if_alone);
-    RUN_TEST(test_bank_tells_what_a_spring_on_the_sum_of_squares_meets);
-    RUN_TEST(test_bank_leaves_out_what_would_alias);
+    RUN_TEST(test_bank_gives_each_of_several_readouts_as_if_alone);
+    RUN_TEST(test_bank_coupling_of_a_spring_on_the_sum_of_squares_is_exact);
+    RUN_TEST(test_bank_silences_oscillators_that_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);
     RUN_TEST(test_bank_comes_to_exact_rest);
     return UNITY_END();

@@ -1,3 +1,4 @@
+/// test_bessel.c: Bessel functions and their zeros against tables and the C library.
 #define _XOPEN_SOURCE 700 // jn
 #include "drum/bessel.h"
 

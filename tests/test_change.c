@@ -34,7 +34,7 @@ static void remake(void)
     himc_drum_release(drum);
     drum = himc_drum_new("timpano", 23, RATE, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
-    himc_drum_set_answered(drum, true);
+    himc_drum_set_external_sound(drum, true);
     says("air 1");
     says("decay 0.5 3e-7");
     says("tune D3");
@@ -57,7 +57,7 @@ static void play(int at, int n)
 {
     for (int done = 0, count; done < n; done += count) {
         count = n - done < 4800 ? n - done : 4800;
-        himc_drum_advance(drum, count, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(drum, count, NULL, NULL, NULL);
         himc_drum_read(drum, himc_drum_time(drum) - (uint64_t)count, count, sound + at + done,
                        NULL);
     }
@@ -168,7 +168,7 @@ static void test_change_of_technique_silences_the_head_in_10_ms_and_lets_it_swin
 
 static void test_change_of_technique_is_refused_where_nobody_answers(void)
 {
-    himc_drum_set_answered(drum, false);
+    himc_drum_set_external_sound(drum, false);
     TEST_ASSERT_FALSE(say("technique clip"));
     TEST_ASSERT_EQUAL_STRING("technique: clip, allowed modal here: signal and clip are patches, "
                              "[technique~ NAME] in Pure Data",
@@ -181,29 +181,29 @@ static void test_change_of_technique_is_refused_where_nobody_answers(void)
 
 static void test_touches_of_strikes_are_told_with_place_velocity_and_pitch(void)
 {
-    himc_touch touch;
+    himc_contact_onset touch;
     himc_drum_strike_at(drum, 100, -0.1, 0.1, 3, &error);
     himc_drum_strike_at(drum, 3000, 0, 0, 1, &error);
     play(0, 5000);
-    TEST_ASSERT_TRUE(himc_drum_touch_next(drum, &touch));
+    TEST_ASSERT_TRUE(himc_drum_contact_next(drum, &touch));
     TEST_ASSERT_EQUAL_INT(100, (int)touch.at);
     TEST_ASSERT_EQUAL_DOUBLE(3, touch.velocity);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, sqrt(0.02) / 0.2921, touch.place);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, sqrt(0.02) / 0.2921, touch.distance);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 146.83, touch.pitch);
-    TEST_ASSERT_TRUE(himc_drum_touch_next(drum, &touch));
+    TEST_ASSERT_TRUE(himc_drum_contact_next(drum, &touch));
     TEST_ASSERT_EQUAL_INT(3000, (int)touch.at);
-    TEST_ASSERT_FALSE(himc_drum_touch_next(drum, &touch));
+    TEST_ASSERT_FALSE(himc_drum_contact_next(drum, &touch));
 }
 
 static void test_touches_that_nobody_takes_are_the_latest_64(void)
 {
-    himc_touch touch;
+    himc_contact_onset touch;
     int count = 0;
     for (int i = 0; i < 70; i++) {
         TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, 0, 0, 1 + i % 20, &error));
-        himc_drum_advance(drum, 4000, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(drum, 4000, NULL, NULL, NULL);
     }
-    while (himc_drum_touch_next(drum, &touch))
+    while (himc_drum_contact_next(drum, &touch))
         count++;
     TEST_ASSERT_EQUAL_INT(64, count);
     TEST_ASSERT_EQUAL_INT(69 * 4000, (int)touch.at);

@@ -1,4 +1,5 @@
-#include "himc/membrane.h"
+/// test_contact.c: energy, forces, times and rebounds of sticks on a head.
+#include "drum/contact.h"
 
 #include "unity.h"
 
@@ -14,8 +15,7 @@ static himc_head head;
 static himc_stick stick[STICKS];
 static himc_stick *sticks[STICKS] = {&stick[0], &stick[1], &stick[2], &stick[3]};
 
-// the drum, the mallet and the place on it of Christian et al.'s head loaded by air as by 1/0.66^2
-// of its mass
+// Christian et al.'s head; the mass of its air is included by the factor 1/0.66^2
 static void christian(int modes)
 {
     head = himc_head_default();
@@ -41,7 +41,7 @@ static void place_all(void)
     place(0, -0.75, 0, 4);
     place(1, -0.74, 0.05, 3); // beside the first: strongly coupled
     place(2, -0.2, 0.4, 5);
-    place(3, -0.75, 0, 2); // on the first one's very place
+    place(3, -0.75, 0, 2); // at the first one's point
 }
 
 static void remake(void)
@@ -73,8 +73,8 @@ static double energy(int count)
     return sum;
 }
 
-// a blow of `count` sticks: largest drift of the energy from its start, and largest step up, as
-// fractions of it
+// A blow of `count` sticks: largest deviation of the energy from its start, and largest rise in one
+// step, as fractions of it.
 static void blow(int count, double k, double mu, double *drift, double *rise)
 {
     remake();
@@ -96,7 +96,7 @@ static void blow(int count, double k, double mu, double *drift, double *rise)
     TEST_ASSERT_TRUE(most > 1);
 }
 
-static void test_contact_keeps_energy_when_nothing_is_lossy_for_any_stiffness(void)
+static void test_contact_without_losses_keeps_energy_for_any_stiffness(void)
 {
     double worst = 0;
     head.decay_constant = head.decay_square = 0;
@@ -121,7 +121,7 @@ static void test_contact_energy_never_grows_in_any_step_with_losses(void)
             worst = fmax(worst, rise);
         }
     }
-    printf("largest step up %.2g of the blow\n", worst);
+    printf("largest rise in a step %.2g of the blow\n", worst);
     TEST_ASSERT_TRUE(worst < 1e-13);
 }
 
@@ -144,7 +144,7 @@ static result hit(double velocity)
     return r;
 }
 
-static void test_contact_forces_times_and_rebounds_are_the_published_models(void)
+static void test_contact_forces_times_and_rebounds_agree_with_the_published_model(void)
 {
     static const double expected[5][4] = {{0.5, 5.7, 10.2e-3, 0.95},
                                           {1, 12.5, 8.7e-3, 0.92},
@@ -165,7 +165,7 @@ static void test_contact_forces_times_and_rebounds_are_the_published_models(void
 
 // against a rigid wall the collision is known: c_max from energy, and the lossless rebound is
 // perfect
-static void test_contact_with_a_head_that_does_not_yield_is_hertz(void)
+static void test_contact_with_a_rigid_head_follows_hertz(void)
 {
     place(0, 1.5, 0, 2); // outside the head every shape is 0
     stick[0].head.stiffness = 1e7;
@@ -180,7 +180,7 @@ static void test_contact_with_a_head_that_does_not_yield_is_hertz(void)
 }
 
 // Hunt & Crossley 1975: for small losses the rebound is about 1 - 2 mu v/3 of the impact's
-static void test_contact_loses_what_hunt_and_crossley_say(void)
+static void test_contact_loss_agrees_with_hunt_and_crossley(void)
 {
     place(0, 1.5, 0, 1);
     stick[0].head.loss = 0.03;
@@ -189,8 +189,7 @@ static void test_contact_loses_what_hunt_and_crossley_say(void)
     TEST_ASSERT_DOUBLE_WITHIN(1.5e-3, 1 - 2 * 0.03 / 3, stick[0].velocity);
 }
 
-static void
-test_contact_of_two_equal_sticks_at_one_place_is_that_of_one_twice_as_heavy_and_stiff(void)
+static void test_contact_of_two_equal_sticks_equals_one_twice_as_heavy_and_stiff(void)
 {
     place(0, -0.5, 0.1, 3);
     place(1, -0.5, 0.1, 3);
@@ -225,19 +224,19 @@ static void test_contact_converges_with_the_square_of_the_step(void)
     TEST_ASSERT_TRUE(coarse / middle > 2.5 && middle / fine > 2.5);
 }
 
-static void test_contact_holds_the_place_of_first_touch_until_it_ends(void)
+static void test_contact_keeps_its_first_point_until_it_ends(void)
 {
     place(0, -0.75, 0, 2);
     double x = stick[0].x;
     for (int n = 0; n < 100; n++) {
         himc_contact_step(membrane, sticks, 1);
         TEST_ASSERT_TRUE(stick[0].touching);
-        TEST_ASSERT_EQUAL_DOUBLE(x, stick[0].touch_x);
+        TEST_ASSERT_EQUAL_DOUBLE(x, stick[0].contact_x);
         stick[0].x += 1e-4;
     }
 }
 
-static void test_one_way_stick_does_not_feel_the_head(void)
+static void test_one_way_stick_is_not_moved_by_the_head(void)
 {
     place(0, -0.75, 0, 3);
     stick[0].one_way = true;
@@ -266,7 +265,7 @@ static double one_way_energy(double velocity)
     return himc_membrane_energy(membrane);
 }
 
-static void test_one_way_blow_drives_the_head_by_its_force_and_stays_finite_for_any_stiffness(void)
+static void test_one_way_blow_grows_with_velocity_and_stays_finite_for_any_stiffness(void)
 {
     double soft = one_way_energy(1), middle = one_way_energy(2), loud = one_way_energy(4);
     TEST_ASSERT_TRUE(soft > 0 && middle > 2 * soft && loud > 2 * middle);
@@ -283,7 +282,7 @@ static void test_one_way_blow_drives_the_head_by_its_force_and_stays_finite_for_
 }
 
 // a one-way stick meets a rigid head at rest: Hertz's force, whatever the exponent
-static void test_one_way_force_of_the_motion_is_hertz_of_the_mallets_exponent(void)
+static void test_one_way_motion_force_follows_hertz_with_the_mallets_exponent(void)
 {
     static const double exponent[] = {1.5, 2, 2.54, 3}, stiffness[] = {1e5, 1e6, 1e8, 1e9};
     for (int i = 0; i < 4; i++) {
@@ -304,7 +303,7 @@ static void test_one_way_force_of_the_motion_is_hertz_of_the_mallets_exponent(vo
 
 // k_s = k F_m/100 N (table 2): a head too heavy to move takes sum of F F_m/100 h, F_m the largest F
 // so far
-static void test_one_way_head_is_driven_by_a_hundredth_of_the_motions_force_for_each_newton(void)
+static void test_one_way_head_force_scales_with_the_peak_of_the_motion_force(void)
 {
     static const double exponent[] = {1.5, 2.54}, stiffness[] = {1e5, 1e7};
     for (int i = 0; i < 2; i++) {
@@ -331,7 +330,7 @@ static void test_one_way_head_is_driven_by_a_hundredth_of_the_motions_force_for_
     }
 }
 
-static void test_contact_touches_count_once_what_chatters(void)
+static void test_contact_counts_chatter_as_one_contact(void)
 {
     place(0, -0.75, 0, 4);
     stick[0].head.stiffness = 1e10;
@@ -341,14 +340,14 @@ static void test_contact_touches_count_once_what_chatters(void)
         himc_contact_step(membrane, sticks, 1);
         quiet = stick[0].force > 0 ? 0 : quiet + 1;
         flights += quiet == 73; // more than 1.5 ms
-        TEST_ASSERT_TRUE((int)stick[0].touches <= flights + 1);
+        TEST_ASSERT_TRUE((int)stick[0].contacts <= flights + 1);
         if (n == 0)
             TEST_ASSERT_EQUAL_DOUBLE(4, stick[0].impact);
     }
-    TEST_ASSERT_TRUE(flights > 0 && stick[0].touches >= 1);
+    TEST_ASSERT_TRUE(flights > 0 && stick[0].contacts >= 1);
 }
 
-static void test_contact_clear_never_promises_too_much(void)
+static void test_contact_clear_never_returns_too_many_samples(void)
 {
     place(0, 0, 0, 10);
     stick[0].height = 0.2;
@@ -365,7 +364,7 @@ static void test_contact_clear_never_promises_too_much(void)
     TEST_ASSERT_EQUAL_INT(0, himc_contact_clear(membrane, sticks, 1, 64));
 }
 
-static void test_contact_with_a_stick_that_is_not_a_number_leaves_the_head_alone(void)
+static void test_contact_with_a_stick_that_is_not_a_number_does_not_change_the_head(void)
 {
     place(0, -0.75, 0, 2);
     stick[0].velocity = NAN;
@@ -379,20 +378,20 @@ static void test_contact_with_a_stick_that_is_not_a_number_leaves_the_head_alone
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_contact_keeps_energy_when_nothing_is_lossy_for_any_stiffness);
+    RUN_TEST(test_contact_without_losses_keeps_energy_for_any_stiffness);
     RUN_TEST(test_contact_energy_never_grows_in_any_step_with_losses);
-    RUN_TEST(test_contact_forces_times_and_rebounds_are_the_published_models);
-    RUN_TEST(test_contact_with_a_head_that_does_not_yield_is_hertz);
-    RUN_TEST(test_contact_loses_what_hunt_and_crossley_say);
-    RUN_TEST(test_contact_of_two_equal_sticks_at_one_place_is_that_of_one_twice_as_heavy_and_stiff);
+    RUN_TEST(test_contact_forces_times_and_rebounds_agree_with_the_published_model);
+    RUN_TEST(test_contact_with_a_rigid_head_follows_hertz);
+    RUN_TEST(test_contact_loss_agrees_with_hunt_and_crossley);
+    RUN_TEST(test_contact_of_two_equal_sticks_equals_one_twice_as_heavy_and_stiff);
     RUN_TEST(test_contact_converges_with_the_square_of_the_step);
-    RUN_TEST(test_contact_holds_the_place_of_first_touch_until_it_ends);
-    RUN_TEST(test_one_way_stick_does_not_feel_the_head);
-    RUN_TEST(test_one_way_blow_drives_the_head_by_its_force_and_stays_finite_for_any_stiffness);
-    RUN_TEST(test_one_way_force_of_the_motion_is_hertz_of_the_mallets_exponent);
-    RUN_TEST(test_one_way_head_is_driven_by_a_hundredth_of_the_motions_force_for_each_newton);
-    RUN_TEST(test_contact_touches_count_once_what_chatters);
-    RUN_TEST(test_contact_clear_never_promises_too_much);
-    RUN_TEST(test_contact_with_a_stick_that_is_not_a_number_leaves_the_head_alone);
+    RUN_TEST(test_contact_keeps_its_first_point_until_it_ends);
+    RUN_TEST(test_one_way_stick_is_not_moved_by_the_head);
+    RUN_TEST(test_one_way_blow_grows_with_velocity_and_stays_finite_for_any_stiffness);
+    RUN_TEST(test_one_way_motion_force_follows_hertz_with_the_mallets_exponent);
+    RUN_TEST(test_one_way_head_force_scales_with_the_peak_of_the_motion_force);
+    RUN_TEST(test_contact_counts_chatter_as_one_contact);
+    RUN_TEST(test_contact_clear_never_returns_too_many_samples);
+    RUN_TEST(test_contact_with_a_stick_that_is_not_a_number_does_not_change_the_head);
     return UNITY_END();
 }

@@ -1,5 +1,5 @@
-/// test_drum.c: a drum as it plays: blows on the sample asked for, the same bits in blocks of any
-/// size, time, rates, and no allocation.
+/// test_drum.c: strikes exact to the sample, the same bits in blocks of any size, time, rates, and
+/// no allocation.
 #include "allocations.h"
 #include "one_drum.h"
 
@@ -67,7 +67,7 @@ static void test_drum_gives_the_same_bits_in_blocks_of_any_size(void)
     }
 }
 
-static void test_drum_forces_from_outside_that_are_absurd_leave_the_sound_finite(void)
+static void test_drum_sound_stays_finite_with_absurd_outside_forces(void)
 {
     static double force[4096], x[4096], y[4096];
     for (int i = 0; i < 4096; i++) {
@@ -76,14 +76,14 @@ static void test_drum_forces_from_outside_that_are_absurd_leave_the_sound_finite
         x[i] = i % 11 == 0 ? NAN : i % 13 == 0 ? 1e300 : 0.1;
         y[i] = i % 17 == 0 ? INFINITY : 0;
     }
-    himc_drum_advance(drum, 4096, NULL, 0, NULL, force, x, y);
+    himc_drum_advance(drum, 4096, force, x, y);
     advance(4096);
     himc_drum_read(drum, 0, 8192, sound, seen);
     TEST_ASSERT_TRUE(peak(sound, 8192) < 1e6);
     TEST_ASSERT_TRUE(peak(seen, 8192) < 100);
 }
 
-static void test_drum_counts_time_anew_when_realigned_and_keeps_sounding(void)
+static void test_drum_counts_time_from_0_when_realigned_and_goes_on_sounding(void)
 {
     static double reference[4096];
     says("strike -0.2 0 3");
@@ -109,7 +109,7 @@ static void test_drum_counts_time_anew_when_realigned_and_keeps_sounding(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4100 / RATE, report.time);
 }
 
-static void test_drum_keeps_the_last_of_its_sound_and_nothing_older(void)
+static void test_drum_ring_keeps_the_latest_samples_only(void)
 {
     says("strike -0.2 0 3");
     advance(HIMC_DRUM_RING + 10);
@@ -131,7 +131,7 @@ static void test_drum_goes_on_sounding_at_another_rate(void)
     TEST_ASSERT_EQUAL_DOUBLE(96000, himc_drum_rate(drum));
 }
 
-static void test_drum_takes_more_strikes_at_once_than_it_has_mallets_and_plays_all(void)
+static void test_drum_plays_more_strikes_at_once_than_it_has_mallets(void)
 {
     for (int i = 0; i < 20; i++)
         TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, -0.2 + 0.02 * i, 0, 2, &error));
@@ -143,7 +143,7 @@ static void test_drum_takes_more_strikes_at_once_than_it_has_mallets_and_plays_a
     TEST_ASSERT_EQUAL_INT(20, played);
 }
 
-static void test_drum_belongs_to_one_performer_at_a_time(void)
+static void test_drum_is_driven_by_one_performer_at_a_time(void)
 {
     int a, b;
     TEST_ASSERT_TRUE(himc_drum_set_driver(drum, (himc_drum_driver){NULL, &a}));
@@ -166,7 +166,8 @@ static void test_drum_allocates_nothing_while_it_plays(void)
         force[i] = 3;
         x[i] = 0.001 * i;
         b.y = 0.001 * i;
-        himc_drum_advance(drum, 512, sticks, 2, NULL, force, x, y);
+        himc_outside_force outside = {force, x, y};
+        himc_drum_advance_sticks(drum, 512, sticks, 2, NULL, &outside);
         himc_drum_read(drum, 0, 512, sound, seen);
         himc_drum_strike_next(drum, &report);
     }
@@ -180,12 +181,12 @@ int main(void)
     RUN_TEST(test_drum_strike_begins_on_the_sample_asked_for);
     RUN_TEST(test_drum_sounds_louder_the_harder_it_is_struck_and_a_fortissimo_does_not_clip);
     RUN_TEST(test_drum_gives_the_same_bits_in_blocks_of_any_size);
-    RUN_TEST(test_drum_forces_from_outside_that_are_absurd_leave_the_sound_finite);
-    RUN_TEST(test_drum_counts_time_anew_when_realigned_and_keeps_sounding);
-    RUN_TEST(test_drum_keeps_the_last_of_its_sound_and_nothing_older);
+    RUN_TEST(test_drum_sound_stays_finite_with_absurd_outside_forces);
+    RUN_TEST(test_drum_counts_time_from_0_when_realigned_and_goes_on_sounding);
+    RUN_TEST(test_drum_ring_keeps_the_latest_samples_only);
     RUN_TEST(test_drum_goes_on_sounding_at_another_rate);
-    RUN_TEST(test_drum_takes_more_strikes_at_once_than_it_has_mallets_and_plays_all);
-    RUN_TEST(test_drum_belongs_to_one_performer_at_a_time);
+    RUN_TEST(test_drum_plays_more_strikes_at_once_than_it_has_mallets);
+    RUN_TEST(test_drum_is_driven_by_one_performer_at_a_time);
     RUN_TEST(test_drum_allocates_nothing_while_it_plays);
     return UNITY_END();
 }

@@ -65,9 +65,11 @@ static void test_drum_commands_set_what_they_say(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.025, himc_drum_mallet(drum)->mass);
     TEST_ASSERT_EQUAL_UINT(revision + 5, himc_drum_revision(drum));
     says("pickup 0.1 0.1");
-    TEST_ASSERT_EQUAL_INT(HIMC_PICKUP_POINT, himc_membrane_pickup(membrane)->kind);
+    int count;
+    TEST_ASSERT_EQUAL_INT(HIMC_PICKUP_POINT, himc_membrane_pickups(membrane, &count)->kind);
     says("pickup air 0.5 1.0472 2");
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, HIMC_PI / 3, himc_membrane_pickup(membrane)->elevation);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, HIMC_PI / 3,
+                              himc_membrane_pickups(membrane, &count)->elevation);
     char text[256];
     himc_drum_describe(drum, text, sizeof text);
     TEST_ASSERT_NOT_NULL(strstr(text, "2000 modes"));

@@ -1,4 +1,4 @@
-/// test_glide.c: the film's stretching: what it does to pitch, and that it makes no energy.
+/// test_glide.c: the film's stretching: the rise of pitch, and that energy never grows.
 #include "himc/membrane.h"
 
 #include "unity.h"
@@ -22,7 +22,8 @@ static void remake(double rate)
     TEST_ASSERT_NOT_NULL_MESSAGE(membrane, error.text);
 }
 
-// Christian et al.'s 26 inch head, loaded by air as by 1/0.66^2 of its mass, its film 0.19 mm
+// Christian et al.'s 26 inch head; the mass of its air is included by the factor 1/0.66^2; film
+// 0.19 mm
 void setUp(void)
 {
     head = himc_head_default();
@@ -62,7 +63,7 @@ static double mean_cents(double from, double to)
     return 600 * log2(1 + sum / head.tension);
 }
 
-static void test_glide_of_a_struck_head_is_the_published_one_within_15_percent(void)
+static void test_glide_of_a_struck_head_agrees_with_the_published_within_15_percent(void)
 {
     static const double expected[4][2] = {{2, 0.8}, {4, 4.1}, {8, 18}, {12, 40}};
     head.decay_constant = 2.2; // about what the principal modes radiate
@@ -99,7 +100,7 @@ static double duffing_frequency(const himc_mode *mode, double amplitude)
     return a / (2 * HIMC_PI);
 }
 
-static void test_glide_of_a_mode_alone_is_duffings(void)
+static void test_glide_of_one_mode_agrees_with_duffings_oscillator(void)
 {
     head.modes = 1;
     head.decay_constant = head.decay_square = 0;
@@ -111,13 +112,13 @@ static void test_glide_of_a_mode_alone_is_duffings(void)
         double before = amplitude, first = 0, last = 0;
         int crossings = 0;
         for (int n = 1; n < 96000; n++) {
-            double heard, seen;
-            himc_membrane_run(membrane, 1, &heard, &seen);
-            if (before < 0 && seen >= 0) {
-                last = n - seen / (seen - before);
+            double sound, displacement, *const out = &sound;
+            himc_membrane_run(membrane, 1, &out, &displacement);
+            if (before < 0 && displacement >= 0) {
+                last = n - displacement / (displacement - before);
                 first = crossings++ == 0 ? last : first;
             }
-            before = seen;
+            before = displacement;
         }
         double frequency = (crossings - 1) * RATE / (last - first);
         double expected = duffing_frequency(&mode, amplitude);
@@ -135,8 +136,8 @@ static double energy(int count)
     return sum;
 }
 
-// a blow of `count` sticks: the energy's largest drift, and growth above its lowest so far, as
-// fractions of it
+// A blow of `count` sticks: the energy's largest deviation from its start, and its largest growth
+// above the lowest so far, as fractions of it.
 static void blow(int count, double k, double mu, double *drift, double *growth)
 {
     remake(RATE);
@@ -159,7 +160,7 @@ static void blow(int count, double k, double mu, double *drift, double *growth)
     TEST_ASSERT_TRUE(most > 50);
 }
 
-static void test_glide_keeps_energy_when_nothing_is_lossy_with_any_sticks(void)
+static void test_glide_without_losses_keeps_energy_with_any_sticks(void)
 {
     double worst = 0;
     head.decay_constant = head.decay_square = 0;
@@ -193,18 +194,20 @@ static void test_glide_energy_never_grows_in_any_step_with_losses_air_and_sticks
 
 static void test_glide_ends_with_the_sound_and_gives_the_same_bits_in_any_blocks(void)
 {
-    static double heard[4][96000], seen[96000];
+    static double sound[4][96000], displacement[96000];
     static const int sizes[] = {96000, 1, 64, 777};
     head.decay_constant = 8;
     for (int k = 0; k < 4; k++) {
         remake(RATE);
         himc_membrane_push(membrane, -0.2, 0, 2e4);
-        himc_membrane_run(membrane, 1, heard[k], seen);
+        double *out = sound[k];
+        himc_membrane_run(membrane, 1, &out, displacement);
         for (int done = 1; done < 96000; done += sizes[k]) {
             int n = 96000 - done < sizes[k] ? 96000 - done : sizes[k];
-            himc_membrane_run(membrane, n, heard[k] + done, seen + done);
+            out = sound[k] + done;
+            himc_membrane_run(membrane, n, &out, displacement + done);
         }
-        TEST_ASSERT_EQUAL_MEMORY(heard[0], heard[k], sizeof heard[0]);
+        TEST_ASSERT_EQUAL_MEMORY(sound[0], sound[k], sizeof sound[0]);
         TEST_ASSERT_EQUAL_DOUBLE(0, himc_membrane_rise(membrane));
         TEST_ASSERT_TRUE(himc_membrane_energy(membrane) > 0);
     }
@@ -213,9 +216,9 @@ static void test_glide_ends_with_the_sound_and_gives_the_same_bits_in_any_blocks
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_glide_of_a_struck_head_is_the_published_one_within_15_percent);
-    RUN_TEST(test_glide_of_a_mode_alone_is_duffings);
-    RUN_TEST(test_glide_keeps_energy_when_nothing_is_lossy_with_any_sticks);
+    RUN_TEST(test_glide_of_a_struck_head_agrees_with_the_published_within_15_percent);
+    RUN_TEST(test_glide_of_one_mode_agrees_with_duffings_oscillator);
+    RUN_TEST(test_glide_without_losses_keeps_energy_with_any_sticks);
     RUN_TEST(test_glide_energy_never_grows_in_any_step_with_losses_air_and_sticks);
     RUN_TEST(test_glide_ends_with_the_sound_and_gives_the_same_bits_in_any_blocks);
     return UNITY_END();

@@ -1,3 +1,4 @@
+/// test_modes.c: the list of modes, their masses, shapes and decays, and the ranges of a head.
 #define _XOPEN_SOURCE 700 // jn
 #include "drum/modes.h"
 
@@ -9,6 +10,7 @@
 
 static himc_head head;
 static himc_error error;
+static const himc_shape circle = {.kind = HIMC_CIRCLE};
 
 void setUp(void)
 {
@@ -39,7 +41,7 @@ static void ratio_is(const himc_modes *modes, int m, int n, double ratio)
 
 static void test_modes_ratios_to_the_principal_are_the_ideal_membranes(void)
 {
-    himc_modes *modes = himc_modes_new(40, &error);
+    himc_modes *modes = himc_modes_new(&circle, 40, &error);
     ratio_is(modes, 0, 1, 0.6276);
     ratio_is(modes, 2, 1, 1.3403);
     ratio_is(modes, 0, 2, 1.4406);
@@ -60,7 +62,7 @@ static void mass_fraction_is(const himc_modes *modes, int m, int n, double fract
 
 static void test_modes_masses_are_the_known_fractions_of_the_heads(void)
 {
-    himc_modes *modes = himc_modes_new(40, &error);
+    himc_modes *modes = himc_modes_new(&circle, 40, &error);
     mass_fraction_is(modes, 0, 1, 0.269514123942);
     mass_fraction_is(modes, 1, 1, 0.0811075654133);
     mass_fraction_is(modes, 2, 1, 0.0576874274087);
@@ -71,7 +73,7 @@ static void test_modes_masses_are_the_known_fractions_of_the_heads(void)
 
 static void test_modes_stiffness_is_the_tensions_share(void)
 {
-    himc_modes *modes = himc_modes_new(40, &error);
+    himc_modes *modes = himc_modes_new(&circle, 40, &error);
     himc_mode mode = find(modes, 2, 2, true);
     double a = head.radius,
            expected = head.tension * pow(mode.zero / a, 2) * HIMC_PI * a * a * mode.norm;
@@ -79,9 +81,9 @@ static void test_modes_stiffness_is_the_tensions_share(void)
     himc_modes_free(modes);
 }
 
-static void test_modes_come_in_order_each_once_and_pairs_together(void)
+static void test_modes_are_in_order_each_once_and_pairs_together(void)
 {
-    himc_modes *modes = himc_modes_new(2000, &error);
+    himc_modes *modes = himc_modes_new(&circle, 2000, &error);
     himc_mode before = himc_modes_get(modes, &head, 0);
     TEST_ASSERT_EQUAL_INT(0, before.m);
     for (int i = 1; i < 2000; i++) {
@@ -98,7 +100,7 @@ static void test_modes_come_in_order_each_once_and_pairs_together(void)
 // every (m, n) whose zero lies below the last one's is in the list, and nothing else is
 static void test_modes_list_has_no_hole(void)
 {
-    himc_modes *modes = himc_modes_new(501, &error);
+    himc_modes *modes = himc_modes_new(&circle, 501, &error);
     double last = himc_modes_get(modes, &head, 500).zero;
     int below[60] = {0}, counted = 0;
     for (int i = 0; i < 501; i++) {
@@ -106,8 +108,7 @@ static void test_modes_list_has_no_hole(void)
         if (mode.zero < last && !mode.sine && mode.n > below[mode.m])
             below[mode.m] = mode.n;
     }
-    // jn changes sign once more beyond each order's last: count the sign changes of the C library's
-    // functions
+    // the C library's jn changes sign once for each zero of its order
     for (int m = 0; m < 60; m++) {
         int changes = 0;
         for (double z = m + 0.01; z + 0.05 < last; z += 0.05)
@@ -119,24 +120,25 @@ static void test_modes_list_has_no_hole(void)
     himc_modes_free(modes);
 }
 
-static void test_modes_count_that_cuts_a_pair_keeps_the_cosine(void)
+static void test_modes_list_that_ends_within_a_pair_has_the_cosine(void)
 {
-    himc_modes *modes = himc_modes_new(2, &error);
+    himc_modes *modes = himc_modes_new(&circle, 2, &error);
     himc_mode mode = himc_modes_get(modes, &head, 1);
     TEST_ASSERT_EQUAL_INT(1, mode.m);
     TEST_ASSERT_FALSE(mode.sine);
     double shapes[2];
     himc_modes_shapes(modes, head.radius, 0.1, 0.05, shapes);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-8, himc_modes_shape(modes, head.radius, 1, 0.1, 0.05), shapes[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, himc_modes_shape_at(modes, head.radius, 1, 0.1, 0.05),
+                              shapes[1]);
     himc_modes_free(modes);
 }
 
 static void test_modes_three_three_has_a_node_at_three_quarters(void)
 {
-    himc_modes *modes = himc_modes_new(200, &error);
+    himc_modes *modes = himc_modes_new(&circle, 200, &error);
     for (int i = 0; i < 200; i++) {
         himc_mode mode = himc_modes_get(modes, &head, i);
-        double at = fabs(himc_modes_shape(modes, head.radius, i, -0.75 * head.radius, 0));
+        double at = fabs(himc_modes_shape_at(modes, head.radius, i, -0.75 * head.radius, 0));
         if (mode.m == 3 && mode.n == 3) {
             TEST_ASSERT_TRUE(at < 1e-4);
         } else if (mode.m == 1 && mode.n == 1 && !mode.sine) {
@@ -148,14 +150,14 @@ static void test_modes_three_three_has_a_node_at_three_quarters(void)
 
 static void test_modes_fast_shapes_agree_with_exact_ones(void)
 {
-    himc_modes *modes = himc_modes_new(2000, &error);
+    himc_modes *modes = himc_modes_new(&circle, 2000, &error);
     double *shapes = malloc(2000 * sizeof *shapes);
     for (int k = 0; k < 12; k++) {
         double r = head.radius * (k < 11 ? k / 11.0 : 0.9999), angle = 0.7 * k;
         himc_modes_shapes(modes, head.radius, r * cos(angle), r * sin(angle), shapes);
         for (int i = 0; i < 2000; i += 3)
             TEST_ASSERT_DOUBLE_WITHIN(
-                1e-8, himc_modes_shape(modes, head.radius, i, r * cos(angle), r * sin(angle)),
+                1e-8, himc_modes_shape_at(modes, head.radius, i, r * cos(angle), r * sin(angle)),
                 shapes[i]);
     }
     free(shapes);
@@ -164,7 +166,7 @@ static void test_modes_fast_shapes_agree_with_exact_ones(void)
 
 static void test_modes_shapes_vanish_outside_the_head(void)
 {
-    himc_modes *modes = himc_modes_new(20, &error);
+    himc_modes *modes = himc_modes_new(&circle, 20, &error);
     double shapes[20];
     himc_modes_shapes(modes, head.radius, head.radius * 1.01, 0, shapes);
     for (int i = 0; i < 20; i++)
@@ -172,9 +174,9 @@ static void test_modes_shapes_vanish_outside_the_head(void)
     himc_modes_free(modes);
 }
 
-static void test_modes_decay_is_the_two_parameter_law_and_never_beyond_swinging(void)
+static void test_modes_decay_is_the_two_parameter_law_and_always_leaves_an_oscillation(void)
 {
-    himc_modes *modes = himc_modes_new(200, &error);
+    himc_modes *modes = himc_modes_new(&circle, 200, &error);
     himc_mode mode = himc_modes_get(modes, &head, 50);
     double w = 2 * HIMC_PI * mode.frequency;
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, head.decay_constant + head.decay_square * w * w, mode.decay);
@@ -191,7 +193,7 @@ static void refused(const char *line)
     head = himc_head_default();
 }
 
-static void test_head_refuses_what_no_head_is_and_says_what_is_allowed(void)
+static void test_head_refuses_fields_out_of_range_with_the_range(void)
 {
     TEST_ASSERT_TRUE(himc_head_check(&head, &error));
     head.radius = 0;
@@ -204,7 +206,7 @@ static void test_head_refuses_what_no_head_is_and_says_what_is_allowed(void)
     refused("modes: 0, allowed 1 .. 4000");
     head.decay_square = INFINITY;
     refused("decay S1: inf s, allowed 0 .. 1 s");
-    TEST_ASSERT_NULL(himc_modes_new(4001, &error));
+    TEST_ASSERT_NULL(himc_modes_new(&circle, 4001, &error));
 }
 
 int main(void)
@@ -213,13 +215,13 @@ int main(void)
     RUN_TEST(test_modes_ratios_to_the_principal_are_the_ideal_membranes);
     RUN_TEST(test_modes_masses_are_the_known_fractions_of_the_heads);
     RUN_TEST(test_modes_stiffness_is_the_tensions_share);
-    RUN_TEST(test_modes_come_in_order_each_once_and_pairs_together);
+    RUN_TEST(test_modes_are_in_order_each_once_and_pairs_together);
     RUN_TEST(test_modes_list_has_no_hole);
-    RUN_TEST(test_modes_count_that_cuts_a_pair_keeps_the_cosine);
+    RUN_TEST(test_modes_list_that_ends_within_a_pair_has_the_cosine);
     RUN_TEST(test_modes_three_three_has_a_node_at_three_quarters);
     RUN_TEST(test_modes_fast_shapes_agree_with_exact_ones);
     RUN_TEST(test_modes_shapes_vanish_outside_the_head);
-    RUN_TEST(test_modes_decay_is_the_two_parameter_law_and_never_beyond_swinging);
-    RUN_TEST(test_head_refuses_what_no_head_is_and_says_what_is_allowed);
+    RUN_TEST(test_modes_decay_is_the_two_parameter_law_and_always_leaves_an_oscillation);
+    RUN_TEST(test_head_refuses_fields_out_of_range_with_the_range);
     return UNITY_END();
 }

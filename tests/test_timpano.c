@@ -1,4 +1,4 @@
-/// test_timpano.c: a drum in air: its pitch, its decays, its pedal, its hand, its ears.
+/// test_timpano.c: a drum in air: pitch, decays, pedal, damping hand, pickups.
 #include "drum/air.h"
 #include "himc/drum.h"
 
@@ -62,7 +62,7 @@ static double t60(int m, int n)
 
 static void play(int at, int n)
 {
-    himc_drum_advance(drum, n, NULL, 0, NULL, NULL, NULL, NULL);
+    himc_drum_advance(drum, n, NULL, NULL, NULL);
     himc_drum_read(drum, himc_drum_time(drum) - (uint64_t)n, n, sound + at, NULL);
 }
 
@@ -74,7 +74,7 @@ static double peak(const double *x, int from, int to)
     return most;
 }
 
-static void test_timpano_of_3528_newtons_a_metre_is_at_e3_and_tunes_with_its_air(void)
+static void test_timpano_at_3528_newtons_per_metre_sounds_e3_and_tunes_with_its_air(void)
 {
     static const struct {
         const char *text;
@@ -104,9 +104,10 @@ static void test_timpano_decays_in_the_order_of_real_ones(void)
     TEST_ASSERT_TRUE(t60(0, 1) < 0.35 && t60(0, 2) < 0.35);
 }
 
-// half a wave fits the kettle's depth at 466 Hz: the mode just below swings with that air, which
-// loses nothing in a rigid kettle; those above and well below move the air outside and die at once
-static void test_timpano_concentric_modes_die_at_once_but_beside_the_kettles_own_resonance(void)
+// Half a wave fits the kettle's depth at 466 Hz. The mode just below moves with that air, which
+// loses nothing in a rigid kettle; those above and well below move the air outside and decay at
+// once.
+static void test_timpano_concentric_modes_decay_at_once_except_near_the_kettles_resonance(void)
 {
     double a = 0.2921, depth = himc_air_kettle(a) / (HIMC_PI * a * a);
     double resonance = HIMC_AIR_SPEED / (2 * depth);
@@ -198,7 +199,7 @@ static void test_timpano_is_damped_by_a_hand(void)
     TEST_ASSERT_TRUE(peak(sound, 4800, 9600) > 0.5 * before);
 }
 
-static void test_timpano_is_heard_by_several_pickups_each_as_if_alone(void)
+static void test_timpano_gives_each_of_several_pickups_as_if_alone(void)
 {
     static double alone[9600];
     says("pickups 3");
@@ -211,15 +212,15 @@ static void test_timpano_is_heard_by_several_pickups_each_as_if_alone(void)
                                         "pickup 0.1 0.05"};
     for (int k = 0; k < 3; k++) {
         says("strike -0.2 0.02 4");
-        himc_drum_advance(drum, 9600, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(drum, 9600, NULL, NULL, NULL);
         himc_drum_read_channel(drum, k, 0, 9600, other);
         tearDown();
         setUp();
         says(lines[k]);
         says("strike -0.2 0.02 4");
-        himc_drum_advance(drum, 9600, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(drum, 9600, NULL, NULL, NULL);
         himc_drum_read(drum, 0, 9600, alone, NULL);
-        // the pickup set fades in over 5 ms
+        // the sound changes over to a new pickup in 5 ms
         for (int i = 480; i < 9600; i++)
             TEST_ASSERT_DOUBLE_WITHIN(2e-7, alone[i], other[i]);
         TEST_ASSERT_TRUE(peak(alone, 0, 9600) > 0.01);
@@ -231,7 +232,7 @@ static void test_timpano_is_heard_by_several_pickups_each_as_if_alone(void)
     }
 }
 
-static void test_timpano_with_a_hard_mallet_struck_hard_is_brighter(void)
+static void test_timpano_is_brighter_with_a_hard_mallet_and_a_hard_strike(void)
 {
     double centroid[2][2];
     for (int k = 0; k < 4; k++) {
@@ -257,13 +258,13 @@ static void test_timpano_with_a_hard_mallet_struck_hard_is_brighter(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_timpano_of_3528_newtons_a_metre_is_at_e3_and_tunes_with_its_air);
+    RUN_TEST(test_timpano_at_3528_newtons_per_metre_sounds_e3_and_tunes_with_its_air);
     RUN_TEST(test_timpano_decays_in_the_order_of_real_ones);
-    RUN_TEST(test_timpano_concentric_modes_die_at_once_but_beside_the_kettles_own_resonance);
+    RUN_TEST(test_timpano_concentric_modes_decay_at_once_except_near_the_kettles_resonance);
     RUN_TEST(test_timpano_without_air_is_the_ideal_membrane);
     RUN_TEST(test_timpano_pedals_from_a2_to_e3_without_a_step);
     RUN_TEST(test_timpano_is_damped_by_a_hand);
-    RUN_TEST(test_timpano_is_heard_by_several_pickups_each_as_if_alone);
-    RUN_TEST(test_timpano_with_a_hard_mallet_struck_hard_is_brighter);
+    RUN_TEST(test_timpano_gives_each_of_several_pickups_as_if_alone);
+    RUN_TEST(test_timpano_is_brighter_with_a_hard_mallet_and_a_hard_strike);
     return UNITY_END();
 }

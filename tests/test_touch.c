@@ -142,21 +142,21 @@ static void test_touches_are_told_at_every_stroke_as_it_begins(void)
     himc_drum *drum = himc_performance_drum(performance, 0);
     himc_strike struck[8];
     himc_event event;
-    himc_touch told;
+    himc_contact_onset told;
     int strikes = 0, touches = 0;
     himc_performance_process(performance, SAMPLES, NULL);
     while (himc_performance_event(performance, &event))
         if (event.kind == HIMC_EVENT_STRIKE && strikes < 8)
             struck[strikes++] = event.strike;
     TEST_ASSERT_EQUAL_INT(4, strikes);
-    for (; himc_drum_touch_next(drum, &told); touches++) {
+    for (; himc_drum_contact_next(drum, &told); touches++) {
         const himc_strike *s = &struck[touches];
         TEST_ASSERT_TRUE(touches < strikes);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, s->time, (double)told.at / 48000);
         TEST_ASSERT_EQUAL_DOUBLE(s->x, told.x);
         TEST_ASSERT_EQUAL_DOUBLE(s->y, told.y);
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * s->velocity, s->velocity, told.velocity);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, hypot(s->x, s->y) / 0.2921, told.place);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, hypot(s->x, s->y) / 0.2921, told.distance);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, himc_membrane_mode(himc_drum_membrane(drum), 1).frequency,
                                   told.pitch);
     }

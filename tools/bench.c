@@ -171,7 +171,7 @@ static bool time_parts(double part[PARTS], himc_error *error)
 static double time_modes(himc_error *error)
 {
     himc_head head = himc_head_default();
-    static double heard[BLOCK], seen[BLOCK];
+    static double first[BLOCK], watched[BLOCK], *const sound = first;
     head.modes = MODES;
     head.decay_constant = 0.1;
     head.decay_square = 0;
@@ -181,7 +181,7 @@ static double time_modes(himc_error *error)
     himc_membrane_push(membrane, 0.11, 0.07, 100);
     double start = cpu_seconds();
     for (int i = 0; i < MODE_SAMPLES; i += BLOCK)
-        himc_membrane_run(membrane, BLOCK, heard, seen);
+        himc_membrane_run(membrane, BLOCK, &sound, watched);
     double taken = cpu_seconds() - start;
     himc_membrane_free(membrane);
     return MODES * ((double)MODE_SAMPLES / RATE) / taken;

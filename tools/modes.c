@@ -16,7 +16,7 @@
 /// Carries out the score's lines for this drum.
 static bool tune(himc_drum *drum, const himc_score *score, const char *path, himc_error *error)
 {
-    himc_drum_set_answered(drum, true); // the modes do not depend on the technique
+    himc_drum_set_external_sound(drum, true); // modes are the same whatever sounds
     for (int i = 0; i < score->line_count; i++) {
         const himc_score_line *line = &score->lines[i];
         if (strcmp(line->drum, himc_drum_name(drum)))

@@ -1,124 +1,126 @@
-/// drum.h: a membrane with a name, a place, a mallet and an ear; what `[membrane~ NAME]` and a
-/// score's `drum` make.
+/// drum.h: a drum: a membrane with a name, a place, a mallet and pickups; what `[membrane~ NAME]`
+/// and a score's `drum` make.
 ///
-/// A drum is shared by the object that shows it and the performer that strikes it, so it counts its
+/// A drum is shared by the object that shows it and the performer that strikes it, so it counts
 /// references. All calls come from one thread. Time is counted in samples since the drum was made
-/// or realigned.
+/// or realigned. Positions (x, y) on the head are in metres from its centre, x away from the
+/// performer, y to the left. Functions with a himc_error return NULL or false if they refuse, write
+/// one line into it (which may be NULL), and change nothing.
 #ifndef HIMC_DRUM_H
 #define HIMC_DRUM_H
 
 #include "himc/command.h"
 
 typedef struct himc_drum himc_drum;
-typedef struct himc_membrane himc_membrane;       ///< membrane.h
-typedef struct himc_mallet_head himc_mallet_head; ///< membrane.h
-typedef struct himc_stick himc_stick;             ///< membrane.h
+typedef struct himc_membrane himc_membrane; ///< membrane.h
 
-/// What a finished contact was.
+/// A drum of the given diameter (inches, 12 .. 60; the timpani have 23, 26, 29, 32) at
+/// `sample_rate` (Hz, 8000 .. 192000). The name has less than HIMC_NAME_SIZE characters. One
+/// reference belongs to the caller.
+himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error);
+/// Adds a reference; returns `drum`.
+himc_drum *himc_drum_retain(himc_drum *drum);
+/// Gives a reference back; the last one frees the drum. NULL is allowed.
+void himc_drum_release(himc_drum *drum);
+
+/// Borrowed.
+const char *himc_drum_name(const himc_drum *drum);
+/// Where the head stands. Borrowed.
+HIMC_RT const himc_head_frame *himc_drum_head_frame(const himc_drum *drum);
+/// Its head, for himc/membrane.h. Borrowed; to change it, send commands to the drum.
+HIMC_RT himc_membrane *himc_drum_membrane(himc_drum *drum);
+
+/// Carries out a drum command now.
+bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error);
+/// One line about its state: size, tuning, modes, mallet, place. At most `size` bytes.
+void himc_drum_describe(const himc_drum *drum, char *text, size_t size);
+
+/// Sample rate (Hz).
+HIMC_RT double himc_drum_rate(const himc_drum *drum);
+/// Sets another sample rate (Hz, 8000 .. 192000); the sound goes on.
+bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error);
+
+/// Strikes the drum `delay` samples from now (0 .. 8192), exact to the sample, with a free mallet
+/// at (x, y) on the head and a downward velocity of 0.001 .. 30 m/s. At most 64 strikes wait.
+HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
+                                 himc_error *error);
+
+/// Advances a drum that no performer drives by `n` samples, with its own strikes and an outside
+/// force. Fills the ring that himc_drum_read reads.
+/// @param force  (N, down positive) of each sample; NULL for none. Not finite counts as 0.
+/// @param x, y   where that force acts in each sample (m), which is also the watched point; NULL:
+///               the point stays where it is, at first 0.75 of the radius towards the performer
+HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,
+                               const double *y);
+
+#define HIMC_DRUM_RING 32768 ///< samples that can be read back
+
+/// Copies the sound of the first pickup (1.0 as the pickup says, membrane.h) and the displacement
+/// of the watched point (m, up positive) of samples [start, start + n), counted since the last
+/// realign. Either may be NULL. Samples outside the ring are 0.
+HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
+                            double *displacement);
+/// The sound of pickup `channel` (0 .. HIMC_PICKUPS - 1; the command `pickups CHANNELS` sets how
+/// many there are, the others are silent).
+HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
+                                    double *sound);
+/// Samples advanced since the last realign.
+HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
+/// Counts time from 0 again; the last `ahead` samples become samples 0 .. ahead - 1. The sound goes
+/// on.
+HIMC_RT void himc_drum_realign(himc_drum *drum, int ahead);
+
+/// A finished contact.
 typedef struct himc_contact_report {
-    double time;     ///< of the first touch (s since the drum's realign)
-    double x, y;     ///< place on the head (m)
+    double time;     ///< of the first force (s since the drum's realign)
+    double x, y;     ///< position on the head (m)
     double velocity; ///< of impact, downward positive (m/s)
     double force;    ///< peak (N)
     double impulse;  ///< (N s)
     double duration; ///< (s)
 } himc_contact_report;
 
-/// A drum of the given diameter (inches, 12 .. 60; the timpani are 23, 26, 29, 32) at `sample_rate`
-/// (Hz, 8000 .. 192000). One reference belongs to the caller.
-himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error);
-himc_drum *himc_drum_retain(himc_drum *drum);
-void himc_drum_release(himc_drum *drum);
+/// Takes the oldest report of a finished strike (himc_drum_strike_at); false if none waits. Of more
+/// than 64 the latest are kept.
+HIMC_RT bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report);
 
-const char *himc_drum_name(const himc_drum *drum);
-HIMC_RT const himc_head_frame *himc_drum_head_frame(const himc_drum *drum);
-/// Whether `place` has said where it stands.
-HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
-/// Puts a drum there until `place` says where.
-HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
-HIMC_RT himc_membrane *himc_drum_membrane(himc_drum *drum);
-/// The mallet that strikes it: `mallet soft|medium|hard|wood|K ALPHA MASS`.
-HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);
-/// Grows by one whenever place, radius or mallet change, so that a performer notices.
-HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
+/// A contact as it begins, of any stick or mallet.
+typedef struct himc_contact_onset {
+    int64_t at;      ///< its first sample, counted as himc_drum_time does
+    double x, y;     ///< position on the head (m)
+    double velocity; ///< of impact, downward positive (m/s)
+    double distance; ///< from the centre, per radius, 0 .. 1
+    double pitch;    ///< of the head's principal mode (Hz)
+} himc_contact_onset;
 
-/// Carries out a drum command now. False, and nothing changed, if it cannot be.
-bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error);
-/// The same `delay` samples from now (0 .. 8192), exact to the sample; at most 64 wait. `strike`
-/// only.
-HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
-                                 himc_error *error);
-HIMC_RT double himc_drum_rate(const himc_drum *drum);
-/// Another sample rate; what sounds goes on sounding.
-bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error);
+/// Takes the oldest contact onset; false if none waits. Of more than 64 the latest are kept.
+HIMC_RT bool himc_drum_contact_next(himc_drum *drum, himc_contact_onset *onset);
 
-/// Advances the head by `n` samples with the given sticks in micro-contact (0 .. HIMC_STICKS of
-/// them), its own free mallets from `strike`, and an outside force. Fills the ring that
-/// himc_drum_read reads.
-/// @param sticks    their x, v, force evolve (contact.h); may be NULL when stick_count is 0
-/// @param forces    forces[s][i] receives the force of stick s in sample i (N); NULL if unwanted
-/// @param outside   force (N) applied at (x, y)[i], or NULL
-HIMC_RT void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count,
-                               double *const *forces, const double *outside, const double *x,
-                               const double *y);
-
-/// Copies the sound and the displacement under the spot (m; either may be NULL) of samples [start,
-/// start + n) as counted since the last realign; silence for what is not there.
-#define HIMC_DRUM_RING 32768
-HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
-                            double *displacement);
-/// The sound of one pickup, 0 .. HIMC_PICKUPS - 1 (`pickups CHANNELS` sets how many there are;
-/// silence for those that are not).
-HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
-                                    double *sound);
-/// Samples advanced since the last realign.
-HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
-/// Counts from 0 again, the last `ahead` samples already made becoming samples 0 .. ahead - 1; the
-/// sound goes on.
-HIMC_RT void himc_drum_realign(himc_drum *drum, int ahead);
-
-/// How blows become sound: by the head's modes, or by whoever asks for its touches (by signals, or
-/// clips of recorded sound). The head goes on swinging and pushing back in any case. In the order
-/// of the words of `technique`.
+/// How contacts become sound: by the head's modes, or outside the library from contact onsets (by
+/// signals, or by clips of recorded sound). The head vibrates and pushes back in any case.
+/// In the order of the words of `technique`.
 typedef enum himc_technique {
     HIMC_TECHNIQUE_MODAL,
     HIMC_TECHNIQUE_SIGNAL,
     HIMC_TECHNIQUE_CLIP
 } himc_technique;
 
-/// What `technique` has set; while it is not modal the sound has faded (10 ms).
+/// The technique that the command `technique` has set. While it is not modal, the head's own sound
+/// is off (faded in 10 ms).
 HIMC_RT himc_technique himc_drum_technique(const himc_drum *drum);
-/// Whether somebody asks for its touches and sounds them. Until then modal alone is allowed.
-void himc_drum_set_answered(himc_drum *drum, bool answered);
-HIMC_RT bool himc_drum_is_answered(const himc_drum *drum);
+/// Tells the drum whether its contact onsets are sounded outside the library, at first false. Only
+/// then `technique` accepts signal and clip.
+void himc_drum_set_external_sound(himc_drum *drum, bool external);
 
-/// A blow as it begins, whoever strikes.
-typedef struct himc_touch {
-    int64_t at;      ///< its first sample, counted as himc_drum_time does
-    double x, y;     ///< place on the head (m)
-    double velocity; ///< of impact, downward positive (m/s)
-    double place;    ///< distance from the centre per radius, 0 .. 1
-    double pitch;    ///< of the head's principal mode (Hz)
-} himc_touch;
-
-/// The oldest touch that nobody has asked for; of more than 64 the latest are kept. False if none
-/// waits.
-HIMC_RT bool himc_drum_touch_next(himc_drum *drum, himc_touch *touch);
-
-/// Who advances this drum: the performer that has taken it, or nobody (then its own object does).
+/// The performer that has taken a drum and advances it; with performer NULL the drum's own object
+/// advances it (himc_drum_advance).
 typedef struct himc_drum_driver {
     void (*advance_to)(void *performer,
                        uint64_t time); ///< brings performer and drum to that sample
-    void *performer;
+    void *performer;                   ///< borrowed
 } himc_drum_driver;
-/// False if another performer drives it already. A driver with performer NULL gives it back.
+/// False if another performer drives the drum already. A driver with performer NULL gives it back.
 bool himc_drum_set_driver(himc_drum *drum, himc_drum_driver driver);
 HIMC_RT himc_drum_driver himc_drum_get_driver(const himc_drum *drum);
-
-/// A hit made without a performer ended: for `strike` messages. False if none waits.
-HIMC_RT bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report);
-
-/// One line about its state: size, tuning, modes, mallet, place.
-void himc_drum_describe(const himc_drum *drum, char *text, size_t size);
 
 #endif

@@ -139,19 +139,19 @@ static void send_pose(const player *p, lo_address to, const himc_body_state *sta
 // a half sine as long as the contact was
 static void hit_head(player *p, const stroke *s)
 {
-    double heard[1], seen[1];
+    double sound, watched, *const out = &sound;
     int n = (int)(s->duration * HEAD_RATE) + 1;
     for (int i = 0; i < n; i++) {
         himc_membrane_push(p->head, s->x, s->y, s->force * sin(HIMC_PI * (i + 0.5) / n));
-        himc_membrane_run(p->head, 1, heard, seen);
+        himc_membrane_run(p->head, 1, &out, &watched);
     }
 }
 
 static void send_head(player *p, lo_address to, int index)
 {
-    static double heard[HEAD_RATE], seen[HEAD_RATE];
+    static double sound[HEAD_RATE], watched[HEAD_RATE], *const out = sound;
     char path[64];
-    himc_membrane_run(p->head, (int)(HEAD_RATE * POSE_PERIOD), heard, seen);
+    himc_membrane_run(p->head, (int)(HEAD_RATE * POSE_PERIOD), &out, watched);
     snprintf(path, sizeof path, "/membrane/kettle%d/head", index);
     lo_message m = lo_message_new();
     for (int i = 0; i < SENT_MODES; i++) {

@@ -1,7 +1,7 @@
-/// air_galerkin.c: a head between the open air and its kettle, by Galerkin's method.
+/// galerkin.c: a head between the open air and its kettle, by Galerkin's method.
 ///
 /// The shape is sum_n c_n J_m(alpha_n r/a). Outside, an infinite baffle; inside, a rigid cylinder
-/// of the kettle's volume. In the head's own measures, per sigma a^2, with x = w a/c and D(x) = tau
+/// of the kettle's volume. Per sigma a^2, with x = w a/c and D(x) = tau
 /// diag(alpha^2 N) + epsilon K - x^2 (diag(N) + epsilon A(x)),
 ///     D(x) c = 0,   N_n = J_{m+1}(alpha_n)^2/2,   A = A_out + A_in
 ///     Re A_out = int_0^inf W W' dg           at kap^2 = g^2 + x^2
@@ -10,16 +10,15 @@
 /// (above cut-off, for imaginary mu, -cot(|mu| L/a)/|mu|)
 /// with the Hankel transform W_n(kap) = alpha_n J_{m+1}(alpha_n) J_m(kap)/(alpha_n^2 - kap^2)
 /// (Morse & Ingard 1968; the drum is that of Christian et al. 1984). For m = 0 the uniform cavity
-/// mode is a spring, K = x C C' 2 cot(x L/a), and stands beside the tension: as a mass it would be
-/// negative.
+/// mode is a spring, K = x C C' 2 cot(x L/a), added to the tension: as a mass it would be negative.
 ///
 /// A's poles are the kettle's own resonances, x^2 = beta_s^2 + (q pi a/L)^2. Between two of them
 /// the eigenvalues of the real part of D(x) fall as x grows (Foster 1924), so sign changes between
-/// poles find every root and no iteration can fall into a wrong one. A root is then made complex,
-/// with A and K taken at Re x. Many roots belong to the kettle: what a force of shape n excites
+/// poles find every root and no iteration can reach a wrong one. A root is then made complex, with
+/// A and K taken at Re x. Many roots belong to the kettle: the root that a force of shape n excites
 /// most has the smallest inertia c'(-dD/dx)c/(2 x N_n c_n^2). Where a sloshing of the kettle splits
-/// a shape in two roots of like inertia, within a factor of two, its own is the lower: it rings
-/// long, the upper dies in a tenth of a second, and the lower is what was measured (314 Hz for
+/// a shape into two roots of similar inertia, within a factor of two, the lower one is taken: it
+/// rings long, the upper decays in a tenth of a second, and the lower was measured (314 Hz for
 /// (1,2) of a 26 inch drum, here 311 and 352).
 #include "galerkin.h"
 
@@ -32,14 +31,14 @@
 #include <string.h>
 
 #define SIZE HIMC_AIR_BASIS
-#define REACH 100.0 // of the integral over g: W W' falls as kap^-5
-#define PANEL 2.0   // its panels: W W' turns with a period of pi
-#define POLES 256
-#define FINDS 256
-#define SHAPES 4
-#define KIN 2.0    // of inertia: roots that share a shape
-#define CLOSE 1e-7 // kept from a pole, relative
-#define STEP 0.04  // of the search between poles, relative
+#define INTEGRAL_END 100.0 // of the integral over g; chosen: W W' falls as kap^-5
+#define PANEL 2.0          // its panels; chosen: W W' oscillates with a period of pi
+#define MOST_POLES 256     // chosen: more than there are below the highest mode
+#define MOST_FINDS 256
+#define SHAPES 4           // n = 1 .. 4, as in the table
+#define SHARED_INERTIA 2.0 // ratio of two roots that share a shape; chosen
+#define POLE_GAP 1e-7      // distance kept from a pole, relative; chosen
+#define SEARCH_STEP 0.04   // of the search between poles, in ln x; chosen
 
 typedef double matrix[SIZE][SIZE];
 
@@ -122,7 +121,7 @@ void himc_air_outside(const himc_air_order *order, double x, matrix real, matrix
     double w[SIZE];
     memset(real, 0, sizeof(matrix));
     memset(imag, 0, sizeof(matrix));
-    for (double start = 0; start < REACH; start += PANEL)
+    for (double start = 0; start < INTEGRAL_END; start += PANEL)
         for (int i = 0; i < 10; i++) {
             double g = start + PANEL / 2 * (1 + (i < 5 ? NODE[i] : -NODE[i - 5]));
             hankel(order, hypot(g, x), w);
@@ -148,7 +147,7 @@ void himc_air_inside(const himc_air_order *order, double x, double depth, matrix
     }
 }
 
-// the parts of D at real x
+// the matrices of D at real x
 typedef struct parts {
     matrix stiffness; // tau diag(alpha^2 N) + epsilon K
     matrix mass;      // diag(N) + epsilon Re A
@@ -202,7 +201,7 @@ static int find_poles(const himc_air_order *order, double depth, double low, dou
     int count = 0;
     pole[count++] = low;
     for (int s = 0; s < HIMC_AIR_CAVITY && order->beta[s] < high; s++)
-        for (int q = 0; count < POLES - 1; q++) {
+        for (int q = 0; count < MOST_POLES - 1; q++) {
             double x = hypot(order->beta[s], q * HIMC_PI / depth);
             if (x >= high)
                 break;
@@ -250,7 +249,7 @@ static bool inertias(const himc_air_order *order, const himc_air_problem *p, dou
                      double *inertia)
 {
     matrix d, above, below;
-    double values[SIZE], h = 1e-5 * x, turn = 0;
+    double values[SIZE], h = 1e-5 * x, fall = 0;
     real_part(order, p, x, d);
     real_part(order, p, x + h, above);
     real_part(order, p, x - h, below);
@@ -261,10 +260,10 @@ static bool inertias(const himc_air_order *order, const himc_air_problem *p, dou
         k = fabs(values[i]) < fabs(values[k]) ? i : k;
     for (int i = 0; i < SIZE; i++)
         for (int j = 0; j < SIZE; j++)
-            turn += d[i][k] * d[j][k] * (below[i][j] - above[i][j]) / (2 * h);
+            fall += d[i][k] * d[j][k] * (below[i][j] - above[i][j]) / (2 * h);
     for (int n = 0; n < SHAPES; n++) {
         double norm = order->next[n] * order->next[n] / 2;
-        inertia[n] = turn / (2 * x * norm * d[n][k] * d[n][k]);
+        inertia[n] = fall / (2 * x * norm * d[n][k] * d[n][k]);
     }
     return true;
 }
@@ -320,7 +319,7 @@ static bool polish(const himc_air_order *order, const himc_air_problem *p, doubl
 // the roots of Re D found so far, rising
 typedef struct finds {
     int count;
-    double x[FINDS], inertia[FINDS][SHAPES];
+    double x[MOST_FINDS], inertia[MOST_FINDS][SHAPES];
 } finds;
 
 // all roots of Re D between two neighbouring poles
@@ -328,12 +327,12 @@ static bool search(const himc_air_order *order, const himc_air_problem *p, doubl
                    finds *f)
 {
     double before[SIZE], after[SIZE];
-    int steps = 2 + (int)(log(high / low) / STEP);
+    int steps = 2 + (int)(log(high / low) / SEARCH_STEP);
     eigenvalues(order, p, low, before);
     for (int i = 1; i <= steps; i++) {
         double from = low + (high - low) * (i - 1) / steps, to = low + (high - low) * i / steps;
         eigenvalues(order, p, to, after);
-        for (int k = 0; k < SIZE && f->count < FINDS; k++) {
+        for (int k = 0; k < SIZE && f->count < MOST_FINDS; k++) {
             if (!(before[k] > 0 && after[k] <= 0))
                 continue;
             double x = f->x[f->count] = bracketed(order, p, k, from, to, before[k], after[k]);
@@ -345,7 +344,7 @@ static bool search(const himc_air_order *order, const himc_air_problem *p, doubl
     return true;
 }
 
-// the root after `last` that is shape n's own; -1 if there is none
+// index of the root of shape n, after `last`; -1 if there is none
 static int own(const finds *f, int n, int last)
 {
     double least = INFINITY;
@@ -353,7 +352,7 @@ static int own(const finds *f, int n, int last)
     for (int i = last + 1; i < f->count; i++)
         least = f->inertia[i][n] > 0 ? fmin(least, f->inertia[i][n]) : least;
     for (int i = f->count - 1; i > last; i--)
-        found = f->inertia[i][n] > 0 && f->inertia[i][n] <= KIN * least ? i : found;
+        found = f->inertia[i][n] > 0 && f->inertia[i][n] <= SHARED_INERTIA * least ? i : found;
     return found;
 }
 
@@ -363,13 +362,13 @@ bool himc_air_solve(const himc_air_order *order, const himc_air_problem *p, int 
     // air makes modes lower, by less than to a third; the kettle's spring raises those of m = 0
     double low = 0.33 * order->alpha[0] * sqrt(p->tension), top = order->alpha[count - 1];
     double spring = order->m == 0 ? 4 * p->loading / p->depth : 0;
-    double high = 1.1 * sqrt(p->tension * top * top + spring), pole[POLES + 1];
+    double high = 1.1 * sqrt(p->tension * top * top + spring), pole[MOST_POLES + 1];
     int segments = find_poles(order, p->depth, low, high, pole);
     finds f = {0};
     bool solved = true;
     for (int i = 0; i < segments && solved; i++)
-        if (pole[i + 1] * (1 - CLOSE) > pole[i] * (1 + CLOSE))
-            solved = search(order, p, pole[i] * (1 + CLOSE), pole[i + 1] * (1 - CLOSE), &f);
+        if (pole[i + 1] * (1 - POLE_GAP) > pole[i] * (1 + POLE_GAP))
+            solved = search(order, p, pole[i] * (1 + POLE_GAP), pole[i + 1] * (1 - POLE_GAP), &f);
     for (int n = 0, i = -1; n < count && solved; n++) {
         i = own(&f, n, i);
         solved = i >= 0 && polish(order, p, f.x[i], &roots[n]);

@@ -1,25 +1,24 @@
-/// air_galerkin.h: the modes of a head over its kettle in air, solved once, by those who make or
-/// check the table of air.c.
+/// galerkin.h: the modes of a head over its kettle in air, solved in full, to make and to check the
+/// table of lib/src/drum/air.c.
 ///
-/// Everything is in the head's own measures, so that a drum is three numbers: x = w a/c, epsilon =
-/// rho a/sigma, L/a and the tension T/(sigma c^2). Setup functions; they need LAPACK.
+/// Frequencies are x = w a/c, and a drum is three numbers: epsilon = rho a/sigma, L/a and the
+/// tension tau = T/(sigma c^2). Setup functions; they need LAPACK.
 #ifndef HIMC_AIR_GALERKIN_H
 #define HIMC_AIR_GALERKIN_H
 
-#include "himc/base.h"
 #include "drum/air.h"
 
 #define HIMC_AIR_BASIS 8    ///< functions J_m(j_mn r/a) that a loaded shape is made of
 #define HIMC_AIR_CAVITY 120 ///< modes of the kettle for each angular order
 
-/// What depends on the angular order alone.
+/// Constants of one angular order.
 typedef struct himc_air_order {
     int m;
     double alpha[HIMC_AIR_BASIS]; ///< j_mn
     double next[HIMC_AIR_BASIS];  ///< J_{m+1}(j_mn)
     double beta[HIMC_AIR_CAVITY]; ///< zeros of J_m', with 0 for m = 0
     double share[HIMC_AIR_CAVITY]
-                [HIMC_AIR_BASIS]; ///< C_ns/sqrt(n_s): shape n seen by mode s of the kettle
+                [HIMC_AIR_BASIS]; ///< C_ns/sqrt(n_s): overlap of shape n and mode s of the kettle
 } himc_air_order;
 
 typedef struct himc_air_problem {
@@ -32,7 +31,7 @@ typedef struct himc_air_problem {
 typedef struct himc_air_root {
     double x;       ///< w a/c
     double decay;   ///< delta a/c by radiation
-    double inertia; ///< modal mass met by a force spread like J_m(j_mn r/a), per the bare head's
+    double inertia; ///< modal mass for a force distributed as J_m(j_mn r/a), per the bare head's
 } himc_air_root;
 
 /// Computes the constants of angular order `m` (0 .. 20).
@@ -49,7 +48,7 @@ void himc_air_outside(const himc_air_order *order, double x,
 void himc_air_inside(const himc_air_order *order, double x, double depth,
                      double load[HIMC_AIR_BASIS][HIMC_AIR_BASIS]);
 
-/// The resonances that answer most to shapes n = 1 .. `count` (1 .. 4). False if the eigenproblem
+/// The resonances that respond most to shapes n = 1 .. `count` (1 .. 4). False if the eigenproblem
 /// could not be solved.
 bool himc_air_solve(const himc_air_order *order, const himc_air_problem *problem, int count,
                     himc_air_root *roots, himc_error *error);

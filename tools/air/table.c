@@ -1,21 +1,18 @@
-/// table.c: makes lib/src/air_table.c. Half a minute; not a part of himc.
-///
-///     make air-table
-#include "../../lib/src/air_galerkin.h"
-#include "../../lib/src/air_table.h"
+/// table.c: computes lib/src/drum/air_table.c (half a minute): `make air-table`.
+#include "galerkin.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#include "drum/air.h"
-
+// 23, 26, 29 and 32 inches (m)
 static const double RADIUS[HIMC_AIR_DRUMS] = {0.292, 0.328, 0.368, 0.406};
 
 static short ratio[HIMC_AIR_ENTRIES], decay[HIMC_AIR_ENTRIES];
 static double outer[HIMC_AIR_ORDERS][HIMC_AIR_RANKS], inner[HIMC_AIR_ORDERS][HIMC_AIR_RANKS];
 static double slosh[HIMC_AIR_ORDERS];
 
-static void at_rest(const himc_air_order *order)
+// added masses at rest
+static void solve_at_rest(const himc_air_order *order)
 {
     double real[HIMC_AIR_BASIS][HIMC_AIR_BASIS], loss[HIMC_AIR_BASIS][HIMC_AIR_BASIS];
     double inside[HIMC_AIR_BASIS][HIMC_AIR_BASIS];
@@ -29,7 +26,8 @@ static void at_rest(const himc_air_order *order)
     slosh[order->m] = order->beta[order->m == 0];
 }
 
-static bool node(const himc_air_order *order, int drum, int k, himc_error *error)
+// the modes (m, 1 .. HIMC_AIR_RANKS) of one drum at one tension
+static bool solve_node(const himc_air_order *order, int drum, int k, himc_error *error)
 {
     double tension = HIMC_AIR_TABLE_LOW *
                      pow(HIMC_AIR_TABLE_HIGH / HIMC_AIR_TABLE_LOW, k / (HIMC_AIR_NODES - 1.0));
@@ -51,7 +49,7 @@ static bool node(const himc_air_order *order, int drum, int k, himc_error *error
     return true;
 }
 
-static void put_table(const char *name, const short *table)
+static void print_table(const char *name, const short *table)
 {
     printf("\nconst short %s[HIMC_AIR_ENTRIES] = {\n", name);
     for (int i = 0; i < HIMC_AIR_ENTRIES; i++)
@@ -59,7 +57,7 @@ static void put_table(const char *name, const short *table)
     puts("};");
 }
 
-static void put_rest(const char *name, double table[][HIMC_AIR_RANKS])
+static void print_masses(const char *name, double table[][HIMC_AIR_RANKS])
 {
     printf("\nconst double %s[HIMC_AIR_ORDERS][HIMC_AIR_RANKS] = {\n", name);
     for (int m = 0; m < HIMC_AIR_ORDERS; m++)
@@ -68,23 +66,23 @@ static void put_rest(const char *name, double table[][HIMC_AIR_RANKS])
     puts("};");
 }
 
-static void put_all(void)
+static void print_all(void)
 {
     puts("/// air_table.c: the modes of four timpani in air (make air-table).\n"
          "///\n"
          "/// A row is a mode over the tensions; rows go by n, then m, then drum.\n"
-         "#include \"air_table.h\"\n\n"
+         "#include \"drum/air.h\"\n\n"
          "// clang-format off");
     printf("const double himc_air_radius[HIMC_AIR_DRUMS] = {%g, %g, %g, %g};\n", RADIUS[0],
            RADIUS[1], RADIUS[2], RADIUS[3]);
-    put_rest("himc_air_outer", outer);
-    put_rest("himc_air_inner", inner);
+    print_masses("himc_air_outer", outer);
+    print_masses("himc_air_inner", inner);
     puts("\nconst double himc_air_slosh[HIMC_AIR_ORDERS] = {");
     for (int m = 0; m < HIMC_AIR_ORDERS; m++)
         printf("    %.7f,\n", slosh[m]);
     puts("};");
-    put_table("himc_air_ratio", ratio);
-    put_table("himc_air_decay", decay);
+    print_table("himc_air_ratio", ratio);
+    print_table("himc_air_decay", decay);
 }
 
 int main(void)
@@ -93,14 +91,14 @@ int main(void)
     himc_air_order order;
     for (int m = 0; m < HIMC_AIR_ORDERS; m++) {
         himc_air_order_make(&order, m);
-        at_rest(&order);
+        solve_at_rest(&order);
         for (int drum = 0; drum < HIMC_AIR_DRUMS; drum++)
             for (int k = 0; k < HIMC_AIR_NODES; k++)
-                if (!node(&order, drum, k, &error)) {
+                if (!solve_node(&order, drum, k, &error)) {
                     fprintf(stderr, "%s\n", error.text);
                     return 1;
                 }
     }
-    put_all();
+    print_all();
     return 0;
 }

@@ -1,9 +1,9 @@
-/// clips.c: blows of our own timpano as sound files, for patches/techniques: `clips FOLDER`.
+/// clips.c: strokes of himc's own timpano as sound files, for patches/techniques: `clips FOLDER`.
 ///
-/// A 23 inch timpano in air at D3 is struck at three places by three velocities, a WAV file of
-/// 32-bit floats each, in the units of `pickup air`. They end in silence. FOLDER/clips.txt says
-/// what they are, a line for each: distance from the centre per radius, velocity (m/s), pitch (Hz),
-/// rate (Hz), file.
+/// A 23 inch timpano in air at D3 is struck at three places with three velocities. Each stroke is a
+/// WAV file of 32-bit floats, in the units of `pickup air`, and ends in silence. FOLDER/clips.txt
+/// lists them, one line each: distance from the centre per radius, velocity (m/s), pitch (Hz), rate
+/// (Hz), file.
 #include "himc/himc.h"
 
 #include <math.h>
@@ -11,11 +11,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define RATE 48000
-#define LENGTH (7 * RATE / 2)
-#define ENDING (RATE / 2)
-#define BLOCK 480
-#define PITCH 146.832 // D3
+#define RATE 48000            // (Hz)
+#define LENGTH (7 * RATE / 2) // (samples) chosen
+#define FADE_OUT (RATE / 2)   // (samples) chosen
+#define BLOCK 480             // (samples) chosen
+#define PITCH 146.832         // D3
 
 static const double places[] = {0, 0.75, 0.92}; // of the named spots, from the centre per radius
 
@@ -56,11 +56,11 @@ static void play(double place, double velocity)
     if (!himc_drum_strike_at(drum, 0, x, 0, velocity, &error))
         fail(error.text);
     for (int at = 0; at < LENGTH; at += BLOCK) {
-        himc_drum_advance(drum, BLOCK, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(drum, BLOCK, NULL, NULL, NULL);
         himc_drum_read(drum, (uint64_t)at, BLOCK, sound + at, NULL);
     }
-    for (int i = 0; i < ENDING; i++)
-        sound[LENGTH - ENDING + i] *= 0.5 + 0.5 * cos(HIMC_PI * (i + 1) / ENDING);
+    for (int i = 0; i < FADE_OUT; i++)
+        sound[LENGTH - FADE_OUT + i] *= 0.5 + 0.5 * cos(HIMC_PI * (i + 1) / FADE_OUT);
     himc_drum_release(drum);
 }
 

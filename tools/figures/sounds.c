@@ -47,7 +47,7 @@ static void play(player *p, double seconds)
 {
     for (int n = (int)(seconds * RATE / BLOCK); n > 0; n--, p->at += BLOCK) {
         double side[BLOCK];
-        himc_drum_advance(p->drum, BLOCK, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(p->drum, BLOCK, NULL, NULL, NULL);
         for (int k = 0; k < 2; k++) {
             himc_drum_read_channel(p->drum, k, (uint64_t)p->at, BLOCK, side);
             for (int i = 0; i < BLOCK; i++)

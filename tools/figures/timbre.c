@@ -43,7 +43,7 @@ static bool sound_of(const blow *b, double *sound, himc_error *error)
                 say(drum, "decay 0.5 3e-7", error) && say(drum, "tune D3", error) &&
                 himc_drum_strike_at(drum, 0, -b->place * radius, 0, b->velocity, error);
     for (int at = 0; good && at < LENGTH; at += 480) {
-        himc_drum_advance(drum, 480, NULL, 0, NULL, NULL, NULL, NULL);
+        himc_drum_advance(drum, 480, NULL, NULL, NULL);
         himc_drum_read(drum, (uint64_t)at, 480, sound + at, NULL);
     }
     himc_drum_release(drum);

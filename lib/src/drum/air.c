@@ -5,7 +5,7 @@
 /// with beta the added mass of the two sides: at rest from the table, else 1.07/j each, the
 /// infinite membrane's 1/j and a little for the rim; near the speed of sound it grows as an
 /// infinite membrane's does. For m = 0 the kettle's air couples the modes by one spring k(x) =
-/// (1/l) f(x l) for the volume, so they are the roots of
+/// (1/l) f(x l) for the volume, so their frequencies are the roots of
 ///     1 + epsilon k sum_n 4/(j_n^2 d_n) = 0,   d_n = tau j_n^2 - x^2 (1 + epsilon beta_n)
 /// one between each two zeros of d. f(x l) = x l cot(x l), kept positive: it falls as the kettle's
 /// air begins to move as a column. Radiation is that of the shape in a baffle,
@@ -14,45 +14,56 @@
 /// (by Neumann's integral for J_m^2; Watson 1944, section 5.43), g = (2m+2)/(2m+3) the mean of
 /// sin^2 t for small x, where this is the monopole, dipole ... in x^(2m+1).
 ///
-/// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension; monotone cubics
-/// (Fritsch & Butland 1984) along the tension, where a mode that meets a sloshing of the kettle
-/// jumps from below it to above, lines between drums. Its ratio to the closed form at the table's
-/// own kettle multiplies the closed form at the actual one, and outside the table goes to 1 over a
-/// factor of four in tension, or two in epsilon: no step and no bend as the pedal moves.
+/// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension. Between its nodes:
+/// monotone cubics (Fritsch & Butland 1984) along the tension, where a mode that meets a sloshing
+/// of the kettle jumps from below it to above; lines between drums. The ratio of table and closed
+/// form at the table's kettle multiplies the closed form at the actual kettle. Outside the table
+/// this ratio goes to 1 over a factor of four in tension, or two in epsilon: no step and no bend
+/// while the pedal moves.
 ///
 /// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, the kettle's slow spring 4
-/// epsilon/(l j^2); its mass is what gives the frequency. Thus static deflections are exact and,
-/// for the preferred modes of a tuned drum, mass is within a tenth of that with which the whole
-/// problem answers a blow (its residue).
+/// epsilon/(l j^2); its mass follows from the frequency. Thus static deflections are exact and, for
+/// the preferred modes of a tuned drum, the mass is within a tenth of the mass with which the whole
+/// problem responds to a blow (its residue).
 #include "drum/air.h"
-
-#include "drum/air_table.h"
 
 #include <math.h>
 
-#define KETTLES 2.0       // the largest kettle by the usual one, and that by the smallest
-#define FADE 1.3862943611 // of the table beyond its tensions, in log tension
-#define FADE_DRUM 0.6931471806
+// half to twice the usual kettle; chosen: docs/air.md gives the errors in this range
+#define KETTLE_RANGE 2.0
+// So far beyond the table's tensions (ln 4) and epsilons (ln 2) its correction ends; chosen:
+// smooth.
+#define TENSION_MARGIN 1.3862943611
+#define LOADING_MARGIN 0.6931471806
+// added mass of a mode by that of an infinite membrane; chosen: the table's higher modes
 #define RIM 1.07
-#define VOLUMES 8 // modes of order 0 that the kettle's spring couples
-#define SLOPE 1e-4
+// modes of order 0 that the kettle's spring couples; chosen: twice those in the table
+#define COUPLED_MODES 8
+#define BELOW_SOUND 0.99      // largest first guess of an iteration whose root is below 1
+#define SOUND_STEPS 5         // of that iteration, by Newton; chosen
+#define BISECTIONS 40         // for a coupled mode: 1e-12 of the interval
+#define LEAST_DIRECTIVITY 0.2 // chosen: keeps the radiation of a resonant mode finite
+// -ln(z cot z) = z^2/3 + 7 z^4/90 + ...
+#define COLUMN_2 (1 / 3.0)
+#define COLUMN_4 (7 / 90.0)
+#define SLOPE_STEP 1e-4 // (nodes) for the slope at the table's end by a difference
 
 static const double SPEED2 = HIMC_AIR_SPEED * HIMC_AIR_SPEED;
 
-// j_0n
-static const double ZERO[VOLUMES] = {2.404825557695773, 5.520078110286311, 8.653727912911013,
-                                     11.79153443901428, 14.93091770848779, 18.07106396791092,
-                                     21.21163662987926, 24.35247153074930};
+// zeros j_0n
+static const double ZERO[COUPLED_MODES] = {2.404825557695773, 5.520078110286311, 8.653727912911013,
+                                           11.79153443901428, 14.93091770848779, 18.07106396791092,
+                                           21.21163662987926, 24.35247153074930};
 
-// a mode's logarithms of frequency per bare frequency and of delta a/c + HIMC_AIR_FLOOR
-typedef struct pair {
+// logarithms of a mode's frequency per bare frequency, and of delta a/c + HIMC_AIR_FLOOR
+typedef struct log_pair {
     double ratio, decay;
-} pair;
+} log_pair;
 
-typedef struct spectrum {
+typedef struct mode_id {
     int m, n;
     double zero;
-} spectrum;
+} mode_id;
 
 double himc_air_kettle(double radius)
 {
@@ -62,22 +73,23 @@ double himc_air_kettle(double radius)
 bool himc_air_check(double kettle, double radius, himc_error *error)
 {
     double usual = himc_air_kettle(radius);
-    return himc_check_range("kettle", kettle, usual / KETTLES, usual * KETTLES, "m3", error);
+    return himc_check_range("kettle", kettle, usual / KETTLE_RANGE, usual * KETTLE_RANGE, "m3",
+                            error);
 }
 
-// J_{2m+1}(z) + J_{2m+3}(z) + ... by backward recurrence; what is below 1e-7 may come out as 0
+// J_{2m+1}(z) + J_{2m+3}(z) + ... by backward recurrence (bessel.c); below 1e-7 it may be 0
 static double radiated(int m, double z)
 {
     int top = (int)(z + 6 * cbrt(z) + 10), first = 2 * m + 1;
     if (first > top || !(z > 1e-3))
         return 0;
-    double above = 0, here = 1e-200, sum = 0, odd = 0, turn = 2 / z;
+    double above = 0, here = 1e-200, sum = 0, odd = 0, two_over_z = 2 / z;
     for (int k = top; k > 0; k--) {
         if (k % 2 == 0)
             sum += 2 * here;
         else if (k >= first)
             odd += here;
-        double below = k * turn * here - above;
+        double below = k * two_over_z * here - above;
         above = here;
         here = below;
     }
@@ -89,7 +101,7 @@ static double added(int m, int n, double zero, double depth)
 {
     if (m >= HIMC_AIR_ORDERS || n > HIMC_AIR_RANKS)
         return 2 * RIM / zero;
-    // a kettle of another depth: the lowest mode that reaches its bottom
+    // in a kettle of another depth only the lowest mode, which reaches its bottom, changes
     double b = himc_air_slosh[m], z2 = zero * zero - b * b;
     double change = 1 / tanh(b * depth) - 1 / tanh(b * (HIMC_AIR_KETTLE_SHAPE / HIMC_PI));
     double share = 4 * zero * zero / (z2 * z2 * (1 - m * m / (b * b)) * b);
@@ -99,8 +111,8 @@ static double added(int m, int n, double zero, double depth)
 // y in (0, 1) with y (1 + b/sqrt(1 - y)) = t
 static double below_sound(double b, double t)
 {
-    double y = fmin(t / (1 + b), 0.99);
-    for (int i = 0; i < 5; i++) {
+    double y = fmin(t / (1 + b), BELOW_SOUND);
+    for (int i = 0; i < SOUND_STEPS; i++) {
         double root = sqrt(1 - y);
         double value = y * (1 + b / root) - t, slope = 1 + b / root * (1 + 0.5 * y / (1 - y));
         double next = y - value / slope;
@@ -109,23 +121,23 @@ static double below_sound(double b, double t)
     return y;
 }
 
-static double directed(int m, double x, double zero)
+static double directivity(int m, double x, double zero)
 {
     return 1 - (2 * m + 2) / (2 * m + 3.0) * x * x / (zero * zero);
 }
 
-static pair logarithms(double x, double decay, double bare)
+static log_pair logarithms(double x, double decay, double bare)
 {
-    return (pair){log(x / bare), log(decay + HIMC_AIR_FLOOR)};
+    return (log_pair){log(x / bare), log(decay + HIMC_AIR_FLOOR)};
 }
 
-// a mode whose volume, if it has any, is little
-static pair alone(const himc_air *air, double depth, spectrum s)
+// a mode that changes the volume little or not at all
+static log_pair uncoupled(const himc_air *air, double depth, mode_id s)
 {
     double square = s.zero * s.zero, b = air->loading * added(s.m, s.n, s.zero, depth);
     double spring = s.m == 0 ? 4 * air->loading / (depth * square * square) : 0;
     double y = below_sound(b, air->tension + spring), x = s.zero * sqrt(y),
-           d = directed(s.m, x, s.zero);
+           d = directivity(s.m, x, s.zero);
     double decay =
         air->loading * x * radiated(s.m, 2 * x) / (square * d * d * (1 + b / sqrt(1 - y)));
     return logarithms(x, decay, s.zero * sqrt(air->tension));
@@ -135,22 +147,22 @@ static pair alone(const himc_air *air, double depth, spectrum s)
 static double spring_at(double x, double depth)
 {
     double s = x * x * depth * depth;
-    return exp(-s * (1 / 3.0 + s * (7 / 90.0))) / depth;
+    return exp(-s * (COLUMN_2 + s * COLUMN_4)) / depth;
 }
 
-// a mode of order 0, which the kettle's spring couples to the others
-static pair coupled(const himc_air *air, double depth, spectrum s)
+// a mode of order 0, coupled to the others by the kettle's spring
+static log_pair coupled(const himc_air *air, double depth, mode_id s)
 {
-    double mass[VOLUMES], low, high;
-    for (int n = 0; n < VOLUMES; n++)
+    double mass[COUPLED_MODES], low, high;
+    for (int n = 0; n < COUPLED_MODES; n++)
         mass[n] = 1 + air->loading * added(0, n + 1, ZERO[n], depth);
     low = ZERO[s.n - 1] * sqrt(air->tension / mass[s.n - 1]);
     high = ZERO[s.n] * sqrt(air->tension / mass[s.n]);
     double x = low;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < BISECTIONS; i++) {
         double sum = 0;
         x = 0.5 * (low + high);
-        for (int n = 0; n < VOLUMES; n++) {
+        for (int n = 0; n < COUPLED_MODES; n++) {
             double square = ZERO[n] * ZERO[n];
             sum += 4 / (square * (air->tension * square - x * x * mass[n]));
         }
@@ -161,18 +173,18 @@ static pair coupled(const himc_air *air, double depth, spectrum s)
             high = x;
     }
     double volume = 0, inertia = 0;
-    for (int n = 0; n < VOLUMES; n++) {
+    for (int n = 0; n < COUPLED_MODES; n++) {
         double square = ZERO[n] * ZERO[n], d = air->tension * square - x * x * mass[n];
-        volume += 2 / (square * d * fmax(directed(0, x, ZERO[n]), 0.2));
+        volume += 2 / (square * d * fmax(directivity(0, x, ZERO[n]), LEAST_DIRECTIVITY));
         inertia += 2 * mass[n] / (square * d * d);
     }
     double decay = 0.5 * air->loading * x * volume * volume * radiated(0, 2 * x) / inertia;
     return logarithms(x, decay, s.zero * sqrt(air->tension));
 }
 
-static pair closed(const himc_air *air, double depth, spectrum s)
+static log_pair closed_form(const himc_air *air, double depth, mode_id s)
 {
-    return s.m == 0 && s.n <= HIMC_AIR_RANKS ? coupled(air, depth, s) : alone(air, depth, s);
+    return s.m == 0 && s.n <= HIMC_AIR_RANKS ? coupled(air, depth, s) : uncoupled(air, depth, s);
 }
 
 static double usual_depth(void)
@@ -185,20 +197,20 @@ static double log_step(void)
     return log(HIMC_AIR_TABLE_HIGH / HIMC_AIR_TABLE_LOW) / (HIMC_AIR_NODES - 1);
 }
 
-// a slope at a node that keeps the curve monotone between its neighbours
+// slope at a node that keeps the curve monotone between its neighbours
 static double node_slope(double before, double after)
 {
     return before * after > 0 ? 2 * before * after / (before + after) : 0;
 }
 
-// at an end the lesser of the two nearest: what lies beyond must not run away
+// slope at an end of the table: the smaller of the two nearest, so the curve does not run away
 static double end_slope(double at, double beside)
 {
     return at * beside <= 0 ? 0 : fabs(at) < fabs(beside) ? at : beside;
 }
 
-// a row of the table at node + t, with `rise` a node added so that frequencies are monotone, and
-// taken off again
+// A row of the table at node + t. Before the interpolation `rise` per node is added, which makes
+// frequencies monotone; afterwards it is subtracted.
 static double along_row(const short *row, double unit, double rise, int node, double t)
 {
     double step = unit * (row[node + 1] - row[node]) + rise;
@@ -211,8 +223,8 @@ static double along_row(const short *row, double unit, double rise, int node, do
            t * rise;
 }
 
-// the table at a place along the tensions
-static pair tabulated(const himc_air *air, spectrum s, int node, double t)
+// the table at node + t along the tensions
+static log_pair tabulated(const himc_air *air, mode_id s, int node, double t)
 {
     double value[2][2], rise = 0.5 * log_step();
     for (int i = 0; i < 2; i++) {
@@ -221,12 +233,12 @@ static pair tabulated(const himc_air *air, spectrum s, int node, double t)
         value[i][1] = along_row(himc_air_decay + row, HIMC_AIR_DECAY_UNIT, 0, node, t);
     }
     double u = 1 - air->between;
-    return (pair){u * value[0][0] + air->between * value[1][0],
-                  u * value[0][1] + air->between * value[1][1]};
+    return (log_pair){u * value[0][0] + air->between * value[1][0],
+                      u * value[0][1] + air->between * value[1][1]};
 }
 
-// what the table says beyond the closed form, at a tension and an epsilon that it holds
-static pair excess(const himc_air *air, spectrum s, double t)
+// difference of table and closed form, at a tension and an epsilon inside the table
+static log_pair difference(const himc_air *air, mode_id s, double t)
 {
     himc_air there = *air;
     double log_low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
@@ -234,33 +246,33 @@ static pair excess(const himc_air *air, spectrum s, double t)
     const double *a = himc_air_radius + air->drum;
     there.loading =
         (a[0] + air->between * (a[1] - a[0])) * (HIMC_AIR_DENSITY / HIMC_AIR_TABLE_FILM);
-    pair table = tabulated(air, s, air->node, t), form = closed(&there, usual_depth(), s);
-    return (pair){table.ratio - form.ratio, table.decay - form.decay};
+    log_pair table = tabulated(air, s, air->node, t), form = closed_form(&there, usual_depth(), s);
+    return (log_pair){table.ratio - form.ratio, table.decay - form.decay};
 }
 
-// from 1 with no slope at 0 to nothing with no slope at 1
-static double fade_out(double s)
+// from 1 at s = 0 to 0 at s = 1, without slope at both ends
+static double smooth_end(double s)
 {
     return s < 1 ? (1 - s) * (1 - s) * (1 + 2 * s) : 0;
 }
 
-static pair correction(const himc_air *air, spectrum s)
+static log_pair correction(const himc_air *air, mode_id s)
 {
-    pair q = excess(air, s, air->along);
+    log_pair q = difference(air, s, air->along);
     double cells = fabs(air->beyond) / log_step();
     if (cells > 0) {
-        // the end's own slope, which may be a steep one, is lost within a cell
-        double inward = air->beyond > 0 ? -SLOPE : SLOPE,
-               kept = fade_out(cells * log_step() / FADE);
-        double run = cells < 1 ? cells * (1 - cells) * (1 - cells) / SLOPE : 0;
-        pair inside = excess(air, s, air->along + inward);
+        // the slope at the table's end, which may be steep, is gone within one cell
+        double inward = air->beyond > 0 ? -SLOPE_STEP : SLOPE_STEP,
+               kept = smooth_end(cells * log_step() / TENSION_MARGIN);
+        double run = cells < 1 ? cells * (1 - cells) * (1 - cells) / SLOPE_STEP : 0;
+        log_pair inside = difference(air, s, air->along + inward);
         q.ratio = kept * q.ratio + run * (q.ratio - inside.ratio);
         q.decay = kept * q.decay + run * (q.decay - inside.decay);
     }
-    return (pair){air->fade * q.ratio, air->fade * q.decay};
+    return (log_pair){air->weight * q.ratio, air->weight * q.decay};
 }
 
-// the cell of the table that is meant, or the nearest
+// finds the cell of the table, or the nearest one
 static void locate(himc_air *air)
 {
     double low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
@@ -270,14 +282,14 @@ static void locate(himc_air *air)
     air->along = inside - air->node;
     air->beyond = (at - inside) * log_step();
 
-    double like =
-        air->loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY; // a head of the table's film
+    // radius of a head of the table's film with this epsilon
+    double like = air->loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY;
     const double *a = himc_air_radius;
     double held = fmin(fmax(like, a[0]), a[HIMC_AIR_DRUMS - 1]);
     while (air->drum < HIMC_AIR_DRUMS - 2 && held > a[air->drum + 1])
         air->drum++;
     air->between = (held - a[air->drum]) / (a[air->drum + 1] - a[air->drum]);
-    air->fade = fade_out(fabs(log(like / held)) / FADE_DRUM);
+    air->weight = smooth_end(fabs(log(like / held)) / LOADING_MARGIN);
 }
 
 himc_air himc_air_around(const himc_head *head, double kettle)
@@ -293,10 +305,11 @@ himc_air himc_air_around(const himc_head *head, double kettle)
 
 himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
 {
-    spectrum s = {m, n, zero};
-    pair found = closed(air, air->depth, s);
-    if (m < HIMC_AIR_ORDERS && n <= HIMC_AIR_RANKS && air->fade > 0 && fabs(air->beyond) < FADE) {
-        pair q = correction(air, s);
+    mode_id s = {m, n, zero};
+    log_pair found = closed_form(air, air->depth, s);
+    if (m < HIMC_AIR_ORDERS && n <= HIMC_AIR_RANKS && air->weight > 0 &&
+        fabs(air->beyond) < TENSION_MARGIN) {
+        log_pair q = correction(air, s);
         found.ratio += q.ratio;
         found.decay += q.decay;
     }
@@ -318,6 +331,7 @@ himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_m
     mode.mass *= load.mass;
     mode.stiffness *= load.stiffness;
     double omega = 2 * HIMC_PI * mode.frequency;
-    mode.decay = fmin(himc_head_decay(head, omega, load.mass) + load.radiation, 0.9 * omega);
+    mode.decay =
+        fmin(himc_head_decay(head, omega, load.mass) + load.radiation, HIMC_LARGEST_DECAY * omega);
     return mode;
 }

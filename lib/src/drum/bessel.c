@@ -1,25 +1,37 @@
 /// bessel.c: J_m by backward recurrence, its zeros by safeguarded Newton steps.
 ///
-/// Recurrence J_{k-1} = (2 k/z) J_k - J_{k+1}, run downwards, suppresses everything but J (J. C. P.
-/// Miller, British Association Mathematical Tables X, 1952). It starts where J has fallen below
-/// 1e-20 of its largest value, at order M = K + 14 K^(1/3) + 15 with K = max(z, top) (J_M behaves
-/// as an Airy function there), from any value, and is scaled by J_0 + 2 (J_2 + J_4 + ...) = 1. A
-/// common factor does not move a zero, so the zeros are as exact as the recurrence: a few units in
-/// the last place.
+/// The recurrence J_{k-1} = (2 k/z) J_k - J_{k+1}, run downwards, suppresses all solutions but J
+/// (J. C. P. Miller, British Association Mathematical Tables X, 1952). It starts from any value
+/// where J has fallen below 1e-20 of its largest value, at order M = K + 14 K^(1/3) + 15 with K =
+/// max(z, top) (J_M behaves as an Airy function there), and is scaled by J_0 + 2 (J_2 + J_4 + ...)
+/// = 1. A common factor does not move a zero, so the zeros are as exact as the recurrence: a few
+/// units in the last place.
 ///
 /// Zeros of one order are more than 3.1 apart and the first lies above m (Watson 1944, section
-/// 15.3), so steps of 1.5 from m upwards can not miss one.
+/// 15.3), so steps of 1.5 from m upwards cannot miss one.
 #include "drum/bessel.h"
 
 #include <math.h>
 
-#define BIG 1e200 // far from overflow: one step multiplies by 2 k/z at most
+#define BIG 1e200        // far from overflow: one step multiplies by 2 k/z at most
+#define START 1e-200     // the first value; any would do
+#define SMALLEST_Z 1e-30 // below it every J_m but the first is less than any rounding
+#define ZERO_STEP 1.5    // as above
+#define NEWTON_STEPS 80  // chosen: bisection alone converges in them
+#define ROUNDING 2e-16   // relative: the last place of a double
 
-// doubles are scaled back when they grow; what has been stored already shrinks with them
+// multiplies the values stored so far
 static void rescale(double *j, int from, int top, double factor)
 {
     for (int k = from; k <= top; k++)
         j[k] *= factor;
+}
+
+// the order M at which the recurrence starts
+static int first_order(double z, int top)
+{
+    double highest = fmax(z, top);
+    return (int)(highest + 14 * cbrt(highest) + 15);
 }
 
 void himc_bessel_orders(double z, int top, double *j)
@@ -27,13 +39,10 @@ void himc_bessel_orders(double z, int top, double *j)
     for (int k = 0; k <= top; k++)
         j[k] = 0;
     j[0] = 1;
-    // below this every J_m but the first is smaller than any rounding that matters
-    if (!(z > 1e-30))
+    if (!(z > SMALLEST_Z))
         return;
-    double reach = fmax(z, top);
-    int k = (int)(reach + 14 * cbrt(reach) + 15);
-    double above = 0, here = 1e-200, sum = 0;
-    for (; k > 0; k--) {
+    double above = 0, here = START, sum = 0;
+    for (int k = first_order(z, top); k > 0; k--) {
         double below = 2 * k / z * here - above;
         above = here;
         here = below;
@@ -51,11 +60,11 @@ void himc_bessel_orders(double z, int top, double *j)
     rescale(j, 0, top, 1 / sum);
 }
 
-// J_m and its derivative J_m' = J_{m-1} - (m/z) J_m without keeping the orders between
+// J_m and its derivative J_m' = J_{m-1} - (m/z) J_m, without storing the other orders
 static void with_slope(int m, double z, double *value, double *slope)
 {
-    double reach = fmax(z, m), above = 0, here = 1e-200, sum = 0, at = 0, before = 0;
-    for (int k = (int)(reach + 14 * cbrt(reach) + 15); k > 0; k--) {
+    double above = 0, here = START, sum = 0, at = 0, before = 0;
+    for (int k = first_order(z, m); k > 0; k--) {
         double below = 2 * k / z * here - above;
         above = here;
         here = below;
@@ -83,7 +92,7 @@ static void with_slope(int m, double z, double *value, double *slope)
 
 double himc_bessel_j(int m, double z)
 {
-    if (!(z > 1e-30))
+    if (!(z > SMALLEST_Z))
         return m == 0 ? 1 : 0;
     double value, slope;
     with_slope(m, z, &value, &slope);
@@ -93,7 +102,7 @@ double himc_bessel_j(int m, double z)
 double himc_bessel_zero_between(int m, double low, double high)
 {
     double value, slope, sign = himc_bessel_j(m, low), z = 0.5 * (low + high);
-    for (int i = 0; i < 80; i++) {
+    for (int i = 0; i < NEWTON_STEPS; i++) {
         with_slope(m, z, &value, &slope);
         if (value == 0)
             return z;
@@ -104,7 +113,7 @@ double himc_bessel_zero_between(int m, double low, double high)
         double next = z - value / slope;
         if (!(next > low && next < high))
             next = 0.5 * (low + high);
-        if (fabs(next - z) <= 2e-16 * z)
+        if (fabs(next - z) <= ROUNDING * z)
             return next;
         z = next;
     }
@@ -115,7 +124,7 @@ double himc_bessel_zero(int m, int n)
 {
     double low = m > 0 ? m : 0.5, before = himc_bessel_j(m, low);
     for (;;) {
-        double high = low + 1.5, after = himc_bessel_j(m, high);
+        double high = low + ZERO_STEP, after = himc_bessel_j(m, high);
         if ((before > 0) != (after > 0) && --n == 0)
             return himc_bessel_zero_between(m, low, high);
         low = high;

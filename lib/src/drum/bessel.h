@@ -12,11 +12,7 @@ double himc_bessel_j(int m, double z);
 /// The n-th positive zero of J_m (m >= 0, n >= 1), to about 1e-15 relative.
 double himc_bessel_zero(int m, int n);
 
-/// The zero of J_m in [low, high], which must hold exactly one.
+/// The zero of J_m in [low, high]; this interval must have exactly one.
 double himc_bessel_zero_between(int m, double low, double high);
-
-// short names inside the library
-#define bessel_j himc_bessel_j
-#define bessel_zero himc_bessel_zero
 
 #endif

@@ -1,14 +1,26 @@
 /// contact.c: one sample of head and sticks.
 ///
-/// All forces are constant over a sample of length h; the head's modes answer exactly (bank.c), a
-/// stick of mass M by x' = x + h v + h^2 (a - F/M)/2... as a free body does:
+/// One pair. Over a step of length h the compression goes from c0 to c0 + r and the force is
+/// constant,
+///     F(r) = max(0, (V(c0 + r) - V(c0)) (1/r + mu/h)),    V(c) = k c^(alpha+1)/(alpha+1),
+/// so its elastic part does exactly the work V(c0 + r) - V(c0), and the rest only takes energy (V
+/// does not decrease). The bodies respond linearly: r = b - G F(r). V is convex, so F does not
+/// decrease with r: the residual r - b + G F(r) of one pair rises with slope >= 1 and has one root,
+/// between b - G F(b) and b; Newton steps kept inside that bracket find it. (Discrete gradient:
+/// Chatziioannou & van Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
+///
+/// Several pairs on one head. The residual is G times the gradient of the strictly convex
+///     Psi(r) = (r - b)' G^-1 (r - b)/2 + sum_i int F_i dr_i,
+/// so Newton's direction descends and a line search on Psi's slope makes it converge from anywhere.
+///
+/// The sample. All forces are constant over a step; the head's modes respond exactly (bank.c), a
+/// stick of mass M as a free body:
 ///     free head and sticks: d_f, x_f;  c0 = d - x before;  b = (d_f - x_f) - c0;
 ///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
-///     solve r = b - G F(r) (meeting.c);  push the head by -F, the sticks by F.
-///
-/// The film's stretching (membrane_step.c) pulls with base - half (P . F) through its own shape,
-/// which moves place i by P_i per newton: b_i loses P_i base, G_ij loses half P_i P_j (and stays
-/// positive, by Cauchy and Schwarz), and the equation is the same.
+///     solve r = b - G F(r);  push the head by -F, the sticks by F.
+/// The film's stretching (membrane_step.c) applies the force base - half (P . F) through its own
+/// shape, which moves point i by P_i per unit of it: b_i loses P_i base, G_ij loses half P_i P_j
+/// (and stays positive, by Cauchy and Schwarz), and the equation is the same.
 ///
 /// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own
 /// acceleration - losses of the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive
@@ -16,34 +28,251 @@
 /// sticks together is -F r. No step size restricts it.
 ///
 /// Wood meets the head in a spike of a few samples, of which steps of 1/48000 s make 3 % less. So
-/// as long as a stiff mallet is near, a sample is made of parts of 5 microseconds (the head's modes
-/// are exact in any step), and the force told is their mean.
+/// while a stiff mallet is near, a sample is divided into substeps of 5 microseconds (the head's
+/// modes are exact in any step), and the sample's force is their mean.
 ///
 /// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the
 /// force of the motion F_m and the path of the stick. The head is then driven along that path by
 /// F_s = k_s c^alpha, c = d - x, k_s proportional to the largest F_m so far (2012 paper, equation
 /// 6). When the stick has left, F_m = 0 and F_s with it.
-#include "drum/contact_pair.h"
+#include "drum/contact.h"
 #include "drum/strike_point.h"
 
 #include <math.h>
+#include <string.h>
+
+#define MAX_PAIRS (2 * HIMC_STICKS)
+#define NEWTON_STEPS 60     // chosen: bisection alone converges in them
+#define LINE_STEPS 30       // halvings of a line search; chosen
+#define ROUNDING 4e-16      // relative; two units in the last place of a double
+#define SMALL_STEP 1e-3     // r per compression below which a series replaces the difference
+#define CHATTER 0.0015      // (s) forces less than this apart are one contact; chosen
+#define STIFF_FORCE 100.0   // (N) at 1 mm, from which substeps are needed; hard has 32, wood 316
+#define REACH_ROUNDING 1e-6 // (m) allowance in an estimate of future heights
+#define REGULAR 1e-12       // of a compliance, added for a one-way stick, ...
+#define REGULAR_LEAST 1e-30 // ... (m/N) at least: so G is regular with two sticks at one point
+
+// the pair of a stick's head and the drumhead during one step
+typedef struct contact_pair {
+    double k, alpha, mu; // F = k c^alpha (1 + mu c')
+    double c0;           // compression before (m, negative: a gap)
+    double b;            // change without force (m)
+    double guess;        // of the force (N)
+    double force;        // result (N)
+    double potential0;   // V(c0) (J), set by the solver
+} contact_pair;
 
 // a stick near the head in this sample
-typedef struct near {
+typedef struct near_stick {
     himc_stick *stick;
-    spot *spot;
-    double before; // displacement of the head there (m)
-    double pull;   // P, what the film's pull moves there (m/N)
-} near;
+    strike_point *point;
+    double before;   // displacement of the head there (m)
+    double coupling; // P, displacement there per unit of the film's force (m/J^1/2)
+} near_stick;
 
-#define CHATTER 0.0015 // forces less than this apart are one touch (s)
-#define STIFF 100.0    // a mallet of more at 1 mm is stepped in parts of a sample (N)
+// V(c) (J)
+static double potential(double k, double alpha, double c)
+{
+    return c > 0 ? k * pow(c, alpha + 1) / (alpha + 1) : 0;
+}
 
-// a touch begins with the first force after some time without
-static void count_touch(himc_stick *stick, double force, double h)
+// (V(c0 + r) - V(c0))/r and its derivative
+static double gradient(const contact_pair *m, double r, double *slope)
+{
+    double c1 = m->c0 + r, mid = m->c0 + 0.5 * r;
+    *slope = 0;
+    if (c1 <= 0 && m->c0 <= 0)
+        return 0;
+    // small steps, where the difference would cancel: V' at the midpoint and its second derivative
+    // are exact to (r/mid)^4
+    if (fabs(r) < SMALL_STEP * mid) {
+        double force = m->k * pow(mid, m->alpha), t = r / mid;
+        *slope = 0.5 * m->alpha * force / mid;
+        return force * (1 + m->alpha * (m->alpha - 1) / 24 * t * t);
+    }
+    double force1 = c1 > 0 ? m->k * pow(c1, m->alpha) : 0;
+    double mean = (force1 * fmax(c1, 0) / (m->alpha + 1) - m->potential0) / r;
+    *slope = (force1 - mean) / r;
+    return mean;
+}
+
+static double force_of(const contact_pair *m, double r, double h, double *slope)
+{
+    double change, mean = gradient(m, r, &change), loss = 1 + m->mu * r / h;
+    *slope = change * loss + mean * m->mu / h;
+    if (mean * loss > 0)
+        return mean * loss;
+    *slope = 0;
+    return 0;
+}
+
+static void solve_one(contact_pair *m, double g, double h)
+{
+    double slope, high = m->b, low = m->b - g * force_of(m, m->b, h, &slope);
+    double r = fmin(fmax(m->b - g * m->guess, low), high);
+    for (int i = 0; i < NEWTON_STEPS; i++) {
+        m->force = force_of(m, r, h, &slope);
+        double residual = r - m->b + g * m->force;
+        if (residual > 0)
+            high = r;
+        else
+            low = r;
+        double next = r - residual / (1 + g * slope);
+        if (!(next >= low && next <= high))
+            next = 0.5 * (low + high);
+        if (fabs(next - r) <= ROUNDING * (fabs(r) + fabs(m->c0)))
+            return;
+        r = next;
+    }
+}
+
+// A x = y by elimination with the largest pivot; A and y are used up
+static void eliminate(double (*a)[MAX_PAIRS], double *y, int n)
+{
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k + 1; i < n; i++)
+            if (fabs(a[i][k]) > fabs(a[best][k]))
+                best = i;
+        for (int j = k; j < n; j++) {
+            double t = a[k][j];
+            a[k][j] = a[best][j];
+            a[best][j] = t;
+        }
+        double t = y[k];
+        y[k] = y[best];
+        y[best] = t;
+        for (int i = k + 1; i < n; i++) {
+            double f = a[i][k] / a[k][k];
+            for (int j = k; j < n; j++)
+                a[i][j] -= f * a[k][j];
+            y[i] -= f * y[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int j = k + 1; j < n; j++)
+            y[k] -= a[k][j] * y[j];
+        y[k] /= a[k][k];
+    }
+}
+
+// the state of the search: forces, their slopes and the residual at r
+typedef struct search {
+    const contact_pair *m;
+    double (*g)[MAX_PAIRS];
+    int n;
+    double h;
+    double r[MAX_PAIRS], force[MAX_PAIRS], slope[MAX_PAIRS], residual[MAX_PAIRS];
+} search;
+
+// forces and residuals at r; true if every residual is rounding
+static bool evaluate(search *s)
+{
+    bool done = true;
+    for (int i = 0; i < s->n; i++)
+        s->force[i] = force_of(&s->m[i], s->r[i], s->h, &s->slope[i]);
+    for (int i = 0; i < s->n; i++) {
+        double pushed = 0;
+        for (int j = 0; j < s->n; j++)
+            pushed += s->g[i][j] * s->force[j];
+        s->residual[i] = s->r[i] - s->m[i].b + pushed;
+        double size = fabs(s->r[i]) + fabs(s->m[i].b) + fabs(s->m[i].c0) + fabs(pushed);
+        done = done && fabs(s->residual[i]) <= ROUNDING * size;
+    }
+    return done;
+}
+
+// Newton's direction from here: (1 + G D) step = -residual
+static void direction(const search *s, double *step)
+{
+    double a[MAX_PAIRS][MAX_PAIRS];
+    for (int i = 0; i < s->n; i++) {
+        for (int j = 0; j < s->n; j++)
+            a[i][j] = (i == j) + s->g[i][j] * s->slope[j];
+        step[i] = -s->residual[i];
+    }
+    eliminate(a, step, s->n);
+}
+
+// slope of Psi along `step`, with dual = G^-1 step
+static double descent(const search *s, const double *dual)
+{
+    double sum = 0;
+    for (int i = 0; i < s->n; i++)
+        sum += dual[i] * s->residual[i];
+    return sum;
+}
+
+// goes along `step` until Psi's slope has fallen, nearly always all the way; true at the solution
+static bool line_search(search *s, const double *step)
+{
+    double a[MAX_PAIRS][MAX_PAIRS], dual[MAX_PAIRS], from[MAX_PAIRS];
+    memcpy(a, s->g, sizeof(double) * MAX_PAIRS * (size_t)s->n);
+    memcpy(dual, step, sizeof(double) * (size_t)s->n);
+    memcpy(from, s->r, sizeof from);
+    eliminate(a, dual, s->n);
+    double start = fabs(descent(s, dual)), low = 0, high = 1, t = 1;
+    for (int i = 0; i < LINE_STEPS; i++) {
+        for (int k = 0; k < s->n; k++)
+            s->r[k] = from[k] + t * step[k];
+        if (evaluate(s))
+            return true;
+        double now = descent(s, dual);
+        if (!(fabs(now) > 0.9 * start))
+            return false;
+        if (now > 0)
+            high = t;
+        else
+            low = t;
+        t = 0.5 * (low + high);
+    }
+    return false;
+}
+
+static void solve_together(contact_pair *pairs, int n, double (*g)[MAX_PAIRS], double h)
+{
+    search s = {.m = pairs, .g = g, .n = n, .h = h};
+    for (int i = 0; i < n; i++) {
+        s.r[i] = pairs[i].b;
+        for (int j = 0; j < n; j++)
+            s.r[i] -= g[i][j] * pairs[j].guess;
+    }
+    bool done = evaluate(&s);
+    for (int i = 0; i < NEWTON_STEPS && !done; i++) {
+        double step[MAX_PAIRS];
+        direction(&s, step);
+        done = line_search(&s, step);
+    }
+    for (int i = 0; i < n; i++)
+        pairs[i].force = s.force[i];
+}
+
+// Solves r_i = b_i - sum_j G_ij F_j(r_j); G (count x count) in m/N, symmetric positive.
+static void solve_pairs(contact_pair *pairs, int count, double (*g)[MAX_PAIRS], double h)
+{
+    bool apart = true;
+    for (int i = 0; i < count; i++) {
+        contact_pair *m = &pairs[i];
+        m->force = 0;
+        m->potential0 = potential(m->k, m->alpha, m->c0);
+        apart = apart && m->c0 <= 0 && m->c0 + m->b <= 0;
+    }
+    if (apart)
+        return;
+    if (count == 1)
+        solve_one(pairs, g[0][0], h);
+    else
+        solve_together(pairs, count, g, h);
+    for (int i = 0; i < count; i++)
+        if (!isfinite(pairs[i].force))
+            pairs[i].force = 0;
+}
+
+// a contact begins with the first force after some time without
+static void count_contact(himc_stick *stick, double force, double h)
 {
     if (force > 0 && stick->chatter <= 0) {
-        stick->touches++;
+        stick->contacts++;
         stick->impact = -stick->velocity;
     }
     stick->chatter = force > 0 ? CHATTER : stick->chatter - h;
@@ -51,7 +280,7 @@ static void count_touch(himc_stick *stick, double force, double h)
 
 void himc_stick_fly(himc_stick *stick, double h)
 {
-    count_touch(stick, 0, h);
+    count_contact(stick, 0, h);
     stick->height += h * (stick->velocity + 0.5 * h * stick->acceleration);
     stick->velocity += h * stick->acceleration;
     stick->force = 0;
@@ -69,11 +298,11 @@ int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks,
     double h = 1 / himc_membrane_rate(membrane);
     for (int i = 0; i < count; i++) {
         const himc_stick *s = sticks[i];
-        // lowest it can get if both velocity and acceleration were downward all the time
+        // a lower bound of the height: both velocity and acceleration downward all the time
         double t = n * h;
         double lowest =
             s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
-        for (; n > 0 && (s->touching || lowest < HIMC_CONTACT_REACH + 1e-6); n /= 2) {
+        for (; n > 0 && (s->touching || lowest < HIMC_CONTACT_REACH + REACH_ROUNDING); n /= 2) {
             t = n / 2 * h;
             lowest = s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
         }
@@ -81,137 +310,139 @@ int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks,
     return n;
 }
 
-// the free body's step under `force`, constant
+// the step of a free body under a constant force
 static void move(himc_stick *stick, double force, double h)
 {
     double acceleration = stick->acceleration + force / stick->mass;
-    count_touch(stick, force, h);
+    count_contact(stick, force, h);
     stick->height += h * (stick->velocity + 0.5 * h * acceleration);
     stick->velocity += h * acceleration;
     stick->force = force;
     stick->peak = fmax(stick->peak, force);
 }
 
-// remembers the place of first touch, forgets it afterwards
-static void hold(himc_stick *stick, bool touching)
+// keeps the point of first contact while the contact lasts
+static void hold_point(himc_stick *stick, bool touching)
 {
     if (touching && !stick->touching) {
-        stick->touch_x = stick->x;
-        stick->touch_y = stick->y;
+        stick->contact_x = stick->x;
+        stick->contact_y = stick->y;
     }
     if (!touching)
         stick->peak = 0;
     stick->touching = touching;
 }
 
-// the stick against a head at rest: its path and F_m
+// a step of a one-way stick on a head at rest: its path and F_m
 static void strike_rigid(himc_stick *stick, double h)
 {
-    double g[1][MEETINGS] = {{0.5 * h * h / stick->mass}};
-    meeting m = {.k = stick->head.stiffness,
-                 .alpha = stick->head.exponent,
-                 .mu = stick->head.loss,
-                 .c0 = -stick->height,
-                 .b = -h * (stick->velocity + 0.5 * h * stick->acceleration),
-                 .guess = stick->force};
-    himc_contact_pairs_solve(&m, 1, g, h);
+    double g[1][MAX_PAIRS] = {{0.5 * h * h / stick->mass}};
+    contact_pair m = {.k = stick->head.stiffness,
+                      .alpha = stick->head.exponent,
+                      .mu = stick->head.loss,
+                      .c0 = -stick->height,
+                      .b = -h * (stick->velocity + 0.5 * h * stick->acceleration),
+                      .guess = stick->force};
+    solve_pairs(&m, 1, g, h);
     move(stick, m.force, h);
-    hold(stick, stick->height < 0);
+    hold_point(stick, stick->height < 0);
 }
 
-// the equation of one stick on the head; a one-way stick has moved already, along `from` to its
-// height
-static meeting meet(const himc_membrane *m, const near *n, double from, double h)
+// The pair of one stick and the head. A one-way stick has moved already, from `from` to its height.
+static contact_pair make_pair(const himc_membrane *m, const near_stick *n, double from, double h)
 {
     const himc_stick *s = n->stick;
     double to = s->one_way ? s->height : from + h * (s->velocity + 0.5 * h * s->acceleration);
     double k = s->head.stiffness * (s->one_way ? s->peak / HIMC_ONE_WAY_FORCE : 1);
     if (s->one_way && s->force == 0)
         k = 0;
-    return (meeting){.k = k,
-                     .alpha = s->head.exponent,
-                     .mu = s->head.loss,
-                     .c0 = n->before - from,
-                     .b = himc_strike_point_displacement(m, n->spot) - n->before - (to - from),
-                     .guess = s->one_way ? 0 : s->force};
+    return (contact_pair){.k = k,
+                          .alpha = s->head.exponent,
+                          .mu = s->head.loss,
+                          .c0 = n->before - from,
+                          .b =
+                              himc_strike_point_displacement(m, n->point) - n->before - (to - from),
+                          .guess = s->one_way ? 0 : s->force};
 }
 
-static void compliances(const himc_membrane *m, const near *nears, int count, double (*g)[MEETINGS],
-                        double half, double h)
+// G of all sticks near
+static void find_compliances(const himc_membrane *m, const near_stick *near, int count,
+                             double (*g)[MAX_PAIRS], double half, double h)
 {
     for (int i = 0; i < count; i++) {
-        const himc_stick *s = nears[i].stick;
-        double yields = himc_strike_point_effect(m, nears[i].spot)->compliance;
-        // a hair more for one-way sticks keeps the matrix regular when two are at one place
-        double own = s->one_way ? 1e-12 * yields + 1e-30 : 0.5 * h * h / s->mass;
-        double p = nears[i].pull;
-        g[i][i] = yields + own - half * p * p;
+        const himc_stick *s = near[i].stick;
+        double at_point = himc_strike_point_compliance(m, near[i].point, near[i].point);
+        double own = s->one_way ? REGULAR * at_point + REGULAR_LEAST : 0.5 * h * h / s->mass;
+        double p = near[i].coupling;
+        g[i][i] = at_point + own - half * p * p;
         for (int j = 0; j < i; j++)
-            g[i][j] = g[j][i] = himc_strike_point_compliance(m, nears[i].spot, nears[j].spot) -
-                                half * p * nears[j].pull;
+            g[i][j] = g[j][i] = himc_strike_point_compliance(m, near[i].point, near[j].point) -
+                                half * p * near[j].coupling;
     }
 }
 
-// `taken` is P . F of the forces so far, and afterwards of the sticks' too
-static void step_near(himc_membrane *membrane, near *nears, int count, double *taken, double h)
+// Solves the sticks near the head. `coupled` is P . F of the forces so far, and is increased by the
+// sticks'.
+static void step_near(himc_membrane *membrane, near_stick *near, int count, double *coupled,
+                      double h)
 {
-    meeting meetings[MEETINGS];
-    double g[MEETINGS][MEETINGS], from[MEETINGS], half;
-    double pull = himc_membrane_tension(membrane, &half) - half * *taken;
+    contact_pair pairs[MAX_PAIRS];
+    double g[MAX_PAIRS][MAX_PAIRS], from[MAX_PAIRS], half;
+    double film = himc_membrane_film_force(membrane, &half) - half * *coupled;
     bool apart = true;
     for (int i = 0; i < count; i++) {
-        himc_stick *s = nears[i].stick;
+        himc_stick *s = near[i].stick;
         from[i] = s->height;
         if (s->one_way)
             strike_rigid(s, h);
-        meetings[i] = meet(membrane, &nears[i], from[i], h);
-        nears[i].pull = himc_strike_point_pull(membrane, nears[i].spot);
-        meetings[i].b -= nears[i].pull * pull;
-        apart = apart && meetings[i].c0 <= 0 && meetings[i].c0 + meetings[i].b <= 0;
+        pairs[i] = make_pair(membrane, &near[i], from[i], h);
+        near[i].coupling = himc_strike_point_film_coupling(membrane, near[i].point);
+        pairs[i].b -= near[i].coupling * film;
+        apart = apart && pairs[i].c0 <= 0 && pairs[i].c0 + pairs[i].b <= 0;
     }
     if (!apart)
-        compliances(membrane, nears, count, g, half, h);
-    himc_contact_pairs_solve(meetings, count, g, h);
+        find_compliances(membrane, near, count, g, half, h);
+    solve_pairs(pairs, count, g, h);
     for (int i = 0; i < count; i++) {
-        himc_stick *s = nears[i].stick;
-        // one-way, the head is driven along a path that does not yield: no harder than the motion
+        himc_stick *s = near[i].stick;
+        // the path of a one-way stick is rigid: the force is limited to that of the motion
         if (s->one_way)
-            meetings[i].force = fmin(meetings[i].force, s->force);
-        himc_strike_point_apply(membrane, nears[i].spot, -meetings[i].force);
-        *taken += nears[i].pull * meetings[i].force;
+            pairs[i].force = fmin(pairs[i].force, s->force);
+        himc_strike_point_apply(membrane, near[i].point, -pairs[i].force);
+        *coupled += near[i].coupling * pairs[i].force;
         if (!s->one_way)
-            move(s, meetings[i].force, h);
+            move(s, pairs[i].force, h);
     }
 }
 
-// a step of length h: a sample, or a part of one
+// a step of length h: a sample or a substep
 static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, double h)
 {
-    near nears[MEETINGS];
+    near_stick near[MAX_PAIRS];
     int near_count = 0;
-    for (int i = 0; i < count && i < MEETINGS; i++) {
+    for (int i = 0; i < count && i < MAX_PAIRS; i++) {
         himc_stick *s = sticks[i];
         if (!within_reach(s, h)) {
             himc_stick_fly(s, h);
             continue;
         }
-        double x = s->touching ? s->touch_x : s->x, y = s->touching ? s->touch_y : s->y;
-        spot *place = himc_membrane_strike_point(membrane, x, y);
-        double before = himc_strike_point_displacement(membrane, place);
-        // a head changed since the last sample takes the sticks on it along
+        double x = s->touching ? s->contact_x : s->x, y = s->touching ? s->contact_y : s->y;
+        strike_point *point = himc_membrane_strike_point(membrane, x, y);
+        double before = himc_strike_point_displacement(membrane, point);
+        // a head that was changed since the last sample moves the sticks on it with it
         if (s->touching && !s->one_way)
             s->height += before - s->dent;
-        nears[near_count++] = (near){s, place, before, 0};
+        near[near_count++] = (near_stick){s, point, before, 0};
     }
-    double taken = himc_membrane_free_step(membrane);
+    double coupled = himc_membrane_free_step(membrane);
     if (near_count > 0)
-        step_near(membrane, nears, near_count, &taken, h);
-    himc_membrane_settle(membrane, taken);
+        step_near(membrane, near, near_count, &coupled, h);
+    himc_membrane_end_step(membrane, coupled);
     for (int i = 0; i < near_count; i++) {
-        himc_stick *s = nears[i].stick;
-        s->dent = himc_strike_point_displacement(membrane, nears[i].spot);
+        himc_stick *s = near[i].stick;
+        s->dent = himc_strike_point_displacement(membrane, near[i].point);
         if (!s->one_way)
-            hold(s, s->dent > s->height);
+            hold_point(s, s->dent > s->height);
     }
 }
 
@@ -219,7 +450,8 @@ static bool any_stiff(himc_stick *const *sticks, int count, double h)
 {
     for (int i = 0; i < count; i++) {
         const himc_mallet_head *head = &sticks[i]->head;
-        if (within_reach(sticks[i], h) && head->stiffness * pow(0.001, head->exponent) > STIFF)
+        if (within_reach(sticks[i], h) &&
+            head->stiffness * pow(0.001, head->exponent) > STIFF_FORCE)
             return true;
     }
     return false;
@@ -227,26 +459,26 @@ static bool any_stiff(himc_stick *const *sticks, int count, double h)
 
 void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
 {
-    double h = 1 / himc_membrane_rate(membrane), mean[MEETINGS] = {0};
-    count = count < MEETINGS ? count : MEETINGS;
-    int parts = any_stiff(sticks, count, h) ? himc_membrane_parts(membrane) : 1;
-    for (int i = 0; i < parts; i++) {
-        himc_membrane_part(membrane, i, parts);
-        step(membrane, sticks, count, h / parts);
+    double h = 1 / himc_membrane_rate(membrane), mean[MAX_PAIRS] = {0};
+    count = count < MAX_PAIRS ? count : MAX_PAIRS;
+    int substeps = any_stiff(sticks, count, h) ? himc_membrane_substeps(membrane) : 1;
+    for (int i = 0; i < substeps; i++) {
+        himc_membrane_set_substep(membrane, i, substeps);
+        step(membrane, sticks, count, h / substeps);
         for (int k = 0; k < count; k++)
-            mean[k] += sticks[k]->force / parts;
+            mean[k] += sticks[k]->force / substeps;
     }
-    himc_membrane_part(membrane, 0, 1);
+    himc_membrane_set_substep(membrane, 0, 1);
     for (int k = 0; k < count; k++)
         sticks[k]->force = mean[k];
 }
 
 double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick)
 {
-    double x = stick->touching ? stick->touch_x : stick->x,
-           y = stick->touching ? stick->touch_y : stick->y;
+    double x = stick->touching ? stick->contact_x : stick->x,
+           y = stick->touching ? stick->contact_y : stick->y;
     double c = stick->one_way ? -stick->height
                               : himc_membrane_displacement(membrane, x, y) - stick->height;
     return 0.5 * stick->mass * stick->velocity * stick->velocity +
-           himc_contact_pair_potential(stick->head.stiffness, stick->head.exponent, c);
+           potential(stick->head.stiffness, stick->head.exponent, c);
 }

@@ -1,20 +1,26 @@
-/// drum.c: a head advances with whatever touches it, sample by sample, into a ring that others
-/// read.
+/// drum.c: a drum advances with all that is in contact with it, sample by sample, into a ring that
+/// others read.
 ///
-/// Every sample is the same computation whichever way it is asked for. While nothing can touch
-/// (himc_contact_clear) the head runs free in long vectorised passes, whose bits equal single steps
-/// (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does not
+/// Every sample is the same computation however it is asked for. While nothing can touch the head
+/// (himc_contact_clear) it runs free in long vectorised passes, with the same bits as single
+/// steps (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does not
 /// depend on how the caller cuts time into blocks.
 #include "drum/drum_state.h"
+
+#include "drum/contact.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_AHEAD 512 // (samples)
-#define MOST_FORCE \
-    1e5 // (N) a larger one from outside counts as this, so that the sound stays finite
+#define OUTSIDE_LIMIT 1e5 // (N) larger outside forces are clamped; chosen: the sound stays finite
+#define RUN_BLOCK 64      // samples of a pass of the free head; chosen: bank.c's
+#define LEVEL_RAMP 0.010  // (s) of the head's own sound from on to off; chosen: no click
+#define METRES_PER_INCH 0.0254
+#define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
+
+static const himc_vec3 FIRST_PLACE = {0.70, 0, 0.85}; // (m) chosen: in front of a seated player
 
 static bool check_rate(double rate, himc_error *error)
 {
@@ -32,7 +38,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
         !check_rate(sample_rate, error))
         return NULL;
     himc_head head = himc_head_default();
-    head.radius = inches * 0.0254 / 2;
+    head.radius = inches * METRES_PER_INCH / 2;
     himc_membrane *membrane = himc_membrane_new(&head, sample_rate, error);
     himc_drum *drum = calloc(1, sizeof *drum);
     if (!membrane || !drum) {
@@ -47,10 +53,10 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     drum->level = 1;
     drum->membrane = membrane;
     himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
-    drum->place = (himc_head_frame){.center = {0.70, 0, 0.85}, .radius = head.radius};
+    drum->place = (himc_head_frame){.center = FIRST_PLACE, .radius = head.radius};
     drum->rate = sample_rate;
-    drum->spot_x = -0.75 * head.radius;
-    himc_membrane_watch(membrane, drum->spot_x, drum->spot_y);
+    drum->outside_x = FIRST_WATCHED * head.radius;
+    himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
     return drum;
 }
 
@@ -119,45 +125,47 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error)
         uint64_t left = drum->waiting[i].at > drum->time ? drum->waiting[i].at - drum->time : 0;
         drum->waiting[i].at = drum->time + (uint64_t)llround((double)left * ratio);
     }
-    // touches under way keep the seconds that have passed since
+    // contacts in progress keep the seconds that have passed since
     for (int i = 0; i < HIMC_STICKS; i++) {
         drum_mallet *m = &drum->mallets[i];
-        m->touch = drum->time - (uint64_t)llround((double)(drum->time - m->touch) * ratio);
-        m->release = drum->time - (uint64_t)llround((double)(drum->time - m->release) * ratio);
+        m->first = drum->time - (uint64_t)llround((double)(drum->time - m->first) * ratio);
+        m->end = drum->time - (uint64_t)llround((double)(drum->time - m->end) * ratio);
     }
     drum->rate = sample_rate;
     return true;
 }
 
-// what happens from outside in one call, and how far it has been played
+// the outside force of one call, and the sample that comes next
 typedef struct outside {
-    const double *force, *x, *y;
+    himc_outside_force of;
     int at, n;
 } outside;
 
-static void move_spot(himc_drum *drum, const outside *o)
+static void move_outside(himc_drum *drum, const outside *o)
 {
-    if (!o->force || !o->x || !o->y || !isfinite(o->x[o->at]) || !isfinite(o->y[o->at]))
+    if (!o->of.force || !o->of.x || !o->of.y || !isfinite(o->of.x[o->at]) ||
+        !isfinite(o->of.y[o->at]))
         return;
-    drum->spot_x = o->x[o->at];
-    drum->spot_y = o->y[o->at];
-    himc_membrane_watch(drum->membrane, drum->spot_x, drum->spot_y);
+    drum->outside_x = o->of.x[o->at];
+    drum->outside_y = o->of.y[o->at];
+    himc_membrane_watch(drum->membrane, drum->outside_x, drum->outside_y);
 }
 
-// the force of sample `at`, made fit
+// the force of sample `at`, finite and limited
 static double outside_force(const outside *o, int at)
 {
-    if (!o->force || !isfinite(o->force[at]))
+    if (!o->of.force || !isfinite(o->of.force[at]))
         return 0;
-    return fmin(fmax(o->force[at], -MOST_FORCE), MOST_FORCE);
+    return fmin(fmax(o->of.force[at], -OUTSIDE_LIMIT), OUTSIDE_LIMIT);
 }
 
-// samples from now on without force at the present spot
+// number of samples from now on without force and with the point unchanged
 static int outside_quiet(const himc_drum *drum, const outside *o)
 {
     int i = o->at;
     while (i < o->n && outside_force(o, i) == 0) {
-        if (o->force && o->x && o->y && (o->x[i] != drum->spot_x || o->y[i] != drum->spot_y))
+        if (o->of.force && o->of.x && o->of.y &&
+            (o->of.x[i] != drum->outside_x || o->of.y[i] != drum->outside_y))
             break;
         i++;
     }
@@ -171,32 +179,38 @@ static int channels(const himc_drum *drum)
     return count;
 }
 
-// the membrane's last sample; a channel that nobody hears is silent
-static void keep(himc_drum *drum)
+// level of the head's own sound in the coming sample
+static double next_level(himc_drum *drum)
 {
-    size_t at = drum->time++ % HIMC_DRUM_RING;
-    double level = himc_drum_loudness(drum);
-    for (int k = 0, count = channels(drum); k < HIMC_PICKUPS; k++)
-        drum->sound[k][at] = k < count ? level * himc_membrane_heard_by(drum->membrane, k) : 0;
-    drum->seen[at] = himc_membrane_seen(drum->membrane);
+    double goal = drum->technique == HIMC_TECHNIQUE_MODAL, step = 1 / (LEVEL_RAMP * drum->rate);
+    if (drum->level != goal)
+        drum->level += fmin(fmax(goal - drum->level, -step), step);
+    return drum->level;
 }
 
-#define CHUNK 64
+// one sample into the ring; `sound` is 0 for a channel without a pickup
+static void store(himc_drum *drum, const double sound[HIMC_PICKUPS], double watched)
+{
+    size_t at = drum->time++ % HIMC_DRUM_RING;
+    double level = next_level(drum);
+    for (int k = 0; k < HIMC_PICKUPS; k++)
+        drum->sound[k][at] = level * sound[k];
+    drum->watched[at] = watched;
+}
 
-// the head alone; the sticks fly
+// runs the head without contact; the sticks fly
 static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                       double *const *forces, int at)
 {
-    double heard[HIMC_PICKUPS][CHUNK] = {{0}}, seen[CHUNK], h = 1 / drum->rate;
-    double *into[HIMC_PICKUPS];
+    double sound[HIMC_PICKUPS][RUN_BLOCK] = {{0}}, watched[RUN_BLOCK], h = 1 / drum->rate;
+    double *into[HIMC_PICKUPS], one[HIMC_PICKUPS];
     for (int k = 0; k < HIMC_PICKUPS; k++)
-        into[k] = heard[k];
-    himc_membrane_run_all(drum->membrane, n, into, seen);
-    for (int i = 0; i < n; i++, drum->time++) {
-        double level = himc_drum_loudness(drum);
+        into[k] = sound[k];
+    himc_membrane_run(drum->membrane, n, into, watched);
+    for (int i = 0; i < n; i++) {
         for (int k = 0; k < HIMC_PICKUPS; k++)
-            drum->sound[k][drum->time % HIMC_DRUM_RING] = level * heard[k][i];
-        drum->seen[drum->time % HIMC_DRUM_RING] = seen[i];
+            one[k] = sound[k][i];
+        store(drum, one, watched[i]);
     }
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < n; i++)
@@ -206,47 +220,59 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
     }
 }
 
+// runs one sample with everything that may touch the head: `given` sticks and the drum's mallets
 static void step_once(himc_drum *drum, himc_stick **all, int given, double *const *forces,
                       const outside *o)
 {
     double force = outside_force(o, o->at);
     if (force != 0)
-        himc_membrane_push(drum->membrane, drum->spot_x, drum->spot_y, force);
+        himc_membrane_push(drum->membrane, drum->outside_x, drum->outside_y, force);
     int count = given + himc_drum_add_mallets(drum, all + given);
     unsigned known[2 * HIMC_STICKS];
     for (int k = 0; k < count; k++)
-        known[k] = all[k]->touches;
+        known[k] = all[k]->contacts;
     himc_contact_step(drum->membrane, all, count);
     for (int k = 0; k < count; k++)
-        if (all[k]->touches != known[k])
-            himc_drum_keep_touch(drum, all[k]);
+        if (all[k]->contacts != known[k])
+            himc_drum_keep_onset(drum, all[k]);
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
-    keep(drum);
+    double sound[HIMC_PICKUPS] = {0};
+    for (int k = 0, pickups = channels(drum); k < pickups; k++)
+        sound[k] = himc_membrane_sound(drum->membrane, k);
+    store(drum, sound, himc_membrane_watched(drum->membrane));
     himc_drum_follow_mallets(drum);
 }
 
-void himc_drum_advance(himc_drum *drum, int n, himc_stick *const *sticks, int stick_count,
-                       double *const *forces, const double *force, const double *x, const double *y)
+void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
+                              double *const *forces, const himc_outside_force *given)
 {
     himc_stick *all[2 * HIMC_STICKS];
-    outside o = {force, x, y, 0, n};
-    for (int i = 0; i < stick_count; i++)
+    outside o = {.n = n};
+    if (given)
+        o.of = *given;
+    for (int i = 0; i < count; i++)
         all[i] = sticks[i];
     while (o.at < n) {
         himc_drum_launch(drum);
-        move_spot(drum, &o);
-        bool alone = himc_drum_add_mallets(drum, all + stick_count) == 0;
+        move_outside(drum, &o);
+        bool alone = himc_drum_add_mallets(drum, all + count) == 0;
         int run = alone ? outside_quiet(drum, &o) : 0;
-        run = himc_drum_until_launch(drum, run < CHUNK ? run : CHUNK);
-        run = himc_contact_clear(drum->membrane, all, stick_count, run);
+        run = himc_drum_until_launch(drum, run < RUN_BLOCK ? run : RUN_BLOCK);
+        run = himc_contact_clear(drum->membrane, all, count, run);
         if (run > 0)
-            run_clear(drum, run, all, stick_count, forces, o.at);
+            run_clear(drum, run, all, count, forces, o.at);
         else
-            step_once(drum, all, stick_count, forces, &o);
+            step_once(drum, all, count, forces, &o);
         o.at += run > 0 ? run : 1;
     }
+}
+
+void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,
+                       const double *y)
+{
+    himc_drum_advance_sticks(drum, n, NULL, 0, NULL, &(himc_outside_force){force, x, y});
 }
 
 // samples [start, start + n) of a ring
@@ -265,7 +291,7 @@ void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
     if (sound)
         copy(drum, drum->sound[0], start, n, sound);
     if (displacement)
-        copy(drum, drum->seen, start, n, displacement);
+        copy(drum, drum->watched, start, n, displacement);
 }
 
 void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
@@ -283,8 +309,8 @@ void himc_drum_realign(himc_drum *drum, int ahead)
 {
     uint64_t kept = ahead > 0 ? (uint64_t)ahead : 0, before = drum->zero;
     drum->zero = drum->time - (kept < drum->time ? kept : drum->time);
-    for (int i = 0; i < drum->report_count; i++)
-        drum->reports[(drum->report_first + i) % DRUM_REPORTS].time -=
+    for (int i = 0; i < drum->report_queue.count; i++)
+        drum->reports[(drum->report_queue.first + i) % DRUM_REPORTS].time -=
             ((double)drum->zero - (double)before) / drum->rate;
 }
 
@@ -299,4 +325,19 @@ bool himc_drum_set_driver(himc_drum *drum, himc_drum_driver driver)
 himc_drum_driver himc_drum_get_driver(const himc_drum *drum)
 {
     return drum->driver;
+}
+
+himc_technique himc_drum_technique(const himc_drum *drum)
+{
+    return drum->technique;
+}
+
+void himc_drum_set_external_sound(himc_drum *drum, bool external)
+{
+    drum->external_sound = external;
+}
+
+bool himc_drum_has_external_sound(const himc_drum *drum)
+{
+    return drum->external_sound;
 }

@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define PICKUP_STEP (HIMC_PI / 3) // (rad) of azimuth; chosen: six pickups surround the drum
+
 // Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
 // softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
 // g. In the order of the words of `mallet`.
@@ -148,13 +150,24 @@ static himc_pickup read_pickup(const himc_command *c, int first, himc_pickup pic
     return pickup;
 }
 
-static bool do_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
+// pickup `index` from the command's atoms from `first` on; the others stay
+static bool change_pickup(himc_drum *drum, const himc_command *c, int first, int index,
+                          himc_error *error)
 {
-    himc_pickup pickup = read_pickup(c, 0, *himc_membrane_pickup(drum->membrane));
-    return himc_membrane_set_pickup(drum->membrane, &pickup, error);
+    himc_pickup all[HIMC_PICKUPS];
+    int count;
+    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
+    memcpy(all, now, sizeof *all * (size_t)count);
+    all[index] = read_pickup(c, first, all[index]);
+    return himc_membrane_set_pickups(drum->membrane, all, count, error);
 }
 
-// a new pickup is further round the drum, 60 degrees to the right of the one before
+static bool do_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return change_pickup(drum, c, 0, 0, error);
+}
+
+// each new pickup is PICKUP_STEP to the right of the one before
 static bool do_pickups(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_pickup all[HIMC_PICKUPS];
@@ -165,21 +178,17 @@ static bool do_pickups(himc_drum *drum, const himc_command *c, himc_error *error
         all[i] = all[i - 1];
         all[i].kind = HIMC_PICKUP_AIR;
         all[i].distance = fmax(all[i].distance, himc_pickup_default().distance);
-        all[i].azimuth = remainder(all[i].azimuth - HIMC_PI / 3, 2 * HIMC_PI);
+        all[i].azimuth = remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI);
     }
     return himc_membrane_set_pickups(drum->membrane, all, wanted, error);
 }
 
 static bool do_channel(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_pickup all[HIMC_PICKUPS];
     int count, channel = (int)number(c, 0);
-    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
-    if (!himc_check_range("channel", channel, 1, count, "", error))
-        return false;
-    memcpy(all, now, sizeof *all * (size_t)count);
-    all[channel - 1] = read_pickup(c, 1, all[channel - 1]);
-    return himc_membrane_set_pickups(drum->membrane, all, count, error);
+    himc_membrane_pickups(drum->membrane, &count);
+    return himc_check_range("channel", channel, 1, count, "", error) &&
+           change_pickup(drum, c, 1, channel - 1, error);
 }
 
 static bool do_air(himc_drum *drum, const himc_command *c, himc_error *error)
@@ -199,7 +208,8 @@ static bool do_kettle(himc_drum *drum, const himc_command *c, himc_error *error)
     return set_head(drum, &head, error);
 }
 
-static bool take_shape(himc_drum *drum, const himc_shape *shape, himc_head *head, himc_error *error)
+static bool replace_shape(himc_drum *drum, const himc_shape *shape, himc_head *head,
+                          himc_error *error)
 {
     head->air = head->air && shape->kind == HIMC_CIRCLE;
     if (!himc_membrane_set_shape(drum->membrane, shape, head, error))
@@ -219,7 +229,7 @@ static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
     head.tension = shape.grid->tension;
     head.density = shape.grid->density;
     head.modes = head.modes < shape.grid->modes ? head.modes : shape.grid->modes;
-    bool good = take_shape(drum, &shape, &head, error) || himc_error_prefix(error, "%s", path);
+    bool good = replace_shape(drum, &shape, &head, error) || himc_error_prefix(error, "%s", path);
     himc_grid_release(shape.grid);
     return good;
 }
@@ -234,17 +244,17 @@ static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
         return load_shape(drum, c->atom[0].symbol, error);
     if (c->form == CIRCLE) {
         head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
-        return take_shape(drum, &shape, &head, error);
+        return replace_shape(drum, &shape, &head, error);
     }
     shape = (himc_shape){HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
     head.radius = 0.5 * hypot(shape.length, shape.width);
-    return take_shape(drum, &shape, &head, error);
+    return replace_shape(drum, &shape, &head, error);
 }
 
 static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_technique wanted = (himc_technique)c->choice[0];
-    if (wanted != HIMC_TECHNIQUE_MODAL && !drum->answered)
+    if (wanted != HIMC_TECHNIQUE_MODAL && !drum->external_sound)
         return himc_error_set(error,
                               "technique: %s, allowed modal here: signal and clip are patches, "
                               "[technique~ NAME] in Pure Data",

@@ -1,17 +1,16 @@
-/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets),
-/// drum_touch.c (blows told as they begin) and drum_command.c.
+/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets,
+/// contact onsets) and drum_command.c.
 #ifndef HIMC_DRUM_STATE_H
 #define HIMC_DRUM_STATE_H
 
-#include "himc/drum.h"
-#include "himc/membrane.h"
+#include "drum/drum_performer.h"
 
-#define DRUM_WAITING 64
+#define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
 #define DRUM_REPORTS 64
-#define DRUM_MAX_DELAY 8192
-#define DRUM_TOUCHES 64
+#define DRUM_ONSETS 64
+#define DRUM_MAX_DELAY 8192 ///< (samples)
 
-/// A strike that is to begin with sample `at`.
+/// A strike that begins with sample `at`.
 typedef struct drum_waiting {
     uint64_t at;
     double x, y, velocity;
@@ -21,12 +20,17 @@ typedef struct drum_waiting {
 typedef struct drum_mallet {
     bool used;
     himc_stick stick;
-    uint64_t touch;   ///< sample of the first force
-    uint64_t release; ///< sample after the last force
-    bool touched;
-    int age; ///< samples since it was launched
+    uint64_t first; ///< sample of the first force
+    uint64_t end;   ///< sample after the last force
+    bool struck;    ///< it has felt a force
+    int age;        ///< samples since it was launched
     himc_contact_report report;
 } drum_mallet;
+
+/// Entries of a ring, oldest first.
+typedef struct drum_queue {
+    int first, count;
+} drum_queue;
 
 struct himc_drum {
     char name[HIMC_NAME_SIZE];
@@ -35,40 +39,37 @@ struct himc_drum {
     himc_mallet_head mallet;
     himc_word mallet_name; ///< "medium", or "own" when given by numbers
     himc_head_frame place;
-    bool placed; ///< by `place`
+    bool placed; ///< by the command `place`
     unsigned revision;
     himc_drum_driver driver;
     double rate;
-    uint64_t time; ///< samples since it was made; what sample counts in here are
+    uint64_t time; ///< samples since the drum was made; all samples in here are counted so
     uint64_t zero; ///< the one that counts as 0 outside, since the last realign
-    double sound[HIMC_PICKUPS][HIMC_DRUM_RING], seen[HIMC_DRUM_RING];
-    double spot_x, spot_y;              ///< of the force from outside
+    double sound[HIMC_PICKUPS][HIMC_DRUM_RING], watched[HIMC_DRUM_RING];
+    double outside_x, outside_y;        ///< point of the outside force, the watched point
     drum_waiting waiting[DRUM_WAITING]; ///< unordered
     int waiting_count;
     drum_mallet mallets[HIMC_STICKS];
-    himc_contact_report reports[DRUM_REPORTS]; ///< ring, oldest first
-    int report_first, report_count;
+    himc_contact_report reports[DRUM_REPORTS];
+    drum_queue report_queue;
+    himc_contact_onset onsets[DRUM_ONSETS]; ///< `at` is in samples of `time`
+    drum_queue onset_queue;
     himc_technique technique;
-    bool answered;
-    double level;                     ///< that the head's own sound has faded to, 0 .. 1
-    himc_touch touches[DRUM_TOUCHES]; ///< ring, oldest first; `at` is in samples of `time`
-    int touch_first, touch_count;
+    bool external_sound;
+    double level; ///< of the head's own sound, 0 .. 1
 };
 
-/// Launches the strikes that are due while a mallet is free; the rest go on waiting.
+/// Launches the strikes that are due, as long as a mallet is free; the others go on waiting.
 HIMC_RT void himc_drum_launch(himc_drum *drum);
-/// Samples until the next strike is due, at most `most`; 0 when one is due and a mallet free for
-/// it.
+/// Samples until the next strike is due, at most `most`; 0 if one is due.
 HIMC_RT int himc_drum_until_launch(const himc_drum *drum, int most);
-/// Adds the mallets in use to `sticks`; returns how many.
+/// Adds the mallets in use to `sticks`; returns their number.
 HIMC_RT int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks);
-/// Keeps the books of the mallets after a sample: touch, peak, impulse, and the end.
+/// After a sample: updates the reports of the mallets, and ends those that have left.
 HIMC_RT void himc_drum_follow_mallets(himc_drum *drum);
 
-/// Keeps the touch that this stick has begun in the last sample.
-HIMC_RT void himc_drum_keep_touch(himc_drum *drum, const himc_stick *stick);
-/// Level of the head's own sound in the coming sample.
-HIMC_RT double himc_drum_loudness(himc_drum *drum);
+/// Queues the onset of the contact that this stick has begun in the last sample.
+HIMC_RT void himc_drum_keep_onset(himc_drum *drum, const himc_stick *stick);
 
 /// In the order of the words of `mallet`.
 typedef enum drum_mallet_preset {

@@ -1,15 +1,22 @@
-/// drum_strike.c: hits without a performer: free mallets, launched as they touch, forgotten when
-/// they have left.
+/// drum_strike.c: strikes without a performer, and the onsets of all contacts.
 ///
-/// A mallet starts where the head is at that moment, so that its first sample is its first force
-/// and a strike is exact to the sample. It is weightless: in the few milliseconds of a contact
-/// gravity changes nothing, and so even the gentlest one leaves.
+/// A free mallet is launched where the head is at that moment, so its first sample has its first
+/// force and a strike is exact to the sample. It has no weight: in the few milliseconds of a
+/// contact gravity changes nothing, and so even the gentlest mallet leaves the head again. Then its
+/// report is queued.
+///
+/// The 2009 papers let a blow sound by any of three techniques: this modal one, signals, or clips
+/// of recorded sound. The other two need a contact's onset, not its report, which comes when the
+/// contact is over and its force known. So an onset has the position, the velocity, and the pitch
+/// to which the head is tuned. Contact, head and body are the same with every technique; the head's
+/// own sound goes off in 10 ms, and comes back, as far as the head still vibrates, with `modal`.
 #include "drum/drum_state.h"
 
 #include <math.h>
 
-#define GONE 0.005  // (m) above the head at rest and rising: it will not come back
-#define LONGEST 1.0 // (s) a mallet is taken away after this whatever it does
+#define GONE 0.005           // (m) above the head at rest and rising: the contact is over; chosen
+#define LONGEST_LIFE 1.0     // (s) of a mallet, whatever it does; chosen
+#define LEAST_VELOCITY 0.001 // (m/s) of a strike; chosen
 
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                          himc_error *error)
@@ -18,8 +25,8 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
         !himc_check_range("strike y", y, -drum->place.radius, drum->place.radius, "m", error) ||
         !himc_check_range("strike place, from the centre", hypot(x, y), 0, drum->place.radius, "m",
                           error) ||
-        !himc_check_range("strike velocity", velocity, 0.001, HIMC_STRIKE_VELOCITY_MAX, "m/s",
-                          error) ||
+        !himc_check_range("strike velocity", velocity, LEAST_VELOCITY, HIMC_STRIKE_VELOCITY_MAX,
+                          "m/s", error) ||
         !himc_check_range("strike delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
         return false;
     if (drum->waiting_count == DRUM_WAITING)
@@ -30,6 +37,25 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
     return true;
 }
 
+// index of a new last entry in a ring of `size`; a full ring loses its oldest
+static int queue_push(drum_queue *q, int size)
+{
+    if (q->count == size) {
+        q->first = (q->first + 1) % size;
+        q->count--;
+    }
+    return (q->first + q->count++) % size;
+}
+
+// index of the oldest entry, which is taken out; the ring must not be empty
+static int queue_pop(drum_queue *q, int size)
+{
+    int oldest = q->first;
+    q->first = (oldest + 1) % size;
+    q->count--;
+    return oldest;
+}
+
 static drum_mallet *free_mallet(himc_drum *drum)
 {
     for (int i = 0; i < HIMC_STICKS; i++)
@@ -38,7 +64,7 @@ static drum_mallet *free_mallet(himc_drum *drum)
     return NULL;
 }
 
-// the one that has waited longest, the first asked for if several have; -1 if none is due
+// index of the strike that begins first, of several the first asked for; -1 if none waits
 static int earliest(const himc_drum *drum)
 {
     int best = -1;
@@ -96,35 +122,30 @@ int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks)
     return count;
 }
 
-// its story ends: the report waits for himc_drum_strike_next; the oldest is dropped when nobody
-// asks
+// frees the mallet and queues its report
 static void finish(himc_drum *drum, drum_mallet *m)
 {
     m->used = false;
-    if (!m->touched)
+    if (!m->struck)
         return;
-    m->report.time = ((double)m->touch - (double)drum->zero) / drum->rate;
-    m->report.duration = (double)(m->release - m->touch) / drum->rate;
-    if (drum->report_count == DRUM_REPORTS) {
-        drum->report_first = (drum->report_first + 1) % DRUM_REPORTS;
-        drum->report_count--;
-    }
-    drum->reports[(drum->report_first + drum->report_count++) % DRUM_REPORTS] = m->report;
+    m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
+    m->report.duration = (double)(m->end - m->first) / drum->rate;
+    drum->reports[queue_push(&drum->report_queue, DRUM_REPORTS)] = m->report;
 }
 
 static void follow(himc_drum *drum, drum_mallet *m)
 {
     const himc_stick *s = &m->stick;
     if (s->force > 0) {
-        if (!m->touched)
-            m->touch = drum->time - 1;
-        m->touched = true;
-        m->release = drum->time;
+        if (!m->struck)
+            m->first = drum->time - 1;
+        m->struck = true;
+        m->end = drum->time;
         m->report.force = fmax(m->report.force, fmax(s->force, s->peak));
         m->report.impulse += s->force / drum->rate;
     }
     m->age++;
-    if ((!s->touching && s->height > GONE && s->velocity > 0) || m->age > LONGEST * drum->rate)
+    if ((!s->touching && s->height > GONE && s->velocity > 0) || m->age > LONGEST_LIFE * drum->rate)
         finish(drum, m);
 }
 
@@ -137,10 +158,31 @@ void himc_drum_follow_mallets(himc_drum *drum)
 
 bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
 {
-    if (drum->report_count == 0)
+    if (drum->report_queue.count == 0)
         return false;
-    *report = drum->reports[drum->report_first];
-    drum->report_first = (drum->report_first + 1) % DRUM_REPORTS;
-    drum->report_count--;
+    *report = drum->reports[queue_pop(&drum->report_queue, DRUM_REPORTS)];
+    return true;
+}
+
+void himc_drum_keep_onset(himc_drum *drum, const himc_stick *stick)
+{
+    if (!(stick->impact > 0))
+        return; // a head raised into a resting stick is no blow
+    const himc_head *head = himc_membrane_head(drum->membrane);
+    drum->onsets[queue_push(&drum->onset_queue, DRUM_ONSETS)] =
+        (himc_contact_onset){.at = (int64_t)drum->time,
+                             .x = stick->x,
+                             .y = stick->y,
+                             .velocity = stick->impact,
+                             .distance = fmin(hypot(stick->x, stick->y) / head->radius, 1),
+                             .pitch = himc_membrane_principal(drum->membrane, head)};
+}
+
+bool himc_drum_contact_next(himc_drum *drum, himc_contact_onset *onset)
+{
+    if (drum->onset_queue.count == 0)
+        return false;
+    *onset = drum->onsets[queue_pop(&drum->onset_queue, DRUM_ONSETS)];
+    onset->at -= (int64_t)drum->zero;
     return true;
 }

@@ -1,4 +1,4 @@
-/// grid.h: a head known at places: made of masses and springs, so that any outline can be played.
+/// grid.h: a head of masses and springs at given places, so that any outline can be played.
 ///
 /// M z'' + K z = f (2012 paper, equations 4 and 5) at N places. A head's file is text, one item a
 /// line, `#` begins a comment; file names in it are relative to it:
@@ -14,15 +14,15 @@
 
 #include "himc/base.h"
 
-#define HIMC_GRID_PLACES 4000 ///< most places
-#define HIMC_GRID_MODES 1000  ///< most modes found
+#define HIMC_GRID_PLACES 4000 ///< most places; chosen: bounds time and memory
+#define HIMC_GRID_MODES 1000  ///< most modes that are computed; chosen: bounds memory
 
-/// What its modes are. Constant once made; counts its references.
+/// Its modes. Constant once made; counts its references.
 typedef struct himc_grid himc_grid;
 struct himc_grid {
     int references;
-    int places;              ///< those that move
-    int all;                 ///< and those that do not
+    int places;              ///< that move
+    int all;                 ///< with those that stand still
     int modes;               ///< in order of frequency
     double tension, density; ///< of the file (N/m, kg/m^2)
     double radius;           ///< of the circle around all places (m)
@@ -33,7 +33,8 @@ struct himc_grid {
     double *shape;           ///< (modes, places); the largest of each is 1
 };
 
-/// Reads the file and finds the modes; NULL with "file:line: ..." or what the matrices lack.
+/// Reads the file and computes the modes. NULL with "file:line: ..." or the fault of a matrix. One
+/// reference belongs to the caller.
 himc_grid *himc_grid_load(const char *path, himc_error *error);
 himc_grid *himc_grid_retain(himc_grid *grid);
 void himc_grid_release(himc_grid *grid);

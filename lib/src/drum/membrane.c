@@ -1,11 +1,15 @@
-/// membrane.c: what a membrane is: modes, bank, ears and spots put together, and changed as it
-/// sounds.
+/// membrane.c: a drumhead put together from modes, bank and pickups, and changed while it sounds.
 ///
 /// A force f at (x, y) drives mode i with phi_i(x, y) f; the displacement there is sum phi_i q_i.
-/// Both use the same phi, from the same table, so work done on the head is energy in its modes to
-/// the last bit but rounding, whatever the table's error. A place is looked up or computed once
-/// (spot.h) and kept while it is used. In air each mode has another frequency, decay and mass and
-/// keeps its shape (air.h), so all of this holds there too.
+/// Both use the same phi, from the same table, so work done on the head equals the energy in its
+/// modes up to rounding, whatever the table's error. A strike point is computed once and kept while
+/// it is used. In air each mode has another frequency, decay and mass but the same shape (air.h),
+/// so all of this holds there too.
+///
+/// All arrays whose length is the number of modes are one block of memory, the core. Another number
+/// of modes is another core, made beside the old one and exchanged. After any change of head, rate
+/// or pickups, oscillators and readouts are computed anew from the same tables; the bank keeps the
+/// modes' energy and phase, and a declick keeps the sound continuous.
 #include "drum/membrane_state.h"
 
 #include "drum/bessel.h"
@@ -15,66 +19,267 @@
 #include <stdlib.h>
 #include <string.h>
 
-// what every pickup reads now and next
-typedef struct hearings {
-    sound of[HIMC_PICKUPS];
-} hearings;
+// arrays of a core: seven of its own, those of each output, those of each strike point
+#define ARRAYS (7 + (HIMC_PICKUPS + 1) * (2 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+#define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
+#define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
 
-// what the film's pull drives each mode by, as `direct` hears it
-static double film_drive(const himc_membrane *m, const double *direct)
+static void core_free(core *c)
+{
+    himc_modes_free(c->modes);
+    himc_bank_free(c->bank);
+    free(c->oscillators);
+    free(c->memory);
+}
+
+// takes the next array from the block; 16-byte alignment, as the bank requires
+static double *take(double **memory, int length)
+{
+    double *array = *memory;
+    *memory += length;
+    return array;
+}
+
+static himc_readout take_readout(double **memory, int length)
+{
+    double *p = take(memory, length);
+    return (himc_readout){p, take(memory, length)};
+}
+
+static output take_output(double **memory, int length)
+{
+    output o = {.readout = take_readout(memory, length)};
+    for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
+        o.response[k] = take(memory, length);
+    return o;
+}
+
+// Modes, bank and arrays for `count` modes of that outline, and the arrays of strike points. False,
+// and nothing kept, without memory.
+static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_shape *shape,
+                     int count, himc_error *error)
+{
+    *c = (core){.modes = himc_modes_new(shape, count, error), .bank = himc_bank_new(count, error)};
+    c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
+    int padded = c->bank ? himc_bank_padded(c->bank) : 0;
+    size_t bytes = sizeof(double) * (size_t)padded * ARRAYS;
+    double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!c->modes || !c->bank || !c->oscillators || !memory) {
+        if (c->modes)
+            himc_error_set(error, "modes: no memory for %d modes", count);
+        core_free(c);
+        return false;
+    }
+    memset(memory, 0, bytes);
+    double **arrays[] = {&c->on_q,    &c->on_v,   &c->on_force,      &c->scratch,
+                         &c->stretch, &c->weight, &c->coupling.shape};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        *arrays[i] = take(&memory, padded);
+    c->watched = take_output(&memory, padded);
+    for (int i = 0; i < HIMC_PICKUPS; i++)
+        c->pickups[i] = take_output(&memory, padded);
+    for (int i = 0; i < STRIKE_POINTS; i++)
+        points[i] = (strike_point){.shape = take(&memory, padded),
+                                   .readout = take_readout(&memory, padded)};
+    return true;
+}
+
+// volume under a head (m^3): its own, or the usual one for its radius
+static double kettle_of(const himc_head *head)
+{
+    return head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius);
+}
+
+// a bare mode as it sounds: in air, if the head has any
+static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
+{
+    return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
+}
+
+// Oscillators of all modes, and a_i = sqrt(2 kappa) Lam_i of the film; Lam_i is a bare mode's
+// stiffness per tension.
+static void find_oscillators(himc_membrane *m)
+{
+    core *c = &m->core;
+    double root = sqrt(2 * himc_membrane_film_stiffness(m));
+    for (int i = 0; i < m->head.modes; i++) {
+        himc_mode bare = himc_modes_get(c->modes, &m->head, i);
+        c->stretch[i] = root * bare.stiffness / m->head.tension;
+        // the sine of a pair equals its cosine
+        if (bare.sine && i > 0) {
+            c->oscillators[i] = c->oscillators[i - 1];
+            continue;
+        }
+        himc_mode mode = loaded(m, &bare);
+        c->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
+    }
+}
+
+// responses of an output to modal forces: through the state and, for accelerations, direct ones
+static void find_responses(himc_membrane *m, output *o, const double *direct)
+{
+    himc_bank *bank = m->core.bank;
+    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
+        himc_bank_set_step(bank, (himc_step_length)k);
+        himc_bank_step_response(bank, &o->readout, o->response[k]);
+        for (int i = 0; direct && i < himc_bank_count(bank); i++)
+            o->response[k][i] += direct[i];
+    }
+    himc_bank_set_step(bank, m->step);
+}
+
+// after the watched point has moved, or the modes have changed
+static void find_watched(himc_membrane *m)
+{
+    core *c = &m->core;
+    himc_modes_shapes(c->modes, m->head.radius, m->watch_x, m->watch_y, c->scratch);
+    himc_bank_readout(c->bank, c->scratch, NULL, &c->watched.readout);
+    find_responses(m, &c->watched, NULL);
+    for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
+        for (int i = 0; i < STRIKE_POINTS; i++)
+            if (m->points[i].used)
+                m->points[i].response[k].watched =
+                    himc_bank_sum(c->bank, m->points[i].shape, c->watched.response[k]);
+}
+
+static void find_pickup(himc_membrane *m, int index)
+{
+    core *c = &m->core;
+    const himc_pickup *pickup = &m->pickups[index];
+    himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
+    for (int i = 0; i < m->head.modes; i++) {
+        const himc_oscillator *o = &c->oscillators[i];
+        himc_mode mode = himc_modes_get(c->modes, &m->head, i);
+        mode.frequency = o->omega / (2 * HIMC_PI);
+        mode.decay = o->decay;
+        mode.mass = o->mass;
+        pickup_weights w = himc_pickup_weights(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
+        c->on_q[i] = w.displacement;
+        c->on_v[i] = w.velocity;
+        c->on_force[i] = w.force;
+    }
+    himc_bank_readout(c->bank, c->on_q, c->on_v, &c->pickups[index].readout);
+    find_responses(m, &c->pickups[index], c->on_force);
+}
+
+// all pickups; strike points hold responses to them and are computed again when asked for
+static void find_pickups(himc_membrane *m)
+{
+    for (int i = 0; i < STRIKE_POINTS; i++)
+        m->points[i].used = false;
+    for (int i = 0; i < m->pickup_count; i++)
+        find_pickup(m, i);
+}
+
+// after head, rate or core have changed
+static void retune(himc_membrane *m)
+{
+    core *c = &m->core;
+    m->air = himc_air_around(&m->head, kettle_of(&m->head));
+    find_oscillators(m);
+    himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
+    himc_bank_set(c->bank, c->oscillators, m->head.modes, m->rate);
+    himc_bank_coupling_weights(c->bank, c->stretch, c->weight);
+    find_pickups(m);
+    find_watched(m);
+    if (m->film.on || m->head.glide > 0)
+        himc_membrane_find_film(m);
+}
+
+// On a slacker head the same energy of bending is a deeper bend, and the energy of stretching goes
+// with the fourth power of its depth. So that the total does not exceed `before` (J), every mode's
+// displacement is scaled by sqrt(x), x the positive solution of bending x + stretching x^2 = the
+// potential energy that remains.
+static void keep_energy(himc_membrane *m, double before)
+{
+    himc_bank *bank = m->core.bank;
+    double bending = 0, stretching = 0.5 * m->film.s * m->film.s, q, v;
+    double excess = himc_membrane_energy(m) - before;
+    if (!(excess > ENERGY_ROUNDING * before))
+        return;
+    for (int i = 0; i < himc_bank_count(bank); i++) {
+        const himc_oscillator *o = &m->core.oscillators[i];
+        himc_bank_state(bank, i, &q, &v);
+        bending += 0.5 * o->mass * o->omega * o->omega * q * q;
+    }
+    double spend = fmax(bending + stretching - excess, 0);
+    double x = 2 * spend / (bending + sqrt(bending * bending + 4 * stretching * spend));
+    for (int i = 0; i < himc_bank_count(bank); i++) {
+        himc_bank_state(bank, i, &q, &v);
+        himc_bank_excite(bank, i, sqrt(x) * q, v);
+    }
+    himc_membrane_find_film(m);
+}
+
+// a sound's last sample and the coming one, if no new force acts
+typedef struct sound_pair {
+    double now, next;
+} sound_pair;
+
+typedef struct sounds {
+    sound_pair of[HIMC_PICKUPS];
+} sounds;
+
+// the film's force on the modes, summed with the weights `direct`
+static double film_part(const himc_membrane *m, const double *direct)
 {
     double sum = 0;
     for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
         double q, v;
         himc_bank_state(m->core.bank, i, &q, &v);
-        sum -= m->tension.s * m->core.stretch[i] * q * direct[i];
+        sum -= m->film.s * m->core.stretch[i] * q * direct[i];
     }
     return sum;
 }
 
-// An acceleration is heard of a force directly, and much of that cancels what the bent head's modes
-// say; so the forces of the last sample count as if they went on.
-static void listen_to_forces(himc_membrane *m, int index, sound *heard)
+// A pickup of accelerations has a direct part of each force, which cancels most of what the modes
+// of a bent head contribute. So the forces of the last sample are counted as if they continued.
+static void add_forces(himc_membrane *m, int index, sound_pair *sound)
 {
     core *c = &m->core;
-    const ear *e = &c->ears[index];
-    himc_bank_step_response(c->bank, &e->tap, c->scratch);
+    const output *o = &c->pickups[index];
+    himc_bank_step_response(c->bank, &o->readout, c->scratch);
     for (int i = 0; i < himc_bank_padded(c->bank); i++)
-        c->scratch[i] = e->answer[0][i] - c->scratch[i];
-    double film = m->tension.on ? film_drive(m, c->scratch) : 0;
-    heard->now += film;
-    heard->next += film;
-    for (int i = 0; i < m->pressed_count; i++) {
-        const push *p = &m->pressed[i];
-        const spot *s = himc_membrane_strike_point(m, p->x, p->y);
-        heard->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
-        heard->next += p->force * s->effect[0].heard[index];
+        c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
+    double stretching = m->film.on ? film_part(m, c->scratch) : 0;
+    sound->now += stretching;
+    sound->next += stretching;
+    for (int i = 0; i < m->applied_count; i++) {
+        const push *p = &m->applied[i];
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y);
+        sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
+        sound->next += p->force * s->response[HIMC_STEP_SAMPLE].sound[index];
     }
 }
 
-static hearings listen(himc_membrane *m)
+static sounds read_sounds(himc_membrane *m)
 {
-    hearings h = {0};
+    sounds s = {0};
     for (int i = 0; i < m->pickup_count; i++) {
-        const himc_readout *tap = &m->core.ears[i].tap;
-        const fade *f = &m->fades[i];
-        h.of[i] = (sound){himc_bank_read(m->core.bank, tap) + fade_at(f, f->at - 1),
-                          himc_bank_peek(m->core.bank, tap) + fade_at(f, f->at)};
-        listen_to_forces(m, i, &h.of[i]);
+        const himc_readout *readout = &m->core.pickups[i].readout;
+        const declick *d = &m->declicks[i];
+        s.of[i] = (sound_pair){himc_bank_read(m->core.bank, readout) + declick_at(d, d->at - 1),
+                               himc_bank_peek(m->core.bank, readout) + declick_at(d, d->at)};
+        add_forces(m, i, &s.of[i]);
     }
-    return h;
+    return s;
 }
 
-// makes the sounds go on from `before`
-static void splice(himc_membrane *m, hearings before)
+// continues the sounds from `before` by declicks
+static void declick_from(himc_membrane *m, const sounds *before)
 {
-    memset(m->fades, 0, sizeof m->fades);
-    hearings after = listen(m);
-    for (int i = 0; i < m->pickup_count; i++)
-        m->fades[i] = fade_between(before.of[i], after.of[i], m->rate);
+    memset(m->declicks, 0, sizeof m->declicks);
+    sounds after = read_sounds(m);
+    for (int i = 0; i < m->pickup_count; i++) {
+        const sound_pair *a = &after.of[i], *b = &before->of[i];
+        double step = b->next - a->next;
+        m->declicks[i] = (declick){.step = step,
+                                   .slope = step - (b->now - a->now),
+                                   .length = (int)(DECLICK_TIME * m->rate) + 1};
+    }
 }
 
-// a head of that outline
+// checks a head of that outline
 static bool check_head(const himc_head *head, himc_outline kind, himc_error *error)
 {
     if (!himc_head_check(head, error))
@@ -90,8 +295,8 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
         !himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
-    if (!m || !himc_core_new(&m->core, m->spots, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes,
-                             error)) {
+    if (!m ||
+        !core_new(&m->core, m->points, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
         if (!m)
             himc_error_set(error, "membrane: no memory");
         free(m);
@@ -100,9 +305,9 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
     m->head = *head;
     m->pickups[0] = himc_pickup_default();
     m->pickup_count = 1;
-    m->part_last = true;
+    m->ends_sample = true;
     m->rate = rate;
-    himc_membrane_retune(m);
+    retune(m);
     return m;
 }
 
@@ -110,15 +315,15 @@ void himc_membrane_free(himc_membrane *membrane)
 {
     if (!membrane)
         return;
-    himc_core_free(&membrane->core);
+    core_free(&membrane->core);
     free(membrane);
 }
 
-// another number of modes: the common ones go on in new arrays
+// another number of modes; those that remain keep their state
 static bool resize(himc_membrane *m, int count, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!himc_core_new(&fresh, m->spots, himc_modes_outline(old.modes), count, error))
+    if (!core_new(&fresh, m->points, himc_modes_shape(old.modes), count, error))
         return false;
     int common = count < m->head.modes ? count : m->head.modes;
     himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
@@ -128,41 +333,41 @@ static bool resize(himc_membrane *m, int count, himc_error *error)
         himc_bank_excite(fresh.bank, i, q, v);
     }
     m->core = fresh;
-    himc_core_free(&old);
+    core_free(&old);
     return true;
 }
 
-// modes from `first` on are new: where something presses they begin bent as they would be by now
+// Modes from `first` on are new. Under a pressing force they begin with their static displacement.
 static void bend_new(himc_membrane *m, int first)
 {
     for (int i = first; i < himc_bank_count(m->core.bank); i++) {
         const himc_oscillator *o = &m->core.oscillators[i];
         double q = 0;
-        for (int k = 0; k < m->pressed_count; k++) {
-            const push *p = &m->pressed[k];
+        for (int k = 0; k < m->applied_count; k++) {
+            const push *p = &m->applied[k];
             q += himc_membrane_strike_point(m, p->x, p->y)->shape[i] * p->force;
         }
         if (q != 0)
             himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
     }
-    if (m->tension.on)
-        himc_membrane_find_tension(m);
+    if (m->film.on)
+        himc_membrane_find_film(m);
 }
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
 {
     if (!check_head(head, himc_membrane_shape(membrane)->kind, error))
         return false;
-    hearings before = listen(membrane);
+    sounds before = read_sounds(membrane);
     double energy = himc_membrane_energy(membrane);
     int known = membrane->head.modes;
     if (head->modes != known && !resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
-    himc_membrane_retune(membrane);
+    retune(membrane);
     bend_new(membrane, known);
-    himc_membrane_keep_energy(membrane, energy);
-    splice(membrane, before);
+    keep_energy(membrane, energy);
+    declick_from(membrane, &before);
     return true;
 }
 
@@ -170,24 +375,24 @@ bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
                              const himc_head *head, himc_error *error)
 {
     core fresh, old = membrane->core;
-    spot spots[SPOTS];
+    strike_point points[STRIKE_POINTS];
     if (!check_head(head, shape->kind, error) ||
-        !himc_core_new(&fresh, spots, shape, head->modes, error))
+        !core_new(&fresh, points, shape, head->modes, error))
         return false;
-    hearings before = listen(membrane);
-    memcpy(membrane->spots, spots, sizeof spots);
+    sounds before = read_sounds(membrane);
+    memcpy(membrane->points, points, sizeof points);
     membrane->core = fresh;
     membrane->head = *head;
-    membrane->tension = (tension){0};
-    himc_membrane_retune(membrane);
-    splice(membrane, before);
-    himc_core_free(&old);
+    membrane->film = (film){0};
+    retune(membrane);
+    declick_from(membrane, &before);
+    core_free(&old);
     return true;
 }
 
 const himc_shape *himc_membrane_shape(const himc_membrane *membrane)
 {
-    return himc_modes_outline(membrane->core.modes);
+    return himc_modes_shape(membrane->core.modes);
 }
 
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
@@ -198,37 +403,26 @@ bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *picku
     for (int i = 0; i < count; i++)
         if (!himc_pickup_check(&pickups[i], &membrane->head, error))
             return false;
-    hearings before = listen(membrane);
+    sounds before = read_sounds(membrane);
     memcpy(membrane->pickups, pickups, sizeof *pickups * (size_t)count);
     membrane->pickup_count = count;
-    for (int i = 0; i < SPOTS; i++)
-        membrane->spots[i].used = false;
-    for (int i = 0; i < count; i++)
-        himc_membrane_aim_ear(membrane, i);
-    splice(membrane, before);
+    find_pickups(membrane);
+    declick_from(membrane, &before);
     return true;
-}
-
-bool himc_membrane_set_pickup(himc_membrane *membrane, const himc_pickup *pickup, himc_error *error)
-{
-    himc_pickup all[HIMC_PICKUPS];
-    memcpy(all, membrane->pickups, sizeof all);
-    all[0] = *pickup;
-    return himc_membrane_set_pickups(membrane, all, membrane->pickup_count, error);
 }
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
 {
     if (!himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return false;
-    hearings before = listen(membrane);
+    sounds before = read_sounds(membrane);
     for (int i = 0; i < HIMC_PICKUPS; i++) {
-        sound *s = &before.of[i];
+        sound_pair *s = &before.of[i];
         s->next = s->now + (s->next - s->now) * (membrane->rate / rate);
     }
     membrane->rate = rate;
-    himc_membrane_retune(membrane);
-    splice(membrane, before);
+    retune(membrane);
+    declick_from(membrane, &before);
     return true;
 }
 
@@ -274,11 +468,6 @@ const himc_head *himc_membrane_head(const himc_membrane *membrane)
     return &membrane->head;
 }
 
-const himc_pickup *himc_membrane_pickup(const himc_membrane *membrane)
-{
-    return &membrane->pickups[0];
-}
-
 const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count)
 {
     *count = membrane->pickup_count;
@@ -293,7 +482,7 @@ double himc_membrane_rate(const himc_membrane *membrane)
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
     himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
-    return himc_membrane_loaded(membrane, &bare);
+    return loaded(membrane, &bare);
 }
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
@@ -304,7 +493,7 @@ double himc_membrane_principal(const himc_membrane *membrane, const himc_head *h
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
     if (!head->air)
         return bare;
-    himc_air air = himc_air_around(head, himc_head_kettle(head));
+    himc_air air = himc_air_around(head, kettle_of(head));
     return bare * himc_air_on(&air, 1, 1, zero).frequency;
 }
 
@@ -313,7 +502,7 @@ double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head 
 {
     himc_head trial = *head;
     double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < BISECTIONS; i++) {
         trial.tension = exp(0.5 * (low + high));
         if (himc_membrane_principal(membrane, &trial) < frequency)
             low = log(trial.tension);
@@ -334,41 +523,7 @@ void himc_membrane_watch(himc_membrane *membrane, double x, double y)
         return;
     membrane->watch_x = x;
     membrane->watch_y = y;
-    himc_membrane_aim_watch(membrane);
-}
-
-void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)
-{
-    if (membrane->push_count < PUSHES)
-        membrane->pushes[membrane->push_count++] = (push){x, y, force};
-}
-
-double himc_membrane_heard(const himc_membrane *membrane)
-{
-    return membrane->heard[0];
-}
-
-double himc_membrane_heard_by(const himc_membrane *membrane, int pickup)
-{
-    return membrane->heard[pickup];
-}
-
-double himc_membrane_seen(const himc_membrane *membrane)
-{
-    return membrane->seen;
-}
-
-double himc_membrane_displacement(const himc_membrane *membrane, double x, double y)
-{
-    // only the cache of spots changes, which nobody can see
-    return himc_strike_point_displacement(
-        membrane, himc_membrane_strike_point((himc_membrane *)membrane, x, y));
-}
-
-double himc_membrane_energy(const himc_membrane *membrane)
-{
-    double s = membrane->tension.s;
-    return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
+    find_watched(membrane);
 }
 
 void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
@@ -379,13 +534,13 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)
 {
     himc_bank_excite(membrane->core.bank, index, q, v);
-    himc_membrane_find_tension(membrane);
+    himc_membrane_find_film(membrane);
 }
 
 void himc_membrane_rest(himc_membrane *membrane)
 {
-    hearings before = listen(membrane);
+    sounds before = read_sounds(membrane);
     himc_bank_rest(membrane->core.bank);
-    membrane->tension = (tension){0};
-    splice(membrane, before);
+    membrane->film = (film){0};
+    declick_from(membrane, &before);
 }

@@ -1,48 +1,86 @@
-/// membrane_state.h: what a membrane is made of; shared by membrane_core.c (how that follows from
-/// its head), membrane.c (what it is and how it changes) and membrane_step.c (how it moves).
+/// membrane_state.h: what a membrane is made of; shared by membrane.c (how it is made and changed)
+/// and membrane_step.c (how it moves). Calls go from membrane.c to membrane_step.c only.
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H
 
 #include "drum/air.h"
-
-#include "drum/declick.h"
+#include "drum/bank.h"
 #include "drum/strike_point.h"
 
-#define PUSHES 8
-#define GLANCE 64 ///< samples between looks whether the film is still stretched
+#define MAX_PUSHES 8           ///< forces of himc_membrane_push in one sample; himc/membrane.h
+#define STRIKE_POINTS 24       ///< all sticks and mallets of a drum (16) and all pushes (8)
+#define FILM_CHECK_INTERVAL 64 ///< (samples) chosen: a check costs as much as a few samples
+#define DECLICK_TIME 0.005     ///< (s) chosen: no click, and shorter than a stroke's onset
 
-/// What a pickup reads: of the state, and of forces directly.
-typedef struct ear {
-    himc_readout tap;
-    double *answer[HIMC_BANK_SUBSTEPS]; ///< sound per newton of modal force in a step (padded)
-} ear;
+/// A signal that is read from the modes: a pickup's sound, or the displacement of the watched
+/// point.
+typedef struct output {
+    himc_readout readout;
+    double *response[HIMC_STEP_LENGTHS]; ///< per newton of modal force during a step (padded)
+} output;
 
-/// What depends on the number of modes and is allocated with it.
+/// All that depends on the number of modes and is allocated with it.
 typedef struct core {
     himc_modes *modes;
     himc_bank *bank;
     himc_oscillator *oscillators; ///< (modes)
-    double *memory;               ///< all arrays below, (padded) each, and the spots'
+    double *memory;               ///< all arrays below, (padded) each, and those of strike points
     double *on_q, *on_v, *on_force, *scratch;
-    double *stretch, *weight; ///< a_i of the film's stretching; the same as the bank takes it
-    himc_tension_coupling pull;
-    ear ears[HIMC_PICKUPS];
-    himc_readout watch;
-    double *watch_answer[HIMC_BANK_SUBSTEPS]; ///< displacement there per newton of modal force
+    double *stretch, *weight; ///< a_i of the film's stretching; the bank's weights for them
+    himc_tension_coupling coupling;
+    output pickups[HIMC_PICKUPS];
+    output watched;
 } core;
 
 /// The film's stretching (membrane_step.c).
-typedef struct tension {
+typedef struct film {
     bool on;
-    double s;        ///< root of twice its energy (J^1/2)
-    double base;     ///< mean of s in this sample if no stick pressed
-    double half;     ///< what a stick's push through the pull takes off that mean
-    unsigned glance; ///< samples since the last look
-} tension;
+    double s;     ///< root of twice its energy (J^1/2)
+    double base;  ///< mean of s in this step without contact
+    double half;  ///< reduction of that mean per P . F
+    unsigned age; ///< steps since it came on
+} film;
 
+/// What a newton at a strike point during a step has done at its end.
+typedef struct unit_response {
+    double compliance;          ///< displacement of the point itself (m/N)
+    double sound[HIMC_PICKUPS]; ///< (1/N)
+    double watched;             ///< displacement of the watched point (m/N)
+} unit_response;
+
+/// A point of the head and its coupling to each mode. A pure function of place and head, so caching
+/// it does not change results.
+struct strike_point {
+    bool used;
+    double x, y;          ///< (m)
+    unsigned long age;    ///< the larger, the more recently used
+    double *shape;        ///< phi_i there, owned by the membrane (padded)
+    himc_readout readout; ///< of the displacement there
+    unit_response response[HIMC_STEP_LENGTHS];
+};
+
+/// A force at a point of the head (m, N).
 typedef struct push {
     double x, y, force;
 } push;
+
+/// When head, pickup or rate change, the sound would jump by a step, and its slope by another. The
+/// difference between the sound before and after the change is added back as the cubic that starts
+/// with both and ends with value and slope zero: no click, and no filter in the signal at any other
+/// time.
+typedef struct declick {
+    double step, slope; ///< at its start: (1.0 as the pickup's), and per sample
+    int at, length;     ///< (samples)
+} declick;
+
+/// What is added to sample `at`, which may lie just before the start.
+static inline double declick_at(const declick *d, int at)
+{
+    if (d->length == 0 || at >= d->length)
+        return 0;
+    double t = (double)at / d->length, u = 1 - t;
+    return u * u * ((1 + 2 * t) * d->step + t * d->length * d->slope);
+}
 
 struct himc_membrane {
     himc_head head;
@@ -50,41 +88,24 @@ struct himc_membrane {
     himc_pickup pickups[HIMC_PICKUPS];
     int pickup_count;
     double rate;
-    int gear;       ///< of the step that comes: a sample or a part of it
-    bool part_last; ///< it ends a sample
+    himc_step_length step; ///< of the next step
+    bool ends_sample;      ///< the next step is the last one of a sample
     core core;
     double watch_x, watch_y;
-    spot spots[SPOTS];
-    unsigned long clock; ///< of the spots' use
-    tension tension;
-    push pushes[PUSHES];
+    strike_point points[STRIKE_POINTS];
+    unsigned long clock; ///< of the use of strike points
+    film film;
+    push pushes[MAX_PUSHES];
     int push_count;
-    push pressed[SPOTS]; ///< forces of the last step, up positive
-    int pressed_count;
-    fade fades[HIMC_PICKUPS];
-    double heard[HIMC_PICKUPS], seen; ///< of the last sample
+    push applied[STRIKE_POINTS]; ///< forces of the last step, up positive
+    int applied_count;
+    declick declicks[HIMC_PICKUPS];
+    double sound[HIMC_PICKUPS], watched; ///< of the last sample
 };
 
-/// Modes, bank and arrays for `count` modes of that outline, and the spots' arrays in them. False,
-/// and nothing kept, if there is no memory.
-bool himc_core_new(core *c, spot spots[SPOTS], const himc_shape *shape, int count,
-                   himc_error *error);
-void himc_core_free(core *c);
-
-/// Volume under a head (m^3): its own, or the usual one for its radius.
-HIMC_RT double himc_head_kettle(const himc_head *head);
-/// A bare mode as it sounds, with its air.
-HIMC_RT himc_mode himc_membrane_loaded(const himc_membrane *m, const himc_mode *bare);
-/// After head or rate changed: oscillators and taps. Spots are computed again when asked for.
-HIMC_RT void himc_membrane_retune(himc_membrane *m);
-/// After pickup `index`, or the watched place, changed.
-HIMC_RT void himc_membrane_aim_ear(himc_membrane *m, int index);
-HIMC_RT void himc_membrane_aim_watch(himc_membrane *m);
-/// The film's energy as the state has it.
-HIMC_RT void himc_membrane_find_tension(himc_membrane *m);
-/// After a change: no more than `energy` (J) is left, the head bent less if need be.
-HIMC_RT void himc_membrane_keep_energy(himc_membrane *m, double energy);
-/// kappa: what int |grad w|^2 dS adds to the tension, by glide (N/m^3).
-HIMC_RT double himc_membrane_film(const himc_membrane *m);
+/// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
+HIMC_RT double himc_membrane_film_stiffness(const himc_membrane *m);
+/// Computes the film's stretching from the state.
+HIMC_RT void himc_membrane_find_film(himc_membrane *m);
 
 #endif

@@ -1,70 +1,74 @@
-/// membrane_step.c: a sample of the head: free, pushed, stretched.
+/// membrane_step.c: one sample of the head: free motion, forces, the film's stretching.
 ///
 /// A head that bows out is longer, so its film pulls harder. With Berger's assumption of a uniform
-/// tension (H. M. Berger 1955; Avanzini & Marogna 2010) it rises by kappa int |grad w|^2 dS, and
-/// the energy of stretching is s^2/2 with
+/// tension (H. M. Berger 1955; Avanzini & Marogna 2010) the tension rises by kappa int |grad w|^2
+/// dS, and the energy of stretching is s^2/2 with
 ///     s = sqrt(kappa/2) sum_i Lam_i q_i^2,   Lam_i = int |grad phi_i|^2 dS,
 ///     kappa = E h_f/(2 (1 - nu^2) area).
-/// Over a sample the film holds the modal forces -s_mean g: g the mean of ds/dq before the sample
+/// Over a sample the film applies the modal forces -s_mean g: g the mean of ds/dq before the sample
 /// and after its free motion, s_mean = s + u/2, and s' = s + u with u = g . (q' - q). So the film
-/// gains s'^2/2 - s^2/2 = s_mean u, just the work done on it: passive for any step, and as the
+/// gains s'^2/2 - s^2/2 = s_mean u, exactly the work done on it: passive for any step, and as the
 /// modes answer a force linearly, one division solves it (energy quadratisation: Ducceschi & Bilbao
-/// 2019). With sticks of forces F at shapes phi, and P = phi . B g (B what modes yield per newton),
+/// 2019). With forces F of sticks at shapes phi, and P = phi . B g (B the modes' displacements per
+/// newton),
 ///     u = (g . (q_free - q) - gBg s - P F)/(1 + gBg/2)
-/// is linear in F, so it only adds to the compliances of the contact (contact.c).
+/// is linear in F, so it only adds to the compliances of the contact (contact.c). P is the film
+/// coupling of a strike point, s_mean the film's force.
 ///
-/// When twice the energy could not raise the tension by a millionth, 0.001 cent, the film is left
-/// alone until the next force: the bank then runs in long passes. That look comes after every 64
-/// samples from when it began, whatever the blocks, and gives up the last of s, so energy falls.
+/// When the film could not raise the tension by a millionth, 0.001 cent, even with twice the energy
+/// now in the head, it is switched off until the next force: the bank then runs in long passes.
+/// This is checked every 64 steps since the film came on, so it does not depend on block sizes. The
+/// rest of s is dropped, so energy falls.
 #include "drum/membrane_state.h"
 
 #include <math.h>
 
-#define SLACK 1e-6    // of the tension
-#define FINE 192000.0 // (Hz) steps of stiff contacts
+#define SLACK 1e-6            // rise per tension; chosen: 0.001 cent
+#define SUBSTEP_RATE 192000.0 // (Hz) least rate of substeps; chosen: contact.c
 
-// finds the spot's shapes and what a newton there does
-static void place_spot(himc_membrane *m, spot *s, double x, double y)
+// Young's modulus, Poisson's ratio and density of polyester film (Mylar), typical values; the
+// thickness of a head follows from its mass
+#define YOUNG 4e9 // (Pa)
+#define POISSON 0.38
+#define FILM 1390.0 // (kg/m^3)
+
+// finds the point's shapes and the responses to a newton there
+static void move_point(himc_membrane *m, strike_point *s, double x, double y)
 {
     const core *c = &m->core;
     s->used = true;
     s->x = x;
     s->y = y;
     himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
-    himc_bank_readout(c->bank, s->shape, NULL, &s->tap);
-    for (int g = 0; g < HIMC_BANK_SUBSTEPS; g++) {
-        effect *e = &s->effect[g];
-        himc_bank_set_substep(c->bank, g);
-        e->compliance = himc_bank_response(c->bank, s->shape, &s->tap);
+    himc_bank_readout(c->bank, s->shape, NULL, &s->readout);
+    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
+        unit_response *e = &s->response[k];
+        himc_bank_set_step(c->bank, (himc_step_length)k);
+        e->compliance = himc_bank_response(c->bank, s->shape, &s->readout);
         for (int i = 0; i < m->pickup_count; i++)
-            e->heard[i] = himc_bank_sum(c->bank, s->shape, c->ears[i].answer[g]);
-        e->seen = himc_bank_sum(c->bank, s->shape, c->watch_answer[g]);
+            e->sound[i] = himc_bank_sum(c->bank, s->shape, c->pickups[i].response[k]);
+        e->watched = himc_bank_sum(c->bank, s->shape, c->watched.response[k]);
     }
-    himc_bank_set_substep(c->bank, m->gear);
+    himc_bank_set_step(c->bank, m->step);
 }
 
-int himc_membrane_parts(const himc_membrane *membrane)
+int himc_membrane_substeps(const himc_membrane *membrane)
 {
-    return (int)ceil(FINE / membrane->rate);
+    return (int)ceil(SUBSTEP_RATE / membrane->rate);
 }
 
-void himc_membrane_part(himc_membrane *membrane, int index, int parts)
+void himc_membrane_set_substep(himc_membrane *membrane, int index, int count)
 {
-    membrane->gear = parts > 1;
-    membrane->part_last = index == parts - 1;
-    himc_bank_set_substep(membrane->core.bank, membrane->gear);
+    membrane->step = count > 1 ? HIMC_STEP_SUBSTEP : HIMC_STEP_SAMPLE;
+    membrane->ends_sample = index == count - 1;
+    himc_bank_set_step(membrane->core.bank, membrane->step);
 }
 
-const effect *himc_strike_point_effect(const himc_membrane *membrane, const spot *s)
+strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y)
 {
-    return &s->effect[membrane->gear];
-}
-
-spot *himc_membrane_strike_point(himc_membrane *membrane, double x, double y)
-{
-    spot *oldest = &membrane->spots[0];
-    for (int i = 0; i < SPOTS; i++) {
-        spot *s = &membrane->spots[i];
+    strike_point *oldest = &membrane->points[0];
+    for (int i = 0; i < STRIKE_POINTS; i++) {
+        strike_point *s = &membrane->points[i];
         if (s->used && s->x == x && s->y == y) {
             s->age = ++membrane->clock;
             return s;
@@ -72,170 +76,204 @@ spot *himc_membrane_strike_point(himc_membrane *membrane, double x, double y)
         if (!s->used || (oldest->used && s->age < oldest->age))
             oldest = s;
     }
-    place_spot(membrane, oldest, x, y);
+    move_point(membrane, oldest, x, y);
     oldest->age = ++membrane->clock;
     return oldest;
 }
 
-double himc_strike_point_displacement(const himc_membrane *membrane, const spot *s)
+double himc_strike_point_displacement(const himc_membrane *membrane, const strike_point *s)
 {
-    return himc_bank_displacement(membrane->core.bank, &s->tap);
+    return himc_bank_displacement(membrane->core.bank, &s->readout);
 }
 
-double himc_strike_point_pull(const himc_membrane *membrane, const spot *s)
+double himc_strike_point_film_coupling(const himc_membrane *membrane, const strike_point *s)
 {
     const core *c = &membrane->core;
-    return membrane->tension.on ? himc_bank_response(c->bank, c->pull.shape, &s->tap) : 0;
+    return membrane->film.on ? himc_bank_response(c->bank, c->coupling.shape, &s->readout) : 0;
 }
 
-double himc_strike_point_compliance(const himc_membrane *membrane, const spot *a, const spot *b)
+double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
+                                    const strike_point *b)
 {
-    return himc_bank_response(membrane->core.bank, b->shape, &a->tap);
+    return a == b ? a->response[membrane->step].compliance
+                  : himc_bank_response(membrane->core.bank, b->shape, &a->readout);
 }
 
-double himc_membrane_tension(const himc_membrane *membrane, double *half)
+double himc_membrane_film_force(const himc_membrane *membrane, double *half)
 {
-    *half = membrane->tension.on ? membrane->tension.half : 0;
-    return membrane->tension.on ? membrane->tension.base : 0;
+    *half = membrane->film.on ? membrane->film.half : 0;
+    return membrane->film.on ? membrane->film.base : 0;
 }
 
-void himc_strike_point_apply(himc_membrane *membrane, const spot *s, double force)
+void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, double force)
 {
     if (force == 0)
         return;
     himc_bank_push(membrane->core.bank, s->shape, force);
-    const effect *e = himc_strike_point_effect(membrane, s);
+    const unit_response *e = &s->response[membrane->step];
     for (int i = 0; i < membrane->pickup_count; i++)
-        membrane->heard[i] += e->heard[i] * force;
-    membrane->seen += e->seen * force;
-    if (membrane->pressed_count < SPOTS)
-        membrane->pressed[membrane->pressed_count++] = (push){s->x, s->y, force};
-    if (membrane->head.glide > 0 && !membrane->tension.on)
-        membrane->tension = (tension){.on = true};
+        membrane->sound[i] += e->sound[i] * force;
+    membrane->watched += e->watched * force;
+    if (membrane->applied_count < STRIKE_POINTS)
+        membrane->applied[membrane->applied_count++] = (push){s->x, s->y, force};
+    if (membrane->head.glide > 0 && !membrane->film.on)
+        membrane->film = (film){.on = true};
 }
 
-// n samples of the bank, the fades added
-static void advance(himc_membrane *m, int n, double *const *heard, double *seen)
+double himc_membrane_film_stiffness(const himc_membrane *m)
 {
-    const core *c = &m->core;
-    const himc_readout *taps[HIMC_PICKUPS + 1];
-    double *read[HIMC_PICKUPS + 1];
-    int count = m->pickup_count;
-    for (int k = 0; k < count; k++) {
-        taps[k] = &c->ears[k].tap;
-        read[k] = heard[k];
-    }
-    taps[count] = &c->watch;
-    read[count] = seen;
-    himc_bank_run(c->bank, n, taps, count + 1, read);
-    m->pressed_count = 0;
-    for (int k = 0; k < count; k++) {
-        fade *f = &m->fades[k];
-        for (int i = 0; i < n && m->part_last && f->at < f->length; i++)
-            heard[k][i] += fade_at(f, f->at++);
-        m->heard[k] = heard[k][n - 1];
-    }
-    m->seen = seen[n - 1];
+    double thickness = m->head.density / FILM;
+    double area = himc_modes_area(m->core.modes, m->head.radius);
+    return m->head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
 }
 
-// a stretched film's sample: the modes free, and what the film meets in it
-static void advance_stretched(himc_membrane *m)
+void himc_membrane_find_film(himc_membrane *m)
 {
-    core *c = &m->core;
-    tension *t = &m->tension;
-    himc_bank_run_coupled(c->bank, c->weight, &c->pull);
-    m->pressed_count = 0;
-    double yielding = 1 + 0.5 * c->pull.compliance;
-    t->half = 0.5 / yielding;
-    t->base = t->s + t->half * (c->pull.climb - c->pull.compliance * t->s);
-    for (int k = 0; k < m->pickup_count; k++) {
-        fade *f = &m->fades[k];
-        m->heard[k] = himc_bank_read(c->bank, &c->ears[k].tap);
-        if (m->part_last && f->at < f->length)
-            m->heard[k] += fade_at(f, f->at++);
+    film *f = &m->film;
+    f->s = 0;
+    for (int i = 0; i < m->head.modes; i++) {
+        double q, v;
+        himc_bank_state(m->core.bank, i, &q, &v);
+        f->s += 0.5 * m->core.stretch[i] * q * q;
     }
-    m->seen = himc_bank_displacement(c->bank, &c->watch);
-}
-
-// the highest the film's pull could become, per the head's tension
-static double stretched(const himc_membrane *m)
-{
-    double kappa = himc_membrane_film(m);
-    return 2 * kappa * himc_bank_energy(m->core.bank) / (m->head.tension * m->head.tension);
+    f->on = f->s > 0;
 }
 
 double himc_membrane_rise(const himc_membrane *membrane)
 {
-    return sqrt(2 * himc_membrane_film(membrane)) * membrane->tension.s;
+    return sqrt(2 * himc_membrane_film_stiffness(membrane)) * membrane->film.s;
 }
 
-void himc_membrane_settle(himc_membrane *membrane, double taken)
+// runs n steps without the film; adds the declicks to the sound
+static void run_free(himc_membrane *m, int n, double *const *sound, double *watched)
+{
+    const core *c = &m->core;
+    const himc_readout *readouts[HIMC_PICKUPS + 1];
+    double *out[HIMC_PICKUPS + 1];
+    int count = m->pickup_count;
+    for (int k = 0; k < count; k++) {
+        readouts[k] = &c->pickups[k].readout;
+        out[k] = sound[k];
+    }
+    readouts[count] = &c->watched.readout;
+    out[count] = watched;
+    himc_bank_run(c->bank, n, readouts, count + 1, out);
+    m->applied_count = 0;
+    for (int k = 0; k < count; k++) {
+        declick *d = &m->declicks[k];
+        for (int i = 0; i < n && m->ends_sample && d->at < d->length; i++)
+            sound[k][i] += declick_at(d, d->at++);
+        m->sound[k] = sound[k][n - 1];
+    }
+    m->watched = watched[n - 1];
+}
+
+// runs one step of the modes with the film stretched; finds what its force depends on
+static void run_stretched(himc_membrane *m)
+{
+    core *c = &m->core;
+    film *f = &m->film;
+    himc_bank_run_coupled(c->bank, c->weight, &c->coupling);
+    m->applied_count = 0;
+    double resistance = 1 + 0.5 * c->coupling.compliance;
+    f->half = 0.5 / resistance;
+    f->base = f->s + f->half * (c->coupling.change - c->coupling.compliance * f->s);
+    for (int k = 0; k < m->pickup_count; k++) {
+        declick *d = &m->declicks[k];
+        m->sound[k] = himc_bank_read(c->bank, &c->pickups[k].readout);
+        if (m->ends_sample && d->at < d->length)
+            m->sound[k] += declick_at(d, d->at++);
+    }
+    m->watched = himc_bank_displacement(c->bank, &c->watched.readout);
+}
+
+// the highest rise of tension that the energy in the head could give, per tension
+static double largest_rise(const himc_membrane *m)
+{
+    double kappa = himc_membrane_film_stiffness(m);
+    return 2 * kappa * himc_bank_energy(m->core.bank) / (m->head.tension * m->head.tension);
+}
+
+void himc_membrane_end_step(himc_membrane *membrane, double coupled)
 {
     core *c = &membrane->core;
-    tension *t = &membrane->tension;
-    if (!t->on || !isfinite(taken))
+    film *f = &membrane->film;
+    if (!f->on || !isfinite(coupled))
         return;
-    double mean = t->base - t->half * taken;
-    himc_bank_push(c->bank, c->pull.shape, -mean);
+    double mean = f->base - f->half * coupled;
+    himc_bank_push(c->bank, c->coupling.shape, -mean);
     for (int k = 0; k < membrane->pickup_count; k++)
-        membrane->heard[k] -=
-            mean * himc_bank_sum(c->bank, c->pull.shape, c->ears[k].answer[membrane->gear]);
-    membrane->seen -= mean * himc_bank_sum(c->bank, c->pull.shape, c->watch_answer[membrane->gear]);
-    t->s += 2 * (mean - t->s);
-    if (++t->glance % GLANCE == 0 && stretched(membrane) < SLACK)
-        *t = (tension){.on = false};
+        membrane->sound[k] -= mean * himc_bank_sum(c->bank, c->coupling.shape,
+                                                   c->pickups[k].response[membrane->step]);
+    membrane->watched -=
+        mean * himc_bank_sum(c->bank, c->coupling.shape, c->watched.response[membrane->step]);
+    f->s += 2 * (mean - f->s);
+    if (++f->age % FILM_CHECK_INTERVAL == 0 && largest_rise(membrane) < SLACK)
+        *f = (film){.on = false};
 }
 
 double himc_membrane_free_step(himc_membrane *membrane)
 {
-    double heard[HIMC_PICKUPS], *into[HIMC_PICKUPS], seen, taken = 0;
+    double sound[HIMC_PICKUPS], *into[HIMC_PICKUPS], watched, coupled = 0;
     for (int k = 0; k < HIMC_PICKUPS; k++)
-        into[k] = &heard[k];
-    bool stretching = membrane->tension.on;
+        into[k] = &sound[k];
+    bool stretching = membrane->film.on;
     if (stretching)
-        advance_stretched(membrane);
+        run_stretched(membrane);
     else
-        advance(membrane, 1, into, &seen);
+        run_free(membrane, 1, into, &watched);
     for (int i = 0; i < membrane->push_count; i++) {
         const push *p = &membrane->pushes[i];
-        spot *s = himc_membrane_strike_point(membrane, p->x, p->y);
-        taken += stretching ? himc_strike_point_pull(membrane, s) * p->force : 0;
+        strike_point *s = himc_membrane_strike_point(membrane, p->x, p->y);
+        coupled += stretching ? himc_strike_point_film_coupling(membrane, s) * p->force : 0;
         himc_strike_point_apply(membrane, s, -p->force);
     }
-    if (membrane->part_last)
+    if (membrane->ends_sample)
         membrane->push_count = 0;
-    return taken;
+    return coupled;
 }
 
-// one sample without contact
-static void step(himc_membrane *m)
-{
-    himc_membrane_settle(m, himc_membrane_free_step(m));
-}
-
-void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *heard, double *seen)
+void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, double *watched)
 {
     double *rest[HIMC_PICKUPS];
     int i = 0;
-    for (; i < n && (membrane->tension.on || membrane->push_count > 0); i++) {
-        step(membrane);
+    for (; i < n && (membrane->film.on || membrane->push_count > 0); i++) {
+        himc_membrane_end_step(membrane, himc_membrane_free_step(membrane));
         for (int k = 0; k < membrane->pickup_count; k++)
-            heard[k][i] = membrane->heard[k];
-        seen[i] = membrane->seen;
+            sound[k][i] = membrane->sound[k];
+        watched[i] = membrane->watched;
     }
     for (int k = 0; k < membrane->pickup_count; k++)
-        rest[k] = heard[k] + i;
+        rest[k] = sound[k] + i;
     if (i < n)
-        advance(membrane, n - i, rest, seen + i);
+        run_free(membrane, n - i, rest, watched + i);
 }
 
-void himc_membrane_run(himc_membrane *membrane, int n, double *heard, double *seen)
+void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)
 {
-    double unheard[HIMC_PICKUPS][GLANCE], *into[HIMC_PICKUPS];
-    for (int done = 0, m; done < n; done += m) {
-        m = membrane->pickup_count == 1 || n - done < GLANCE ? n - done : GLANCE;
-        for (int k = 0; k < HIMC_PICKUPS; k++)
-            into[k] = k == 0 ? heard + done : unheard[k];
-        himc_membrane_run_all(membrane, m, into, seen + done);
-    }
+    if (membrane->push_count < MAX_PUSHES)
+        membrane->pushes[membrane->push_count++] = (push){x, y, force};
+}
+
+double himc_membrane_sound(const himc_membrane *membrane, int pickup)
+{
+    return membrane->sound[pickup];
+}
+
+double himc_membrane_watched(const himc_membrane *membrane)
+{
+    return membrane->watched;
+}
+
+double himc_membrane_displacement(const himc_membrane *membrane, double x, double y)
+{
+    // only the cache of points changes, which nobody can see
+    return himc_strike_point_displacement(
+        membrane, himc_membrane_strike_point((himc_membrane *)membrane, x, y));
+}
+
+double himc_membrane_energy(const himc_membrane *membrane)
+{
+    double s = membrane->film.s;
+    return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
 }

@@ -1,4 +1,4 @@
-/// pickup.c: what an ear far from a vibrating head hears of each mode.
+/// pickup.c: the sound of each mode at a listener far from the head, or at a point of it.
 ///
 /// Rayleigh's integral over a baffled membrane gives, far away in the direction (th from the
 /// normal, az), with k = w/c and x = k a sin th,
@@ -6,21 +6,19 @@
 /// (Morse & Ingard 1968, section 7.4; the integral of two Bessel functions is Lommel's). The common
 /// delay R/c is left out.
 ///
-/// With the time factor exp(-i w t), -i q'' is -w q'. So the modes of even m are heard by their
-/// acceleration, those of odd m a quarter of a period apart, by w times their velocity; signs go
-/// round with period 4 in m.
+/// With the time factor exp(-i w t), -i q'' is -w q'. So modes of even m sound by their
+/// acceleration, those of odd m a quarter of a period apart, by w times their velocity; the signs
+/// repeat with period 4 in m.
 ///
-/// The acceleration holds the force itself: q'' = phi f/m - w^2 q - 2 d q'. Left out, a mallet
-/// pressing on the head would be heard as a pressure that does not exist, for in equilibrium phi
-/// f/m is what cancels w^2 q.
+/// The acceleration includes the force itself: q'' = phi f/m - w^2 q - 2 d q'. Without that part, a
+/// mallet pressing on the head would give a pressure that does not exist, for in equilibrium phi
+/// f/m cancels w^2 q.
 #include "drum/pickup.h"
 
+#include "drum/air.h"
 #include "drum/bessel.h"
 
 #include <math.h>
-
-#define SOUND_SPEED 344.0 // (m/s)
-#define AIR_DENSITY 1.21  // (kg/m^3)
 
 himc_pickup himc_pickup_default(void)
 {
@@ -52,39 +50,42 @@ static double overlap(int m, double j, double x)
 // pressure per (m/s^2) of the mode's acceleration, phase aside
 static double radiation(const himc_mode *mode, const himc_head *head, const himc_pickup *pickup)
 {
-    double x = 2 * HIMC_PI * mode->frequency / SOUND_SPEED * head->radius * cos(pickup->elevation);
+    double x =
+        2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED * head->radius * cos(pickup->elevation);
     double angle = mode->m * pickup->azimuth;
-    return AIR_DENSITY / pickup->distance * head->radius * head->radius *
+    return HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius *
            overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
-// a shape of any outline: the integral itself, in phase and a quarter of a period apart
-static hearing outlined(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
-                        int index, const himc_mode *mode)
+// the weights of a head that is not round: the integral itself, in phase and a quarter of a period
+// apart
+static pickup_weights of_outline(const himc_pickup *pickup, const himc_head *head,
+                                 const himc_modes *modes, int index, const himc_mode *mode)
 {
     double even, odd, omega = 2 * HIMC_PI * mode->frequency;
-    double k = omega / SOUND_SPEED * cos(pickup->elevation);
-    himc_modes_beam(modes, head->radius, index, k * cos(pickup->azimuth), k * sin(pickup->azimuth),
-                    &even, &odd);
-    double weight = AIR_DENSITY / (2 * HIMC_PI * pickup->distance) / HIMC_PICKUP_PRESSURE;
-    return (hearing){.displacement = -weight * even * omega * omega,
-                     .velocity = -weight * (2 * mode->decay * even + omega * odd),
-                     .force = weight * even / mode->mass};
+    double k = omega / HIMC_AIR_SPEED * cos(pickup->elevation);
+    himc_modes_transform(modes, head->radius, index, k * cos(pickup->azimuth),
+                         k * sin(pickup->azimuth), &even, &odd);
+    double weight = HIMC_AIR_DENSITY / (2 * HIMC_PI * pickup->distance) / HIMC_PICKUP_PRESSURE;
+    return (pickup_weights){.displacement = -weight * even * omega * omega,
+                            .velocity = -weight * (2 * mode->decay * even + omega * odd),
+                            .force = weight * even / mode->mass};
 }
 
-hearing himc_pickup_hears(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
-                          int index, const himc_mode *mode, double point_shape)
+pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *head,
+                                   const himc_modes *modes, int index, const himc_mode *mode,
+                                   double point_shape)
 {
     if (pickup->kind == HIMC_PICKUP_POINT)
-        return (hearing){.velocity = point_shape / HIMC_PICKUP_VELOCITY};
-    if (himc_modes_outline(modes)->kind != HIMC_CIRCLE)
-        return outlined(pickup, head, modes, index, mode);
+        return (pickup_weights){.velocity = point_shape / HIMC_PICKUP_VELOCITY};
+    if (himc_modes_shape(modes)->kind != HIMC_CIRCLE)
+        return of_outline(pickup, head, modes, index, mode);
     double weight = radiation(mode, head, pickup) / HIMC_PICKUP_PRESSURE;
     double omega = 2 * HIMC_PI * mode->frequency;
     double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;
     if (mode->m % 2 == 1)
-        return (hearing){.velocity = sign * weight * omega};
-    return (hearing){.displacement = -sign * weight * omega * omega,
-                     .velocity = -sign * weight * 2 * mode->decay,
-                     .force = sign * weight / mode->mass};
+        return (pickup_weights){.velocity = sign * weight * omega};
+    return (pickup_weights){.displacement = -sign * weight * omega * omega,
+                            .velocity = -sign * weight * 2 * mode->decay,
+                            .force = sign * weight / mode->mass};
 }

@@ -11,6 +11,7 @@
 /// for from buckets (so much a second, so much at once); packets beyond that are counted and not
 /// read, and the thread then rests a millisecond, so that a flood costs the machine little.
 #define _GNU_SOURCE // setpriority of one thread is Linux's own
+#include "drum/drum_performer.h"
 #include "himc/osc.h"
 #include "himc/body.h"
 #include "himc/membrane.h"

@@ -53,7 +53,7 @@ static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc
     }
     if (!drum)
         return NULL;
-    himc_drum_set_answered(drum, real && himc_drum_is_answered(real));
+    himc_drum_set_external_sound(drum, real && himc_drum_has_external_sound(real));
     return r->drum[r->drums++] = drum;
 }
 

@@ -14,7 +14,7 @@
 #include "plan/planner.h"
 #include "plan/track.h"
 #include "control/posture_regression.h"
-#include "himc/membrane.h"
+#include "drum/drum_performer.h"
 
 #define LONGEST_STEP 512 // samples of one physics step
 #define WAITING_COMMANDS 256

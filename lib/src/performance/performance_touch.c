@@ -250,7 +250,7 @@ void himc_performance_contact(himc_performance *p, int n, himc_vec3 tip_force[HI
                 sticks[count] = &p->touch[hand].stick;
                 forces[count++] = p->force[hand];
             }
-        himc_drum_advance(p->drum[i].drum, n, sticks, count, forces, NULL, NULL, NULL);
+        himc_drum_advance_sticks(p->drum[i].drum, n, sticks, count, forces, NULL);
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (below[hand] >= 0) {
