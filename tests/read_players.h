@@ -5,7 +5,7 @@
 
 #include "take_players.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #include "unity.h"
 

@@ -5,7 +5,7 @@
 
 #include "take_files.h"
 
-#include "himc/mocap.h"
+#include "capture/take.h"
 #include "body/posture.h"
 
 static const himc_head_frame usual_drum = {{0.70, 0, 0.85}, 0, 0.2921};

@@ -218,7 +218,8 @@ static void test_units_are_guessed_from_the_skeletons_size(void)
 static void test_a_17_metre_player_is_refused_unless_the_unit_is_given(void)
 {
     TEST_ASSERT_NULL(read_of_size(17));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "size.bvh: skeleton: 17 units"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(error.text, "size.bvh: skeleton: the longest path along its bones is 17 units"));
     himc_take_options options = himc_take_default();
     options.unit = 0.1;
     const char *text = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n"
@@ -242,9 +243,8 @@ static void test_rows_that_do_not_fit_are_refused_with_line_and_joint(void)
     refuses_rows(2, "0 0 0 0 0 0 0 0 0 0 0 0\n",
                  "arm.bvh: the header says 2 frames, the file has 1 rows");
     refuses_rows(1, "", "arm.bvh: the header says 1 frames, the file has 0 rows");
-    refuses_rows(
-        1, "0 0 0 0 0 0 0 0 0 0 0\n",
-        "arm.bvh:24: the row ends before channel 3 of Hand, allowed are rows of 12 numbers");
+    refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0\n",
+                 "arm.bvh:24: the row ends before channel 3 of Hand, allowed: rows of 12 numbers");
     refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0 0 0\n",
                  "arm.bvh:24: after the row's last channel \"0\", allowed a new line");
     refuses_rows(1, "0 0 0 0 0 0 nan 0 0 0 0 0\n",
@@ -267,7 +267,8 @@ static void test_broken_hierarchies_are_refused_with_the_line(void)
     refuses("", "x.bvh: the file is empty");
     refuses("hello", "x.bvh:1: the first line \"hello\", allowed HIERARCHY");
     refuses("HIERARCHY\nMOTION\n", "x.bvh:2: before any joint \"MOTION\", allowed ROOT");
-    refuses("HIERARCHY\nROOT A\n{\n}\n", "x.bvh:4: A has no OFFSET");
+    refuses("HIERARCHY\nROOT A\n{\n}\n",
+            "x.bvh:4: joint A has no OFFSET, allowed: one for each joint");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0",
             "x.bvh:4: OFFSET \"x\", allowed a number up to 1e8");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation Xrotation\n",
@@ -290,7 +291,7 @@ static void test_deep_nesting_is_refused_without_recursion(void)
     for (int i = 0; i < 1000; i++)
         size += (size_t)sprintf(text + size, "JOINT B\n{\nOFFSET 0 1 0\n");
     TEST_ASSERT_NULL(himc_take_read(text, size, "deep.bvh", NULL, &error));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "joints nested too deeply, allowed 256"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "joints are nested too deeply, allowed 256 levels"));
     free(text);
 }
 

@@ -3,7 +3,7 @@
 #include "mocap_sequences.h"
 
 #include "../mocap/parts.h"
-#include "himc/mocap.h"
+#include "capture/take.h"
 
 #include <string.h>
 #include <unistd.h>

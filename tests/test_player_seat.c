@@ -168,7 +168,8 @@ static void test_description_says_how_tall_how_heavy_and_where_the_head_goes(voi
         strstr(all, "player: 1.750 m tall (by legs and trunk), 75.0 kg (by a body mass index of"),
         all);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "seat: hip joints 0.735 m above the floor"), all);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "drumhead: centre 0.700 m before the player"), all);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "drumhead: centre 0.700 m in front of the player"),
+                                 all);
 }
 
 int main(void)

@@ -64,7 +64,7 @@ static void test_longer_gap_is_refused_with_marker_frames_and_length(void)
     himc_take_options options = himc_take_default();
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
     TEST_ASSERT_EQUAL_STRING("motion.trc: right tip RTIP is missing in frames 22 .. 70 (0.245 s), "
-                             "allowed are gaps of 0.2 s",
+                             "allowed: gaps up to 0.2 s",
                              error.text);
     options.longest_gap = 0.25;
     TEST_ASSERT_TRUE(himc_take_tips(take, &options, tips, &error));
@@ -165,9 +165,10 @@ static void test_a_player_of_no_size_is_refused(void)
                        "Frame#\tTime\tHead\t\t\tHips\t\t\n\n"
                        "1\t0\t0\t17\t0\t0\t0\t0\n";
     TEST_ASSERT_NULL(read_text(text, "tall.trc", NULL, &error));
-    TEST_ASSERT_EQUAL_STRING("tall.trc: points lie 17 m apart in m and no metric unit makes that "
-                             "0.2 .. 4 m: is this a player?",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "tall.trc: the points are 17 m apart if the unit is m, no metric unit makes "
+        "that a player's size, allowed 0.2 .. 4 m",
+        error.text);
 }
 
 static himc_vec3 nearly_still(double t)
@@ -186,7 +187,7 @@ static void test_files_that_are_no_takes_are_refused(void)
 {
     himc_take_options options = himc_take_default();
     TEST_ASSERT_NULL(himc_take_load("score.txt", &options, &error));
-    TEST_ASSERT_EQUAL_STRING("score.txt: not a take by its name, allowed .bvh .c3d .trc",
+    TEST_ASSERT_EQUAL_STRING("score.txt: not a take by its suffix, allowed .bvh .c3d .trc",
                              error.text);
     TEST_ASSERT_NULL(himc_take_load("does/not/exist.bvh", &options, &error));
     TEST_ASSERT_EQUAL_STRING("does/not/exist.bvh: cannot be read: No such file or directory",
@@ -215,13 +216,13 @@ static void test_describe_tells_what_was_found_and_how_it_was_read(void)
         "format: TRC\n",
         "length: 600 frames at 250 Hz",
         "points 2: Anna:R_Stick_Tip Anna:L_Stick_Tip\n",
-        "units: mm, as the file says\n",
-        "axes: z up, as asked for; turned so that the left tip is left of "
+        "units: mm, stated by the file\n",
+        "axes: z up, set by the user; rotated so that the left tip is left of "
         "the right one\n",
         "gaps: 0 frames in 0 points\n",
-        "tip: right is Anna:R_Stick_Tip, 0 frames filled\n",
+        "tip: right is Anna:R_Stick_Tip, 0 frames in gaps are filled\n",
         "strikes: 15\n",
-        "drum: the head belongs under 0.650 0.050 m, at the height of 0.811 m\n"};
+        "drum: centre of the strikes at 0.650 0.050 m, head at a height of 0.811 m\n"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, lines[i]), lines[i]);
     himc_take_free(take);

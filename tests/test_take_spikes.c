@@ -2,7 +2,7 @@
 /// take says of itself: spikes, names, rates.
 #include "take_motions.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #define RATE 250
 #define FRAMES 400
@@ -53,8 +53,8 @@ static void test_one_wild_frame_becomes_a_gap_and_its_marker_and_frame_are_named
     himc_take *take = read_motion(restless, RATE, FRAMES);
     check(take, true);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING("gaps: 1 positions of 1 points to which they jump faster than 30 m/s, "
-                             "the first of RTIP in frame 101",
+    TEST_ASSERT_EQUAL_STRING("gaps: 1 positions of 1 points, reached by jumps faster than 30 m/s, "
+                             "are read as gaps, the first of RTIP in frame 101",
                              take->notes[0]);
     himc_take_free(take);
 }
@@ -67,10 +67,9 @@ static void test_spikes_of_up_to_a_tenth_of_a_second_and_at_both_ends_become_gap
     himc_take *take = read_motion(restless, RATE, FRAMES);
     check(take, true);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING(
-        "gaps: 20 positions of 1 points to which they jump faster than 30 m/s, "
-        "the first of RTIP in frame 1",
-        take->notes[0]);
+    TEST_ASSERT_EQUAL_STRING("gaps: 20 positions of 1 points, reached by jumps faster than 30 m/s, "
+                             "are read as gaps, the first of RTIP in frame 1",
+                             take->notes[0]);
     himc_take_free(take);
 }
 
@@ -117,7 +116,7 @@ static void test_a_rate_below_40_hz_is_noted(void)
 {
     himc_take *take = read_motion(calm, 39, 100);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING("rate: at 39 Hz strikes are blurred, and may be missed or misplaced",
+    TEST_ASSERT_EQUAL_STRING("rate: at 39 Hz strikes are blurred, some may be missed or misplaced",
                              take->notes[0]);
     himc_take_free(take);
     take = read_motion(calm, 40, 100);
@@ -147,7 +146,7 @@ static void test_one_point_named_as_both_tips_is_refused(void)
     options.right_tip = "rtip";
     himc_take *take = read_two("RTIP", "LTIP");
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
-    TEST_ASSERT_EQUAL_STRING("two.trc: RTIP is named as both tips, allowed: one for each",
+    TEST_ASSERT_EQUAL_STRING("two.trc: RTIP is named as both tips, allowed: one point for each tip",
                              error.text);
     himc_take_free(take);
 }

@@ -154,8 +154,7 @@ static void test_headers_that_disagree_with_the_rows_are_refused(void)
     refuses(0, 2, "mm", "", "a.trc:3: NumFrames is \"0\", allowed 1 .. 1000000");
     refuses(2, 3, "mm", ROW_1 ROW_2, "a.trc:4: the header says 3 markers, the file names 2");
     refuses(2, 1, "mm", ROW_1 ROW_2,
-            "a.trc:4: marker \"B\" stands over column 6, allowed: every third from 3 on, "
-            "for 1 markers");
+            "a.trc:4: marker \"B\" is above column 6, allowed: every third column, 3 .. 3");
     refuses(2, 9999, "mm", ROW_1 ROW_2,
             "a.trc:3: NumMarkers is 9999, more than the rows have cells for");
     refuses(2, 2, "ell", ROW_1 ROW_2, "a.trc:3: Units is \"ell\", allowed mm, cm, m, in or ft");
@@ -175,17 +174,17 @@ static void test_a_rate_of_1_hz_is_refused(void)
 static void test_bad_cells_are_refused_with_line_and_marker(void)
 {
     refuses(1, 2, "mm", "1\t0\t1\t2\tx\t1\t2\t3\n",
-            "a.trc:7: A Z is \"x\", allowed: a number, or nothing for a gap");
+            "a.trc:7: A Z is \"x\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\tinf\t2\t3\n",
-            "a.trc:7: B X is \"inf\", allowed: a number, or nothing for a gap");
+            "a.trc:7: B X is \"inf\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1e999\t2\t3\n",
-            "a.trc:7: B X is \"1e999\", allowed: a number, or nothing for a gap");
+            "a.trc:7: B X is \"1e999\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t0,5\t2\t3\n",
-            "a.trc:7: B X is \"0,5\", allowed: a number, or nothing for a gap");
+            "a.trc:7: B X is \"0,5\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t\t3\t1\t2\t3\n",
             "a.trc:7: A has 2 of its 3 coordinates, allowed all or none");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1\t2\t3\t4\n",
-            "a.trc:7: a cell beyond the last marker is \"4\", allowed nothing");
+            "a.trc:7: the cell after the last marker is \"4\", allowed an empty cell");
     refuses(1, 2, "mm", "x\t0\t1\t2\t3\t1\t2\t3\n",
             "a.trc:7: Frame# is \"x\", allowed a whole number");
 }

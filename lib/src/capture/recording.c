@@ -9,7 +9,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "himc/mocap.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -55,7 +55,7 @@ static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
 // opened as if to append: what is there stays until there is something to write
 static bool check_path(const char *path, himc_error *error)
 {
-    if (!himc_take_is_writable(path, error))
+    if (!himc_take_is_format(path, error))
         return false;
     FILE *there = fopen(path, "rb"), *file = fopen(path, "ab");
     if (!file)

@@ -21,7 +21,7 @@
 #include "himc/mocap.h"
 
 #include "base/noise.h"
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #include <stdlib.h>
 

@@ -185,3 +185,21 @@ bool himc_span_integer(himc_span s, long low, long high, long *value)
     *value = (long)v;
     return true;
 }
+
+void himc_text_put_number(FILE *file, double value, int digits)
+{
+    char text[64];
+    snprintf(text, sizeof text, "%.*f", digits, value);
+    for (char *c = text; *c; c++)
+        if (*c == ',')
+            *c = '.';
+    fputs(text, file);
+}
+
+void himc_text_put_row(FILE *file, const double *value, int count, int digits, char separator)
+{
+    for (int i = 0; i < count; i++) {
+        fputc(separator, file);
+        himc_text_put_number(file, value[i], digits);
+    }
+}
