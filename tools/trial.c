@@ -195,28 +195,28 @@ static bool adopt_habit(himc_performance *p, const himc_player *seen, double rat
     return true;
 }
 
-static double near_one(mocap_dice *dice, double deviation)
+static double near_one(mocap_random *random, double deviation)
 {
-    return fmax(1 + deviation * himc_mocap_normal(dice), LEAST_SHARE);
+    return fmax(1 + deviation * himc_mocap_normal(random), LEAST_SHARE);
 }
 
 static bool make_plant(himc_performance *p, const trial_config *config, himc_error *error)
 {
     double weight[HIMC_SEGMENTS];
-    mocap_dice dice = himc_mocap_dice(seed_of(config), NULL, 0);
+    mocap_random random = himc_mocap_random(seed_of(config), NULL, 0);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
-        weight[i] = near_one(&dice, config->misjudged);
+        weight[i] = near_one(&random, config->misjudged);
     return himc_performance_set_weights(p, weight, error);
 }
 
 /// The sticks are measured on the table.
 static void mismeasure(himc_skeleton_config *body, const trial_config *config)
 {
-    int which = 1; // other dice than the weights'
-    mocap_dice dice = himc_mocap_dice(seed_of(config), &which, 1);
+    int which = 1; // not the same numbers as for the weights
+    mocap_random random = himc_mocap_random(seed_of(config), &which, 1);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
         if (i != HIMC_LEFT_STICK && i != HIMC_RIGHT_STICK)
-            body->length[i] *= near_one(&dice, config->mismeasured);
+            body->length[i] *= near_one(&random, config->mismeasured);
 }
 
 static bool set_control(himc_performance *p, const trial_config *config, himc_error *error)
