@@ -1,5 +1,5 @@
-/// test_mocap_strokes.c: the motion database beside what was measured on real timpani strokes, and
-/// whether a player nobody learned from moves as the others do.
+/// test_mocap_strokes.c: the motion database compared with measurements of real timpani strokes, and
+/// the prediction of an unknown player's joints from the other players.
 ///
 /// The captured means and deviations are those of the table in mocap/README.md, which the
 /// generator writes: heights and speeds of a point 0.15 m behind the mallet.
@@ -72,7 +72,7 @@ static void test_impact_speeds_are_within_15_percent_of_the_captured(void)
                                   mean((himc_nuance)n, HIMC_MOCAP_IMPACT));
 }
 
-static void test_strokes_vary_no_more_than_the_captured_and_at_least_half(void)
+static void test_strokes_vary_between_half_and_all_of_the_captured(void)
 {
     static const double captured[] = {0.042, 0.027, 0.044, 0.044, 0.098};
     for (int n = 0; n < HIMC_NUANCES; n++) {
@@ -117,7 +117,7 @@ static void test_the_accent_is_high_and_narrow_vertical_accent_and_staccato_deep
     }
 }
 
-// the share of the way from impact to apex, of a joint's turn
+// share of a joint's rotation between impact and apex
 static double turned(const himc_mocap *m, int joint, double t, double touch, double apex)
 {
     himc_pose low = himc_mocap_pose(m, touch), high = himc_mocap_pose(m, apex),
@@ -145,7 +145,7 @@ static void test_the_elbow_falls_before_the_stick_does(void)
     }
 }
 
-// a habit's take of a sequence; its postures are the caller's to free
+// the poses of a sequence as a take for the posture regression; freed by the caller
 static himc_posture_regression_take postures(const himc_mocap *m)
 {
     int frames = himc_mocap_frames(m);
@@ -159,8 +159,8 @@ static himc_posture_regression_take postures(const himc_mocap *m)
                                           .rate = HIMC_MOCAP_RATE};
 }
 
-// adds the squared angles between a sequence's joints and those its tips alone give; returns how
-// many
+// adds the squared angles between a sequence's joints and those predicted from its tips; returns
+// their number
 static int add_errors(const himc_posture_regression *regression, const himc_mocap *m,
                       double sum[HIMC_ARM_JOINTS])
 {
@@ -184,7 +184,7 @@ static int add_errors(const himc_posture_regression *regression, const himc_moca
     return count;
 }
 
-// the other players' habit in a nuance, all spots
+// the regression of the other players in a nuance, all spots
 static void learn(int unseen, int nuance, himc_posture_regression *regression)
 {
     himc_mocap *m[MOCAP_SEQUENCES];
@@ -206,7 +206,7 @@ static void learn(int unseen, int nuance, himc_posture_regression *regression)
     }
 }
 
-static void test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree(void)
+static void test_joints_of_an_unknown_player_follow_from_the_tips_within_a_degree(void)
 {
     double worst = 0;
     for (int unseen = 0; unseen < HIMC_MOCAP_PLAYERS; unseen++) {
@@ -257,11 +257,11 @@ int main(void)
     RUN_TEST(test_downward_speeds_are_within_half_a_deviation_of_the_captured);
     RUN_TEST(test_rebound_speeds_are_within_half_a_deviation_of_the_captured);
     RUN_TEST(test_impact_speeds_are_within_15_percent_of_the_captured);
-    RUN_TEST(test_strokes_vary_no_more_than_the_captured_and_at_least_half);
+    RUN_TEST(test_strokes_vary_between_half_and_all_of_the_captured);
     RUN_TEST(test_nuances_are_ordered_as_in_the_captures);
     RUN_TEST(test_the_accent_is_high_and_narrow_vertical_accent_and_staccato_deep);
     RUN_TEST(test_the_elbow_falls_before_the_stick_does);
-    RUN_TEST(test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree);
+    RUN_TEST(test_joints_of_an_unknown_player_follow_from_the_tips_within_a_degree);
     RUN_TEST(test_the_readme_has_the_measured_table);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/// test_trc.c: TRC tables of every separator and unit, and tables that are wrong in one cell.
+/// test_trc.c: TRC tables with every separator and unit, and tables with one wrong cell.
 #include "take_files.h"
 #include "unity.h"
 
@@ -12,7 +12,7 @@ void tearDown(void)
 {
 }
 
-// two markers 0.5 m apart; the header's frames, markers and units, and the rows are filled in
+// two markers 0.5 m apart; the header's frames, markers and units, and the rows are inserted
 #define TABLE                                                            \
     "PathFileType\t4\t(X/Y/Z)\ta.trc\n"                                  \
     "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\n" \
@@ -101,7 +101,7 @@ static void test_empty_cells_nan_and_missing_cells_at_the_end_are_gaps(void)
     himc_take_free(take);
 }
 
-static void test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not(void)
+static void test_zeros_after_a_jump_are_gaps_but_a_marker_at_zero_is_not(void)
 {
     himc_take *take = read_table(3, 2, "mm",
                                  "1\t0.00\t0\t0\t0\t501\t2\t3\n"
@@ -113,7 +113,7 @@ static void test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not(vo
     himc_take_free(take);
 }
 
-static void test_numbers_are_read_as_strtod_reads_them(void)
+static void test_numbers_are_read_like_strtod(void)
 {
     static const char *const numbers[] = {"0.1",
                                           "-123.456",
@@ -202,11 +202,11 @@ static void test_every_prefix_of_a_file_is_refused_or_read(void)
         himc_take_free(take);
         free(bytes);
     }
-    // only what ends between the last row's cells can pass for a whole file
+    // only a prefix that ends between the last row's cells can pass for a whole file
     TEST_ASSERT_TRUE(readable >= 2 && readable < 20);
 }
 
-static void test_real_stroke_is_read_as_its_source_describes_it(void)
+static void test_real_stroke_agrees_with_its_source(void)
 {
     const char *path = shared_capture("drumstroke_pearl_240hz/stroke.trc");
     if (!path)
@@ -221,7 +221,7 @@ static void test_real_stroke_is_read_as_its_source_describes_it(void)
     himc_take_free(take);
 }
 
-static void test_real_table_of_652_frames_with_93_rows_is_refused_for_that(void)
+static void test_real_table_of_652_frames_with_93_rows_is_refused(void)
 {
     const char *path = shared_capture("upperlimb_pyomeca_100hz/markers.trc");
     if (!path)
@@ -231,8 +231,8 @@ static void test_real_table_of_652_frames_with_93_rows_is_refused_for_that(void)
         strstr(error.text, "markers.trc: the header says 652 frames, the file has 93 rows"));
 }
 
-// the same table with an honest header: z up by its own bodies, comma separated
-static void test_real_table_with_an_honest_header_is_read_with_z_up(void)
+// the same table with a correct header: z up by its own bodies, comma separated
+static void test_real_table_with_a_correct_header_is_read_with_z_up(void)
 {
     const char *path = shared_capture("upperlimb_pyomeca_100hz/markers.trc");
     if (!path)
@@ -260,14 +260,14 @@ int main(void)
     RUN_TEST(test_commas_semicolons_and_line_ends_of_all_systems_are_read);
     RUN_TEST(test_centimetres_and_metres_are_scaled);
     RUN_TEST(test_empty_cells_nan_and_missing_cells_at_the_end_are_gaps);
-    RUN_TEST(test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not);
-    RUN_TEST(test_numbers_are_read_as_strtod_reads_them);
+    RUN_TEST(test_zeros_after_a_jump_are_gaps_but_a_marker_at_zero_is_not);
+    RUN_TEST(test_numbers_are_read_like_strtod);
     RUN_TEST(test_headers_that_disagree_with_the_rows_are_refused);
     RUN_TEST(test_a_rate_of_1_hz_is_refused);
     RUN_TEST(test_bad_cells_are_refused_with_line_and_marker);
     RUN_TEST(test_every_prefix_of_a_file_is_refused_or_read);
-    RUN_TEST(test_real_stroke_is_read_as_its_source_describes_it);
-    RUN_TEST(test_real_table_of_652_frames_with_93_rows_is_refused_for_that);
-    RUN_TEST(test_real_table_with_an_honest_header_is_read_with_z_up);
+    RUN_TEST(test_real_stroke_agrees_with_its_source);
+    RUN_TEST(test_real_table_of_652_frames_with_93_rows_is_refused);
+    RUN_TEST(test_real_table_with_a_correct_header_is_read_with_z_up);
     return UNITY_END();
 }
