@@ -23,6 +23,10 @@
 #define MOST_NODES 4096 // chosen: far more than a body has
 #define MOST_DEPTH 256  // chosen: far more than a body has; bounds the recursion of the writer
 
+// frame times of 10000 .. 20 Hz, the rates of himc_take_load (s)
+#define LEAST_TIME 1e-4
+#define MOST_TIME 0.05
+
 typedef struct node {
     char name[TAKE_NAME];
     int parent;
@@ -35,7 +39,7 @@ typedef struct node {
 typedef struct bvh {
     himc_take *take;
     himc_text text;
-    himc_span line; // what is left of the current line
+    himc_span line; // rest of the current line
     node *nodes;
     int count, channels;
     himc_error *error;
@@ -244,13 +248,13 @@ static bool read_motion_header(bvh *r, int *frames, double *rate)
         return false;
     if (!word(r, &w))
         return refuse_end(r, "Frames:");
-    if (!himc_span_integer(w, 1, 1000000, &count))
+    if (!himc_span_integer(w, 1, TAKE_MOST_FRAMES, &count))
         return refuse(r, "Frames:", w, "1 .. 1000000");
     if (!expect(r, "Frame", "after Frames:") || !expect(r, "Time:", "after Frame"))
         return false;
     if (!number(r, "Frame Time:", &time))
         return false;
-    if (!(time >= 1e-4 && time <= 0.05))
+    if (!(time >= LEAST_TIME && time <= MOST_TIME))
         return himc_error_set(r->error, "%s:%d: Frame Time: %g s, allowed 0.0001 .. 0.05 s",
                               r->take->file, r->text.line, time);
     int rows = count_rows(r);

@@ -20,6 +20,7 @@
 #define BLOCK 512          // bytes, by the format
 #define HEADER_EVENTS 18   // most in a header, by the format
 #define EVENTS_KEY 12345   // header word that says events have labels, by the format
+#define LONGEST_METRES 100 // chosen: heights above are in millimetres
 #define FARTHEST_EVENT 1e6 // chosen: no take is so long (s)
 
 typedef struct c3d {
@@ -100,7 +101,7 @@ static bool count_frames(const c3d *r, int *frames)
     double there = floor((double)(r->size - r->data) / (double)r->stride), most = 0;
     for (int i = 0; i < 4; i++) {
         most = said[i] >= 1 && most == 0 ? said[i] : most;
-        if (said[i] >= 1 && said[i] <= there && said[i] <= 1e6) {
+        if (said[i] >= 1 && said[i] <= there && said[i] <= TAKE_MOST_FRAMES) {
             *frames = (int)said[i];
             if (said[i] < most)
                 himc_take_note(r->take,
@@ -255,14 +256,15 @@ static void read_subject(c3d *r)
         if (height <= 0)
             height = parameter(r, groups[i], "HEIGHT", 0, 0);
     }
-    height *= height > 100 ? 0.001 : 1;
-    r->take->mass = mass >= 30 && mass <= 200 ? mass : 0;
-    r->take->height = height >= 1.19 && height <= 2.21 ? height : 0;
+    height *= height > LONGEST_METRES ? 0.001 : 1;
+    r->take->mass = mass >= TAKE_LEAST_MASS && mass <= TAKE_MOST_MASS ? mass : 0;
+    r->take->height = height >= TAKE_LEAST_HEIGHT && height <= TAKE_MOST_HEIGHT ? height : 0;
     if ((mass > 0 && r->take->mass == 0) || (height > 0 && r->take->height == 0))
         himc_take_note(r->take,
-                       "player: the file states %g kg and %g m, ignored outside 30 .. 200 kg and "
-                       "1.19 .. 2.21 m",
-                       mass, height);
+                       "player: the file states %g kg and %g m, ignored outside %g .. %g kg and "
+                       "%g .. %g m",
+                       mass, height, TAKE_LEAST_MASS, TAKE_MOST_MASS, TAKE_LEAST_HEIGHT,
+                       TAKE_MOST_HEIGHT);
 }
 
 static void add_event(c3d *r, double time, himc_span context, himc_span label)

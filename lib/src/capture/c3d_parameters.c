@@ -6,7 +6,7 @@
 /// Numbers are Intel's (little endian, IEEE), MIPS's (big endian, IEEE) or DEC's: little-endian
 /// words, high word first, sign, 8 bits of exponent e and 23 of mantissa m with value (1/2 + m /
 /// 2^24) 2^(e - 128) and no infinities; e = 0 is zero, or reserved if the sign is set. Reference:
-/// the C3D file format user guide, Motion Lab Systems 2008. Invariant: whatever the file says,
+/// the C3D file format user guide, Motion Lab Systems 2008. Invariant: for any contents
 /// nothing outside [bytes, bytes + size) is read; the walk always moves forward.
 #include "capture/c3d_parameters.h"
 

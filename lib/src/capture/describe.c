@@ -77,8 +77,10 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
                   strikes[i].velocity);
     himc_vec3 place;
     if (himc_take_strike_place(strikes, count, &place))
-        himc_tell(to, "drum: centre of the strikes at %.3f %.3f m, head at a height of %.3f m",
-                  place.x, place.y, place.z);
+        himc_tell(
+            to,
+            "drum: centre of the strikes at %.3f %.3f m, tips touch the head at a height of %.3f m",
+            place.x, place.y, place.z);
     int far = 0;
     for (int i = 0; i < count; i++)
         far += hypot(strikes[i].x.x - place.x, strikes[i].x.y - place.y) > ONE_DRUM;
@@ -162,7 +164,8 @@ static void tell_posture(const himc_player *player, const himc_line_sink *to)
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (player->known[j] && used < sizeof text)
             used += (size_t)snprintf(text + used, sizeof text - used, " %s", himc_joint_name(j));
-    himc_tell(to, "posture:%s", used ? text : " natural, because the take shows no joint");
+    himc_tell(to, "posture:%s%s",
+              used ? " known joints" : " natural, because the take shows no joint", text);
 }
 
 // in the world, with its origin on the floor under the player, and in the take

@@ -7,7 +7,7 @@
 /// player's height has the same ratio to his as the sums of the lengths that the take shows (legs
 /// and trunk, else arms). Mass: as the file states, else from the body mass index of the given body.
 ///
-/// Seat. The world's origin is under the player. A player whom the take shows is moved there, and
+/// Seat. The world's origin is under the player. A player shown by the take is moved there, and
 /// the seat is raised until the strikes meet the head; the drum moves only if strikes would miss the
 /// head. A take of tips alone is moved until its strikes fall on the drum's usual strike place; the
 /// player then sits where a player of that drum does. Without strikes the player keeps the height
@@ -24,7 +24,12 @@
 #include <string.h>
 
 #define REFERENCE_HEIGHT 1.741 // de Leva 1996 (m)
-#define WALK 0.15              // chosen: a seated player's hips sway by less, RMS (m)
+#define LEAST_STICK 0.2        // range of himc_skeleton_config (m)
+#define MOST_STICK 0.6
+#define USUAL_BREADTH 0.37 // between the shoulder joints of that man (m)
+#define LEAST_BREADTH 0.2  // range of himc_skeleton_config (m)
+#define USUAL_HEAD 0.85    // chosen: height of a timpano's head, for the natural pose (m)
+#define WALK 0.15          // chosen: a seated player's hips sway by less, RMS (m)
 
 static void measure_limb(const player_points *p, const player_measure *m, himc_player *player)
 {
@@ -38,7 +43,7 @@ static void measure_limb(const player_points *p, const player_measure *m, himc_p
     double both =
         length[0] > 0 && length[1] > 0 ? 0.5 * (length[0] + length[1]) : fmax(length[0], length[1]);
     if (both > 0 && m->segment == HIMC_LEFT_STICK) // both sticks are alike
-        c->stick_length = fmin(fmax(c->grip + both + c->mallet_radius, 0.2), 0.6);
+        c->stick_length = fmin(fmax(c->grip + both + c->mallet_radius, LEAST_STICK), MOST_STICK);
     for (int hand = 0; hand < HIMC_HANDS && both > 0 && m->segment != HIMC_LEFT_STICK; hand++)
         c->length[m->segment + hand] = length[hand] > 0 ? length[hand] : both;
 }
@@ -56,7 +61,8 @@ static void measure_lengths(const player_points *p, himc_player *player)
             player->config.length[himc_player_spine[i].segment] = l;
     }
     double breadth = himc_player_distance(p, POINT_SHOULDER, POINT_SHOULDER + 1, 0.5);
-    player->config.shoulders = breadth >= 0.2 ? himc_player_plausible(breadth, 0.37) : 0;
+    player->config.shoulders =
+        breadth >= LEAST_BREADTH ? himc_player_plausible(breadth, USUAL_BREADTH) : 0;
 }
 
 // ratio of the summed lengths of the parts to the reference; 0 if no length is known
@@ -95,11 +101,12 @@ static bool find_height(const player_points *p, himc_player *player, himc_error 
         from = "";
     }
     snprintf(player->height_from, sizeof player->height_from, "%s", from);
-    if (from[0] && !himc_check_range("height", c->height, 1.19, 2.21, "m", error))
+    if (from[0] &&
+        !himc_check_range("height", c->height, TAKE_LEAST_HEIGHT, TAKE_MOST_HEIGHT, "m", error))
         return himc_error_prefix(error, "%s: player", p->take->file);
     player->mass_stated = p->take->mass > 0;
     c->mass = player->mass_stated ? p->take->mass : given * c->height * c->height;
-    return himc_check_range("mass", c->mass, 30, 200, "kg", error) ||
+    return himc_check_range("mass", c->mass, TAKE_LEAST_MASS, TAKE_MOST_MASS, "kg", error) ||
            himc_error_prefix(error, "%s: player", p->take->file);
 }
 
@@ -181,7 +188,7 @@ static bool find_place(const player_points *p, const himc_skeleton *s, himc_play
 static himc_pose natural_pose(const himc_skeleton *skeleton)
 {
     himc_posture posture;
-    himc_posture_init(&posture, skeleton, 0.85);
+    himc_posture_init(&posture, skeleton, USUAL_HEAD);
     himc_pose pose = posture.rest;
     pose.joint[HIMC_TRUNK - 1] =
         himc_quat_exp(himc_vec3_make(0, posture.trunk_posture.value[HIMC_TRUNK_POSTURE_LEAN], 0));
@@ -244,14 +251,16 @@ void himc_player_free(himc_player *player)
 // chosen: hip joints of a child on a stool, and of a tall man who stands (m)
 #define LOWEST_SEAT 0.3
 #define HIGHEST_SEAT 1.3
-#define ON_HEAD 0.97       // chosen: share of the radius within which strikes meet the head
-#define DENT 0.012         // chosen: the head gives way by so much, so a smaller lift is none (m)
-#define OVER_HEAD 0.05     // chosen: height of the lowest position if nothing is struck (m)
-#define LOWEST_HEAD 0.1    // chosen: of the drum above the floor (m)
-#define BESIDE_HEAD 0.05   // chosen: half a mallet, so near beside the head is over it (m)
-#define REACH_STEPS 50     // chosen: most moves of a take that is partly out of reach ...
-#define REACH_FRAMES 1000  // ... chosen: frames looked at in each
-#define REACH_MISSING 1e-3 // chosen: less out of reach is in reach (m)
+#define ON_HEAD 0.97 // chosen: share of the radius within which strikes meet the head
+#define DENT 0.012   // chosen: dent of a struck head; a smaller change of the seat is not made (m)
+#define OVER_HEAD 0.05       // chosen: height of the lowest position if nothing is struck (m)
+#define LOWEST_HEAD 0.1      // chosen: of the drum above the floor (m)
+#define BESIDE_HEAD 0.05     // chosen: a tip so near beside the head counts as over it (m)
+#define REACH_STEPS 50       // chosen: most moves of a take that is partly out of reach ...
+#define REACH_FRAMES 1000    // ... chosen: frames looked at in each
+#define REACH_OVERSHOOT 1.01 // chosen: each a little farther than missing
+#define LEAST_AWAY 0.1       // chosen: nearer to the player's axis a strike has no direction (m)
+#define REACH_MISSING 1e-3   // chosen: less out of reach is in reach (m)
 
 // the centre of the take's strikes; false without strikes
 static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
@@ -304,7 +313,7 @@ static void move_drum_under(himc_head_frame *drum, himc_vec3 spot)
     double x, aside, far = hypot(spot.x, spot.y);
     usual_place(drum, &x, &aside);
     himc_vec3 away =
-        far > 0.1 ? himc_vec3_make(spot.x / far, spot.y / far, 0) : himc_vec3_make(1, 0, 0);
+        far > LEAST_AWAY ? himc_vec3_make(spot.x / far, spot.y / far, 0) : himc_vec3_make(1, 0, 0);
     drum->center.x = spot.x - x * away.x;
     drum->center.y = spot.y - x * away.y;
 }
@@ -377,7 +386,7 @@ static bool bring_into_reach(himc_player *player, const himc_take *take,
             least = himc_vec3_length(back);
             best = player->offset;
         }
-        player->offset = himc_vec3_add(player->offset, himc_vec3_scale(back, 1.01));
+        player->offset = himc_vec3_add(player->offset, himc_vec3_scale(back, REACH_OVERSHOOT));
     }
     player->offset = best;
     return true;

@@ -23,9 +23,9 @@
 #include <stdlib.h>
 
 #define SIDEWAYS 0.5 // chosen: sideways share of an arm's direction that makes a zero pose a T-pose
-#define STRAIGHT \
-    0.1 // chosen: weight of the mean bend plane beside a frame's own (sine of the bend)
-#define MEAN_STEPS 20 // chosen: most iterations of the mean rotation, which stops at 1e-9 rad
+#define STRAIGHT 0.1 // chosen: weight of the mean bend plane beside a frame's own
+#define OPPOSITE -0.999999 // chosen: cosine from which two directions count as opposite
+#define MEAN_STEPS 20      // chosen: most iterations of the mean rotation, which stops at 1e-9 rad
 
 typedef struct limb {
     int segment; // left
@@ -67,7 +67,7 @@ static himc_quat smallest_rotation(himc_vec3 from, himc_vec3 to)
 {
     double c = himc_vec3_dot(from, to);
     himc_vec3 axis = himc_vec3_cross(from, to);
-    if (c < -0.999999) {
+    if (c < OPPOSITE) {
         himc_vec3 other = fabs(from.x) < 0.5 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
         axis = himc_vec3_unit(himc_vec3_cross(from, other));
         return (himc_quat){0, axis.x, axis.y, axis.z};

@@ -20,8 +20,7 @@
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
 #define MARKERS (POINTS + HIMC_SEGMENTS)
-#define BESIDE 0.05     // chosen: of a marker beside its joint, along the segment's y (m)
-#define MOST_FRAMES 1e6 // of a take, himc_take_load
+#define BESIDE 0.05 // chosen: of a marker beside its joint, along the segment's y (m)
 
 typedef struct frame {
     float q[HIMC_JOINTS][4];
@@ -79,7 +78,7 @@ himc_recording *himc_recording_new(const char *path, const himc_skeleton *skelet
     if (r) {
         r->skeleton = *skeleton;
         r->rate = rate;
-        r->room = (int)fmin(longest * rate, MOST_FRAMES);
+        r->room = (int)fmin(longest * rate, TAKE_MOST_FRAMES);
         r->path = strdup(path);
         r->frames = calloc((size_t)r->room, sizeof *r->frames);
     }

@@ -20,11 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// chosen: an hour at 250 Hz is 900000 frames, and 30 million positions take 720 MB
-#define MOST_FRAMES 1000000
-#define MOST_POINT_FRAMES 30000000
-#define MOST_POINTS 65536 // chosen: a C3D counts its points in 16 bits
-
 himc_take_options himc_take_default(void)
 {
     return (himc_take_options){.up = HIMC_UP_AUTO, .longest_gap = 0.2};
@@ -34,12 +29,12 @@ bool himc_take_allocate(himc_take *take, double rate, int frames, int points, bo
                         himc_error *error)
 {
     if (!himc_check_range("rate", rate, 20, 10000, "Hz", error) ||
-        !himc_check_range("frames", frames, 1, MOST_FRAMES, "", error) ||
-        !himc_check_range("points", points, 1, MOST_POINTS, "", error))
+        !himc_check_range("frames", frames, 1, TAKE_MOST_FRAMES, "", error) ||
+        !himc_check_range("points", points, 1, TAKE_MOST_POINTS, "", error))
         return himc_error_prefix(error, "%s", take->file);
-    if ((int64_t)frames * points > MOST_POINT_FRAMES)
+    if ((int64_t)frames * points > TAKE_MOST_POSITIONS)
         return himc_error_set(error, "%s: %d frames of %d points, allowed %d in all", take->file,
-                              frames, points, MOST_POINT_FRAMES);
+                              frames, points, TAKE_MOST_POSITIONS);
     size_t count = (size_t)points, all = count * (size_t)frames;
     take->rate = rate;
     take->frames = frames;

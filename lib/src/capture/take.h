@@ -10,8 +10,19 @@
 
 #include <stdio.h>
 
-#define TAKE_NAME 64     ///< bytes of a point's name, with the final 0
-#define TAKE_NOTES 16    ///< notes kept
+#define TAKE_NAME 64  ///< bytes of a point's name, with the final 0
+#define TAKE_NOTES 16 ///< chosen: notes kept
+
+// chosen: an hour at 250 Hz has 900000 frames, and 30 million positions take 720 MB
+#define TAKE_MOST_FRAMES 1000000
+#define TAKE_MOST_POSITIONS 30000000 ///< frames x points
+#define TAKE_MOST_POINTS 65536       ///< a C3D counts its points in 16 bits
+
+// players (kg, m): the ranges of himc_skeleton_config
+#define TAKE_LEAST_MASS 30.0
+#define TAKE_MOST_MASS 200.0
+#define TAKE_LEAST_HEIGHT 1.19
+#define TAKE_MOST_HEIGHT 2.21
 #define TAKE_LARGEST 1e8 ///< chosen: no coordinate, offset or angle of a real file is larger
 
 typedef struct himc_take_event {

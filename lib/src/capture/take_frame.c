@@ -64,8 +64,7 @@ static const struct {
 #define TOO_WIDE 8.0     // chosen: no player and drums are so far apart
 #define TOO_SMALL 0.02   // chosen: a tip that plays moves farther
 #define FARTHEST 100.0   // chosen: of a room's origin
-#define STILL_SHARE \
-    0.05 // chosen: a smaller spread within frames than this share of the whole is one marker's
+#define STILL_SHARE 0.05 // chosen: smaller shares of the whole spread are those of one marker
 
 double himc_take_unit(const char *name)
 {
@@ -274,6 +273,7 @@ static const char *const shoulder_words[] = {"shoulder", "sho", "acromion", "acr
 
 #define BLURRED 40.0      // chosen: a contact of some 7 ms is less than a third of a frame (Hz)
 #define CLEARLY 0.8       // chosen: share of a direction along one axis that makes it that axis
+#define STEADY 0.5        // chosen: share of the summed lengths, less is a player who turns round
 #define LEAST_ACROSS 0.03 // chosen: a shorter left-to-right vector has no direction (m)
 #define MOST_PAIRS 16     // chosen: a body has fewer
 
@@ -419,7 +419,7 @@ static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_v
         sum = himc_vec3_add(sum, now);
         lengths += hypot(now.x, now.y);
     }
-    *left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first;
+    *left = hypot(sum.x, sum.y) > STEADY * lengths ? sum : first;
     return is_long_enough(*left);
 }
 

@@ -16,8 +16,7 @@
 
 #include <stdlib.h>
 
-#define FASTEST \
-    30.0 // chosen: four times the mallet of a hard blow (7.5 m/s, mocap/measure.c) (m/s)
+#define FASTEST 30.0       // chosen: four times the mallet of a hard blow (m/s)
 #define LEAST_JUMP 0.1     // chosen: noise of a tracker is far smaller (m)
 #define LONGEST_SPIKE 0.1  // chosen: a marker that stays elsewhere for longer was there (s)
 #define MOST_SPIKES 0.05   // chosen: of a point's frames

@@ -12,6 +12,8 @@
 
 #include <string.h>
 
+#define TIME_TOLERANCE 0.01 // chosen: relative, above the rounding of the column
+
 typedef struct trc {
     himc_take *take;
     himc_text text;
@@ -67,9 +69,9 @@ static bool read_header(trc *r)
     himc_span units = header_value(keys, values, separator, "Units");
     if (!himc_span_number(rate, &r->rate))
         return refuse_value(r, "DataRate", rate, "a number (Hz)");
-    if (!himc_span_integer(frames, 1, 1000000, &r->frames))
+    if (!himc_span_integer(frames, 1, TAKE_MOST_FRAMES, &r->frames))
         return refuse_value(r, "NumFrames", frames, "1 .. 1000000");
-    if (!himc_span_integer(markers, 1, 65536, &r->markers))
+    if (!himc_span_integer(markers, 1, TAKE_MOST_POINTS, &r->markers))
         return refuse_value(r, "NumMarkers", markers, "1 .. 65536");
     char unit[44];
     r->take->file_unit = himc_take_unit(himc_span_text(units, unit));
@@ -204,7 +206,7 @@ static bool read_rows(trc *r, double *first, double *last)
 static void check_time(trc *r, double first, double last)
 {
     double step = (last - first) / (r->take->frames - 1), said = 1 / r->rate;
-    if (r->take->frames > 1 && isfinite(step) && fabs(step - said) > 0.01 * said)
+    if (r->take->frames > 1 && isfinite(step) && fabs(step - said) > TIME_TOLERANCE * said)
         himc_take_note(r->take,
                        "rate: the Time column steps by %.6g s, DataRate means %.6g s and is used",
                        step, said);

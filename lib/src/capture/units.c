@@ -30,7 +30,7 @@
 #define LEAST_LANDING 0.5 // chosen (heights per fall)
 #define MOST_LANDING 4.0
 
-// ranges of what surrounds the fall, chosen: those of the built-in strokes and somewhat more
+// ranges of the motion around the fall, chosen: those of the built-in strokes and somewhat more
 #define LEAST_REBOUND_HEIGHT 0.2 // (heights)
 #define MOST_REBOUND_HEIGHT 1.2
 #define CLEAR_REBOUND 0.005 // a lower rebound has no duration (m)
