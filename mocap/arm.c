@@ -1,18 +1,20 @@
-/// arm.c: an arm posture from what a player attends to, and back to where the stick is.
+/// arm.c: an arm's posture from the quantities that a player controls, and the stick's position.
 ///
-/// The stick points from the grip to the tip at the elevation asked for, in the vertical plane
-/// through the tip and a place a little outside and behind the shoulder, the hand with it at its
-/// own elevation; wrist and shoulder then leave the elbow a circle, on which it hangs `out` from
-/// the lowest place. A french grip rolls forearm, hand and stick about their lengths so that the
-/// thumbs are up. Frames are those of skeleton.h: z points back to the joint, y is the axis of
+/// The stick points from the grip to the tip at the given elevation, in the vertical plane through
+/// the tip and a place a little outside and behind the shoulder; the hand is in the same plane at
+/// its own elevation. With wrist and shoulder fixed the elbow can be on a circle; it is at the angle
+/// `out` from the lowest place. A french grip rolls forearm, hand and stick about their lengths so that the
+/// thumbs are up. Frames are those of body.h: z points back to the joint, y is the axis of
 /// flexion.
 #include "parts.h"
 #include "base/limb_frame.h"
 #include "himc/body.h"
 
-#define THUMBS_UP 1.25 // roll of a french grip (rad)
-#define BEHIND 0.08    // where the stick's plane begins: behind the shoulder (m) ...
+#define THUMBS_UP 1.25 // chosen: roll of a french grip (rad)
+#define BEHIND 0.08    // chosen: the stick's plane begins behind the shoulder (m) ...
 #define BESIDE 0.05    // ... and outside it (m)
+#define FARTHEST 0.995 // chosen: share of a straight arm that is in reach
+#define NEAREST 0.02   // chosen: more than the difference of both lengths (m)
 
 static himc_vec3 shoulder_of(const himc_skeleton *skeleton, himc_quat trunk, himc_hand hand)
 {
@@ -22,13 +24,13 @@ static himc_vec3 shoulder_of(const himc_skeleton *skeleton, himc_quat trunk, him
     return himc_vec3_add(waist, away);
 }
 
-// the elbow, from where shoulder and wrist are; false if they are too far apart
-static bool hang_elbow(const double length[2], himc_vec3 shoulder, himc_vec3 wrist, double turn,
+// the elbow from the positions of shoulder and wrist; false if the wrist is out of reach
+static bool hang_elbow(const double length[2], himc_vec3 shoulder, himc_vec3 wrist, double angle,
                        himc_vec3 *elbow)
 {
     himc_vec3 d = himc_vec3_sub(wrist, shoulder);
     double apart = himc_vec3_length(d), upper = length[0], lower = length[1];
-    if (apart > 0.995 * (upper + lower) || apart < fabs(upper - lower) + 0.02)
+    if (apart > FARTHEST * (upper + lower) || apart < fabs(upper - lower) + NEAREST)
         return false;
     himc_vec3 u = himc_vec3_scale(d, 1 / apart);
     double along = (apart * apart + upper * upper - lower * lower) / (2 * apart);
@@ -36,8 +38,8 @@ static bool hang_elbow(const double length[2], himc_vec3 shoulder, himc_vec3 wri
     himc_vec3 down = himc_vec3_unit(himc_vec3_madd(himc_vec3_make(0, 0, -1), u.z, u));
     himc_vec3 out = himc_vec3_cross(down, u);
     *elbow = himc_vec3_madd(shoulder, along, u);
-    *elbow = himc_vec3_madd(*elbow, away * cos(turn), down);
-    *elbow = himc_vec3_madd(*elbow, away * sin(turn), out);
+    *elbow = himc_vec3_madd(*elbow, away * cos(angle), down);
+    *elbow = himc_vec3_madd(*elbow, away * sin(angle), out);
     return true;
 }
 

@@ -1,54 +1,54 @@
-/// coordinate.c: from strokes to joints in time: who does how much, and when.
+/// coordinate.c: from strokes to joints over time: the share of each joint and its timing.
 ///
 /// With s_k the share of joint k, 0 at impact and 1 at the apex, the tip's height changes by
 /// dz/dt = sum_k dz/ds_k s_k'. Shoulder and elbow arrive with one rate, the grip with another, the
 /// wrist with their mean; these two follow from two speeds that are measured, the mallet's and
-/// that of a point behind it on the stick. So also the rebound. The mallet comes straight to the
-/// head; felt and head yield, and it leaves them CONTACT later, having been some 0.3 v CONTACT
-/// deeper. Meanwhile the rest of the arm goes on, and the grip's rates allow for that. Invariant:
-/// at the touch the mallet is where it was aimed: each stroke's grip is shifted by what the arm's
-/// motion leaves over (a degree at most).
+/// that of a point behind it on the stick. The same holds for the rebound. The mallet comes straight
+/// to the head; felt and head give way, and it leaves them CONTACT later, having been some 0.3 v
+/// CONTACT deeper. Meanwhile the rest of the arm goes on, and the grip's rates compensate for that.
+/// Invariant: at the touch the mallet is where it was aimed: each stroke's grip is shifted by the
+/// error that the arm's motion leaves (a degree at most).
 #include "motion.h"
 #include "himc/body.h"
 
-#define POINT 0.15     // of the stick that is measured, behind the mallet (m)
-#define READY 0.45     // share of the first apex in which the hands wait
-#define GRIP 3         // the joint
-#define WAIT 0.12      // from where they leave (s)
-#define CONTACT 0.0075 // of a felt mallet with the head (s)
+#define READY 0.45     // chosen: share of the first apex at which the hands wait
+#define GRIP 3         // index of the arm's joint
+#define LEAVE 0.12     // chosen: time at which they leave (s)
+#define CONTACT 0.0075 // of a felt mallet with the simulated head (s)
+#define SMALL 1e-4     // difference of a share for numerical slopes
+#define LEVEL_ROUNDS 4 // chosen: of the shift of the grip, which converges
 
-// times before and after the impact in which a joint turns from falling to rising: the stick
-// within its contact, the heavier parts slower and later (s)
-static const double turns[HIMC_ARM_JOINTS][2] = {
+// chosen: times before and after the impact in which a joint reverses from falling to rising: the
+// stick within its contact, the heavier parts slower and later (s)
+static const double reversals[HIMC_ARM_JOINTS][2] = {
     {0.025, 0.035}, {0.020, 0.030}, {0.008, 0.014}, {0, CONTACT}};
-// share of the grip's rate in the joint's, the rest is the elbow's
+// chosen: share of the grip's rate in the joint's; the rest is the elbow's
 static const double distal[HIMC_ARM_JOINTS] = {0, 0, 0.15, 1};
 
-void himc_mocap_share_out(const mocap_arm *arm, const mocap_stroke *stroke,
+void himc_mocap_joints_at(const mocap_arm *arm, const mocap_stroke *stroke,
                           const double share[HIMC_ARM_JOINTS], himc_quat joint[HIMC_ARM_JOINTS])
 {
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        himc_vec3 way = himc_vec3_sub(stroke->apex[k], stroke->impact[k]);
-        himc_vec3 y = himc_vec3_madd(stroke->impact[k], share[k], way);
+        himc_vec3 stroke_k = himc_vec3_sub(stroke->apex[k], stroke->impact[k]);
+        himc_vec3 y = himc_vec3_madd(stroke->impact[k], share[k], stroke_k);
         joint[k] = himc_quat_mul(arm->mean[k], himc_quat_exp(y));
     }
 }
 
-// heights of a stick's point per share of each joint, at impact (m)
+// change of height of a stick's point per share of each joint, at impact (m)
 static void slopes(const himc_mocap *m, himc_hand hand, const mocap_stroke *stroke, double back,
                    double slope[HIMC_ARM_JOINTS])
 {
     himc_quat trunk = himc_mocap_trunk(m, stroke->touch), joint[HIMC_ARM_JOINTS];
-    const double small = 1e-4;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         double z[2];
         for (int i = 0; i < 2; i++) {
             double share[HIMC_ARM_JOINTS] = {0, 0, 0, 0};
-            share[k] = i ? small : -small;
-            himc_mocap_share_out(&m->arm[hand], stroke, share, joint);
+            share[k] = i ? SMALL : -SMALL;
+            himc_mocap_joints_at(&m->arm[hand], stroke, share, joint);
             z[i] = himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, back).z;
         }
-        slope[k] = (z[1] - z[0]) / (2 * small);
+        slope[k] = (z[1] - z[0]) / (2 * SMALL);
     }
 }
 
@@ -88,34 +88,34 @@ static void share_stroke(const himc_mocap *m, const mocap_stroke *s,
         share[k] = (mocap_share){.touch = s->touch,
                                  .arrive = joint_rate(arrive, k),
                                  .rebound = joint_rate(rebound, k),
-                                 .turn = {turns[k][0], turns[k][1]},
+                                 .reversal = {reversals[k][0], reversals[k][1]},
                                  .fall = g->fall + lead,
                                  .lift = g->lift - lead,
                                  .top = 1};
     }
 }
 
-// where the grip is, and how fast, when the mallet is at height z with speed v at `t` from the
-// touch, the rest of the arm being where it is
+// the grip's share and its rate that put the mallet at height z with speed v at `t` from the touch,
+// given the rest of the arm
 static mocap_knot grip_at(const mocap_arm *arm, const double mallet[HIMC_ARM_JOINTS],
                           const mocap_share *share, double t, double z, double v)
 {
     double now = share[GRIP].touch + t;
     for (int k = 0; k < GRIP; k++) {
         z -= mallet[k] * himc_mocap_curve_at(&arm->share[k], now);
-        v -= mallet[k] * himc_mocap_turn_rate(&share[k], t);
+        v -= mallet[k] * himc_mocap_reversal_rate(&share[k], t);
     }
     return (mocap_knot){now, z / mallet[GRIP], v / mallet[GRIP], 0};
 }
 
-// the mallet goes straight to the head and, after the contact, straight from it: while the arm
-// turns, the fingers make up for it
+// the mallet goes straight to the head and, after the contact, straight away: while the arm
+// reverses, the fingers compensate
 static void add_grip(mocap_arm *arm, const mocap_gesture *g, const double mallet[HIMC_ARM_JOINTS],
                      const mocap_share *share)
 {
     const mocap_share *own = &share[GRIP];
     mocap_curve *curve = &arm->share[GRIP];
-    double begin = -turns[0][0], end = turns[0][1];
+    double begin = -reversals[0][0], end = reversals[0][1];
     mocap_knot knot[4] = {
         grip_at(arm, mallet, share, begin, -begin * g->impact, -g->impact),
         grip_at(arm, mallet, share, 0, 0, -g->impact),
@@ -136,7 +136,7 @@ static void add_stroke(himc_mocap *m, himc_hand hand, int i)
     const mocap_stroke *s = &arm->stroke[i];
     double slope[2][HIMC_ARM_JOINTS];
     mocap_share share[HIMC_ARM_JOINTS];
-    slopes(m, hand, s, POINT, slope[0]);
+    slopes(m, hand, s, MOCAP_POINT, slope[0]);
     slopes(m, hand, s, 0, slope[1]);
     share_stroke(m, s, slope, share);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
@@ -149,7 +149,7 @@ static void add_stroke(himc_mocap *m, himc_hand hand, int i)
     himc_mocap_curve_add(&arm->loop, (mocap_knot){s->touch + s->gesture.lift, 0, 0, 0});
 }
 
-// how far the mallet is below its place when it touches (m)
+// depth of the mallet below its aim at the touch (m)
 static double sinking(const himc_mocap *m, himc_hand hand, const mocap_stroke *s)
 {
     himc_quat joint[HIMC_ARM_JOINTS];
@@ -167,7 +167,7 @@ static void level_touches(himc_mocap *m, himc_hand hand)
         mocap_knot *grip = &arm->share[GRIP].knot[1 + MOCAP_GRIP_KNOTS * i];
         double slope[HIMC_ARM_JOINTS];
         slopes(m, hand, s, 0, slope);
-        for (int round = 0; round < 4; round++) {
+        for (int round = 0; round < LEVEL_ROUNDS; round++) {
             double more = sinking(m, hand, s) / slope[GRIP];
             for (int k = 1; k < MOCAP_GRIP_KNOTS - 1; k++)
                 grip[k].x += more;
@@ -180,7 +180,7 @@ void himc_mocap_coordinate(himc_mocap *m)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         mocap_arm *arm = &m->arm[hand];
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            himc_mocap_curve_add(&arm->share[k], (mocap_knot){WAIT, READY, 0, 0});
+            himc_mocap_curve_add(&arm->share[k], (mocap_knot){LEAVE, READY, 0, 0});
         for (int i = 0; i < arm->count; i++)
             add_stroke(m, (himc_hand)hand, i);
         level_touches(m, (himc_hand)hand);

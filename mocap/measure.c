@@ -1,21 +1,21 @@
-/// measure.c: strokes measured as in a capture, and beside what was measured on real ones.
+/// measure.c: strokes measured as in a laboratory, and compared with those measured on real ones.
 ///
 /// All figures come from the frames at 250 Hz, as a laboratory would have them: the point 0.15 m
 /// behind the mallet, speeds by differences of neighbouring frames. A stroke's height is that of
-/// the highest frame since the hand's last impact over that of the impact, its fall is what lies
-/// between, its rebound the 0.15 s after it. The mallet's speed at impact is the fastest of its
+/// the highest frame since the hand's last impact over that of the impact, its fall is the time
+/// between them, its rebound the 0.15 s after it. The mallet's speed at impact is the fastest of its
 /// last 20 ms.
-#include "mocap.h"
+#include "parts.h"
+
 #include "himc/body.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define POINT 0.15   // behind the mallet (m)
-#define REBOUND 0.15 // (s)
+#define REBOUND 0.15 // chosen: time after the impact that counts as rebound (s)
 
-// what a laboratory has of one hand
+// the data that a laboratory has of one hand
 typedef struct track {
     himc_vec3 *point, *tip;
     double *elevation;
@@ -52,7 +52,7 @@ static void capture(const himc_mocap *m, int hand, track *k)
         himc_vec3 grip = state.origin[himc_stick_segment((himc_hand)hand)];
         himc_vec3 along = himc_vec3_unit(himc_vec3_sub(state.tip[hand], grip));
         k->tip[i] = state.tip[hand];
-        k->point[i] = himc_vec3_madd(state.tip[hand], -POINT, along);
+        k->point[i] = himc_vec3_madd(state.tip[hand], -MOCAP_POINT, along);
         k->elevation[i] = asin(along.z);
     }
 }
@@ -62,7 +62,7 @@ static double speed(const himc_vec3 *x, int i)
     return (x[i + 1].z - x[i].z) * HIMC_MOCAP_RATE;
 }
 
-// the stroke that ends at frame `end`; the hand's last one was at `begin`
+// measures the stroke that ends at frame `end`; the hand's last one ended at `begin`
 static void measure_stroke(const track *k, int begin, int end, himc_mocap_statistics *s)
 {
     int top = end, later = end + (int)(REBOUND * HIMC_MOCAP_RATE);

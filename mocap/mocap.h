@@ -1,7 +1,7 @@
 /// mocap.h: synthetic motion captures of three timpanists, made in joint space.
 ///
 /// Each sequence is one player, nuance and spot: both hands in turn, the whole body and the
-/// sticks, at any time and so at any rate. Tips follow from the joints by forward kinematics. The
+/// sticks; defined at any time and so at any rate. Tips follow from the joints by forward kinematics. The
 /// same config gives the same motion, bit by bit; another seed gives another trial by the same
 /// player.
 #ifndef HIMC_DATABASE_H
@@ -22,7 +22,7 @@ typedef struct himc_mocap_config {
     himc_spot spot; ///< center, normal or rim
     uint64_t seed;  ///< default 1
     int strokes;    ///< of both hands together, 2 .. 200, default 16
-    double pace;    ///< the same motion so many times as fast, 0.25 .. 4, default 1
+    double pace;    ///< factor on the speed of the same motion, 0.25 .. 4, default 1
 } himc_mocap_config;
 
 himc_mocap_config himc_mocap_default(void);
@@ -46,7 +46,7 @@ int himc_mocap_frames(const himc_mocap *mocap);    ///< at HIMC_MOCAP_RATE
 /// The posture at time `t` (s), which is held before 0 and after the end.
 HIMC_RT himc_pose himc_mocap_pose(const himc_mocap *mocap, double t);
 
-/// A stroke as it was meant.
+/// A stroke as intended.
 typedef struct himc_mocap_touch {
     himc_hand hand;
     double time; ///< of the impact (s)
@@ -57,10 +57,10 @@ int himc_mocap_touches(const himc_mocap *mocap);
 /// In order of time.
 himc_mocap_touch himc_mocap_touch_at(const himc_mocap *mocap, int index);
 
-/// Writes all frames as .bvh, .c3d or .trc.
+/// Writes all frames as .bvh, .c3d or .trc. False with the reason.
 bool himc_mocap_write(const himc_mocap *mocap, const char *path, himc_error *error);
 
-/// What a motion capture laboratory would measure on the strokes of one or more sequences.
+/// Quantities that a motion capture laboratory would measure on strokes.
 typedef enum himc_mocap_figure {
     HIMC_MOCAP_HEIGHT,     ///< apex to impact of a point 0.15 m behind the mallet (m)
     HIMC_MOCAP_DOWN,       ///< its fastest downward speed (m/s)
@@ -80,12 +80,14 @@ typedef struct himc_mocap_statistics {
     double least[HIMC_MOCAP_FIGURES], most[HIMC_MOCAP_FIGURES];
 } himc_mocap_statistics;
 
-/// Adds the strokes of a sequence, measured in its frames; `statistics` starts as zero.
+/// Adds the strokes of a sequence, measured in its frames; start with `statistics` all zero.
 void himc_mocap_measure(const himc_mocap *mocap, himc_mocap_statistics *statistics);
+/// Mean and standard deviation; NaN without strokes.
 double himc_mocap_mean(const himc_mocap_statistics *statistics, himc_mocap_figure figure);
 double himc_mocap_deviation(const himc_mocap_statistics *statistics, himc_mocap_figure figure);
 
-/// Writes the comparison with measured strokes, a table in Markdown, into `text`.
+/// Writes the comparison with measured strokes, a table in Markdown, into `text`. False with the
+/// reason.
 bool himc_mocap_compare(uint64_t seed, char *text, size_t size, himc_error *error);
 
 #endif

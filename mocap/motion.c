@@ -1,36 +1,36 @@
-/// motion.c: a sequence: strokes are drawn, their two postures found, and joints moved between.
+/// motion.c: a sequence: random strokes, their two postures, and the joints between them.
 ///
 /// Each stroke has a posture of its impact and one of its apex, y_i and y_a, rotation vectors
-/// about the arm's mean posture; joint k is at exp(y_i + s_k (y_a - y_i) + loop + wandering), where
+/// about the arm's mean posture; joint k is at exp(y_i + s_k (y_a - y_i) + loop + drift), where
 /// its share s_k of the stroke runs from 1 to 0 and back in its own time. From one stroke to the
 /// next both postures pass smoothly over, while the arm rises. Strokes vary in height, speed,
-/// timing, aim and posture by first-order autoregressive noise. Nothing but the joints is moved;
-/// where the tips are is forward kinematics. Invariant: at an impact all shares are 0 and nothing
+/// timing, aim and posture by first-order autoregressive noise. Only the joints are moved; the tips
+/// follow by forward kinematics. Invariant: at an impact all shares are 0 and nothing
 /// is added, so the tip is where the stroke was aimed, on the head.
 #include "motion.h"
 #include "body/posture.h"
 
 #include <stdlib.h>
 
-#define FIRST 1.0            // impact (s)
-#define LAST 0.8             // after the last (s)
-#define MEMORY 0.4           // of the variation, from stroke to stroke
-#define ALIKE 0.8            // of a speed's variation, that goes with the height's
-#define OWN 0.6              // and that does not: the squares sum to one
-#define POINT 0.15           // of the stick that is measured, behind the mallet (m)
-#define BLEND 0.04           // after the impact the postures begin to pass to the next stroke's (s)
-#define AIM_SPREAD 0.003     // deviations: of the aim (m)
-#define OUT_SPREAD 0.006     // of the elbow (rad)
+// all chosen, with the spreads so that strokes vary like measured ones (README.md)
+#define FIRST_IMPACT 1.0     // (s)
+#define TAIL 0.8             // after the last impact (s)
+#define MEMORY 0.4           // correlation of the variation from stroke to stroke
+#define WITH_HEIGHT 0.8      // part of a speed's variation that goes with the height's ...
+#define OWN 0.6              // ... and the independent part: the squares sum to one
+#define BLEND 0.04           // time after the impact at which the next stroke's postures begin (s)
+#define AIM_SPREAD 0.003     // standard deviations: of the aim (m)
+#define OUT_SPREAD 0.006     // of the elbow's angle (rad)
 #define HAND_SPREAD 0.005    // of the hand's elevation (rad)
-#define SHOULDER_SPREAD 0.03 // of its share of the flexion
-#define MOST_FLEXION 1.6     // of the elbow (rad), looked for in ...
-#define FLEXION_STEP 0.02    // (rad)
-#define RISE_SPREAD 0.025    // of the wrist's share of its flexion and the fingers'
+#define SHOULDER_SPREAD 0.03 // of the shoulder's share of the flexion
+#define RISE_SPREAD 0.025    // of the wrist's share of the flexion of wrist and fingers
 #define LEVEL_SPREAD 0.006   // of the stick's elevation at impact (rad)
 #define TIME_SPREAD 0.012    // of intervals (shares)
-#define LEAN_MORE 1.3        // of the trunk, towards places beyond the usual spot (rad/m)
-#define WANDER 0.003         // of a joint between impacts (rad)
-#define TRUNK_WANDER 0.003   // (rad)
+#define MOST_FLEXION 1.6     // of the elbow, searched in ...
+#define FLEXION_STEP 0.02    // ... steps (rad)
+#define LEAN_MORE 1.3        // lean of the trunk towards strike places beyond the usual one (rad/m)
+#define JOINT_DRIFT 0.003    // of a joint between impacts (rad)
+#define TRUNK_DRIFT 0.003    // (rad)
 
 himc_mocap_config himc_mocap_default(void)
 {
@@ -38,7 +38,7 @@ himc_mocap_config himc_mocap_default(void)
         .nuance = HIMC_LEGATO, .spot = HIMC_SPOT_NORMAL, .seed = 1, .strokes = 16, .pace = 1};
 }
 
-static himc_quat trunk_posture(double turn, double lean)
+static himc_quat trunk_rotation(double turn, double lean)
 {
     return himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, turn)),
                          himc_quat_exp(himc_vec3_make(0, lean, 0)));
@@ -52,36 +52,36 @@ static double mean_lean(const himc_mocap *m)
 
 himc_quat himc_mocap_trunk(const himc_mocap *m, double t)
 {
-    double sway = m->player->sway, loose = TRUNK_WANDER * m->player->looseness;
+    double sway = m->player->sway, loose = TRUNK_DRIFT * m->player->looseness;
     double left = 0.5, right = 0.5;
     if (m->arm[HIMC_LEFT].effort.count && m->arm[HIMC_RIGHT].effort.count) {
         left = himc_mocap_curve_at(&m->arm[HIMC_LEFT].effort, t);
         right = himc_mocap_curve_at(&m->arm[HIMC_RIGHT].effort, t);
     }
-    return trunk_posture(sway * (left - right) + loose * himc_mocap_wander_at(&m->turn, t),
-                         mean_lean(m) - 0.5 * sway * (left + right - 1) +
-                             0.5 * loose * himc_mocap_wander_at(&m->lean, t));
+    return trunk_rotation(sway * (left - right) + loose * himc_mocap_wander_at(&m->turn, t),
+                          mean_lean(m) - 0.5 * sway * (left + right - 1) +
+                              0.5 * loose * himc_mocap_wander_at(&m->lean, t));
 }
 
 // variations of one hand's strokes
-typedef struct mood {
+typedef struct variation {
     double height, down, up, x, y, out, hand, rise, level;
-} mood;
+} variation;
 
-static void change_mood(mood *now, mocap_dice *dice)
+static void next_variation(variation *now, mocap_random *random)
 {
     double *number = (double *)now;
     for (size_t i = 0; i < sizeof *now / sizeof *number; i++)
-        number[i] = MEMORY * number[i] + sqrt(1 - MEMORY * MEMORY) * himc_mocap_normal(dice);
+        number[i] = MEMORY * number[i] + sqrt(1 - MEMORY * MEMORY) * himc_mocap_normal(random);
 }
 
-static mocap_gesture vary_gesture(const himc_mocap *m, const mood *now)
+static mocap_gesture vary_gesture(const himc_mocap *m, const variation *now)
 {
     mocap_gesture g = himc_mocap_gesture[m->config.nuance];
     const mocap_player *p = m->player;
     double height = p->size * exp(p->looseness * g.spread[0] * now->height);
-    double down = exp(p->looseness * g.spread[1] * (ALIKE * now->height + OWN * now->down));
-    double up = exp(p->looseness * g.spread[2] * (ALIKE * now->height + OWN * now->up));
+    double down = exp(p->looseness * g.spread[1] * (WITH_HEIGHT * now->height + OWN * now->down));
+    double up = exp(p->looseness * g.spread[2] * (WITH_HEIGHT * now->height + OWN * now->up));
     double fingers = p->fingers * g.wrist, rise = 1 + RISE_SPREAD * p->looseness * now->rise;
     g.height *= height;
     g.wrist = height * rise * (g.wrist - fingers);
@@ -97,7 +97,7 @@ static mocap_gesture vary_gesture(const himc_mocap *m, const mood *now)
     return g;
 }
 
-static void draw_stroke(const himc_mocap *m, himc_hand hand, const mood *now, mocap_stroke *s)
+static void draw_stroke(const himc_mocap *m, himc_hand hand, const variation *now, mocap_stroke *s)
 {
     const mocap_player *p = m->player;
     double side = hand == HIMC_LEFT ? 1 : -1, loose = p->looseness;
@@ -112,7 +112,7 @@ static void draw_stroke(const himc_mocap *m, himc_hand hand, const mood *now, mo
                          .french = p->french};
 }
 
-// what an elbow flexed by `elbow` (rad) and all that goes with it add to the posture of impact
+// the flexion of all joints from the posture of impact, for an elbow flexed by `elbow` (rad)
 static void flex(const mocap_gesture *g, const himc_vec3 axis[], double elbow,
                  himc_vec3 way[HIMC_ARM_JOINTS])
 {
@@ -125,14 +125,14 @@ static void flex(const mocap_gesture *g, const himc_vec3 axis[], double elbow,
 static double rise_of(const himc_mocap *m, himc_hand hand, const himc_quat low[],
                       const himc_vec3 way[])
 {
-    himc_quat trunk = trunk_posture(0, mean_lean(m)), high[HIMC_ARM_JOINTS];
+    himc_quat trunk = trunk_rotation(0, mean_lean(m)), high[HIMC_ARM_JOINTS];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         high[k] = himc_quat_mul(low[k], himc_quat_exp(way[k]));
-    return himc_mocap_stick_point(&m->skeleton, trunk, hand, high, POINT).z -
-           himc_mocap_stick_point(&m->skeleton, trunk, hand, low, POINT).z;
+    return himc_mocap_stick_point(&m->skeleton, trunk, hand, high, MOCAP_POINT).z -
+           himc_mocap_stick_point(&m->skeleton, trunk, hand, low, MOCAP_POINT).z;
 }
 
-// the elbow's flexion at which the point is as high as asked for, or as high as this arm gets
+// the elbow's flexion that lifts the point to the wanted height, or as high as possible
 static double find_flexion(const himc_mocap *m, himc_hand hand, const mocap_gesture *g,
                            const himc_quat low[], const himc_vec3 axis[])
 {
@@ -162,7 +162,7 @@ static double find_flexion(const himc_mocap *m, himc_hand hand, const mocap_gest
 static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, const himc_quat low[])
 {
     himc_vec3 axis[HIMC_ARM_JOINTS], way[HIMC_ARM_JOINTS];
-    himc_mocap_flexion(trunk_posture(0, mean_lean(m)), low, axis);
+    himc_mocap_flexion(trunk_rotation(0, mean_lean(m)), low, axis);
     flex(&s->gesture, axis, find_flexion(m, hand, &s->gesture, low, axis), way);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_quat high = himc_quat_mul(low[k], himc_quat_exp(way[k]));
@@ -172,14 +172,14 @@ static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, cons
     }
 }
 
-// the trunk carries the arm along: the place struck moves with it, except up and down
+// the aim moves with the trunk, except up and down
 static void carry_aim(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
 {
     const himc_quat *mean = m->arm[hand].mean;
     himc_vec3 there =
         himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, mean, 0);
     himc_vec3 usual =
-        himc_mocap_stick_point(&m->skeleton, trunk_posture(0, mean_lean(m)), hand, mean, 0);
+        himc_mocap_stick_point(&m->skeleton, trunk_rotation(0, mean_lean(m)), hand, mean, 0);
     s->aim.x += there.x - usual.x;
     s->aim.y += there.y - usual.y;
     s->low.tip = s->aim;
@@ -198,22 +198,22 @@ static bool find_postures(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
 }
 
 // strokes of both hands in turn, the right one first
-static void draw_strokes(himc_mocap *m, mocap_dice *dice)
+static void draw_strokes(himc_mocap *m, mocap_random *random)
 {
-    mood now[HIMC_HANDS] = {0};
-    double t = FIRST;
+    variation now[HIMC_HANDS] = {0};
+    double t = FIRST_IMPACT;
     for (int i = 0; i < m->config.strokes; i++) {
         himc_hand hand = i % 2 ? HIMC_LEFT : HIMC_RIGHT;
         mocap_stroke *s = &m->arm[hand].stroke[m->arm[hand].count++];
-        change_mood(&now[hand], dice);
+        next_variation(&now[hand], random);
         draw_stroke(m, hand, &now[hand], s);
         s->touch = t;
-        t += 0.5 * s->gesture.interval * (1 + TIME_SPREAD * himc_mocap_normal(dice));
+        t += 0.5 * s->gesture.interval * (1 + TIME_SPREAD * himc_mocap_normal(random));
     }
-    m->length = t - 0.5 * himc_mocap_gesture[m->config.nuance].interval + LAST;
+    m->length = t - 0.5 * himc_mocap_gesture[m->config.nuance].interval + TAIL;
 }
 
-// the postures need the trunk, which moves with the strokes' times alone
+// the trunk's sway, which depends on the strokes' times alone and is needed for the postures
 static void add_effort(mocap_arm *arm)
 {
     for (int i = 0; i < arm->count; i++) {
@@ -224,33 +224,33 @@ static void add_effort(mocap_arm *arm)
     }
 }
 
-static void wander_all(himc_mocap *m, mocap_dice *dice)
+static void wander_all(himc_mocap *m, mocap_random *random)
 {
-    m->turn = himc_mocap_wander(dice);
-    m->lean = himc_mocap_wander(dice);
-    m->nod = himc_mocap_wander(dice);
+    m->turn = himc_mocap_wander(random);
+    m->lean = himc_mocap_wander(random);
+    m->nod = himc_mocap_wander(random);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             for (int axis = 0; axis < 3; axis++)
-                m->arm[hand].wander[k][axis] = himc_mocap_wander(dice);
+                m->arm[hand].wander[k][axis] = himc_mocap_wander(random);
 }
 
-// the posture all others are said about: the impact of a stroke without variation
+// the reference of all postures: the impact of a stroke without variation
 static bool find_mean(himc_mocap *m, himc_hand hand)
 {
-    mood none = {0};
+    variation none = {0};
     mocap_stroke usual;
     draw_stroke(m, hand, &none, &usual);
-    return himc_mocap_arm(&m->skeleton, trunk_posture(0, mean_lean(m)), hand, &usual.low,
+    return himc_mocap_arm(&m->skeleton, trunk_rotation(0, mean_lean(m)), hand, &usual.low,
                           m->arm[hand].mean);
 }
 
 static bool make_motion(himc_mocap *m, himc_error *error)
 {
     int which[3] = {m->config.player, (int)m->config.nuance, (int)m->config.spot};
-    mocap_dice dice = himc_mocap_dice(m->config.seed, which, 3);
-    wander_all(m, &dice);
-    draw_strokes(m, &dice);
+    mocap_random random = himc_mocap_random(m->config.seed, which, 3);
+    wander_all(m, &random);
+    draw_strokes(m, &random);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         add_effort(&m->arm[hand]);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -329,7 +329,7 @@ void himc_mocap_free(himc_mocap *m)
     free(m);
 }
 
-// the stroke before `t` and how far it has passed over to the next one
+// the stroke before `t`, and how far its postures have passed over to the next one's
 static int stroke_at(const mocap_arm *arm, double t, double *passed)
 {
     int i = 0;
@@ -353,7 +353,8 @@ void himc_mocap_arm_at(const himc_mocap *m, himc_hand hand, double t,
     int i = stroke_at(arm, t, &passed);
     const mocap_stroke *a = &arm->stroke[i], *b = &arm->stroke[i + (i + 1 < arm->count)];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        double s = himc_mocap_curve_at(&arm->share[k], t), w = WANDER * m->player->looseness * s;
+        double s = himc_mocap_curve_at(&arm->share[k], t),
+               w = JOINT_DRIFT * m->player->looseness * s;
         himc_vec3 low =
             himc_vec3_madd(himc_vec3_scale(a->impact[k], 1 - passed), passed, b->impact[k]);
         himc_vec3 high =
@@ -375,7 +376,7 @@ himc_pose himc_mocap_pose(const himc_mocap *m, double t)
     t = fmin(fmax(t * m->config.pace, 0), m->length);
     pose.joint[HIMC_TRUNK - 1] = himc_mocap_trunk(m, t);
     himc_quat nod =
-        himc_quat_exp(himc_vec3_make(0, 2 * TRUNK_WANDER * himc_mocap_wander_at(&m->nod, t), 0));
+        himc_quat_exp(himc_vec3_make(0, 2 * TRUNK_DRIFT * himc_mocap_wander_at(&m->nod, t), 0));
     pose.joint[HIMC_NECK - 1] = himc_quat_mul(pose.joint[HIMC_NECK - 1], nod);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_mocap_arm_at(m, (himc_hand)hand, t, joint);

@@ -1,11 +1,11 @@
 /// player.c: the numbers: three players, five nuances, three spots.
 ///
 /// The players differ as percussionists do: in height, mass, proportions of the arm, sticks, grip
-/// (1 is french, thumbs up; 0 german, palms down), in how they sit, how much of a stroke the hand
-/// makes and how much earlier the arm's upper joints turn. The nuances are fitted so that the
+/// (1 is french, thumbs up; 0 german, palms down), in how they sit, in the hand's share of a stroke
+/// and in how much earlier the arm's upper joints reverse. The nuances are fitted so that the
 /// strokes, measured as a laboratory measures them, have the heights and speeds of measured
 /// timpani strokes, and the order of heights and depths of the 2012 paper's figure 6(a).
-/// README.md has the comparison.
+/// README.md has the comparison. All numbers without another source are chosen.
 #include "parts.h"
 
 const mocap_player himc_mocap_player[HIMC_MOCAP_PLAYERS] = {

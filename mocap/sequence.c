@@ -1,4 +1,4 @@
-/// sequence.c: what a sequence says of itself, and its file: the frames at 250 Hz.
+/// sequence.c: read access to a sequence, and its file: the frames at 250 Hz.
 #include "motion.h"
 
 #include "himc/mocap.h"

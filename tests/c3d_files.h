@@ -38,7 +38,7 @@ static inline maker maker_default(c3d_processor processor, bool floats)
                    .y_screen = "+Z"};
 }
 
-// what a file's point i is in frame f (mm); multiples of 0.1, so that integers hold it too
+// coordinates of point i in frame f (mm); multiples of 0.1, which integers can represent
 static inline double coordinate(int f, int i, int axis)
 {
     return 0.1 * (axis == 0 ? 3000 + 7 * f : axis == 1 ? -1234 + 2110 * i : 9000 - 13 * f + 17 * i);
@@ -203,7 +203,7 @@ static inline void put_frame(const maker *m, unsigned char *at, int f)
             else
                 put_word(m, at + 2 * n, k == 3 ? (int)v : (int)lround(v / m->scale));
         }
-    // analog samples are noise to the reader: NaNs and odd numbers
+    // analog samples must not matter to the reader: NaNs and odd numbers
     size_t width = m->floats ? 4 : 2;
     memset(at + width * 4 * (size_t)m->points, 0xFF, width * (size_t)m->analog);
 }

@@ -1,7 +1,7 @@
-/// players.h: drummers made in joint space, whom nothing of the library knows: strokes whose
-/// shoulder leads, then elbow, wrist and grip, of three people of different build and ways.
+/// players.h: drummers made in joint space without the library's models: strokes in which the
+/// shoulder leads, then elbow, wrist and grip follow, of three people of different build and style.
 ///
-/// The proximal joints swing smoothly through the blow; wrist and grip turn round in it.
+/// The proximal joints swing smoothly through the blow; wrist and grip reverse in it.
 #ifndef HIMC_TESTS_PLAYERS_H
 #define HIMC_TESTS_PLAYERS_H
 
@@ -46,14 +46,14 @@ static inline player make_player(int who)
     return p;
 }
 
-// from 0 at a blow over 1 back to 0; `smooth` swings through, else it turns round in the blow
+// from 0 at a blow over 1 back to 0; `smooth` swings through the blow, else it reverses in it
 static inline double stroke_shape(double phase, bool smooth)
 {
     phase -= floor(phase);
     return smooth ? 0.5 - 0.5 * cos(2 * HIMC_PI * phase) : sin(HIMC_PI * phase);
 }
 
-// how high a hand's strokes go, changing smoothly in steps of a stroke
+// height of a hand's strokes, changing smoothly from stroke to stroke
 static inline double stroke_height(double count)
 {
     static const double height[] = {0.5, 0.7, 1.0, 0.6, 0.9, 0.4, 0.8};

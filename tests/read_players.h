@@ -1,11 +1,11 @@
-/// read_players.h: what tests of players read from takes share: a take made by a body that is
-/// known, the player read from it, and how far the two are apart.
+/// read_players.h: shared by the tests of players: a take made by a known body, the player read from
+/// it, and the differences between the two.
 #ifndef HIMC_TESTS_READ_PLAYERS_H
 #define HIMC_TESTS_READ_PLAYERS_H
 
 #include "take_players.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #include "unity.h"
 
@@ -55,7 +55,7 @@ static inline himc_skeleton_config another_player(void)
     return config;
 }
 
-// the largest angle between the take's postures and the true ones, over the joints from .. to
+// the largest angle between the take's poses and the true ones, over the joints from .. to
 static inline double worst_angle(int from, int to)
 {
     double worst = 0;

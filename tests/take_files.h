@@ -3,7 +3,7 @@
 #ifndef HIMC_TESTS_TAKE_FILES_H
 #define HIMC_TESTS_TAKE_FILES_H
 
-#include "himc/mocap.h"
+#include "capture/take.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,13 +8,13 @@
 
 static himc_error error;
 
-// a marker's place at time t (s), in metres, z up; NaN for a gap
+// a marker's position at time t (s), in metres, z up; NaN for a gap
 typedef himc_vec3 motion(double t);
 
 static double touch_time = 0.5, noise;
 static uint64_t random_state;
 
-// about normal, by summing uniform numbers
+// roughly normal: a sum of uniform numbers
 static inline double random_normal(void)
 {
     double sum = 0;
@@ -81,8 +81,7 @@ static inline int strikes_of(himc_take *take, himc_take_strike *strikes, int cap
     return himc_take_strikes(take, tips, strikes, capacity);
 }
 
-// falls with 30 m/s^2 to 4 m/s at touch_time, leaves at 2.5 m/s; turned round in time it begins at
-// rest
+// falls with 30 m/s^2 to 4 m/s at touch_time, leaves at 2.5 m/s; reversed in time it begins at rest
 static inline double bounce_height(double t)
 {
     double u = t - touch_time;

@@ -1,11 +1,11 @@
-/// take_players.h: takes of a whole player whose joints are known, for the tests of players and
-/// tracks: natural postures that beat a head with alternate hands.
+/// take_players.h: takes of a whole player with known joints, for the tests of players and tracks:
+/// natural postures that strike a head with alternate hands.
 #ifndef HIMC_TESTS_TAKE_PLAYERS_H
 #define HIMC_TESTS_TAKE_PLAYERS_H
 
 #include "take_files.h"
 
-#include "himc/mocap.h"
+#include "capture/take.h"
 #include "body/posture.h"
 
 static const himc_head_frame usual_drum = {{0.70, 0, 0.85}, 0, 0.2921};
@@ -34,7 +34,7 @@ static inline void beaten_tips(double t, himc_target tip[HIMC_HANDS])
     }
 }
 
-/// The true posture at `t` of the body, the trunk swaying a little.
+/// The true pose of the body at `t`, with a little sway of the trunk.
 static inline himc_pose beaten_pose(const himc_skeleton *skeleton, double t)
 {
     himc_posture posture;
@@ -48,8 +48,8 @@ static inline himc_pose beaten_pose(const himc_skeleton *skeleton, double t)
     return pose;
 }
 
-/// A take of it, in memory, in our world, as a file of that name would have it (.bvh a skeleton,
-/// .c3d markers); NULL with error.text.
+/// A take of this motion in memory, with the points of a file of that name (.bvh a skeleton, .c3d
+/// markers); NULL with error.text.
 static inline himc_take *beaten_file(const char *path, const himc_skeleton *skeleton, double rate,
                                      double seconds, himc_error *error)
 {

@@ -1,5 +1,4 @@
-/// test_bvh.c: BVH files against forward kinematics done by hand, and files that are wrong in one
-/// place.
+/// test_bvh.c: BVH files against forward kinematics computed by hand, and files with one error.
 #include "take_files.h"
 #include "unity.h"
 
@@ -15,7 +14,7 @@ void tearDown(void)
 {
 }
 
-// a root, an arm with a hand's end, in metres; the channels and rows are filled in
+// a root and an arm with the end of a hand, in metres; channels and rows are inserted
 #define SKELETON                                                                                   \
     "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition %s\n"       \
     "\tJOINT Arm\n\t{\n\t\tOFFSET 0 1 0\n\t\tCHANNELS 3 %s\n\t\tJOINT Hand\n {\n OFFSET 0.5 0 0\n" \
@@ -96,7 +95,7 @@ static void test_position_channels_of_a_joint_replace_its_offset(void)
     himc_take_free(take);
 }
 
-// points again from the rotations and offsets the take gives, as its header promises
+// computes the points from the rotations and offsets of the take, as its header promises
 static double worst_forward_kinematics(const himc_take *take, int frame)
 {
     himc_quat world[256];
@@ -114,7 +113,7 @@ static double worst_forward_kinematics(const himc_take *take, int frame)
     return worst;
 }
 
-static void test_rotations_and_offsets_give_the_points_again(void)
+static void test_rotations_and_offsets_reproduce_the_points(void)
 {
     himc_take *take =
         read_arm("Yrotation Zrotation Xrotation", ZYX, 2,
@@ -126,7 +125,7 @@ static void test_rotations_and_offsets_give_the_points_again(void)
     himc_take_free(take);
 }
 
-// the real capture; skipped where it is absent
+// the real capture; skipped if it is absent
 static himc_take *load_hop(void)
 {
     const char *path = shared_capture("cmu131_bvh_120hz/131_03.bvh");
@@ -156,7 +155,7 @@ static void test_cmu_capture_equals_matrices_computed_elsewhere(void)
     TEST_ASSERT_EQUAL_INT(1102, himc_take_frames(take));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 120, himc_take_rate(take));
     TEST_ASSERT_EQUAL_INT(38, himc_take_points(take));
-    // the heading is turned by some angle about the vertical: found from the first place, it must
+    // the heading is rotated by some angle about the vertical: found from the first position, it must
     // fit all of them
     himc_vec3 p = himc_take_point(take, 0, himc_take_find(take, known[0].name));
     double turn = atan2(p.y, p.x) - atan2(-known[0].x.z, known[0].x.x);
@@ -170,7 +169,7 @@ static void test_cmu_capture_equals_matrices_computed_elsewhere(void)
     himc_take_free(take);
 }
 
-static void test_cmu_player_is_of_human_size_and_looks_along_x(void)
+static void test_cmu_player_is_of_human_size_and_faces_along_x(void)
 {
     himc_take *take = load_hop();
     himc_vec3 sum = {0, 0, 0};
@@ -185,7 +184,7 @@ static void test_cmu_player_is_of_human_size_and_looks_along_x(void)
     TEST_ASSERT_TRUE(sum.y > 0);
     TEST_ASSERT_DOUBLE_WITHIN(0.25, 1.6, height);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, worst_forward_kinematics(take, 555));
-    // in the zero pose too: left is +y and toes point along x
+    // also in the zero pose left is +y and toes point along x
     himc_vec3 toe = himc_take_offset(take, himc_take_find(take, "LeftToe_end"));
     TEST_ASSERT_TRUE(toe.x > 0.9 * himc_vec3_length(toe));
     TEST_ASSERT_TRUE(himc_take_offset(take, himc_take_find(take, "LeftHip")).y > 0.05);
@@ -218,7 +217,8 @@ static void test_units_are_guessed_from_the_skeletons_size(void)
 static void test_a_17_metre_player_is_refused_unless_the_unit_is_given(void)
 {
     TEST_ASSERT_NULL(read_of_size(17));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "size.bvh: skeleton: 17 units"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(error.text, "size.bvh: skeleton: the longest path along its bones is 17 units"));
     himc_take_options options = himc_take_default();
     options.unit = 0.1;
     const char *text = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n"
@@ -242,9 +242,8 @@ static void test_rows_that_do_not_fit_are_refused_with_line_and_joint(void)
     refuses_rows(2, "0 0 0 0 0 0 0 0 0 0 0 0\n",
                  "arm.bvh: the header says 2 frames, the file has 1 rows");
     refuses_rows(1, "", "arm.bvh: the header says 1 frames, the file has 0 rows");
-    refuses_rows(
-        1, "0 0 0 0 0 0 0 0 0 0 0\n",
-        "arm.bvh:24: the row ends before channel 3 of Hand, allowed are rows of 12 numbers");
+    refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0\n",
+                 "arm.bvh:24: the row ends before channel 3 of Hand, allowed: rows of 12 numbers");
     refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0 0 0\n",
                  "arm.bvh:24: after the row's last channel \"0\", allowed a new line");
     refuses_rows(1, "0 0 0 0 0 0 nan 0 0 0 0 0\n",
@@ -267,7 +266,8 @@ static void test_broken_hierarchies_are_refused_with_the_line(void)
     refuses("", "x.bvh: the file is empty");
     refuses("hello", "x.bvh:1: the first line \"hello\", allowed HIERARCHY");
     refuses("HIERARCHY\nMOTION\n", "x.bvh:2: before any joint \"MOTION\", allowed ROOT");
-    refuses("HIERARCHY\nROOT A\n{\n}\n", "x.bvh:4: A has no OFFSET");
+    refuses("HIERARCHY\nROOT A\n{\n}\n",
+            "x.bvh:4: joint A has no OFFSET, allowed: one for each joint");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0",
             "x.bvh:4: OFFSET \"x\", allowed a number up to 1e8");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation Xrotation\n",
@@ -290,7 +290,7 @@ static void test_deep_nesting_is_refused_without_recursion(void)
     for (int i = 0; i < 1000; i++)
         size += (size_t)sprintf(text + size, "JOINT B\n{\nOFFSET 0 1 0\n");
     TEST_ASSERT_NULL(himc_take_read(text, size, "deep.bvh", NULL, &error));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "joints nested too deeply, allowed 256"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "joints are nested too deeply, allowed 256 levels"));
     free(text);
 }
 
@@ -301,7 +301,7 @@ static void test_every_prefix_of_a_file_is_refused_or_read(void)
              "1 2 3 0 0 0 0 0 0 0 0 0\n1 2 3 0 0 0 0 0 0 0 0 0.5\n");
     size_t whole = strlen(text);
     for (size_t size = 0; size < whole; size++) {
-        // exactly as many bytes, so that the address sanitizer sees a byte too far
+        // a copy of exact size, so that the address sanitizer detects a byte too far
         char *bytes = malloc(size + (size == 0));
         memcpy(bytes, text, size);
         himc_take *take = himc_take_read(bytes, size, "cut.bvh", NULL, &error);
@@ -313,16 +313,16 @@ static void test_every_prefix_of_a_file_is_refused_or_read(void)
 
 int main(void)
 {
-    // a locale with decimal commas, where there is one, must not change a number
+    // a locale with decimal commas, if installed, must not change a number
     setlocale(LC_ALL, "de_DE.UTF-8");
     UNITY_BEGIN();
     RUN_TEST(test_zero_pose_adds_offsets_and_y_up_becomes_z_up);
     RUN_TEST(test_channel_order_decides_which_rotation_is_outermost);
     RUN_TEST(test_permuted_position_channels_are_read_by_name);
     RUN_TEST(test_position_channels_of_a_joint_replace_its_offset);
-    RUN_TEST(test_rotations_and_offsets_give_the_points_again);
+    RUN_TEST(test_rotations_and_offsets_reproduce_the_points);
     RUN_TEST(test_cmu_capture_equals_matrices_computed_elsewhere);
-    RUN_TEST(test_cmu_player_is_of_human_size_and_looks_along_x);
+    RUN_TEST(test_cmu_player_is_of_human_size_and_faces_along_x);
     RUN_TEST(test_units_are_guessed_from_the_skeletons_size);
     RUN_TEST(test_a_17_metre_player_is_refused_unless_the_unit_is_given);
     RUN_TEST(test_rows_that_do_not_fit_are_refused_with_line_and_joint);

@@ -1,7 +1,7 @@
 /// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte
-/// from the format's description, and a real one beside the same trial exported as text.
+/// from the format's description, and a real file compared with its export as text.
 #include "c3d_files.h"
-#include "capture/take_data.h"
+#include "capture/take.h"
 #include "take_files.h"
 #include "unity.h"
 
@@ -30,7 +30,8 @@ static himc_take *read_maker(maker m)
     return take;
 }
 
-// left tip is not left of the right one, so the take is turned half round: x and y change sign
+// the left tip is not left of the right one, so the take is rotated by half a turn: x and y change
+// sign
 static void check_places(const himc_take *take, int frames, double tolerance)
 {
     TEST_ASSERT_EQUAL_INT(frames, himc_take_frames(take));
@@ -121,7 +122,7 @@ static void test_more_than_65535_frames_come_from_the_trial_fields(void)
     m.first = 100;
     m.analog = 0;
     m.long_frames = true;
-    // the falling point would leave the integers' range
+    // the falling point would leave the range of the integers
     make(&m);
     himc_take *take = read_made(&m);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
@@ -137,31 +138,31 @@ static void test_events_count_from_frame_one_and_carry_their_context(void)
     m.events = 2;
     m.first = 26; // 0.1 s
     himc_take *take = read_maker(m);
-    TEST_ASSERT_EQUAL_INT(2, himc_take_events(take));
-    TEST_ASSERT_EQUAL_STRING("Right Strike", himc_take_event_at(take, 0)->label);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.4, himc_take_event_at(take, 0)->time);
-    TEST_ASSERT_EQUAL_STRING("Left Apex", himc_take_event_at(take, 1)->label);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 62.15, himc_take_event_at(take, 1)->time);
+    TEST_ASSERT_EQUAL_INT(2, take->event_count);
+    TEST_ASSERT_EQUAL_STRING("Right Strike", take->events[0].label);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.4, take->events[0].time);
+    TEST_ASSERT_EQUAL_STRING("Left Apex", take->events[1].label);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 62.15, take->events[1].time);
     himc_take_free(take);
 }
 
-static void test_header_events_are_read_where_there_is_no_group(void)
+static void test_header_events_are_read_if_there_is_no_group(void)
 {
     maker m = maker_default(C3D_MIPS, true);
     m.header_events = 1;
     himc_take *take = read_maker(m);
-    TEST_ASSERT_EQUAL_INT(1, himc_take_events(take));
-    TEST_ASSERT_EQUAL_STRING("RFS", himc_take_event_at(take, 0)->label);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.25, himc_take_event_at(take, 0)->time);
+    TEST_ASSERT_EQUAL_INT(1, take->event_count);
+    TEST_ASSERT_EQUAL_STRING("RFS", take->events[0].label);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.25, take->events[0].time);
     himc_take_free(take);
 }
 
-static void test_screen_axes_say_which_way_is_up(void)
+static void test_screen_axes_give_the_up_axis(void)
 {
     maker m = maker_default(C3D_INTEL, true);
     m.y_screen = "+Y";
     himc_take *take = read_maker(m);
-    // y up: (x, -z, y); RTIP is then right of LTIP, so nothing is turned
+    // y up: (x, -z, y); RTIP is then right of LTIP, so nothing is rotated
     himc_vec3 p = himc_take_point(take, 0, 2);
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.001 * coordinate(0, 2, 1), p.z);
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.001 * coordinate(0, 2, 2), p.y);
@@ -169,7 +170,7 @@ static void test_screen_axes_say_which_way_is_up(void)
     himc_take_free(take);
 }
 
-// makes a good file, lets `spoil` change it, and expects the reason
+// makes a good file, damages it with `spoil`, and expects the reason
 static void refuses(void (*spoil)(maker *), const char *reason)
 {
     maker m = maker_default(C3D_INTEL, true);
@@ -218,13 +219,14 @@ static void spoil_start(maker *m)
 
 static void test_broken_headers_are_refused_with_the_reason(void)
 {
-    refuses(cut_header, "made.c3d: 100 bytes, allowed at least a header of 512");
+    refuses(cut_header, "made.c3d: 100 bytes, allowed: at least a header of 512");
     refuses(spoil_key, "made.c3d: begins with bytes 2 7, allowed for C3D: 2 .. 255 and 80");
     refuses(spoil_processor, "made.c3d: processor is 99, allowed 84 (Intel), 85 (DEC), 86 (MIPS)");
-    refuses(spoil_points, "made.c3d: the header says 9 points, POINT:USED 3, allowed is the same");
-    refuses(spoil_frames, "made.c3d: 0 frames, allowed 1 .. 1000000");
-    refuses(add_frames, "made.c3d: the header says 90 frames of 64 bytes, the file has 5");
-    refuses(spoil_start, "made.c3d: its frames begin at block 20486, the file has 6");
+    refuses(spoil_points,
+            "made.c3d: the header says 9 points, POINT:USED says 3, allowed: the same number");
+    refuses(spoil_frames, "made.c3d: the header says 0 frames, allowed 1 .. 1000000");
+    refuses(add_frames, "made.c3d: the header says 90 frames of 64 bytes, the file has 5 frames");
+    refuses(spoil_start, "made.c3d: the frames begin at block 20486, but the file has 6 blocks");
 }
 
 static void test_rates_of_1_hz_are_refused_and_2_khz_is_read(void)
@@ -241,7 +243,7 @@ static void test_rates_of_1_hz_are_refused_and_2_khz_is_read(void)
     himc_take_free(take);
 }
 
-static void test_mass_and_height_of_the_player_are_read_where_they_are_believable(void)
+static void test_mass_and_height_of_the_player_are_read_if_plausible(void)
 {
     maker m = maker_default(C3D_DEC, true);
     m.mass = 68.5;
@@ -255,9 +257,10 @@ static void test_mass_and_height_of_the_player_are_read_where_they_are_believabl
     take = read_maker(m);
     TEST_ASSERT_EQUAL_DOUBLE(0, take->mass);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING("player: the file says 6850 kg and 1.71 m, of which 30 .. 200 kg and "
-                             "1.19 .. 2.21 m are believed",
-                             take->notes[0]);
+    TEST_ASSERT_EQUAL_STRING(
+        "player: the file states 6850 kg and 1.71 m, ignored outside 30 .. 200 kg "
+        "and 1.19 .. 2.21 m",
+        take->notes[0]);
     himc_take_free(take);
 }
 
@@ -285,7 +288,7 @@ static void test_non_finite_coordinates_are_gaps(void)
     free(m.bytes);
 }
 
-static void test_every_prefix_and_every_byte_changed_is_survived(void)
+static void test_every_prefix_and_every_changed_byte_is_survived(void)
 {
     for (int flavour = 0; flavour < 6; flavour++) {
         maker m = maker_default((c3d_processor)(C3D_INTEL + flavour / 2), flavour % 2);
@@ -318,7 +321,7 @@ static himc_take *load_trial(void)
     return take;
 }
 
-static void test_real_file_has_the_gaps_its_source_counts(void)
+static void test_real_file_has_as_many_gaps_as_its_source_says(void)
 {
     himc_take *take = load_trial();
     TEST_ASSERT_EQUAL_INT(580, himc_take_frames(take));
@@ -363,7 +366,7 @@ static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
     int frames = himc_take_frames(take), points = himc_take_points(take), compared = 0;
     himc_vec3 *known = calloc((size_t)(frames * points), sizeof *known);
     read_export(known, frames, points);
-    // the take is turned to the body's heading: the best turn about the vertical, by least squares
+    // the take is rotated to the body's heading: the best rotation about the vertical, by least squares
     double cosine = 0, sine = 0, worst = 0, worst_far = 0;
     for (int i = 0; i < frames * points; i++) {
         himc_vec3 p = himc_take_point(take, i / points, i % points), q = known[i];
@@ -411,15 +414,15 @@ int main(void)
     RUN_TEST(test_numbers_survive_writing_and_reading_on_every_processor);
     RUN_TEST(test_more_than_65535_frames_come_from_the_trial_fields);
     RUN_TEST(test_events_count_from_frame_one_and_carry_their_context);
-    RUN_TEST(test_header_events_are_read_where_there_is_no_group);
-    RUN_TEST(test_screen_axes_say_which_way_is_up);
+    RUN_TEST(test_header_events_are_read_if_there_is_no_group);
+    RUN_TEST(test_screen_axes_give_the_up_axis);
     RUN_TEST(test_broken_headers_are_refused_with_the_reason);
     RUN_TEST(test_rates_of_1_hz_are_refused_and_2_khz_is_read);
-    RUN_TEST(test_mass_and_height_of_the_player_are_read_where_they_are_believable);
+    RUN_TEST(test_mass_and_height_of_the_player_are_read_if_plausible);
     RUN_TEST(test_units_in_metres_and_unknown_units);
     RUN_TEST(test_non_finite_coordinates_are_gaps);
-    RUN_TEST(test_every_prefix_and_every_byte_changed_is_survived);
-    RUN_TEST(test_real_file_has_the_gaps_its_source_counts);
+    RUN_TEST(test_every_prefix_and_every_changed_byte_is_survived);
+    RUN_TEST(test_real_file_has_as_many_gaps_as_its_source_says);
     RUN_TEST(test_real_file_equals_its_export_as_text_to_a_micrometre);
     return UNITY_END();
 }

@@ -1,9 +1,9 @@
-/// test_database.c: the motion database, performed: each sequence is captured, its player made from
-/// the take, and played from the tips alone, the null space being for the habit of the other two
-/// players in that nuance; then compared with the joints that nobody had seen.
+/// test_database.c: the motion database, performed: each sequence becomes a take, its player is read
+/// from the take, and plays from the tips alone; the null-space posture comes from the regression
+/// over the other two players in that nuance. The joints are then compared with the captured ones.
 ///
 /// One sequence of each nuance, or all 45 with HIMC_LONG (make test-long): 3 players, 5 nuances, 3
-/// spots. No noise, limbs and masses as they are believed to be: what is left is the control's own.
+/// spots. Without noise and with exact limbs and masses, so that the errors are those of the control.
 #include "../tools/trial.h"
 
 #include "unity.h"
@@ -14,7 +14,7 @@
 
 #define FRAMES 8192
 #define DEGREE (HIMC_PI / 180)
-#define AROUND 0.08 // of an impact: where the mallet is fastest (s)
+#define AROUND 0.08 // time around an impact in which the mallet is fastest (s)
 
 // a sequence's simulated tips
 typedef struct film {
@@ -111,7 +111,7 @@ static void measure_gap(const film *f, himc_hand hand, double from, double to, s
     add_elbow(f, hand, from, to, s->elbow);
 }
 
-// the strokes as they were simulated, but for the first and the last of a hand
+// the simulated strokes, without the first and the last of a hand
 static void measure_strokes(const film *f, const himc_mocap_config *config, sums *s)
 {
     himc_mocap *mocap = himc_mocap_new(config, &error);
@@ -187,7 +187,7 @@ static sums play_database(himc_pipeline controller, himc_law law, int few,
         trial_kind kind = {(himc_nuance)i, controller, law};
         nuance[i] = (sums){0};
         int count = is_long() ? TRIAL_SEQUENCES : 1;
-        for (int k = 0; k < count; k++) // else another player and spot in each
+        for (int k = 0; k < count; k++) // else another player and spot in each nuance
             play_sequence(&kind, 1 + (count == 1 ? (4 * i) % TRIAL_SEQUENCES : k), &nuance[i]);
         print_row(himc_nuance_name(kind.nuance), &nuance[i]);
         add_sums(&nuance[i], &total);
@@ -201,8 +201,8 @@ static double percent(double squares, const sums *s)
     return 100 * sqrt(squares / s->count);
 }
 
-// The elbow's range is that of a stroke, and that of a whole sequence, over which the captured
-// trunk wanders by 0.3 degrees, of which no tip tells.
+// The elbow's range is that of a stroke, and that of a whole sequence; in a sequence the captured
+// trunk drifts by 0.3 degrees, which the tips do not show.
 static void expect_unseen_joints(const sums *s)
 {
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 1, s->elbow[1] / s->elbow[0]);
@@ -211,7 +211,7 @@ static void expect_unseen_joints(const sums *s)
         TEST_ASSERT_TRUE(sqrt(s->angle[k] / s->count) < DEGREE);
 }
 
-// as in figure 6(a) of the 2012 paper, and as captured strokes have it (mocap/README.md)
+// as in figure 6(a) of the 2012 paper and in captured strokes (mocap/README.md)
 static void expect_order(const sums *n)
 {
     double speed[HIMC_NUANCES], height[HIMC_NUANCES], depth[HIMC_NUANCES];
@@ -229,7 +229,7 @@ static void expect_order(const sums *n)
     }
 }
 
-static void test_tips_alone_give_back_the_player(void)
+static void test_tips_alone_reproduce_the_player(void)
 {
     sums nuance[HIMC_NUANCES];
     sums all = play_database(HIMC_PIPELINE_HIMC, HIMC_LAW_COMPUTED_TORQUE, HIMC_NUANCES, nuance);
@@ -237,7 +237,7 @@ static void test_tips_alone_give_back_the_player(void)
     TEST_ASSERT_TRUE(percent(all.outside, &all) < 0.05);
     TEST_ASSERT_TRUE(percent(all.all, &all) < 0.3);
     expect_unseen_joints(&all);
-    for (int i = 0; is_long() && i < HIMC_NUANCES; i++) // one player is no nuance's mean
+    for (int i = 0; is_long() && i < HIMC_NUANCES; i++) // one player is not the mean of a nuance
         expect_unseen_joints(&nuance[i]);
     if (is_long())
         expect_order(nuance);
@@ -267,7 +267,7 @@ static void test_id_from_the_joints_has_tips_and_joints(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_tips_alone_give_back_the_player);
+    RUN_TEST(test_tips_alone_reproduce_the_player);
     RUN_TEST(test_feedforward_tips_stay_within_6_thousandths);
     RUN_TEST(test_id_from_the_joints_has_tips_and_joints);
     return UNITY_END();

@@ -1,9 +1,9 @@
-/// test_mocap.c: the motion database as motion: strokes that meet the head, bodies that move as
-/// bodies do, files that read back.
+/// test_mocap.c: the motions of the database: strokes meet the head, joints move at human speeds,
+/// files read back.
 #include "mocap_sequences.h"
 
 #include "../mocap/parts.h"
-#include "himc/mocap.h"
+#include "capture/take.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -80,7 +80,7 @@ static void test_strike_places_are_those_of_the_captures(void)
     }
 }
 
-// between the frames as well
+// also between the frames
 static void test_no_stick_goes_through_the_head(void)
 {
     double deepest = 0;
@@ -100,9 +100,8 @@ static void test_no_stick_goes_through_the_head(void)
     TEST_ASSERT_TRUE(deepest < MOST_SINK);
 }
 
-// the bounce is the stick's: falling until it touches, rising by more than half a metre a second 8
-// ms later
-static void test_a_mallet_turns_within_its_contact(void)
+// the stick falls until it touches and rises by more than 0.5 m/s 8 ms later
+static void test_a_mallet_reverses_within_its_contact(void)
 {
     for (int i = 0; i < MOCAP_SEQUENCES; i++) {
         himc_mocap *m = sequence(i);
@@ -120,7 +119,7 @@ static void test_a_mallet_turns_within_its_contact(void)
 }
 
 // largest angular speeds over all sequences (rad/s)
-static void test_joints_move_as_fast_as_joints_do(void)
+static void test_joints_move_at_human_speeds(void)
 {
     static const double most[HIMC_ARM_JOINTS] = {8, 15, 15, 45};
     double fastest[HIMC_ARM_JOINTS] = {0}, trunk = 0;
@@ -169,7 +168,7 @@ static void test_strokes_that_overlap_follow_each_other_without_a_jump(void)
     TEST_ASSERT_DOUBLE_WITHIN(4e-5, 1.5e-4, largest); // the rate of arrival
 }
 
-static void test_the_same_seed_is_the_same_motion_and_another_is_another(void)
+static void test_equal_seeds_give_equal_motions_and_others_differ(void)
 {
     himc_mocap_config c = sequence_config(7);
     himc_mocap *a = sequence_made(&c), *b = sequence_made(&c);
@@ -190,7 +189,7 @@ static void test_the_same_seed_is_the_same_motion_and_another_is_another(void)
     himc_mocap_free(other);
 }
 
-static void test_what_cannot_be_played_is_refused_in_a_line(void)
+static void test_impossible_configs_are_refused_in_a_line(void)
 {
     himc_mocap_config c = himc_mocap_default();
     c.player = 3;
@@ -218,12 +217,12 @@ static himc_take *write_and_read(const himc_mocap *m, const char *suffix)
     return take;
 }
 
-// how far found strikes lie from those that were made
+// distances of found strikes from the true ones
 typedef struct misses {
     double time, floor, height;
 } misses;
 
-// strikes found in a take: as many as were made, each by its hand at its time and place
+// the strikes found in a take are the true ones: number, hands, times and places
 static void expect_strikes(const himc_mocap *m, himc_take *take, misses *worst)
 {
     himc_take_tip tips[HIMC_HANDS];
@@ -245,7 +244,7 @@ static void expect_found(const misses *worst)
 {
     printf("strikes found within %.1f ms, %.1f mm on the head and %.1f mm in height\n",
            1e3 * worst->time, 1e3 * worst->floor, 1e3 * worst->height);
-    // where fall and rebound meet is half a contact later than the touch, and deeper
+    // fall and rebound intersect half a contact later than the touch, and deeper
     TEST_ASSERT_TRUE(worst->time < 0.006);
     TEST_ASSERT_TRUE(worst->floor < 0.005);
     TEST_ASSERT_TRUE(worst->height < 0.035);
@@ -304,7 +303,7 @@ static void test_a_bvh_reads_back_rotation_by_rotation(void)
 
 #define CHECKED 3
 
-// points of frame f as they were made
+// the true points of frame f
 static void checked_points(const himc_mocap *m, int f, himc_vec3 x[CHECKED])
 {
     himc_body_state s = sequence_state(m, f / HIMC_MOCAP_RATE);
@@ -314,7 +313,7 @@ static void checked_points(const himc_mocap *m, int f, himc_vec3 x[CHECKED])
     x[2] = himc_vec3_add(s.origin[HIMC_RIGHT_HAND], beside);
 }
 
-// the reader turns every take so that its body looks along x on the average, this one hardly
+// the reader rotates every take so that the mean body faces along x, this one hardly
 static double heading_given(const himc_mocap *m, const himc_take *take, const int point[CHECKED])
 {
     himc_vec3 x[CHECKED];
@@ -389,11 +388,11 @@ int main(void)
     RUN_TEST(test_the_stick_is_level_and_the_mallet_on_the_head_at_each_impact);
     RUN_TEST(test_strike_places_are_those_of_the_captures);
     RUN_TEST(test_no_stick_goes_through_the_head);
-    RUN_TEST(test_a_mallet_turns_within_its_contact);
-    RUN_TEST(test_joints_move_as_fast_as_joints_do);
+    RUN_TEST(test_a_mallet_reverses_within_its_contact);
+    RUN_TEST(test_joints_move_at_human_speeds);
     RUN_TEST(test_strokes_that_overlap_follow_each_other_without_a_jump);
-    RUN_TEST(test_the_same_seed_is_the_same_motion_and_another_is_another);
-    RUN_TEST(test_what_cannot_be_played_is_refused_in_a_line);
+    RUN_TEST(test_equal_seeds_give_equal_motions_and_others_differ);
+    RUN_TEST(test_impossible_configs_are_refused_in_a_line);
     RUN_TEST(test_each_stroke_is_found_in_each_of_the_45_files);
     RUN_TEST(test_a_bvh_reads_back_rotation_by_rotation);
     RUN_TEST(test_a_c3d_reads_back_marker_by_marker);

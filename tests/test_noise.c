@@ -1,5 +1,5 @@
-/// test_noise.c: what a tracker's noise does: it is measured, makes no strikes of its own and
-/// hardly shows in the accelerations asked for.
+/// test_noise.c: noise of a tracker: it is measured, causes no false strikes, and has little effect
+/// on the target accelerations.
 #include "take_files.h"
 
 #include "plan/planner.h"
@@ -50,7 +50,7 @@ static void test_noise_is_measured_through_motion_of_any_size_at_any_rate(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_noise(x, 4));
 }
 
-// blows every 0.5 s, between them up and down
+// blows every 0.5 s, with smooth motion between them
 static himc_vec3 drumming(double t)
 {
     touch_time = 0.3 + 0.5 * floor(fmax(0, t) / 0.5);
@@ -104,8 +104,8 @@ static void test_a_millimetre_of_noise_makes_no_strikes_and_no_spikes(void)
     TEST_ASSERT_TRUE(much < clean + 180);
 }
 
-// root mean square of the accelerations a stream of that rate asks for (m/s^2), and of how far the
-// tip is from the path, one period late (m)
+// RMS of the target accelerations from a stream of that rate (m/s^2), and of the distance of the tip
+// from the path, one period late (m)
 static double live(double rate, double size, double *off)
 {
     himc_planner_config config = himc_planner_default();
@@ -133,7 +133,7 @@ static double live(double rate, double size, double *off)
     return sqrt(sum / (double)count);
 }
 
-static void test_live_targets_that_shake_by_a_millimetre_are_followed_calmly(void)
+static void test_live_targets_with_a_millimetre_of_noise_give_small_accelerations(void)
 {
     double off; // the path itself has 7.8 m/s^2; unfiltered, noise makes 100 to 160
     TEST_ASSERT_TRUE(live(250, 0, &off) < 9 && off < 0.0005);
@@ -149,6 +149,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_noise_is_measured_through_motion_of_any_size_at_any_rate);
     RUN_TEST(test_a_millimetre_of_noise_makes_no_strikes_and_no_spikes);
-    RUN_TEST(test_live_targets_that_shake_by_a_millimetre_are_followed_calmly);
+    RUN_TEST(test_live_targets_with_a_millimetre_of_noise_give_small_accelerations);
     return UNITY_END();
 }

@@ -4,7 +4,7 @@
 
 #include "session.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #define BVH "build/score-take.bvh"
 #define TRC "build/score-take.trc"

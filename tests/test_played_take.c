@@ -4,7 +4,7 @@
 
 #include "session.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #define SECONDS 2.5
 #define FILE_NAME "build/played.bvh"

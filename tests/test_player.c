@@ -1,5 +1,5 @@
-/// test_player.c: from a take's skeleton back to the body that made it, whatever the file calls its
-/// joints, however its zero pose stands and whatever its unit; bodies of nobody are refused.
+/// test_player.c: from a take's skeleton back to the body that made it, for any names of joints, zero
+/// pose and unit; impossible bodies are refused.
 #include "read_players.h"
 
 static void test_measures_of_a_skeleton_take_are_the_bodys_own(void)
@@ -16,29 +16,29 @@ static void test_measures_of_a_skeleton_take_are_the_bodys_own(void)
                               himc_vec3_length(himc_vec3_sub(player->hips, skeleton.root)));
 }
 
-static void test_mass_not_said_keeps_the_body_mass_index(void)
+static void test_mass_that_is_not_stated_keeps_the_body_mass_index(void)
 {
     himc_skeleton_config config = another_player();
     make_take(&config);
     given.height = 1.6;
     given.mass = 64; // 25 kg/m^2
     read_player();
-    TEST_ASSERT_FALSE(player->mass_said);
+    TEST_ASSERT_FALSE(player->mass_stated);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 25 * 1.88 * 1.88, player->config.mass);
 }
 
-static void test_mass_and_height_that_the_file_says_are_taken(void)
+static void test_mass_and_height_stated_by_the_file_are_used(void)
 {
     make_take(&given);
     take->mass = 68;
     take->height = 1.71;
     read_player();
-    TEST_ASSERT_TRUE(player->mass_said);
+    TEST_ASSERT_TRUE(player->mass_stated);
     TEST_ASSERT_EQUAL_DOUBLE(68, player->config.mass);
     TEST_ASSERT_EQUAL_DOUBLE(1.71, player->config.height);
 }
 
-static void test_postures_of_a_skeleton_take_come_back_as_they_were(void)
+static void test_poses_of_a_skeleton_take_come_back_unchanged(void)
 {
     himc_skeleton_config config = another_player();
     make_take(&config);
@@ -48,7 +48,7 @@ static void test_postures_of_a_skeleton_take_come_back_as_they_were(void)
     TEST_ASSERT_TRUE(worst_tip() < 1e-6);
 }
 
-static void test_postures_survive_a_bvh_file(void)
+static void test_poses_survive_a_bvh_file(void)
 {
     make_take(&given);
     TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/saved-player.bvh", &error), error.text);
@@ -61,7 +61,7 @@ static void test_postures_survive_a_bvh_file(void)
     TEST_ASSERT_TRUE(worst_tip() < 1e-5);
 }
 
-static void test_the_mean_posture_has_the_joints_between(void)
+static void test_the_mean_pose_has_intermediate_joints(void)
 {
     make_take(&given);
     read_player();
@@ -74,7 +74,7 @@ static void test_the_mean_posture_has_the_joints_between(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(sum));
 }
 
-// the file's zero pose turned: segment i hangs along align[i] of what it hangs along here
+// changes the file's zero pose: segment i is rotated by align[i]
 static void turn_zero_pose(const himc_quat align[HIMC_SEGMENTS])
 {
     for (int i = 0; i < take->points; i++) {
@@ -88,7 +88,7 @@ static void turn_zero_pose(const himc_quat align[HIMC_SEGMENTS])
     }
 }
 
-static void test_a_t_pose_with_palms_down_gives_the_same_postures(void)
+static void test_a_t_pose_with_palms_down_gives_the_same_poses(void)
 {
     himc_quat align[HIMC_SEGMENTS];
     make_take(&given);
@@ -146,7 +146,7 @@ static void test_left_and_right_exchanged_are_refused_with_a_line(void)
                              error.text);
 }
 
-static void test_a_missing_joint_takes_only_its_own_with_it(void)
+static void test_a_missing_joint_removes_only_its_own_rotations(void)
 {
     static const char *const names[][2] = {{"LeftForeArm", "thing"}};
     make_take(&given);
@@ -174,7 +174,7 @@ static void test_a_player_of_seventeen_metres_is_refused_with_a_line(void)
                              error.text);
 }
 
-// a file of the take in another unit, by its text
+// the take as a file in another unit
 static himc_take *in_units(double unit)
 {
     himc_take_options options = himc_take_default();
@@ -203,13 +203,12 @@ static void test_inches_and_feet_are_known_by_the_players_size(void)
     }
 }
 
-static void test_a_skeleton_of_no_known_unit_is_refused_with_a_line(void)
+static void test_a_skeleton_of_unknown_unit_is_refused_with_a_line(void)
 {
     make_take(&given);
     himc_take *other = in_units(0.06); // 17 cm
     TEST_ASSERT_NULL(other);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "units through its bones is no player's size"),
-                                 error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "inches or feet no player's size"), error.text);
     TEST_ASSERT_NULL(strchr(error.text, '\n'));
 }
 
@@ -217,7 +216,7 @@ static void test_metres_ten_times_too_long_are_refused_with_a_line(void)
 {
     make_take(&given);
     himc_take *other = in_units(0.1);
-    TEST_ASSERT_NOT_NULL_MESSAGE(other, error.text); // it might be a child in CMU's units
+    TEST_ASSERT_NOT_NULL_MESSAGE(other, error.text); // plausible as a child in CMU's units
     TEST_ASSERT_NULL(himc_player_new(other, NULL, &given, &error));
     himc_take_free(other);
     TEST_ASSERT_EQUAL_STRING(
@@ -244,18 +243,18 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_measures_of_a_skeleton_take_are_the_bodys_own);
-    RUN_TEST(test_mass_not_said_keeps_the_body_mass_index);
-    RUN_TEST(test_mass_and_height_that_the_file_says_are_taken);
-    RUN_TEST(test_postures_of_a_skeleton_take_come_back_as_they_were);
-    RUN_TEST(test_postures_survive_a_bvh_file);
-    RUN_TEST(test_the_mean_posture_has_the_joints_between);
-    RUN_TEST(test_a_t_pose_with_palms_down_gives_the_same_postures);
+    RUN_TEST(test_mass_that_is_not_stated_keeps_the_body_mass_index);
+    RUN_TEST(test_mass_and_height_stated_by_the_file_are_used);
+    RUN_TEST(test_poses_of_a_skeleton_take_come_back_unchanged);
+    RUN_TEST(test_poses_survive_a_bvh_file);
+    RUN_TEST(test_the_mean_pose_has_intermediate_joints);
+    RUN_TEST(test_a_t_pose_with_palms_down_gives_the_same_poses);
     RUN_TEST(test_the_names_of_another_skeleton_are_understood);
     RUN_TEST(test_left_and_right_exchanged_are_refused_with_a_line);
-    RUN_TEST(test_a_missing_joint_takes_only_its_own_with_it);
+    RUN_TEST(test_a_missing_joint_removes_only_its_own_rotations);
     RUN_TEST(test_a_player_of_seventeen_metres_is_refused_with_a_line);
     RUN_TEST(test_inches_and_feet_are_known_by_the_players_size);
-    RUN_TEST(test_a_skeleton_of_no_known_unit_is_refused_with_a_line);
+    RUN_TEST(test_a_skeleton_of_unknown_unit_is_refused_with_a_line);
     RUN_TEST(test_metres_ten_times_too_long_are_refused_with_a_line);
     RUN_TEST(test_a_cmu_skeleton_gives_a_player_of_human_size);
     return UNITY_END();

@@ -1,5 +1,5 @@
-/// test_player_markers.c: from markers back to the body they were on: in its joints or beside them,
-/// under wrong names, with gaps, and on captured arms.
+/// test_player_markers.c: from markers back to the body: markers in joints or beside them, with
+/// wrong names, with gaps, and on captured arms.
 #include "read_players.h"
 
 static void test_markers_in_the_joint_centres_give_arms_legs_and_trunk(void)
@@ -16,7 +16,7 @@ static void test_markers_in_the_joint_centres_give_arms_legs_and_trunk(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.88, player->config.height);
     TEST_ASSERT_TRUE(worst_tip() < 1e-6);
     TEST_ASSERT_TRUE(worst_angle(0, 1) < 1e-6); // the trunk
-    // the arms' turns about themselves come from planes: those of the natural posture, within this
+    // the arms' rotations about their own axes come from planes: near those of the natural posture
     TEST_ASSERT_TRUE(worst_angle(himc_arm_joint(HIMC_LEFT, 0), himc_arm_joint(HIMC_LEFT, 3) + 2) <
                      0.25);
 }
@@ -38,7 +38,7 @@ static void test_markers_beside_the_joints_give_every_rotation(void)
     TEST_ASSERT_TRUE(worst_tip() < 1e-5);
 }
 
-static void test_markers_whose_names_are_permuted_are_no_bones(void)
+static void test_markers_with_permuted_names_are_not_bones(void)
 {
     make_take(&given);
     forget_skeleton();
@@ -70,7 +70,7 @@ static void test_a_short_gap_of_a_marker_is_bridged(void)
     TEST_ASSERT_TRUE(worst_tip() < 2e-3);
 }
 
-static void test_a_long_gap_of_a_marker_leaves_its_joints_to_nature_and_says_so(void)
+static void test_a_long_gap_of_a_marker_leaves_its_joints_natural_with_a_note(void)
 {
     make_take(&given);
     forget_skeleton();
@@ -79,8 +79,8 @@ static void test_a_long_gap_of_a_marker_leaves_its_joints_to_nature_and_says_so(
     TEST_ASSERT_FALSE(player->known[himc_joint_find("right-elbow")]);
     TEST_ASSERT_TRUE(player->known[himc_joint_find("left-elbow")]);
     TEST_ASSERT_EQUAL_INT(1, player->note_count);
-    TEST_ASSERT_EQUAL_STRING("right elbow: RightForeArm is missing in frames 100 .. 199, allowed "
-                             "are gaps of 0.2 s",
+    TEST_ASSERT_EQUAL_STRING("right elbow: RightForeArm is missing in frames 100 .. 199, allowed: "
+                             "gaps up to 0.2 s",
                              player->notes[0]);
 }
 
@@ -113,9 +113,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_markers_in_the_joint_centres_give_arms_legs_and_trunk);
     RUN_TEST(test_markers_beside_the_joints_give_every_rotation);
-    RUN_TEST(test_markers_whose_names_are_permuted_are_no_bones);
+    RUN_TEST(test_markers_with_permuted_names_are_not_bones);
     RUN_TEST(test_a_short_gap_of_a_marker_is_bridged);
-    RUN_TEST(test_a_long_gap_of_a_marker_leaves_its_joints_to_nature_and_says_so);
+    RUN_TEST(test_a_long_gap_of_a_marker_leaves_its_joints_natural_with_a_note);
     RUN_TEST(test_the_arm_of_the_real_stroke_has_its_published_lengths);
     RUN_TEST(test_an_arm_of_anatomical_markers_is_found);
     return UNITY_END();

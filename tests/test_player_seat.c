@@ -1,9 +1,9 @@
-/// test_player_seat.c: where a take's player sits and where its drum stands, wherever its room was,
-/// and what is said of both.
+/// test_player_seat.c: places of a take's player and drum, for any origin of the take, and the lines
+/// about both.
 #include "read_players.h"
 #include "base/head_frame.h"
 
-static void test_a_seated_player_keeps_the_place_it_has_in_our_world(void)
+static void test_a_player_at_the_origin_keeps_its_place(void)
 {
     himc_head_frame drum = usual_drum;
     make_take(&given);
@@ -20,7 +20,7 @@ static void move_take(himc_vec3 by)
         take->x[i] = himc_vec3_add(take->x[i], by);
 }
 
-static void test_a_player_far_off_is_brought_before_the_drum(void)
+static void test_a_distant_player_is_moved_to_the_drum(void)
 {
     himc_head_frame drum = usual_drum;
     make_take(&given);
@@ -34,20 +34,20 @@ static void test_a_player_far_off_is_brought_before_the_drum(void)
     TEST_ASSERT_EQUAL_MEMORY(&usual_drum, &drum, sizeof drum);
 }
 
-static void test_a_drum_that_would_be_missed_is_moved_under_the_strikes(void)
+static void test_a_drum_that_strikes_would_miss_is_moved_under_them(void)
 {
     himc_head_frame drum = usual_drum;
     drum.center = himc_vec3_make(0.9, 0.6, 0.85);
     make_take(&given);
     read_player();
     TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
-    // struck at 0.5 m, the usual spot: three quarters of the radius before the centre
+    // struck at 0.5 m, the usual place: three quarters of the radius in front of the centre
     TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.5 + 0.75 * drum.radius, drum.center.x);
     TEST_ASSERT_DOUBLE_WITHIN(0.03, 0, drum.center.y);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.85, drum.center.z);
 }
 
-static void test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot(void)
+static void test_tips_alone_seat_the_player_so_that_strikes_meet_the_usual_place(void)
 {
     himc_head_frame drum = usual_drum;
     make_take(&given);
@@ -85,7 +85,7 @@ static void test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor(v
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.root.z + 0.1, player->config.seat);
 }
 
-// a take of tips alone, `shape` of the time from 0 to 1
+// a take of tips alone: `shape` is a function of the time from 0 to 1
 static void make_tips(himc_vec3 (*shape)(double))
 {
     make_take(&given);
@@ -109,7 +109,7 @@ static himc_vec3 wide_circle(double u)
     return himc_vec3_make(7 + 0.4 * sin(2 * HIMC_PI * u), 1, 3 + 0.5 * cos(2 * HIMC_PI * u));
 }
 
-static void test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_out_of_the_way(void)
+static void test_tips_without_strikes_are_brought_into_reach_and_the_drum_out_of_the_way(void)
 {
     himc_head_frame drum = usual_drum;
     himc_take_tip tips[HIMC_HANDS];
@@ -130,7 +130,7 @@ static void test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_ou
     TEST_ASSERT_EQUAL_DOUBLE(usual_drum.center.x, drum.center.x);
 }
 
-static void test_a_walking_player_is_told_from_a_swaying_one_and_held(void)
+static void test_a_walking_player_is_held_and_a_swaying_one_is_not_walking(void)
 {
     himc_head_frame drum = usual_drum;
     make_take(&given);
@@ -141,8 +141,8 @@ static void test_a_walking_player_is_told_from_a_swaying_one_and_held(void)
     read_player();
     TEST_ASSERT_TRUE(player->walks);
     TEST_ASSERT_EQUAL_INT(1, player->note_count);
-    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6); // about the hips, wherever they are
-    for (int twice = 0; twice < 2; twice++) { // what has been taken out is taken out once
+    TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6); // relative to the hips
+    for (int twice = 0; twice < 2; twice++) {             // the motion is removed only once
         TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
         himc_vec3 after = *himc_take_at(take, 100, take->points - 1);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_vec3_length(himc_vec3_sub(after, before)));
@@ -156,7 +156,7 @@ static void hear(void *user, const char *line)
     strcat(strcat(all, line), "\n");
 }
 
-static void test_description_says_how_tall_how_heavy_and_where_the_head_goes(void)
+static void test_description_has_height_mass_and_place_of_the_head(void)
 {
     char all[4096] = "";
     himc_head_frame drum = usual_drum;
@@ -168,19 +168,20 @@ static void test_description_says_how_tall_how_heavy_and_where_the_head_goes(voi
         strstr(all, "player: 1.750 m tall (by legs and trunk), 75.0 kg (by a body mass index of"),
         all);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "seat: hip joints 0.735 m above the floor"), all);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "drumhead: centre 0.700 m before the player"), all);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, "drumhead: centre 0.700 m in front of the player"),
+                                 all);
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_a_seated_player_keeps_the_place_it_has_in_our_world);
-    RUN_TEST(test_a_player_far_off_is_brought_before_the_drum);
-    RUN_TEST(test_a_drum_that_would_be_missed_is_moved_under_the_strikes);
-    RUN_TEST(test_tips_alone_put_the_player_where_the_strikes_meet_the_usual_spot);
+    RUN_TEST(test_a_player_at_the_origin_keeps_its_place);
+    RUN_TEST(test_a_distant_player_is_moved_to_the_drum);
+    RUN_TEST(test_a_drum_that_strikes_would_miss_is_moved_under_them);
+    RUN_TEST(test_tips_alone_seat_the_player_so_that_strikes_meet_the_usual_place);
     RUN_TEST(test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor);
-    RUN_TEST(test_tips_that_strike_nothing_are_brought_into_reach_and_the_drum_out_of_the_way);
-    RUN_TEST(test_a_walking_player_is_told_from_a_swaying_one_and_held);
-    RUN_TEST(test_description_says_how_tall_how_heavy_and_where_the_head_goes);
+    RUN_TEST(test_tips_without_strikes_are_brought_into_reach_and_the_drum_out_of_the_way);
+    RUN_TEST(test_a_walking_player_is_held_and_a_swaying_one_is_not_walking);
+    RUN_TEST(test_description_has_height_mass_and_place_of_the_head);
     return UNITY_END();
 }

@@ -1,10 +1,10 @@
 /// test_real_stroke.c: a real stroke, captured from shoulder to bead, played from its bead alone.
 ///
-/// Control sees the bead. The player is the take's: lengths, seat, mean posture, and the habit,
-/// which is the usual one corrected by this take's own postures: so elbow and wrist are a
-/// regression's on the stroke it was fitted to, not a prediction. The capture's centres are not a
-/// rigid arm's (the bead's distance from the finger varies by 18 mm): no body comes nearer to all
-/// of them than 8 mm at the elbow.
+/// The control sees only the bead. Lengths, seat and mean pose come from the take, and the posture
+/// regression is the usual one corrected by this take's own poses: so elbow and wrist are fitted to
+/// this stroke, not predicted. The captured centres are not those of a rigid arm (the bead's
+/// distance from the finger varies by 18 mm): no body comes nearer to all of them than 8 mm at the
+/// elbow.
 #include "take_files.h"
 
 #include "performance/performance_state.h"
@@ -20,7 +20,7 @@ typedef struct comparison {
     himc_performance *performance;
     himc_take *take;
     int point[POINTS];
-    double square[POINTS]; // of the distances from where it was captured (m^2)
+    double square[POINTS]; // of the distances from the captured positions (m^2)
     int count;
 } comparison;
 
@@ -34,7 +34,7 @@ static himc_vec3 captured(const comparison *c, int which, double t)
     return himc_vec3_add(x, himc_performance_take_offset(c->performance));
 }
 
-// all of the take, which begins and ends more slowly than it was captured
+// the whole take, with a slow start and end
 static void compare(void *user, const himc_tick *tick)
 {
     comparison *c = user;
@@ -54,7 +54,7 @@ static void compare(void *user, const himc_tick *tick)
     c->count++;
 }
 
-// plays the take as `himc render` does
+// plays the take like `himc render`
 static himc_performance_stats play_capture(const char *path, const char *mode, comparison *c)
 {
     static const char *const name[POINTS] = {"SHOULDER", "ELBOW", "WRIST"};

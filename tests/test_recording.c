@@ -1,6 +1,6 @@
 /// test_recording.c: what is played, written as a take, plays back to the same strokes.
 #include "session.h"
-#include "himc/mocap.h"
+#include "capture/take.h"
 
 #define PIECE                                                                                 \
     "tempo 100; drum kettle; stroke 2 right legato mf; stroke 3 left tenuto f; "              \

@@ -1,6 +1,6 @@
-/// test_retarget.c: a take played by a body that is not quite its player's: the tips of `himc`, and
-/// of `id` with its arms bent, are where they were captured; joints alone miss by what the limbs
-/// are longer, all of them together.
+/// test_retarget.c: a take played by a body with longer limbs than its player's: the tips of `himc`,
+/// and of `id` with bent arms, are where they were captured; captured joints alone miss by the sum
+/// of the differences in length.
 #include "take_players.h"
 
 #include "himc/performance.h"
@@ -60,7 +60,7 @@ static double play(void)
     return himc_performance_measure(performance).tip_rms;
 }
 
-static void test_himc_puts_the_tips_of_a_longer_arm_where_they_were(void)
+static void test_himc_puts_the_tips_of_a_longer_arm_at_the_captured_positions(void)
 {
     lengthen_arms();
     TEST_ASSERT_TRUE(play() < 1e-4);
@@ -74,7 +74,7 @@ static void test_id_does_so_with_arms_bent_to_the_tips(void)
 }
 
 // 3 % of upper arm, forearm and hand, 0.6 m in all
-static void test_joints_as_captured_miss_by_what_the_limbs_are_longer(void)
+static void test_joints_as_captured_miss_by_the_difference_in_length(void)
 {
     double off;
     lengthen_arms();
@@ -114,9 +114,9 @@ static void test_reset_bends_again(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_himc_puts_the_tips_of_a_longer_arm_where_they_were);
+    RUN_TEST(test_himc_puts_the_tips_of_a_longer_arm_at_the_captured_positions);
     RUN_TEST(test_id_does_so_with_arms_bent_to_the_tips);
-    RUN_TEST(test_joints_as_captured_miss_by_what_the_limbs_are_longer);
+    RUN_TEST(test_joints_as_captured_miss_by_the_difference_in_length);
     RUN_TEST(test_joints_as_captured_have_the_tips_of_their_own_player);
     RUN_TEST(test_reset_bends_again);
     return UNITY_END();

@@ -1,5 +1,5 @@
-/// test_strange_takes.c: captures that were not made for a drummer, played: by one who does not
-/// strike, by one who walks, by one whose gestures no arm can follow.
+/// test_strange_takes.c: captures that are not of drummers, played: a person who does not strike, one
+/// who walks, and gestures that no arm can follow.
 #include "take_players.h"
 
 #include "session.h"
@@ -40,7 +40,7 @@ static himc_performance_stats play(const char *mode, const char *file, const cha
     return s;
 }
 
-static void test_an_arm_that_reaches_about_is_followed_in_every_mode(void)
+static void test_a_reaching_arm_is_followed_in_every_mode(void)
 {
     static const char *const modes[] = {"himc", "id", "ik"};
     char path[512], notes[1024];
@@ -54,13 +54,13 @@ static void test_an_arm_that_reaches_about_is_followed_in_every_mode(void)
         TEST_ASSERT_TRUE_MESSAGE(1e3 * s.tip_rms < 0.2, modes[i]);
         TEST_ASSERT_EQUAL_INT(0, s.recoveries);
         TEST_ASSERT_EQUAL_INT(0, s.strokes);
-        TEST_ASSERT_EQUAL_DOUBLE(0, s.peak_force); // the head is out of its way
+        TEST_ASSERT_EQUAL_DOUBLE(0, s.peak_force); // the head is out of the way
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(notes, "out of the take's way"), notes);
         TEST_ASSERT_NULL_MESSAGE(strstr(notes, "out of reach"), notes);
     }
 }
 
-static void test_one_who_hops_through_the_room_does_so_on_the_spot(void)
+static void test_a_person_hopping_through_the_room_is_held_at_the_seat(void)
 {
     char path[512], notes[1024];
     const char *shared = shared_capture("cmu131_bvh_120hz/131_03.bvh");
@@ -69,17 +69,17 @@ static void test_one_who_hops_through_the_room_does_so_on_the_spot(void)
     snprintf(path, sizeof path, "%s", shared);
     himc_performance_stats s =
         play("ik", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
-    TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.005, notes); // was .6 m, from where the hips began
+    TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.005, notes); // once 0.6 m, from the hips' first position
     s = play("himc", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
-    TEST_ASSERT_TRUE(s.tip_rms < 0.05); // the head is where a hand goes down, and holds it up
+    TEST_ASSERT_TRUE(s.tip_rms < 0.05); // the head stops a hand that goes down
     TEST_ASSERT_EQUAL_INT(0, s.recoveries);
     s = play("id", path, "LFingers_end", "RFingers_end", 11, notes, sizeof notes);
-    TEST_ASSERT_TRUE(s.tip_rms < 0.05); // flew apart: bent to hold a stick, the arms went wild
+    TEST_ASSERT_TRUE(s.tip_rms < 0.05); // once unstable: arms bent to hold a stick
     TEST_ASSERT_EQUAL_INT(0, s.recoveries);
 }
 
-// no stick is in these hands: their limits are those of arms that hold one
-static void test_limits_of_a_take_without_sticks_let_it_be_played(void)
+// these hands hold no stick: the limits are those of arms that hold one
+static void test_a_take_without_sticks_is_playable_within_its_limits(void)
 {
     static const char *const kinds[] = {"ellipsoid", "euler"}, *const modes[] = {"himc", "id"};
     char path[512], notes[1024];
@@ -103,10 +103,10 @@ static void test_limits_of_a_take_without_sticks_let_it_be_played(void)
     limits = "off";
     law = "computed-torque";
     printf("with limits: tips within %.0f mm (RMS)\n", 1e3 * s.tip_rms);
-    TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.1, notes); // was 246 mm
+    TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.1, notes); // once 246 mm
 }
 
-// markers of two tips that swing 1.2 m to each side, wherever a player stands; y is up
+// markers of two tips that swing 1.2 m to each side; y is up
 static void write_swings(const char *path)
 {
     FILE *file = fopen(path, "w");
@@ -148,7 +148,7 @@ static void see(void *user, const himc_tick *tick)
     }
 }
 
-static void test_an_arm_is_stretched_after_what_no_arm_can_follow(void)
+static void test_an_arm_is_stretched_towards_targets_out_of_reach(void)
 {
     char notes[1024];
     const char *path = "build/swings.trc";
@@ -174,9 +174,9 @@ static void test_an_arm_is_stretched_after_what_no_arm_can_follow(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_an_arm_that_reaches_about_is_followed_in_every_mode);
-    RUN_TEST(test_one_who_hops_through_the_room_does_so_on_the_spot);
-    RUN_TEST(test_limits_of_a_take_without_sticks_let_it_be_played);
-    RUN_TEST(test_an_arm_is_stretched_after_what_no_arm_can_follow);
+    RUN_TEST(test_a_reaching_arm_is_followed_in_every_mode);
+    RUN_TEST(test_a_person_hopping_through_the_room_is_held_at_the_seat);
+    RUN_TEST(test_a_take_without_sticks_is_playable_within_its_limits);
+    RUN_TEST(test_an_arm_is_stretched_towards_targets_out_of_reach);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/// test_take.c: tips, gaps, axes and units of takes made up of known motions.
+/// test_take.c: tips, gaps, axes and units of takes made from known motions.
 #include "take_motions.h"
 
 void setUp(void)
@@ -11,7 +11,7 @@ void tearDown(void)
 
 static double gap_begin, gap_end;
 
-// a ballistic arc with a hole
+// a ballistic arc with a gap
 static himc_vec3 arc(double t)
 {
     if (t > gap_begin && t < gap_end)
@@ -64,7 +64,7 @@ static void test_longer_gap_is_refused_with_marker_frames_and_length(void)
     himc_take_options options = himc_take_default();
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
     TEST_ASSERT_EQUAL_STRING("motion.trc: right tip RTIP is missing in frames 22 .. 70 (0.245 s), "
-                             "allowed are gaps of 0.2 s",
+                             "allowed: gaps up to 0.2 s",
                              error.text);
     options.longest_gap = 0.25;
     TEST_ASSERT_TRUE(himc_take_tips(take, &options, tips, &error));
@@ -133,7 +133,7 @@ static himc_vec3 left_seen_from_behind(double t)
     return himc_vec3_make(-x.x, -x.y, x.z);
 }
 
-static void test_a_player_who_faced_the_other_way_is_turned_round(void)
+static void test_a_player_who_faced_the_other_way_is_rotated(void)
 {
     const char *const names[2] = {"RTIP", "LTIP"};
     motion *const motions[2] = {right_seen_from_behind, left_seen_from_behind};
@@ -148,7 +148,7 @@ static void test_a_player_who_faced_the_other_way_is_turned_round(void)
     himc_take_free(take);
 }
 
-static void test_metres_that_call_themselves_millimetres_are_read_as_metres_and_it_is_said(void)
+static void test_metres_stated_as_millimetres_are_read_as_metres_with_a_note(void)
 {
     const char *text = "PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t2\t2\tmm\n"
                        "Frame#\tTime\tHead\t\t\tHips\t\t\n\n"
@@ -159,15 +159,16 @@ static void test_metres_that_call_themselves_millimetres_are_read_as_metres_and_
     himc_take_free(take);
 }
 
-static void test_a_player_of_no_size_is_refused(void)
+static void test_points_17_m_apart_are_refused(void)
 {
     const char *text = "PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t1\t2\tm\n"
                        "Frame#\tTime\tHead\t\t\tHips\t\t\n\n"
                        "1\t0\t0\t17\t0\t0\t0\t0\n";
     TEST_ASSERT_NULL(read_text(text, "tall.trc", NULL, &error));
-    TEST_ASSERT_EQUAL_STRING("tall.trc: points lie 17 m apart in m and no metric unit makes that "
-                             "0.2 .. 4 m: is this a player?",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "tall.trc: the points are 17 m apart if the unit is m, no metric unit makes "
+        "that a player's size, allowed 0.2 .. 4 m",
+        error.text);
 }
 
 static himc_vec3 nearly_still(double t)
@@ -182,11 +183,11 @@ static void test_a_marker_that_hardly_moves_keeps_its_unit(void)
     himc_take_free(take);
 }
 
-static void test_files_that_are_no_takes_are_refused(void)
+static void test_files_of_other_formats_are_refused(void)
 {
     himc_take_options options = himc_take_default();
     TEST_ASSERT_NULL(himc_take_load("score.txt", &options, &error));
-    TEST_ASSERT_EQUAL_STRING("score.txt: not a take by its name, allowed .bvh .c3d .trc",
+    TEST_ASSERT_EQUAL_STRING("score.txt: not a take by its suffix, allowed .bvh .c3d .trc",
                              error.text);
     TEST_ASSERT_NULL(himc_take_load("does/not/exist.bvh", &options, &error));
     TEST_ASSERT_EQUAL_STRING("does/not/exist.bvh: cannot be read: No such file or directory",
@@ -206,7 +207,7 @@ static void hear(void *user, const char *line)
     strcat(told, "\n");
 }
 
-static void test_describe_tells_what_was_found_and_how_it_was_read(void)
+static void test_describe_lists_contents_units_and_axes(void)
 {
     himc_take *take = read_roll(600);
     told[0] = 0;
@@ -215,13 +216,13 @@ static void test_describe_tells_what_was_found_and_how_it_was_read(void)
         "format: TRC\n",
         "length: 600 frames at 250 Hz",
         "points 2: Anna:R_Stick_Tip Anna:L_Stick_Tip\n",
-        "units: mm, as the file says\n",
-        "axes: z up, as asked for; turned so that the left tip is left of "
+        "units: mm, stated by the file\n",
+        "axes: z up, set by the user; rotated so that the left tip is left of "
         "the right one\n",
         "gaps: 0 frames in 0 points\n",
-        "tip: right is Anna:R_Stick_Tip, 0 frames filled\n",
+        "tip: right is Anna:R_Stick_Tip, 0 frames in gaps are filled\n",
         "strikes: 15\n",
-        "drum: the head belongs under 0.650 0.050 m, at the height of 0.811 m\n"};
+        "drum: centre of the strikes at 0.650 0.050 m, tips touch the head at a height of 0.811 m\n"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, lines[i]), lines[i]);
     himc_take_free(take);
@@ -247,12 +248,12 @@ int main(void)
     RUN_TEST(test_longer_gap_is_refused_with_marker_frames_and_length);
     RUN_TEST(test_tips_are_found_by_the_names_laboratories_use);
     RUN_TEST(test_tips_can_be_named_and_a_wrong_name_is_refused);
-    RUN_TEST(test_a_player_who_faced_the_other_way_is_turned_round);
-    RUN_TEST(test_metres_that_call_themselves_millimetres_are_read_as_metres_and_it_is_said);
-    RUN_TEST(test_a_player_of_no_size_is_refused);
+    RUN_TEST(test_a_player_who_faced_the_other_way_is_rotated);
+    RUN_TEST(test_metres_stated_as_millimetres_are_read_as_metres_with_a_note);
+    RUN_TEST(test_points_17_m_apart_are_refused);
     RUN_TEST(test_a_marker_that_hardly_moves_keeps_its_unit);
-    RUN_TEST(test_files_that_are_no_takes_are_refused);
-    RUN_TEST(test_describe_tells_what_was_found_and_how_it_was_read);
+    RUN_TEST(test_files_of_other_formats_are_refused);
+    RUN_TEST(test_describe_lists_contents_units_and_axes);
     RUN_TEST(test_two_readings_of_a_file_are_equal_bit_by_bit);
     return UNITY_END();
 }

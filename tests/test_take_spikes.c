@@ -1,14 +1,14 @@
-/// test_take_spikes.c: frames in which a marker cannot have been where it is said to be, and what a
-/// take says of itself: spikes, names, rates.
+/// test_take_spikes.c: spikes, which are positions that a marker cannot have had, and the notes about
+/// names and rates.
 #include "take_motions.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #define RATE 250
 #define FRAMES 400
 
 static bool wild[FRAMES];
-static int lasting; // from this frame on the marker is elsewhere for good
+static int lasting; // from this frame on the marker stays elsewhere
 
 void setUp(void)
 {
@@ -34,7 +34,7 @@ static himc_vec3 restless(double t)
     return x;
 }
 
-// all frames are as they were, but those listed are gaps
+// all frames are unchanged, except that the listed ones are gaps
 static void check(himc_take *take, bool gaps)
 {
     for (int i = 0; i < FRAMES; i++) {
@@ -47,14 +47,14 @@ static void check(himc_take *take, bool gaps)
     }
 }
 
-static void test_one_wild_frame_becomes_a_gap_and_its_marker_and_frame_are_named(void)
+static void test_one_spike_becomes_a_gap_and_the_note_has_marker_and_frame(void)
 {
     wild[100] = true; // the file counts from 1
     himc_take *take = read_motion(restless, RATE, FRAMES);
     check(take, true);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING("gaps: 1 positions of 1 points to which they jump faster than 30 m/s, "
-                             "the first of RTIP in frame 101",
+    TEST_ASSERT_EQUAL_STRING("gaps: 1 positions of 1 points, reached by jumps faster than 30 m/s, "
+                             "are read as gaps, the first of RTIP in frame 101",
                              take->notes[0]);
     himc_take_free(take);
 }
@@ -67,10 +67,9 @@ static void test_spikes_of_up_to_a_tenth_of_a_second_and_at_both_ends_become_gap
     himc_take *take = read_motion(restless, RATE, FRAMES);
     check(take, true);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING(
-        "gaps: 20 positions of 1 points to which they jump faster than 30 m/s, "
-        "the first of RTIP in frame 1",
-        take->notes[0]);
+    TEST_ASSERT_EQUAL_STRING("gaps: 20 positions of 1 points, reached by jumps faster than 30 m/s, "
+                             "are read as gaps, the first of RTIP in frame 1",
+                             take->notes[0]);
     himc_take_free(take);
 }
 
@@ -84,7 +83,7 @@ static void test_a_point_with_more_than_5_percent_of_spikes_is_left_as_it_is(voi
     himc_take_free(take);
 }
 
-static void test_a_jump_for_good_is_left_as_it_is(void)
+static void test_a_jump_without_return_is_left_as_it_is(void)
 {
     lasting = 200;
     himc_take *take = read_motion(restless, RATE, FRAMES);
@@ -100,7 +99,7 @@ static himc_take *read_two(const char *first, const char *second)
     return read_motions("two.trc", names, motions, RATE, FRAMES);
 }
 
-static void test_a_name_that_two_points_have_is_noted_and_the_first_is_read(void)
+static void test_a_name_of_two_points_is_noted_and_the_first_is_read(void)
 {
     himc_take *take = read_two("RTIP", "RTIP");
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
@@ -117,7 +116,7 @@ static void test_a_rate_below_40_hz_is_noted(void)
 {
     himc_take *take = read_motion(calm, 39, 100);
     TEST_ASSERT_EQUAL_INT(1, take->note_count);
-    TEST_ASSERT_EQUAL_STRING("rate: at 39 Hz strikes are blurred, and may be missed or misplaced",
+    TEST_ASSERT_EQUAL_STRING("rate: at 39 Hz strikes are blurred, some may be missed or misplaced",
                              take->notes[0]);
     himc_take_free(take);
     take = read_motion(calm, 40, 100);
@@ -125,7 +124,7 @@ static void test_a_rate_below_40_hz_is_noted(void)
     himc_take_free(take);
 }
 
-// the names would say that it is the right one
+// by its name it is the right tip
 static void test_a_right_tip_that_is_named_as_the_left_one_leaves_the_right_hand_empty(void)
 {
     himc_take_options options = z_up();
@@ -147,7 +146,7 @@ static void test_one_point_named_as_both_tips_is_refused(void)
     options.right_tip = "rtip";
     himc_take *take = read_two("RTIP", "LTIP");
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
-    TEST_ASSERT_EQUAL_STRING("two.trc: RTIP is named as both tips, allowed: one for each",
+    TEST_ASSERT_EQUAL_STRING("two.trc: RTIP is named as both tips, allowed: one point for each tip",
                              error.text);
     himc_take_free(take);
 }
@@ -155,11 +154,11 @@ static void test_one_point_named_as_both_tips_is_refused(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_one_wild_frame_becomes_a_gap_and_its_marker_and_frame_are_named);
+    RUN_TEST(test_one_spike_becomes_a_gap_and_the_note_has_marker_and_frame);
     RUN_TEST(test_spikes_of_up_to_a_tenth_of_a_second_and_at_both_ends_become_gaps);
     RUN_TEST(test_a_point_with_more_than_5_percent_of_spikes_is_left_as_it_is);
-    RUN_TEST(test_a_jump_for_good_is_left_as_it_is);
-    RUN_TEST(test_a_name_that_two_points_have_is_noted_and_the_first_is_read);
+    RUN_TEST(test_a_jump_without_return_is_left_as_it_is);
+    RUN_TEST(test_a_name_of_two_points_is_noted_and_the_first_is_read);
     RUN_TEST(test_a_rate_below_40_hz_is_noted);
     RUN_TEST(test_a_right_tip_that_is_named_as_the_left_one_leaves_the_right_hand_empty);
     RUN_TEST(test_one_point_named_as_both_tips_is_refused);

@@ -1,4 +1,4 @@
-/// test_take_strikes.c: blows of known time, speed and place in made-up tracks, and the real drum
+/// test_take_strikes.c: blows of known time, speed and place in synthetic tracks, and the real drum
 /// stroke.
 #include "take_motions.h"
 
@@ -103,7 +103,7 @@ static void test_half_a_millimetre_of_noise_neither_hides_nor_adds_strikes(void)
     noise = 0;
 }
 
-static void test_strokes_in_the_air_are_no_strikes(void)
+static void test_strokes_in_the_air_are_not_strikes(void)
 {
     for (double rate = 60; rate <= 2000; rate *= 2) {
         himc_take *take = read_motion(stroke_in_the_air, rate, (int)(2 * rate));
@@ -131,7 +131,7 @@ static int strikes_hidden(int from, int to, int frames)
 }
 
 // the touch is in frame 125
-static void test_strike_that_lost_one_frame_is_found_and_none_is_across_or_beside_a_longer_gap(void)
+static void test_strike_with_one_lost_frame_is_found_and_none_across_or_beside_a_longer_gap(void)
 {
     touch_time = 0.5;
     for (int frame = 121; frame < 130; frame++)
@@ -142,8 +142,8 @@ static void test_strike_that_lost_one_frame_is_found_and_none_is_across_or_besid
             TEST_ASSERT_EQUAL_INT(0, strikes_hidden(from, from + length, 250));
 }
 
-// a place that is held at an end looks like a fall that ends abruptly
-static void test_no_strike_is_at_an_end_that_is_held(void)
+// a position that is held at an end looks like a fall that ends abruptly
+static void test_no_strike_at_an_end_where_the_position_is_held(void)
 {
     touch_time = 0.5;
     for (int begin = 110; begin <= 126; begin++)
@@ -165,10 +165,10 @@ static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
     TEST_ASSERT_TRUE(himc_take_strike_place(s, count, &place));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.65, place.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.05, place.y);
-    // falls of 4 m/s and rebounds of 2.5 m/s meet at 0.8 m: a contact of 7 ms joins them higher
+    // falls of 4 m/s and rebounds of 2.5 m/s intersect at 0.8 m: a contact of 7 ms joins them higher
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.8 + 0.007 * 4 * 2.5 / 6.5, place.z);
     TEST_ASSERT_FALSE(himc_take_strike_place(s, 0, &place));
-    // fewer places than strikes: the first ones, and how many there are
+    // less capacity than strikes: the first ones, and the number of all
     TEST_ASSERT_EQUAL_INT(15, strikes_of(take, s, 3));
     himc_take_free(take);
 }
@@ -198,7 +198,7 @@ static void test_each_of_4200_strikes_is_found_tracked_and_cut(void)
     himc_take_free(take);
 }
 
-static void test_real_stroke_strikes_once_where_and_as_its_source_says(void)
+static void test_real_stroke_strikes_once_at_the_place_and_speed_of_its_source(void)
 {
     const char *path = shared_capture("drumstroke_pearl_240hz/stroke.trc");
     if (!path)
@@ -227,11 +227,11 @@ int main(void)
     RUN_TEST(test_dead_stroke_is_found);
     RUN_TEST(test_low_pass_filtered_strike_is_found_within_3_ms_and_10_percent);
     RUN_TEST(test_half_a_millimetre_of_noise_neither_hides_nor_adds_strikes);
-    RUN_TEST(test_strokes_in_the_air_are_no_strikes);
-    RUN_TEST(test_strike_that_lost_one_frame_is_found_and_none_is_across_or_beside_a_longer_gap);
-    RUN_TEST(test_no_strike_is_at_an_end_that_is_held);
+    RUN_TEST(test_strokes_in_the_air_are_not_strikes);
+    RUN_TEST(test_strike_with_one_lost_frame_is_found_and_none_across_or_beside_a_longer_gap);
+    RUN_TEST(test_no_strike_at_an_end_where_the_position_is_held);
     RUN_TEST(test_strikes_of_both_hands_come_in_order_and_place_the_drum);
     RUN_TEST(test_each_of_4200_strikes_is_found_tracked_and_cut);
-    RUN_TEST(test_real_stroke_strikes_once_where_and_as_its_source_says);
+    RUN_TEST(test_real_stroke_strikes_once_at_the_place_and_speed_of_its_source);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/// test_trc.c: TRC tables of every separator and unit, and tables that are wrong in one cell.
+/// test_trc.c: TRC tables with every separator and unit, and tables with one wrong cell.
 #include "take_files.h"
 #include "unity.h"
 
@@ -12,7 +12,7 @@ void tearDown(void)
 {
 }
 
-// two markers 0.5 m apart; the header's frames, markers and units, and the rows are filled in
+// two markers 0.5 m apart; the header's frames, markers and units, and the rows are inserted
 #define TABLE                                                            \
     "PathFileType\t4\t(X/Y/Z)\ta.trc\n"                                  \
     "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\n" \
@@ -101,7 +101,7 @@ static void test_empty_cells_nan_and_missing_cells_at_the_end_are_gaps(void)
     himc_take_free(take);
 }
 
-static void test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not(void)
+static void test_zeros_after_a_jump_are_gaps_but_a_marker_at_zero_is_not(void)
 {
     himc_take *take = read_table(3, 2, "mm",
                                  "1\t0.00\t0\t0\t0\t501\t2\t3\n"
@@ -113,7 +113,7 @@ static void test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not(vo
     himc_take_free(take);
 }
 
-static void test_numbers_are_read_as_strtod_reads_them(void)
+static void test_numbers_are_read_like_strtod(void)
 {
     static const char *const numbers[] = {"0.1",
                                           "-123.456",
@@ -154,8 +154,7 @@ static void test_headers_that_disagree_with_the_rows_are_refused(void)
     refuses(0, 2, "mm", "", "a.trc:3: NumFrames is \"0\", allowed 1 .. 1000000");
     refuses(2, 3, "mm", ROW_1 ROW_2, "a.trc:4: the header says 3 markers, the file names 2");
     refuses(2, 1, "mm", ROW_1 ROW_2,
-            "a.trc:4: marker \"B\" stands over column 6, allowed: every third from 3 on, "
-            "for 1 markers");
+            "a.trc:4: marker \"B\" is above column 6, allowed: every third column, 3 .. 3");
     refuses(2, 9999, "mm", ROW_1 ROW_2,
             "a.trc:3: NumMarkers is 9999, more than the rows have cells for");
     refuses(2, 2, "ell", ROW_1 ROW_2, "a.trc:3: Units is \"ell\", allowed mm, cm, m, in or ft");
@@ -175,17 +174,17 @@ static void test_a_rate_of_1_hz_is_refused(void)
 static void test_bad_cells_are_refused_with_line_and_marker(void)
 {
     refuses(1, 2, "mm", "1\t0\t1\t2\tx\t1\t2\t3\n",
-            "a.trc:7: A Z is \"x\", allowed: a number, or nothing for a gap");
+            "a.trc:7: A Z is \"x\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\tinf\t2\t3\n",
-            "a.trc:7: B X is \"inf\", allowed: a number, or nothing for a gap");
+            "a.trc:7: B X is \"inf\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1e999\t2\t3\n",
-            "a.trc:7: B X is \"1e999\", allowed: a number, or nothing for a gap");
+            "a.trc:7: B X is \"1e999\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t0,5\t2\t3\n",
-            "a.trc:7: B X is \"0,5\", allowed: a number, or nothing for a gap");
+            "a.trc:7: B X is \"0,5\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t\t3\t1\t2\t3\n",
             "a.trc:7: A has 2 of its 3 coordinates, allowed all or none");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1\t2\t3\t4\n",
-            "a.trc:7: a cell beyond the last marker is \"4\", allowed nothing");
+            "a.trc:7: the cell after the last marker is \"4\", allowed an empty cell");
     refuses(1, 2, "mm", "x\t0\t1\t2\t3\t1\t2\t3\n",
             "a.trc:7: Frame# is \"x\", allowed a whole number");
 }
@@ -203,11 +202,11 @@ static void test_every_prefix_of_a_file_is_refused_or_read(void)
         himc_take_free(take);
         free(bytes);
     }
-    // only what ends between the last row's cells can pass for a whole file
+    // only a prefix that ends between the last row's cells can pass for a whole file
     TEST_ASSERT_TRUE(readable >= 2 && readable < 20);
 }
 
-static void test_real_stroke_is_read_as_its_source_describes_it(void)
+static void test_real_stroke_agrees_with_its_source(void)
 {
     const char *path = shared_capture("drumstroke_pearl_240hz/stroke.trc");
     if (!path)
@@ -222,7 +221,7 @@ static void test_real_stroke_is_read_as_its_source_describes_it(void)
     himc_take_free(take);
 }
 
-static void test_real_table_of_652_frames_with_93_rows_is_refused_for_that(void)
+static void test_real_table_of_652_frames_with_93_rows_is_refused(void)
 {
     const char *path = shared_capture("upperlimb_pyomeca_100hz/markers.trc");
     if (!path)
@@ -232,8 +231,8 @@ static void test_real_table_of_652_frames_with_93_rows_is_refused_for_that(void)
         strstr(error.text, "markers.trc: the header says 652 frames, the file has 93 rows"));
 }
 
-// the same table with an honest header: z up by its own bodies, comma separated
-static void test_real_table_with_an_honest_header_is_read_with_z_up(void)
+// the same table with a correct header: z up by its own bodies, comma separated
+static void test_real_table_with_a_correct_header_is_read_with_z_up(void)
 {
     const char *path = shared_capture("upperlimb_pyomeca_100hz/markers.trc");
     if (!path)
@@ -261,14 +260,14 @@ int main(void)
     RUN_TEST(test_commas_semicolons_and_line_ends_of_all_systems_are_read);
     RUN_TEST(test_centimetres_and_metres_are_scaled);
     RUN_TEST(test_empty_cells_nan_and_missing_cells_at_the_end_are_gaps);
-    RUN_TEST(test_zeros_a_marker_jumps_to_are_gaps_but_a_marker_at_zero_is_not);
-    RUN_TEST(test_numbers_are_read_as_strtod_reads_them);
+    RUN_TEST(test_zeros_after_a_jump_are_gaps_but_a_marker_at_zero_is_not);
+    RUN_TEST(test_numbers_are_read_like_strtod);
     RUN_TEST(test_headers_that_disagree_with_the_rows_are_refused);
     RUN_TEST(test_a_rate_of_1_hz_is_refused);
     RUN_TEST(test_bad_cells_are_refused_with_line_and_marker);
     RUN_TEST(test_every_prefix_of_a_file_is_refused_or_read);
-    RUN_TEST(test_real_stroke_is_read_as_its_source_describes_it);
-    RUN_TEST(test_real_table_of_652_frames_with_93_rows_is_refused_for_that);
-    RUN_TEST(test_real_table_with_an_honest_header_is_read_with_z_up);
+    RUN_TEST(test_real_stroke_agrees_with_its_source);
+    RUN_TEST(test_real_table_of_652_frames_with_93_rows_is_refused);
+    RUN_TEST(test_real_table_with_a_correct_header_is_read_with_z_up);
     return UNITY_END();
 }

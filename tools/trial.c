@@ -199,17 +199,17 @@ static bool use_regression(himc_performance *p, const himc_player *seen, double 
     return true;
 }
 
-static double near_one(mocap_dice *dice, double deviation)
+static double near_one(mocap_random *random, double deviation)
 {
-    return fmax(1 + deviation * himc_mocap_normal(dice), LEAST_FACTOR);
+    return fmax(1 + deviation * himc_mocap_normal(random), LEAST_FACTOR);
 }
 
 static bool make_plant(himc_performance *p, const trial_config *config, himc_error *error)
 {
     double factor[HIMC_SEGMENTS];
-    mocap_dice dice = himc_mocap_dice(seed_of(config), NULL, 0);
+    mocap_random random = himc_mocap_random(seed_of(config), NULL, 0);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
-        factor[i] = near_one(&dice, config->mass_error);
+        factor[i] = near_one(&random, config->mass_error);
     return himc_performance_set_weights(p, factor, error);
 }
 
@@ -217,10 +217,10 @@ static bool make_plant(himc_performance *p, const trial_config *config, himc_err
 static void add_length_errors(himc_skeleton_config *body, const trial_config *config)
 {
     int stream = 1; // independent of the masses' random numbers
-    mocap_dice dice = himc_mocap_dice(seed_of(config), &stream, 1);
+    mocap_random random = himc_mocap_random(seed_of(config), &stream, 1);
     for (int i = 0; i < HIMC_SEGMENTS; i++)
         if (i != HIMC_LEFT_STICK && i != HIMC_RIGHT_STICK)
-            body->length[i] *= near_one(&dice, config->length_error);
+            body->length[i] *= near_one(&random, config->length_error);
 }
 
 static bool set_control(himc_performance *p, const trial_config *config, himc_error *error)

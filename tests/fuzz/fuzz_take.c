@@ -1,14 +1,13 @@
-/// fuzz_take.c: takes from bytes that may be anything. Nothing may crash, read out of bounds, hang
-/// or leave the promises of take.h: a take that is given out has finite places or whole gaps, and
-/// its names print.
+/// fuzz_take.c: takes from arbitrary bytes. Nothing may crash, read out of bounds, hang or break the
+/// promises of mocap.h: a take has finite positions or whole gaps, and its names are printable.
 ///
 /// With libFuzzer (clang -fsanitize=fuzzer,address,undefined -DHIMC_LIBFUZZER) the first byte of an
-/// input gives the format. Without, this is a program that mutates seeds by itself, the same way
-/// every time for the same arguments:
+/// input gives the format. Without libFuzzer this is a program that mutates seeds by itself, in the
+/// same way for the same arguments:
 ///     fuzz_take [RUNS [SEED [FILE...]]]
 /// FILEs (at most 64 KiB of each) join the seeds that are built in: a BVH, a TRC, six flavours of
-/// C3D, and a whole player in each format. What is read is also made a player and a track, whose
-/// postures must be finite.
+/// C3D, and a whole player in each format. Each take is also made a player and a track, with poses
+/// that must be finite.
 #define _POSIX_C_SOURCE 200809L
 #include "../c3d_files.h"
 #include "../take_players.h"
@@ -152,7 +151,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     accepted++;
     check_points(take);
-    // first point as a tip too, so that filling and strikes are reached without a lucky name
+    // the first point is also named as a tip, so that filling and strikes are always reached
     check_tips(take, &options);
     options.right_tip = himc_take_point_name(take, 0);
     check_tips(take, &options);
@@ -251,7 +250,7 @@ static void add_file(const char *path)
     fclose(file);
 }
 
-// a player of flesh, in every format
+// a whole player in every format
 static void add_players(void)
 {
     static const char *const files[] = {"build/fuzz.bvh", "build/fuzz.trc", "build/fuzz.c3d"};
@@ -266,8 +265,7 @@ static void add_players(void)
     himc_take_free(take);
 }
 
-// one change of a kind that files suffer: bits, bytes, numbers, pieces lost, doubled or from
-// elsewhere
+// one typical damage of a file: bits, bytes, numbers, parts lost, doubled or from elsewhere
 static size_t mutate(uint8_t *b, size_t size)
 {
     static const char *const pieces[] = {
@@ -315,7 +313,7 @@ static void run_one(void)
     buffer[0] = (uint8_t)(s->bytes[0] + 3 * below(85));
     for (size_t n = 1 + below(below(3) ? 4 : 24); n > 0 && size > 2; n--)
         size = mutate(buffer, size);
-    // a copy of exact size lets the address sanitizer see a byte too far
+    // a copy of exact size lets the address sanitizer detect a byte too far
     uint8_t *input = malloc(size);
     memcpy(input, buffer, size);
     struct timespec before, after;

@@ -1,4 +1,4 @@
-/// bvh.c: reads Biovision's BVH: a skeleton of offsets, and a row of channels per frame.
+/// bvh.c: Biovision's BVH: a skeleton of offsets, and a row of channels per frame; read and written.
 ///
 /// A node's channels are applied in the file's order, the first outermost: R = R_1(c_1) R_2(c_2)
 /// R_3(c_3), whatever axes they are and however nodes differ. Position channels replace the offset
@@ -6,17 +6,26 @@
 /// joint. Forward kinematics, for node i with parent p:
 ///     Q_i = Q_p R_i,  x_i = x_p + Q_p o_i
 /// Every node becomes a point, end sites as "PARENT_end". The text is read line by line and word by
-/// word, so any indentation and any line ends will do; a row must have exactly the hierarchy's
-/// channels.
-#include "capture/take_data.h"
+/// word, so any indentation and any line ends are accepted; a row must have exactly the channels of
+/// the hierarchy.
+///
+/// Written are centimetres, y up, and angles of R = Rz Rx Ry, which makes sin x = R21, tan z =
+/// -R01/R11, tan y = -R20/R22. The library's (x, y, z) becomes (x, z, -y), a rotation q becomes c q
+/// c* with the quarter turn c about x that does this. A written file reads back to the last printed
+/// digit.
+#include "capture/take.h"
 #include "capture/take_text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_NODES 4096
-#define MOST_DEPTH 256
+#define MOST_NODES 4096 // chosen: far more than a body has
+#define MOST_DEPTH 256  // chosen: far more than a body has; bounds the recursion of the writer
+
+// frame times of 10000 .. 20 Hz, the rates of himc_take_load (s)
+#define LEAST_TIME 1e-4
+#define MOST_TIME 0.05
 
 typedef struct node {
     char name[TAKE_NAME];
@@ -30,7 +39,7 @@ typedef struct node {
 typedef struct bvh {
     himc_take *take;
     himc_text text;
-    himc_span line; // what is left of the current line
+    himc_span line; // rest of the current line
     node *nodes;
     int count, channels;
     himc_error *error;
@@ -45,11 +54,11 @@ static bool refuse(const bvh *r, const char *what, himc_span found, const char *
 
 static bool refuse_end(const bvh *r, const char *where)
 {
-    return himc_error_set(r->error, "%s:%d: the file ends in %s", r->take->file, r->text.line,
+    return himc_error_set(r->error, "%s:%d: the file ends within %s", r->take->file, r->text.line,
                           where);
 }
 
-// the next word, going on to further lines
+// takes the next word, on this line or a later one
 static bool word(bvh *r, himc_span *w)
 {
     while (!himc_span_word(&r->line, w))
@@ -71,7 +80,7 @@ static bool number(bvh *r, const char *what, double *value)
     himc_span w;
     if (!word(r, &w))
         return refuse_end(r, what);
-    if (himc_span_number(w, value) && fabs(*value) <= TAKE_FAR)
+    if (himc_span_number(w, value) && fabs(*value) <= TAKE_LARGEST)
         return true;
     return refuse(r, what, w, "a number up to 1e8");
 }
@@ -93,7 +102,7 @@ static bool add_node(bvh *r, int parent, bool is_end)
     return true;
 }
 
-// a name is the rest of its line, for some have blanks; a brace at its end begins the block
+// a name is the rest of its line, because some contain blanks; a brace at its end begins the block
 static bool read_name(bvh *r, node *n)
 {
     himc_span rest = himc_span_trim(r->line);
@@ -168,8 +177,9 @@ static bool close_node(bvh *r, int *current, int *depth)
 {
     node *n = &r->nodes[*current];
     if (!n->has_offset)
-        return himc_error_set(r->error, "%s:%d: %s has no OFFSET", r->take->file, r->text.line,
-                              n->name);
+        return himc_error_set(r->error,
+                              "%s:%d: joint %s has no OFFSET, allowed: one for each joint",
+                              r->take->file, r->text.line, n->name);
     *current = n->parent;
     --*depth;
     return true;
@@ -179,7 +189,7 @@ static bool close_node(bvh *r, int *current, int *depth)
 static bool open_node(bvh *r, int *current, int *depth, bool is_end)
 {
     if (++*depth > MOST_DEPTH)
-        return himc_error_set(r->error, "%s:%d: joints nested too deeply, allowed %d",
+        return himc_error_set(r->error, "%s:%d: joints are nested too deeply, allowed %d levels",
                               r->take->file, r->text.line, MOST_DEPTH);
     if (is_end ? !read_end_site(r, *current)
                : !add_node(r, *current, false) || !read_name(r, &r->nodes[r->count - 1]))
@@ -238,25 +248,25 @@ static bool read_motion_header(bvh *r, int *frames, double *rate)
         return false;
     if (!word(r, &w))
         return refuse_end(r, "Frames:");
-    if (!himc_span_integer(w, 1, 1000000, &count))
+    if (!himc_span_integer(w, 1, TAKE_MOST_FRAMES, &count))
         return refuse(r, "Frames:", w, "1 .. 1000000");
     if (!expect(r, "Frame", "after Frames:") || !expect(r, "Time:", "after Frame"))
         return false;
     if (!number(r, "Frame Time:", &time))
         return false;
-    if (!(time >= 1e-4 && time <= 0.05))
+    if (!(time >= LEAST_TIME && time <= MOST_TIME))
         return himc_error_set(r->error, "%s:%d: Frame Time: %g s, allowed 0.0001 .. 0.05 s",
                               r->take->file, r->text.line, time);
     int rows = count_rows(r);
     if (rows != count)
         return himc_error_set(r->error, "%s: the header says %ld frames, the file has %d rows",
                               r->take->file, count, rows);
-    // every joint that moves has numbers in every row, so counts beyond the file's size are not
-    // those of a body
+    // a row has numbers for every joint that moves: counts larger than the text are not a body's
     if (r->channels == 0 || (size_t)(r->text.end - r->text.at) < (size_t)rows * (size_t)r->count)
-        return himc_error_set(r->error,
-                              "%s: %d channels for %d joints, allowed are bodies that move",
-                              r->take->file, r->channels, r->count);
+        return himc_error_set(
+            r->error,
+            "%s: %d channels for %d joints, allowed: at least one channel for most joints",
+            r->take->file, r->channels, r->count);
     *frames = rows;
     *rate = 1 / time;
     return true;
@@ -268,7 +278,7 @@ static himc_quat about(int axis, double degrees)
     return (himc_quat){cos(half), axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0};
 }
 
-// reads node i's channels from the row; gives its rotation and its place in the parent's frame
+// reads a node's channels from the row: its rotation and its position in the parent's frame
 static bool read_node(bvh *r, const node *n, himc_quat *rotation, himc_vec3 *place)
 {
     himc_span w;
@@ -279,9 +289,9 @@ static bool read_node(bvh *r, const node *n, himc_quat *rotation, himc_vec3 *pla
         if (!himc_span_word(&r->line, &w))
             return himc_error_set(
                 r->error,
-                "%s:%d: the row ends before channel %d of %s, allowed are rows of %d numbers",
+                "%s:%d: the row ends before channel %d of %s, allowed: rows of %d numbers",
                 r->take->file, r->text.line, k + 1, n->name, r->channels);
-        if (!himc_span_number(w, &v[kind]) || !(fabs(v[kind]) <= TAKE_FAR))
+        if (!himc_span_number(w, &v[kind]) || !(fabs(v[kind]) <= TAKE_LARGEST))
             return refuse(r, n->name, w, "a number up to 1e8");
         if (kind >= 3)
             *rotation = himc_quat_mul(*rotation, about(kind - 3, v[kind]));
@@ -335,19 +345,101 @@ static bool read_all(bvh *r)
     for (int i = 0; i < r->count; i++) {
         himc_take_set_name(r->take, i, r->nodes[i].name, strlen(r->nodes[i].name));
         r->take->parents[i] = r->nodes[i].parent;
-        // where a root stands in the zero pose is the capture room's business
+        // the origin of the zero pose is arbitrary
         r->take->offsets[i] = r->nodes[i].parent < 0 ? himc_vec3_make(0, 0, 0) : r->nodes[i].offset;
     }
     return read_rows(r);
 }
 
-bool himc_bvh_read(himc_take *take, const char *bytes, size_t size, himc_error *error)
+bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
     bvh r = {.take = take, .text = himc_text_open(bytes, size), .error = error};
     memcpy(take->format, "BVH", 4);
     take->first_frame = 1;
-    take->habit_up = himc_vec3_make(0, 1, 0);
+    take->format_up = himc_vec3_make(0, 1, 0);
     bool ok = read_all(&r);
     free(r.nodes);
     return ok;
+}
+
+#define CENTIMETRES 100.0
+#define DEGREES (180 / HIMC_PI)
+
+// from the library's axes to the file's: a quarter turn about -x
+static const himc_quat y_up = {0.70710678118654752, -0.70710678118654752, 0, 0};
+
+// Euler angles z, x, y (degrees) of a rotation in the library's axes
+static void put_angles(FILE *file, himc_quat q)
+{
+    himc_mat3 r = himc_mat3_from_quat(himc_quat_mul(himc_quat_mul(y_up, q), himc_quat_conj(y_up)));
+    double x = asin(fmin(fmax(r.m[2][1], -1), 1));
+    double angles[3] = {atan2(-r.m[0][1], r.m[1][1]) * DEGREES, x * DEGREES,
+                        atan2(-r.m[2][0], r.m[2][2]) * DEGREES};
+    himc_text_put_row(file, angles, 3, 6, ' ');
+}
+
+static bool is_leaf(const himc_take *take, int point)
+{
+    for (int i = point + 1; i < take->points; i++)
+        if (take->parents[i] == point)
+            return false;
+    return take->parents[point] >= 0;
+}
+
+static void put_joint(FILE *file, const himc_take *take, int point, int depth)
+{
+    bool root = take->parents[point] < 0, leaf = is_leaf(take, point);
+    himc_vec3 o = himc_vec3_scale(himc_take_y_up(take->offsets[point]), CENTIMETRES);
+    double offset[3] = {o.x, o.y, o.z};
+    char indent[80];
+    snprintf(indent, sizeof indent, "%*s", depth < 70 ? depth : 70, "");
+    if (leaf)
+        fprintf(file, "%sEnd Site\n%s{\n%s\tOFFSET", indent, indent, indent);
+    else
+        fprintf(file, "%s%s %s\n%s{\n%s\tOFFSET", indent, root ? "ROOT" : "JOINT",
+                take->names[point], indent, indent);
+    himc_text_put_row(file, offset, 3, 6, ' ');
+    if (!leaf)
+        fprintf(file, "\n%s\tCHANNELS %s", indent,
+                root ? "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+                     : "3 Zrotation Xrotation Yrotation");
+    fputc('\n', file);
+    for (int i = point + 1; i < take->points; i++)
+        if (take->parents[i] == point)
+            put_joint(file, take, i, depth + 1);
+    fprintf(file, "%s}\n", indent);
+}
+
+// one frame's channels of a joint and its descendants, in the order of the hierarchy
+static void put_channels(FILE *file, const himc_take *take, int frame, int point)
+{
+    if (is_leaf(take, point))
+        return;
+    if (take->parents[point] < 0) {
+        himc_vec3 x =
+            himc_vec3_scale(himc_take_y_up(*himc_take_at(take, frame, point)), CENTIMETRES);
+        double place[3] = {x.x, x.y, x.z};
+        himc_text_put_row(file, place, 3, 6, ' ');
+    }
+    put_angles(file, himc_take_rotation(take, frame, point));
+    for (int i = point + 1; i < take->points; i++)
+        if (take->parents[i] == point)
+            put_channels(file, take, frame, i);
+}
+
+bool himc_bvh_write(FILE *file, const himc_take *take, himc_error *error)
+{
+    if (!take->parents)
+        return himc_error_set(
+            error, "%s: the take has no skeleton to write as .bvh, allowed .c3d .trc", take->file);
+    fputs("HIERARCHY\n", file);
+    put_joint(file, take, 0, 0);
+    fprintf(file, "MOTION\nFrames: %d\nFrame Time: ", take->frames);
+    himc_text_put_number(file, 1 / take->rate, 9);
+    fputc('\n', file);
+    for (int frame = 0; frame < take->frames; frame++) {
+        put_channels(file, take, frame, 0);
+        fputc('\n', file);
+    }
+    return true;
 }

@@ -1,24 +1,27 @@
-/// c3d.c: reads C3D, the binary file of optical motion capture: a header, parameters, then per
-/// frame every point's x, y, z and a residual, and the analog samples taken during the frame, which
-/// are stepped over.
+/// c3d.c: C3D, the binary file of optical motion capture: a header, parameters, then per frame every
+/// point's x, y, z and a residual, and the analog samples taken during the frame, which are skipped;
+/// read and written.
 ///
 /// Points are floats if POINT:SCALE is negative, else 16-bit integers times it; numbers are those
 /// of three processors (c3d_parameters.c). A negative residual, or a coordinate that is not finite,
 /// is a gap. Counts beyond 65535 frames come from TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD
-/// (two words each) or POINT:LONG_FRAMES. Values that Vicon's models file among the points (angles,
-/// forces, moments, powers, scalars) are not places and are left out. Event times count from frame
+/// (two words each) or POINT:LONG_FRAMES. Values that Vicon's models store among the points (angles,
+/// forces, moments, powers, scalars) are not positions and are left out. Event times count from frame
 /// 1, so a file that begins later subtracts its start. Reference: the C3D file format user guide,
 /// Motion Lab Systems 2008.
 #include "capture/c3d_parameters.h"
-#include "capture/take_data.h"
+#include "capture/take.h"
 #include "capture/take_text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 512
-#define HEADER_EVENTS 18
+#define BLOCK 512          // bytes, by the format
+#define HEADER_EVENTS 18   // most in a header, by the format
+#define EVENTS_KEY 12345   // header word that says events have labels, by the format
+#define LONGEST_METRES 100 // chosen: heights above are in millimetres
+#define FARTHEST_EVENT 1e6 // chosen: no take is so long (s)
 
 typedef struct c3d {
     himc_take *take;
@@ -57,13 +60,13 @@ static bool read_layout(c3d *r)
         return himc_error_set(r->error, "%s: the header says 0 points, allowed 1 .. 65535",
                               r->take->file);
     if (used != r->points)
-        return himc_error_set(r->error,
-                              "%s: the header says %d points, POINT:USED %g, allowed is the same",
-                              r->take->file, r->points, used);
+        return himc_error_set(
+            r->error, "%s: the header says %d points, POINT:USED says %g, allowed: the same number",
+            r->take->file, r->points, used);
     if (!isfinite(r->scale) || r->scale == 0)
         return himc_error_set(
             r->error,
-            "%s: POINT:SCALE is %g, allowed: negative for floats, a positive factor for "
+            "%s: POINT:SCALE is %g, allowed: a negative number for floats, a positive factor for "
             "integers",
             r->take->file, r->scale);
     r->is_float = r->scale < 0;
@@ -74,19 +77,20 @@ static bool read_layout(c3d *r)
         block = (unsigned)fmin(65535, fmax(0, parameter(r, "POINT", "DATA_START", 0, 0)));
     r->data = (size_t)(block - 1) * BLOCK;
     if (block < 2 || r->data >= r->size)
-        return himc_error_set(r->error, "%s: its frames begin at block %u, the file has %zu",
+        return himc_error_set(r->error,
+                              "%s: the frames begin at block %u, but the file has %zu blocks",
                               r->take->file, block, (r->size + BLOCK - 1) / BLOCK);
     return true;
 }
 
-// frames by the two words of a field number of TRIAL; 0 if there is none
+// a field number of TRIAL, of two words; 0 if there is none
 static double field(const c3d *r, const char *name)
 {
     double low = parameter(r, "TRIAL", name, 0, 0), high = parameter(r, "TRIAL", name, 1, 0);
     return low + 65536 * high;
 }
 
-// the number of frames, as the most far-sighted of the counts that the file's length allows says
+// the number of frames: the first of the stated counts that fits into the length of the file
 static bool count_frames(const c3d *r, int *frames)
 {
     int first = (int)header_word(r, 4), last = (int)header_word(r, 5);
@@ -97,20 +101,21 @@ static bool count_frames(const c3d *r, int *frames)
     double there = floor((double)(r->size - r->data) / (double)r->stride), most = 0;
     for (int i = 0; i < 4; i++) {
         most = said[i] >= 1 && most == 0 ? said[i] : most;
-        if (said[i] >= 1 && said[i] <= there && said[i] <= 1e6) {
+        if (said[i] >= 1 && said[i] <= there && said[i] <= TAKE_MOST_FRAMES) {
             *frames = (int)said[i];
             if (said[i] < most)
                 himc_take_note(r->take,
-                               "frames: the file is said to have %.0f and holds %.0f: %d are read",
-                               most, there, *frames);
+                               "frames: the file states %.0f but contains %.0f, %d are read", most,
+                               there, *frames);
             r->take->first_frame = start > 0 && start < 1e9 ? (int)start : first;
             return true;
         }
     }
     if (most < 1)
-        return himc_error_set(r->error, "%s: 0 frames, allowed 1 .. 1000000", r->take->file);
+        return himc_error_set(r->error, "%s: the header says 0 frames, allowed 1 .. 1000000",
+                              r->take->file);
     return himc_error_set(r->error,
-                          "%s: the header says %.0f frames of %zu bytes, the file has %.0f",
+                          "%s: the header says %.0f frames of %zu bytes, the file has %.0f frames",
                           r->take->file, most, r->stride, there);
 }
 
@@ -163,10 +168,14 @@ static bool choose_points(c3d *r, int *count)
                          ? -1
                          : (*count)++;
     if (*count < r->points)
-        himc_take_note(r->take, "points: %d values of a model (angles, forces, ...) are left out",
-                       r->points - *count);
+        himc_take_note(
+            r->take, "points: %d of them are values of a model (angles, forces, ...) and left out",
+            r->points - *count);
     return *count > 0 ||
-           himc_error_set(r->error, "%s: none of its points is a place", r->take->file);
+           himc_error_set(
+               r->error,
+               "%s: all points are values of a model (angles, forces, ...), allowed: at least one position",
+               r->take->file);
 }
 
 static void name_points(const c3d *r)
@@ -189,7 +198,7 @@ static himc_vec3 read_point(const c3d *r, const unsigned char *at)
                    : himc_c3d_integer(r->parameters.processor, at + 2 * k) * (k < 3 ? r->scale : 1);
     bool seen = v[3] >= 0;
     for (int k = 0; k < 3; k++)
-        seen = seen && fabs(v[k]) <= TAKE_FAR;
+        seen = seen && fabs(v[k]) <= TAKE_LARGEST;
     return seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
 }
 
@@ -235,7 +244,7 @@ static himc_vec3 read_axis(const c3d *r, const char *name)
                           axis == 'Z' || axis == 'z' ? sign : 0);
 }
 
-// the player's mass and height, where the file has them: Vicon writes them in kg and mm
+// the player's mass and height if the file has them; Vicon writes them in kg and mm
 static void read_subject(c3d *r)
 {
     static const char *const groups[] = {"SUBJECT", "SUBJECTS", "PROCESSING"};
@@ -247,21 +256,22 @@ static void read_subject(c3d *r)
         if (height <= 0)
             height = parameter(r, groups[i], "HEIGHT", 0, 0);
     }
-    height *= height > 100 ? 0.001 : 1;
-    r->take->mass = mass >= 30 && mass <= 200 ? mass : 0;
-    r->take->height = height >= 1.19 && height <= 2.21 ? height : 0;
+    height *= height > LONGEST_METRES ? 0.001 : 1;
+    r->take->mass = mass >= TAKE_LEAST_MASS && mass <= TAKE_MOST_MASS ? mass : 0;
+    r->take->height = height >= TAKE_LEAST_HEIGHT && height <= TAKE_MOST_HEIGHT ? height : 0;
     if ((mass > 0 && r->take->mass == 0) || (height > 0 && r->take->height == 0))
         himc_take_note(r->take,
-                       "player: the file says %g kg and %g m, of which 30 .. 200 kg and 1.19 .. "
-                       "2.21 m are believed",
-                       mass, height);
+                       "player: the file states %g kg and %g m, ignored outside %g .. %g kg and "
+                       "%g .. %g m",
+                       mass, height, TAKE_LEAST_MASS, TAKE_MOST_MASS, TAKE_LEAST_HEIGHT,
+                       TAKE_MOST_HEIGHT);
 }
 
 static void add_event(c3d *r, double time, himc_span context, himc_span label)
 {
     himc_take *take = r->take;
     time -= (take->first_frame - 1) / take->rate;
-    if (!isfinite(time) || fabs(time) > 1e6)
+    if (!isfinite(time) || fabs(time) > FARTHEST_EVENT)
         return;
     char a[44], b[44];
     context = himc_span_trim(context);
@@ -285,8 +295,8 @@ static bool read_events(c3d *r)
     const c3d_parameter *times = himc_c3d_find(&r->parameters, "EVENT", "TIMES");
     int group = times && times->dimensions == 2 && times->size[0] == 2 ? times->size[1] : 0;
     group = (int)fmin(group, fmax(0, parameter(r, "EVENT", "USED", 0, 0)));
-    // header events are used where there is no group of them; the key says that labels are there
-    int header = group == 0 && header_word(r, 150) == 12345 ? (int)header_word(r, 151) : 0;
+    // events of the header are used if there is no group EVENT; 12345 says that labels are there
+    int header = group == 0 && header_word(r, 150) == EVENTS_KEY ? (int)header_word(r, 151) : 0;
     header = header < HEADER_EVENTS ? header : HEADER_EVENTS;
     r->take->events = calloc((size_t)(group + header + 1), sizeof *r->take->events);
     if (!r->take->events)
@@ -324,12 +334,13 @@ static bool read_all(c3d *r)
     return read_events(r);
 }
 
-bool himc_c3d_read(himc_take *take, const unsigned char *bytes, size_t size, himc_error *error)
+bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *error)
 {
+    const unsigned char *bytes = file;
     c3d r = {.take = take, .bytes = bytes, .size = size, .error = error};
-    take->habit_up = himc_vec3_make(0, 0, 1);
+    take->format_up = himc_vec3_make(0, 0, 1);
     if (size < BLOCK)
-        return himc_error_set(error, "%s: %zu bytes, allowed at least a header of %d", take->file,
+        return himc_error_set(error, "%s: %zu bytes, allowed: at least a header of %d", take->file,
                               size, BLOCK);
     if (bytes[1] != 0x50 || bytes[0] < 2)
         return himc_error_set(error,
@@ -339,4 +350,178 @@ bool himc_c3d_read(himc_take *take, const unsigned char *bytes, size_t size, him
     free(r.kept);
     himc_c3d_parameters_free(&r.parameters);
     return ok;
+}
+
+// Writing: floats of an Intel processor in millimetres, so POINT:SCALE is -1 and its value has no
+// meaning; a gap has the residual -1. X_SCREEN +X and Y_SCREEN +Z state the library's axes. More
+// than 65535 frames are counted by TRIAL:ACTUAL_END_FIELD.
+
+#define MOST_LABELS 255 // a parameter's dimension is one byte
+#define MILLIMETRES 1000.0
+
+typedef struct bytes {
+    unsigned char *at, *end;
+} bytes;
+
+static void put_byte(bytes *b, int value)
+{
+    if (b->at < b->end)
+        *b->at++ = (unsigned char)value;
+}
+
+static void put_word(bytes *b, unsigned value)
+{
+    put_byte(b, (int)(value & 255));
+    put_byte(b, (int)(value >> 8 & 255));
+}
+
+static void put_real(bytes *b, double value)
+{
+    unsigned char four[4];
+    himc_c3d_put_real(C3D_INTEL, value, four);
+    for (int i = 0; i < 4; i++)
+        put_byte(b, four[i]);
+}
+
+static void put_text(bytes *b, const char *text, int width)
+{
+    size_t n = strlen(text);
+    for (int i = 0; i < width; i++)
+        put_byte(b, (size_t)i < n ? text[i] : ' ');
+}
+
+static void put_group(bytes *b, int group, const char *name)
+{
+    put_byte(b, (int)strlen(name));
+    put_byte(b, -group);
+    put_text(b, name, (int)strlen(name));
+    put_word(b, 3);
+    put_byte(b, 0);
+}
+
+// the part of a parameter before its data: dimensions `size` and `other` (0: none), elements of
+// |type| bytes
+static void put_head(bytes *b, int group, const char *name, int type, int size, int other)
+{
+    int dimensions = (size > 0) + (other > 0);
+    int data = abs(type) * (size ? size : 1) * (other ? other : 1);
+    put_byte(b, (int)strlen(name));
+    put_byte(b, group);
+    put_text(b, name, (int)strlen(name));
+    put_word(b, (unsigned)(2 + 2 + dimensions + data + 1));
+    put_byte(b, type);
+    put_byte(b, dimensions);
+    if (size > 0)
+        put_byte(b, size);
+    if (other > 0)
+        put_byte(b, other);
+}
+
+static void put_real_parameter(bytes *b, int group, const char *name, double value)
+{
+    put_head(b, group, name, 4, 0, 0);
+    put_real(b, value);
+    put_byte(b, 0);
+}
+
+static void put_word_parameter(bytes *b, int group, const char *name, int value)
+{
+    put_head(b, group, name, 2, 0, 0);
+    put_word(b, (unsigned)value);
+    put_byte(b, 0);
+}
+
+static void put_text_parameter(bytes *b, int group, const char *name, const char *text)
+{
+    put_head(b, group, name, -1, (int)strlen(text), 0);
+    put_text(b, text, (int)strlen(text));
+    put_byte(b, 0);
+}
+
+static void put_field(bytes *b, const char *name, unsigned value)
+{
+    put_head(b, 2, name, 2, 2, 0);
+    put_word(b, value & 65535);
+    put_word(b, value >> 16);
+    put_byte(b, 0);
+}
+
+static void put_parameters(bytes *b, const himc_take *take, int blocks)
+{
+    int width = 1;
+    for (int i = 0; i < take->points; i++)
+        width = (int)strlen(take->names[i]) > width ? (int)strlen(take->names[i]) : width;
+    unsigned char *begin = b->at;
+    put_byte(b, 1);
+    put_byte(b, 0x50);
+    put_byte(b, blocks);
+    put_byte(b, C3D_INTEL);
+    put_group(b, 1, "POINT");
+    put_word_parameter(b, 1, "USED", take->points);
+    put_real_parameter(b, 1, "SCALE", -1);
+    put_real_parameter(b, 1, "RATE", take->rate);
+    put_word_parameter(b, 1, "DATA_START", 2 + blocks);
+    put_word_parameter(b, 1, "FRAMES", take->frames < 65535 ? take->frames : 65535);
+    put_text_parameter(b, 1, "UNITS", "mm");
+    put_text_parameter(b, 1, "X_SCREEN", "+X");
+    put_text_parameter(b, 1, "Y_SCREEN", "+Z");
+    put_head(b, 1, "LABELS", -1, width, take->points);
+    for (int i = 0; i < take->points; i++)
+        put_text(b, take->names[i], width);
+    put_byte(b, 0);
+    put_group(b, 2, "TRIAL");
+    put_field(b, "ACTUAL_START_FIELD", 1);
+    put_field(b, "ACTUAL_END_FIELD", (unsigned)take->frames);
+    b->at = begin + (size_t)blocks * BLOCK;
+}
+
+static void put_header(bytes *b, const himc_take *take, int blocks)
+{
+    unsigned char *begin = b->at;
+    put_byte(b, 2);
+    put_byte(b, 0x50);
+    put_word(b, (unsigned)take->points);
+    put_word(b, 0);
+    put_word(b, 1);
+    put_word(b, take->frames < 65535 ? (unsigned)take->frames : 65535);
+    put_word(b, 0);
+    put_real(b, -1);
+    put_word(b, (unsigned)(2 + blocks));
+    put_word(b, 0);
+    put_real(b, take->rate);
+    b->at = begin + BLOCK;
+}
+
+static void put_point(bytes *b, himc_vec3 x)
+{
+    bool seen = himc_vec3_finite(x);
+    himc_vec3 mm = seen ? himc_vec3_scale(x, MILLIMETRES) : himc_vec3_make(0, 0, 0);
+    put_real(b, mm.x);
+    put_real(b, mm.y);
+    put_real(b, mm.z);
+    put_real(b, seen ? 0 : -1);
+}
+
+bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
+{
+    if (take->points > MOST_LABELS)
+        return himc_error_set(error, "%s: %d points, allowed in a .c3d: up to %d", take->file,
+                              take->points, MOST_LABELS);
+    int blocks = 2 + (take->points * TAKE_NAME + BLOCK - 1) / BLOCK;
+    size_t before = (size_t)(1 + blocks) * BLOCK, row = 16 * (size_t)take->points;
+    unsigned char *buffer = calloc(1, before > row ? before : row);
+    if (!buffer)
+        return himc_error_set(error, "%s: no memory", take->file);
+    bytes b = {buffer, buffer + before};
+    put_header(&b, take, blocks);
+    put_parameters(&b, take, blocks);
+    fwrite(buffer, 1, before, file);
+    for (int frame = 0; frame < take->frames; frame++) {
+        b = (bytes){buffer, buffer + row};
+        for (int i = 0; i < take->points; i++)
+            put_point(&b, *himc_take_at(take, frame, i));
+        fwrite(buffer, 1, row, file);
+    }
+    free(buffer);
+    return true;
 }

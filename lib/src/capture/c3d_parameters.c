@@ -1,12 +1,12 @@
-/// c3d_parameters.c: C3D's parameter section is a chain of records, groups (negative number) and
-/// parameters (positive), in any order; each says how far it is to the next, from where it says so.
+/// c3d_parameters.c: C3D's parameter section: a chain of records, groups (negative number) and
+/// parameters (positive), in any order; each gives the distance to the next, from its own place.
 ///
 ///     name length, +-group, name, distance to next, [type, dimensions, sizes..., data], text
 ///
 /// Numbers are Intel's (little endian, IEEE), MIPS's (big endian, IEEE) or DEC's: little-endian
 /// words, high word first, sign, 8 bits of exponent e and 23 of mantissa m with value (1/2 + m /
 /// 2^24) 2^(e - 128) and no infinities; e = 0 is zero, or reserved if the sign is set. Reference:
-/// the C3D file format user guide, Motion Lab Systems 2008. Invariant: whatever the file says,
+/// the C3D file format user guide, Motion Lab Systems 2008. Invariant: for any contents
 /// nothing outside [bytes, bytes + size) is read; the walk always moves forward.
 #include "capture/c3d_parameters.h"
 
@@ -69,13 +69,13 @@ void himc_c3d_put_real(c3d_processor processor, double value, unsigned char *at)
     memcpy(&bits, &narrow, sizeof bits);
     if (processor == C3D_DEC)
         bits = dec_bits(value);
-    // byte k of the file is this one of the number, counted from the highest
+    // byte k of the file is this byte of the number, counted from the highest
     static const int order[3][4] = {{3, 2, 1, 0}, {1, 0, 3, 2}, {0, 1, 2, 3}};
     for (int k = 0; k < 4; k++)
         at[k] = (unsigned char)(bits >> (24 - 8 * order[processor - C3D_INTEL][k]));
 }
 
-// letters in upper case, cut to 23, for names are compared so
+// converts to upper case and cuts to 23 letters, for the comparison of names
 static void copy_name(char name[24], const unsigned char *at, size_t length)
 {
     size_t n = 0;
@@ -97,7 +97,7 @@ static bool add(c3d_parameters *p, const c3d_parameter *parameter)
     return true;
 }
 
-// the value at `at`; false if it reaches beyond the file's end
+// reads the value at `at`; false if it goes beyond the end of the file
 static bool read_value(c3d_parameter *q, const unsigned char *at, const unsigned char *end)
 {
     if (end - at < 2)
@@ -122,12 +122,12 @@ static bool read_value(c3d_parameter *q, const unsigned char *at, const unsigned
     return true;
 }
 
-// one record at *at, which moves on to the next, or to NULL after the last
+// reads the record at *at and moves *at to the next, to NULL after the last
 static bool read_record(c3d_parameters *p, const unsigned char **at, const unsigned char *end,
                         himc_error *error)
 {
     if (end - *at < 2)
-        return himc_error_set(error, "its parameters end beyond the end of the file");
+        return himc_error_set(error, "its parameters go beyond the end of the file");
     const unsigned char *a = *at;
     int length = abs(a[0] < 128 ? a[0] : a[0] - 256), group = a[1] < 128 ? a[1] : a[1] - 256;
     if (length == 0 || group == 0) {
@@ -135,7 +135,7 @@ static bool read_record(c3d_parameters *p, const unsigned char **at, const unsig
         return true;
     }
     if (end - a < length + 4)
-        return himc_error_set(error, "its parameters end beyond the end of the file");
+        return himc_error_set(error, "its parameters go beyond the end of the file");
     c3d_parameter q = {.group = abs(group)};
     copy_name(q.name, a + 2, (size_t)length);
     const unsigned char *link = a + 2 + length;
@@ -147,8 +147,8 @@ static bool read_record(c3d_parameters *p, const unsigned char **at, const unsig
     else if (group > 0 && !add(p, &q))
         return himc_error_set(error, "no memory");
     if (distance != 0 && (distance < 2 || distance >= (size_t)(end - link)))
-        return himc_error_set(error, "after parameter %.23s the next is beyond the end of the file",
-                              q.name);
+        return himc_error_set(
+            error, "the record after parameter %.23s is beyond the end of the file", q.name);
     *at = distance ? link + distance : NULL;
     return true;
 }
@@ -158,8 +158,8 @@ bool himc_c3d_parameters_read(c3d_parameters *p, const unsigned char *bytes, siz
 {
     *p = (c3d_parameters){.processor = C3D_INTEL};
     if (offset + 4 > size)
-        return himc_error_set(error, "its parameters begin at byte %zu, the file has %zu", offset,
-                              size);
+        return himc_error_set(error, "its parameters begin at byte %zu, but the file has %zu bytes",
+                              offset, size);
     int processor = bytes[offset + 3];
     if (processor < C3D_INTEL || processor > C3D_MIPS)
         return himc_error_set(error, "processor is %d, allowed 84 (Intel), 85 (DEC), 86 (MIPS)",

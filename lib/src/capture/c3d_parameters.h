@@ -24,17 +24,17 @@ typedef struct c3d_parameter {
     const unsigned char *data; ///< into the file's bytes, count x |type| of them
 } c3d_parameter;
 
-#define C3D_GROUPS 128
+#define C3D_GROUPS 128 ///< most, by the format
 
 typedef struct c3d_parameters {
     c3d_processor processor;
-    char groups[C3D_GROUPS][24]; ///< by number, "" if there is none
+    char groups[C3D_GROUPS][24]; ///< names by number, "" if there is none
     c3d_parameter *list;         ///< owned
     int count;
 } c3d_parameters;
 
-/// Reads the section that begins at `offset`; parameters point into `bytes`. False with what is
-/// wrong, without file name.
+/// Reads the section that begins at `offset`; parameters point into `bytes`. False with the reason,
+/// without file name.
 bool himc_c3d_parameters_read(c3d_parameters *p, const unsigned char *bytes, size_t size,
                               size_t offset, himc_error *error);
 void himc_c3d_parameters_free(c3d_parameters *p);

@@ -1,28 +1,42 @@
-/// player_points.c: which of a take's points are joint centres.
+/// player_points.c: the points of a take that are joint centres, and their check against a body.
 ///
-/// Each row of the table names a centre by one marker or by several of which it is the middle; the
-/// first row all of whose markers the take has is used. Names are tried with the side before and
-/// behind ("LeftElbow", "LELB", "Elbow_L"); those without a side belong to the hand of a lone tip,
-/// else to the right one. Upper arms are called "Arm" where forearms are called "ForeArm"
-/// ("LeftShoulder" is a clavicle then), knees "Leg" where thighs are "UpLeg". A marker on the
-/// acromion lies above the shoulder's centre by 10.4 % of the upper arm (de Leva, J. Biomech.
-/// 29(9), 1996, joint centre positions): 3 cm.
-#include "capture/player_points.h"
+/// Each row of the table gives a centre as one marker or the mean of several; the first row with
+/// all markers in the take is used. Names are tried with the side before and behind ("LeftElbow",
+/// "LELB", "Elbow_L"); names without a side belong to the hand of a lone tip, else to the right
+/// one. Upper arms are called "Arm" where forearms are called "ForeArm" ("LeftShoulder" is a
+/// clavicle then), knees "Leg" where thighs are "UpLeg". A marker on the acromion is above the
+/// shoulder's centre by 10.4 % of the upper arm (de Leva, J. Biomech. 29(9), 1996, joint centre
+/// positions): 3 cm. Markers on the pelvis are above the hip joints by 8 cm.
+///
+/// The check: bones keep their length. Two centres with a distance that varies by more than VARIES
+/// of a usual bone's length between its 10 % and 90 % quantiles are not the ends of a bone, for
+/// example because names are permuted; the farther one is dropped. Bones are of human size: if most
+/// are not, the file's unit is wrong. A player's left shoulder is on the side of the left hip.
+#include "capture/player.h"
 
-#include "capture/take_data.h"
+#include "base/order.h"
+
+#include "capture/take.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MARKERS 4
+#define MARKERS 4           // most in a row
+#define ABOVE_HIPS 0.08     // chosen: of the pelvis' front and back markers, roughly (m)
+#define ABOVE_SHOULDER 0.03 // 10.4 % of the upper arm, de Leva 1996 (m)
+
+// how far a segment's length may be from the usual one; chosen: adults differ by less
+#define LEAST_LENGTH 0.5 // of the usual length
+#define MOST_LENGTH 1.6
+#define VARIES 0.25 // chosen: markers on skin move by far less than this share of a bone's length
 
 typedef struct row {
     int point; // a player_point
     bool sided;
     const char *name[MARKERS];
-    const char *beside; // another name that the take must have for this one to mean the centre
-    double below;       // the markers (m)
+    const char *beside; // name that must also be in the take for the others to mean this centre
+    double below;       // of the centre, below the markers (m)
 } row;
 
 static const row rows[] = {
@@ -31,8 +45,8 @@ static const row rows[] = {
     {POINT_HIPS, false, {"MidHip"}, NULL, 0},
     {POINT_HIPS, false, {"LeftHip", "RightHip"}, NULL, 0},
     {POINT_HIPS, false, {"LHip", "RHip"}, NULL, 0},
-    {POINT_HIPS, false, {"ASISl", "ASISr", "PSISl", "PSISr"}, NULL, 0.08},
-    {POINT_HIPS, false, {"LASI", "RASI", "LPSI", "RPSI"}, NULL, 0.08},
+    {POINT_HIPS, false, {"ASISl", "ASISr", "PSISl", "PSISr"}, NULL, ABOVE_HIPS},
+    {POINT_HIPS, false, {"LASI", "RASI", "LPSI", "RPSI"}, NULL, ABOVE_HIPS},
     {POINT_WAIST, false, {"Waist"}, NULL, 0},
     {POINT_WAIST, false, {"Spine"}, NULL, 0},
     {POINT_WAIST, false, {"LowerBack"}, NULL, 0},
@@ -48,9 +62,9 @@ static const row rows[] = {
     {POINT_SHOULDER, true, {"ShoulderJoint"}, NULL, 0},
     {POINT_SHOULDER, true, {"Shoulder"}, NULL, 0},
     {POINT_SHOULDER, true, {"SJC"}, NULL, 0},
-    {POINT_SHOULDER, true, {"SHO"}, NULL, 0.03},
-    {POINT_SHOULDER, true, {"Acromion"}, NULL, 0.03},
-    {POINT_SHOULDER, true, {"ACRO_tip"}, NULL, 0.03},
+    {POINT_SHOULDER, true, {"SHO"}, NULL, ABOVE_SHOULDER},
+    {POINT_SHOULDER, true, {"Acromion"}, NULL, ABOVE_SHOULDER},
+    {POINT_SHOULDER, true, {"ACRO_tip"}, NULL, ABOVE_SHOULDER},
     {POINT_ELBOW, true, {"Elbow"}, NULL, 0},
     {POINT_ELBOW, true, {"ForeArm"}, NULL, 0},
     {POINT_ELBOW, true, {"LowerArm"}, NULL, 0},
@@ -105,7 +119,7 @@ static const row rows[] = {
 };
 #define ROWS (sizeof rows / sizeof rows[0])
 
-static const char *const words[POINT_BESIDE] = {
+static const char *const point_names[POINT_BESIDE] = {
     "hips",           "waist",          "neck",           "head",
     "left shoulder",  "right shoulder", "left elbow",     "right elbow",
     "left wrist",     "right wrist",    "left grip",      "right grip",
@@ -114,10 +128,10 @@ static const char *const words[POINT_BESIDE] = {
     "left toes",      "right toes",     "left toes' end", "right toes' end",
     "top of the head"};
 
-static const char *word_of(int point)
+static const char *point_name(int point)
 {
     const char *segment = point >= POINT_BESIDE ? himc_segment_name(point - POINT_BESIDE) : "";
-    return point >= POINT_BESIDE ? segment : words[point];
+    return point >= POINT_BESIDE ? segment : point_names[point];
 }
 
 void himc_player_note(himc_player *player, const char *format, ...)
@@ -145,7 +159,8 @@ static int find_sided(const himc_take *take, const char *name, int hand)
     return found;
 }
 
-// the points of a row, how many; 0 unless all are there. Hand HIMC_HANDS: without side
+// finds the points of a row; returns their number, 0 unless all are there. Hand HIMC_HANDS: names
+// without side
 static int find_row(const himc_take *take, const row *r, int hand, int point[MARKERS])
 {
     bool sided = hand < HIMC_HANDS;
@@ -162,7 +177,7 @@ static int find_row(const himc_take *take, const row *r, int hand, int point[MAR
     return count;
 }
 
-// the middle of the markers, gaps filled; false without memory
+// the mean of the markers, gaps filled; false without memory
 static bool add_centre(player_points *p, int which, const int *point, int count, double below,
                        const himc_take_options *options, himc_player *player)
 {
@@ -173,8 +188,8 @@ static bool add_centre(player_points *p, int which, const int *point, int count,
         himc_take_gap gap;
         if (himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) < 0) {
             himc_player_note(player,
-                             "%s: %s is missing in frames %d .. %d, allowed are gaps of %g s",
-                             word_of(which), himc_take_point_name(p->take, point[i]),
+                             "%s: %s is missing in frames %d .. %d, allowed: gaps up to %g s",
+                             point_name(which), himc_take_point_name(p->take, point[i]),
                              himc_take_first_frame(p->take) + gap.begin,
                              himc_take_first_frame(p->take) + gap.end - 1, options->longest_gap);
             shown = false;
@@ -193,7 +208,7 @@ static bool add_centre(player_points *p, int which, const int *point, int count,
     return memory;
 }
 
-// one centre by the first row that the take has
+// a centre by the first row that is in the take
 static bool find_centre(player_points *p, int which, int hand, const himc_take_options *options,
                         himc_player *player)
 {
@@ -209,7 +224,7 @@ static bool find_centre(player_points *p, int which, int hand, const himc_take_o
     return true;
 }
 
-// the tips as they are played
+// the tips, filled in the same way as for playing
 static bool find_tips(player_points *p, himc_take *take, const himc_take_options *options,
                       bool present[HIMC_HANDS])
 {
@@ -259,12 +274,6 @@ void himc_player_points_free(player_points *p)
         free(p->x[i]);
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double himc_player_distance(const player_points *p, int from, int to, double quantile)
 {
     const himc_vec3 *a = p->x[from], *b = p->x[to];
@@ -273,8 +282,97 @@ double himc_player_distance(const player_points *p, int from, int to, double qua
         return 0;
     for (int i = 0; i < p->frames; i++)
         distance[i] = himc_vec3_length(himc_vec3_sub(b[i], a[i]));
-    qsort(distance, (size_t)p->frames, sizeof *distance, by_size);
+    qsort(distance, (size_t)p->frames, sizeof *distance, himc_order_doubles);
     double length = distance[(int)(quantile * p->frames)];
     free(distance);
     return length;
+}
+
+const player_measure himc_player_limbs[PLAYER_LIMBS] = {
+    {HIMC_LEFT_UPPER_ARM, POINT_SHOULDER, POINT_ELBOW, 0.2817, true},
+    {HIMC_LEFT_FOREARM, POINT_ELBOW, POINT_WRIST, 0.2689, true},
+    {HIMC_LEFT_HAND, POINT_WRIST, POINT_GRIP, 0.12, false},
+    {HIMC_LEFT_STICK, POINT_GRIP, POINT_TIP, 0.24, false},
+    {HIMC_LEFT_UPPER_LEG, POINT_HIP, POINT_KNEE, 0.4222, true},
+    {HIMC_LEFT_LOWER_LEG, POINT_KNEE, POINT_ANKLE, 0.434, true},
+};
+const player_measure himc_player_spine[PLAYER_SPINE] = {
+    {HIMC_PELVIS, POINT_HIPS, POINT_WAIST, 0.1457, true},
+    {HIMC_TRUNK, POINT_WAIST, POINT_NECK, 0.3862, true},
+    {HIMC_NECK, POINT_NECK, POINT_HEAD, 0.0696, false},
+};
+
+double himc_player_plausible(double length, double usual)
+{
+    return length >= LEAST_LENGTH * usual && length <= MOST_LENGTH * usual ? length : 0;
+}
+
+static void drop_loose_end(player_points *p, const player_measure *m, int hand, himc_player *player)
+{
+    int from = (int)m->from + hand, to = (int)m->to + hand;
+    double low = himc_player_distance(p, from, to, 0.1),
+           high = himc_player_distance(p, from, to, 0.9);
+    if (high - low <= VARIES * m->usual)
+        return;
+    himc_player_note(
+        player,
+        "%s: its length varies from %.3f to %.3f m, a bone's does not: are the points' names "
+        "right?",
+        himc_segment_name(m->segment + hand), low, high);
+    free(p->x[to]);
+    p->x[to] = NULL;
+}
+
+// if most of the limbs are not of human size the file's unit is not the stated one
+static bool check_size(const player_points *p, himc_error *error)
+{
+    int good = 0, bad = 0;
+    const player_measure *first = NULL;
+    int side = 0;
+    double length = 0;
+    for (int i = 0; i < PLAYER_LIMBS; i++)
+        for (int hand = 0; hand < HIMC_HANDS && himc_player_limbs[i].tells_size; hand++) {
+            const player_measure *m = &himc_player_limbs[i];
+            double l = himc_player_distance(p, (int)m->from + hand, (int)m->to + hand, 0.5);
+            bool fits = himc_player_plausible(l, m->usual) > 0;
+            good += fits;
+            bad += l > 0 && !fits;
+            if (l > 0 && !fits && !first) {
+                first = m;
+                side = hand;
+                length = l;
+            }
+        }
+    if (bad <= good)
+        return true;
+    return himc_error_set(error,
+                          "%s: player: %s of %.3g m, allowed %.2f .. %.2f m: is the unit right?",
+                          p->take->file, himc_segment_name(first->segment + side), length,
+                          LEAST_LENGTH * first->usual, MOST_LENGTH * first->usual);
+}
+
+static bool check_sides(const player_points *p, himc_error *error)
+{
+    himc_vec3 *const *x = p->x;
+    double same = 0;
+    if (!x[POINT_SHOULDER] || !x[POINT_SHOULDER + 1] || !x[POINT_HIP] || !x[POINT_HIP + 1])
+        return true;
+    for (int i = 0; i < p->frames; i++)
+        same += himc_vec3_dot(himc_vec3_sub(x[POINT_SHOULDER][i], x[POINT_SHOULDER + 1][i]),
+                              himc_vec3_sub(x[POINT_HIP][i], x[POINT_HIP + 1][i]));
+    return same >= 0 ||
+           himc_error_set(error,
+                          "%s: player: the left shoulder is over the right hip, allowed "
+                          "over the left one: are left and right exchanged?",
+                          p->take->file);
+}
+
+bool himc_player_check(player_points *p, himc_player *player, himc_error *error)
+{
+    if (!check_size(p, error) || !check_sides(p, error))
+        return false;
+    for (int i = 0; i < PLAYER_LIMBS; i++)
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            drop_loose_end(p, &himc_player_limbs[i], hand, player);
+    return true;
 }

@@ -1,28 +1,38 @@
-/// player_pose.c: postures from joint centres, frame by frame.
+/// player_pose.c: poses from joint centres, frame by frame, then arms fitted to the centres.
 ///
-/// A limb's segment in the world is the rotation that takes the zero pose's axis to the line
-/// between its joint centres. Its turn about that line: from a skeleton, the joint's own world
-/// rotation after the turn A that takes our zero pose to the file's, Q A, then swung the least onto
-/// the line; A is the least swing from our hanging limb to the file's (a T-pose has its elbows'
-/// creases forward and its palms down). From markers, y is the axis of flexion: a marker beside the
-/// segment, else upper arm x forearm and thigh x shank, else the level direction across the stroke.
-/// The trunk's z runs from the waist to the neck, its y along the shoulders. The pelvis of the body
-/// is held still, so the waist and the hips have the rotations in the world. Invariant: a take of
-/// this library's own body comes back as it was.
-#include "capture/player_pose.h"
+/// The world rotation of a limb's segment takes the axis of the zero pose to the line between its
+/// joint centres. Its rotation about that line comes from a skeleton, if there is one: the joint's
+/// world rotation Q after the rotation A that takes the library's zero pose to the file's, Q A, then
+/// the smallest rotation onto the line; A is the smallest rotation from the library's hanging limb
+/// to the file's (in a T-pose elbows bend forward and palms are down). From markers, y is the axis
+/// of flexion: a marker beside the segment, else upper arm x forearm and thigh x shank, else the
+/// horizontal direction across the stroke. The trunk's z runs from the waist to the neck, its y
+/// along the shoulders. The pelvis of the body is held still, so the rotations of trunk and thighs
+/// are those in the world.
+///
+/// Captured limbs stretch by a centimetre or two, since joint centres are guessed from outside; a
+/// simulated body's do not. So an arm's pose is rotated by the least that brings its elbow, wrist
+/// and grip nearest to the captured centres and its tip onto the captured one (global optimisation,
+/// Lu & O'Connor 1999):
+///     min sum_p w_p |x_p + J_p theta - c_p|^2 + s |theta|^2
+/// with theta the rotations at the four joints, by Gauss-Newton. The tip has the largest weight,
+/// because the tip plays. Invariant: a take of this library's own body comes back unchanged.
+#include "capture/player.h"
 
 #include "base/limb_frame.h"
 
+#include <lapacke.h>
 #include <stdlib.h>
 
-#define SIDEWAYS 0.5  // of a zero pose's arm: from here on it is a T-pose's
-#define STRAIGHT 0.1  // what the mean plane of a bent limb counts beside a frame's own
-#define MEAN_STEPS 20 // of the mean rotation
+#define SIDEWAYS 0.5 // chosen: sideways share of an arm's direction that makes a zero pose a T-pose
+#define STRAIGHT 0.1 // chosen: weight of the mean bend plane beside a frame's own
+#define OPPOSITE -0.999999 // chosen: cosine from which two directions count as opposite
+#define MEAN_STEPS 20      // chosen: most iterations of the mean rotation, which stops at 1e-9 rad
 
 typedef struct limb {
     int segment; // left
     player_point from, to;
-    bool is_hand; // turns with the palm: all beyond the elbow
+    bool is_hand; // rotates with the palm: all beyond the elbow
 } limb;
 
 static const limb limbs[] = {
@@ -35,11 +45,11 @@ static const limb limbs[] = {
 };
 #define LIMBS ((int)(sizeof limbs / sizeof limbs[0]))
 
-// how one limb's turn about itself is known
+// the source of a limb's rotation about its own axis
 typedef struct limb_frame {
     bool shown;
     int node;        // of a skeleton, or -1
-    himc_quat align; // our zero pose to the file's
+    himc_quat align; // from the library's zero pose to the file's
     himc_vec3 plane; // mean normal of the bent limb
 } limb_frame;
 
@@ -54,12 +64,12 @@ typedef struct reader {
     bool has_trunk;
 } reader;
 
-// the least rotation that takes one unit vector to another
-static himc_quat swing(himc_vec3 from, himc_vec3 to)
+// the smallest rotation that takes one unit vector to another
+static himc_quat smallest_rotation(himc_vec3 from, himc_vec3 to)
 {
     double c = himc_vec3_dot(from, to);
     himc_vec3 axis = himc_vec3_cross(from, to);
-    if (c < -0.999999) {
+    if (c < OPPOSITE) {
         himc_vec3 other = fabs(from.x) < 0.5 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
         axis = himc_vec3_unit(himc_vec3_cross(from, other));
         return (himc_quat){0, axis.x, axis.y, axis.z};
@@ -70,7 +80,7 @@ static himc_quat swing(himc_vec3 from, himc_vec3 to)
 static himc_vec3 between_points(const reader *r, int from, int to, int frame)
 {
     himc_vec3 d = himc_vec3_sub(r->points->x[to][frame], r->points->x[from][frame]);
-    // two centres in one place point nowhere: down, as limbs hang
+    // two centres in one place have no direction: down, as limbs hang
     return himc_vec3_length(d) > 1e-9 ? himc_vec3_unit(d) : himc_vec3_make(0, 0, -1);
 }
 
@@ -91,7 +101,7 @@ static void align_limb(const reader *r, const limb *l, int hand, limb_frame *f)
     int from = node[(int)l->from + hand], to = node[(int)l->to + hand];
     himc_vec3 zero;
     f->node = -1;
-    // a stick that the file has in one piece with the hand
+    // in some files stick and hand are one segment
     if (l->from == POINT_GRIP && from < 0)
         from = node[POINT_WRIST + hand];
     if (l->to == POINT_GRIP && to < 0)
@@ -99,12 +109,12 @@ static void align_limb(const reader *r, const limb *l, int hand, limb_frame *f)
     if (!r->node || from < 0 || to < 0 || !zero_direction(r->points->take, from, to, &zero))
         return;
     f->node = from;
-    f->align = swing(himc_vec3_make(0, 0, -1), zero);
+    f->align = smallest_rotation(himc_vec3_make(0, 0, -1), zero);
     if (l->is_hand && fabs(zero.y) > SIDEWAYS)
         f->align = himc_quat_from_limb(zero, himc_vec3_make(hand == HIMC_LEFT ? -1 : 1, 0, 0));
 }
 
-// normal of the plane in which elbow or knee bends, as long as the sine of the angle; 0 elsewhere
+// normal of the plane in which elbow or knee bends, its length the sine of the angle; 0 elsewhere
 static himc_vec3 bend_plane(const reader *r, const limb *l, int hand, int frame)
 {
     bool leg = l->segment >= HIMC_LEFT_UPPER_LEG;
@@ -131,8 +141,7 @@ static void prepare_limb(reader *r, int i, int hand)
     f->plane = himc_vec3_scale(himc_vec3_unit(sum), STRAIGHT);
 }
 
-// level, to the left of where the tip is as seen from the elbow: a raised stick itself may point up
-// or back
+// horizontal, to the left of the line from elbow to tip: a raised stick itself may point up or back
 static himc_vec3 across_stroke(const reader *r, int hand, int frame)
 {
     himc_vec3 *const *x = r->points->x;
@@ -153,7 +162,7 @@ static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
     if (f->node >= 0) {
         himc_quat q = himc_quat_mul(r->node[f->node], f->align);
         himc_vec3 now = himc_quat_rotate(q, himc_vec3_make(0, 0, -1));
-        return himc_quat_unit(himc_quat_mul(swing(now, along), q));
+        return himc_quat_unit(himc_quat_mul(smallest_rotation(now, along), q));
     }
     int beside = POINT_BESIDE + l->segment + hand;
     if (r->points->x[beside])
@@ -183,7 +192,7 @@ static bool trunk_rotation(const reader *r, int frame, himc_quat *q)
 }
 
 // world rotations of the file's joints
-static void turn_nodes(reader *r, int frame)
+static void rotate_nodes(reader *r, int frame)
 {
     const himc_take *take = r->points->take;
     for (int i = 0; r->node && i < himc_take_points(take); i++) {
@@ -202,7 +211,7 @@ static bool has_child(const himc_take *take, int node)
     return false;
 }
 
-// neck, head and feet: a skeleton's word for it, or a line and a marker beside the joint
+// neck, head and feet: the skeleton's rotation, or a line and a marker beside the joint
 static const struct {
     int segment;
     int from, to; // player_points
@@ -213,12 +222,12 @@ static const struct {
               {HIMC_LEFT_TOES, POINT_TOE, POINT_TOE_END},
               {HIMC_RIGHT_TOES, POINT_TOE + 1, POINT_TOE_END + 1}};
 
-// own direction `own`, across y, to `along`; y as near to `side` as may be
+// takes the segment's direction `own`, across y, to `along`, and y as near to `side` as possible
 static himc_quat frame_of(himc_vec3 own, himc_vec3 along, himc_vec3 side)
 {
     himc_vec3 y = himc_vec3_madd(side, -himc_vec3_dot(side, along), along), left = {0, 1, 0};
     if (himc_vec3_length(y) < 1e-6)
-        return swing(own, along);
+        return smallest_rotation(own, along);
     y = himc_vec3_unit(y);
     himc_mat3 world = himc_mat3_from_axes(along, y, himc_vec3_cross(along, y));
     himc_mat3 body = himc_mat3_from_axes(own, left, himc_vec3_cross(own, left));
@@ -283,7 +292,7 @@ static void read_frame(reader *r, int frame)
 {
     himc_quat world[HIMC_SEGMENTS] = {himc_quat_identity()};
     himc_pose *pose = &r->player->pose[frame];
-    turn_nodes(r, frame);
+    rotate_nodes(r, frame);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         himc_quat parent = world[r->skeleton->segment[i].parent], q;
         bool shown = segment_rotation(r, i, frame, &q);
@@ -294,8 +303,104 @@ static void read_frame(reader *r, int frame)
     }
 }
 
-// the rotation about which the others' logarithms have no mean; the nearest to all of them, that of
-// rotations.h, is another where motion is wide (by up to 2 mrad in the database)
+#define ANGLES (3 * HIMC_ARM_JOINTS)
+#define FIT_STEPS 5        // of Gauss-Newton: quadratic convergence from some centimetres
+#define TIP_WEIGHT 1e4     // chosen: the tip, which plays, before the centres, of weight 1
+#define ROTATION_COST 1e-4 // s, chosen: 1 rad costs as much as 1 cm of one centre (m^2)
+#define LARGEST_MISS 0.1   // chosen: keeps the linearisation of a step valid (m)
+
+typedef struct arm {
+    himc_quat parent[HIMC_ARM_JOINTS];     // world rotations of the joints' parents
+    himc_vec3 at[HIMC_ARM_JOINTS + 1];     // the joints and the tip (m)
+    himc_vec3 center[HIMC_ARM_JOINTS + 1]; // where they were captured (m)
+} arm;
+
+static void place_arm(const himc_skeleton *skeleton, const himc_pose *pose, himc_vec3 waist,
+                      himc_hand hand, arm *a)
+{
+    himc_quat q = pose->joint[HIMC_TRUNK - 1];
+    himc_vec3 at = waist;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        a->at[k] = at = himc_vec3_add(at, himc_quat_rotate(q, skeleton->segment[j + 1].origin));
+        a->parent[k] = q;
+        q = himc_quat_mul(q, pose->joint[j]);
+    }
+    a->at[HIMC_ARM_JOINTS] = himc_vec3_add(at, himc_quat_rotate(q, skeleton->tip));
+}
+
+// adds w J'J and w J'e of one point, moved by the first `joints` joints
+static void add_point(const arm *a, int joints, double weight, double *matrix, double *right)
+{
+    himc_vec3 e = himc_vec3_sub(a->center[joints], a->at[joints]);
+    double far = himc_vec3_length(e);
+    e = himc_vec3_scale(e, far > LARGEST_MISS ? LARGEST_MISS / far : 1);
+    for (int k = 0; k < joints; k++) {
+        himc_vec3 r = himc_vec3_sub(a->at[joints], a->at[k]), moment = himc_vec3_cross(r, e);
+        double f[3] = {moment.x, moment.y, moment.z};
+        for (int i = 0; i < 3; i++)
+            right[3 * k + i] += weight * f[i];
+        for (int l = 0; l < joints; l++) { // (theta x s)' (theta x r): s.r 1 - r s'
+            himc_vec3 s = himc_vec3_sub(a->at[joints], a->at[l]);
+            double rr[3] = {r.x, r.y, r.z}, ss[3] = {s.x, s.y, s.z}, dot = himc_vec3_dot(r, s);
+            for (int i = 0; i < 3; i++)
+                for (int n = 0; n < 3; n++)
+                    matrix[ANGLES * (3 * k + i) + 3 * l + n] +=
+                        weight * ((i == n ? dot : 0) - ss[i] * rr[n]);
+        }
+    }
+}
+
+static void rotate_arm(const arm *a, himc_hand hand, const double *theta, himc_pose *pose)
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        himc_quat *q = &pose->joint[himc_arm_joint(hand, k)];
+        himc_vec3 rotation = himc_vec3_make(theta[3 * k], theta[3 * k + 1], theta[3 * k + 2]);
+        rotation = himc_quat_rotate(himc_quat_conj(a->parent[k]), rotation);
+        *q = himc_quat_unit(himc_quat_mul(himc_quat_exp(rotation), *q));
+    }
+}
+
+static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand hand,
+                    const himc_vec3 center[HIMC_ARM_JOINTS + 1], himc_pose *pose)
+{
+    arm a;
+    for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
+        a.center[k] = center[k];
+    for (int step = 0; step < FIT_STEPS; step++) {
+        double matrix[ANGLES * ANGLES] = {0}, theta[ANGLES] = {0};
+        place_arm(skeleton, pose, waist, hand, &a);
+        for (int joints = 1; joints <= HIMC_ARM_JOINTS; joints++)
+            add_point(&a, joints, joints < HIMC_ARM_JOINTS ? 1 : TIP_WEIGHT, matrix, theta);
+        for (int i = 0; i < ANGLES; i++)
+            matrix[ANGLES * i + i] += ROTATION_COST;
+        if (LAPACKE_dposv(LAPACK_ROW_MAJOR, 'U', ANGLES, 1, matrix, ANGLES, theta, 1) != 0)
+            return;
+        rotate_arm(&a, hand, theta, pose);
+    }
+}
+
+// fits the arms that are wholly shown
+static void fit_arms(himc_player *player, const player_points *points,
+                     const himc_skeleton *skeleton)
+{
+    himc_vec3 waist = himc_vec3_add(player->hips, skeleton->segment[HIMC_TRUNK].origin);
+    for (int i = 0; i < HIMC_HANDS && player->placed && !player->walks; i++) {
+        himc_hand hand = (himc_hand)i;
+        bool shown = true;
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            shown = shown && player->known[himc_arm_joint(hand, k)];
+        for (int frame = 0; shown && frame < points->frames; frame++) {
+            himc_vec3 center[HIMC_ARM_JOINTS + 1];
+            for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
+                center[k] = points->x[POINT_SHOULDER + HIMC_HANDS * k + i][frame];
+            fit_arm(skeleton, waist, hand, center, &player->pose[frame]);
+        }
+    }
+}
+
+// the rotation about which the logarithms of all have mean 0. The mean of rotations.h, nearest to
+// all in another norm, differs where motion is wide (by up to 2 mrad in the database)
 static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 {
     himc_quat mean = pose[0].joint[j];
@@ -324,7 +429,7 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
         free(r.node);
         return false;
     }
-    // a shoulder that is not seen is where the neck is, for the direction across
+    // a shoulder that is not seen is taken at the neck, for the direction across
     int across = !!points->x[POINT_SHOULDER] + !!points->x[POINT_SHOULDER + 1];
     r.has_trunk = waist && across + !!points->x[POINT_NECK] >= 2 && across > 0;
     if (waist)
@@ -336,7 +441,7 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
         read_frame(&r, frame);
-    himc_player_fit_arms(player, points, skeleton);
+    fit_arms(player, points, skeleton);
     int known = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])

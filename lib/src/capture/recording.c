@@ -1,15 +1,15 @@
-/// recording.c: postures in memory, made into a take when they are written.
+/// recording.c: poses in memory, converted to a take when they are written.
 ///
 /// A frame is the rotation of each joint in its parent's frame, in single precision: 1e-7 rad over
-/// an arm is a tenth of a micrometre. All memory is taken in advance, so that keeping a frame is
+/// an arm is a tenth of a micrometre. All memory is reserved in advance, so that keeping a frame is
 /// only a copy. Invariant: a take's points are the skeleton's segments in their order, then the two
-/// tips, then the ends of head and toes, without which a BVH would not have their rotations. A file
-/// of markers knows no rotations; there each segment has another marker beside its joint, which
-/// with the one at its far end holds them.
+/// tips, then the ends of head and toes, without which a BVH would not contain their rotations. A
+/// file of markers has no rotations; there each segment has another marker beside its joint, which
+/// with the one at its far end determines the rotation.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/mocap.h"
 
-#include "capture/take_data.h"
+#include "capture/take.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -20,7 +20,7 @@
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
 #define MARKERS (POINTS + HIMC_SEGMENTS)
-#define BESIDE 0.05 // of a marker beside a joint, along the segment's y (m)
+#define BESIDE 0.05 // chosen: of a marker beside its joint, along the segment's y (m)
 
 typedef struct frame {
     float q[HIMC_JOINTS][4];
@@ -30,8 +30,8 @@ struct himc_recording {
     char *path; ///< owned
     himc_skeleton skeleton;
     double rate;
-    int count, room;
-    frame *frames; ///< owned (room)
+    int count, room; ///< frames kept, and most
+    frame *frames;   ///< owned (room)
 };
 
 // clang-format off
@@ -43,7 +43,7 @@ static const char *const names[POINTS] = {
 };
 // clang-format on
 
-// what nothing is joined to, sticks apart
+// segments without a child segment, except the sticks
 static const int ends[ENDS] = {HIMC_HEAD, HIMC_LEFT_TOES, HIMC_RIGHT_TOES};
 
 // the far end of a segment, in its frame
@@ -52,18 +52,18 @@ static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
     return himc_vec3_scale(skeleton->segment[segment].axis, skeleton->segment[segment].length);
 }
 
-// opened as if to append: what is there stays until there is something to write
+// opens the file to append: its contents stay until there is something to write
 static bool check_path(const char *path, himc_error *error)
 {
-    if (!himc_take_is_writable(path, error))
+    if (!himc_take_is_format(path, error))
         return false;
-    FILE *there = fopen(path, "rb"), *file = fopen(path, "ab");
+    FILE *existing = fopen(path, "rb"), *file = fopen(path, "ab");
     if (!file)
         himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
     if (file)
         fclose(file);
-    if (there)
-        fclose(there);
+    if (existing)
+        fclose(existing);
     else if (file)
         remove(path);
     return file != NULL;
@@ -78,7 +78,7 @@ himc_recording *himc_recording_new(const char *path, const himc_skeleton *skelet
     if (r) {
         r->skeleton = *skeleton;
         r->rate = rate;
-        r->room = (int)fmin(longest * rate, 1e6);
+        r->room = (int)fmin(longest * rate, TAKE_MOST_FRAMES);
         r->path = strdup(path);
         r->frames = calloc((size_t)r->room, sizeof *r->frames);
     }

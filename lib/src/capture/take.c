@@ -1,47 +1,40 @@
-/// take.c: from a file to a take: reads the bytes, lets the format's reader fill a take in the
-/// file's own unit and axes, then settles it into the library's frame.
+/// take.c: the data of a take, and read access to it.
 ///
 /// Invariants of a finished take: frames and points >= 1, every coordinate finite or the whole
 /// point NaN (a gap), every name at least one printable character, parents before children. Counts
-/// in a file are never trusted: readers compare them with the bytes there are before anything is
-/// allocated, and himc_take_allocate caps the product.
-#define _POSIX_C_SOURCE 200809L
-#include "capture/take_data.h"
+/// in a file are never trusted: readers compare them with the size of the file before they allocate
+/// anything, and himc_take_allocate limits the product of frames and points.
+///
+/// Laboratories give one thing many names: "RTIP", "Daphnee:R_Tip", "StickTipRight",
+/// "RightStick_end". Names are therefore compared as plain letters and digits without prefix, and
+/// read as a few known words with at most one word for the side among them.
+///
+/// Noise of a tracker: normal deviates (Box & Muller 1958) of reproducible random numbers, so that
+/// a seed gives the same noise on every machine.
+#include "capture/take.h"
+
+#include "base/random.h"
 #include "capture/take_text.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-#define MOST_FRAMES 1000000
-#define MOST_POINT_FRAMES 30000000
-#define MOST_POINTS 65536
-#define MOST_BYTES (1L << 30)
 
 himc_take_options himc_take_default(void)
 {
     return (himc_take_options){.up = HIMC_UP_AUTO, .longest_gap = 0.2};
 }
 
-static bool check_options(const himc_take_options *options, himc_error *error)
-{
-    if (options->unit != 0 && !himc_check_range("unit", options->unit, 1e-6, 10, "m", error))
-        return false;
-    return himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error);
-}
-
 bool himc_take_allocate(himc_take *take, double rate, int frames, int points, bool skeleton,
                         himc_error *error)
 {
     if (!himc_check_range("rate", rate, 20, 10000, "Hz", error) ||
-        !himc_check_range("frames", frames, 1, MOST_FRAMES, "", error) ||
-        !himc_check_range("points", points, 1, MOST_POINTS, "", error))
+        !himc_check_range("frames", frames, 1, TAKE_MOST_FRAMES, "", error) ||
+        !himc_check_range("points", points, 1, TAKE_MOST_POINTS, "", error))
         return himc_error_prefix(error, "%s", take->file);
-    if ((int64_t)frames * points > MOST_POINT_FRAMES)
+    if ((int64_t)frames * points > TAKE_MOST_POSITIONS)
         return himc_error_set(error, "%s: %d frames of %d points, allowed %d in all", take->file,
-                              frames, points, MOST_POINT_FRAMES);
+                              frames, points, TAKE_MOST_POSITIONS);
     size_t count = (size_t)points, all = count * (size_t)frames;
     take->rate = rate;
     take->frames = frames;
@@ -98,113 +91,6 @@ void himc_take_note(himc_take *take, const char *format, ...)
     va_end(args);
 }
 
-static bool has_suffix(const char *name, const char *suffix)
-{
-    size_t n = strlen(name), m = strlen(suffix);
-    return n >= m && himc_span_is((himc_span){name + n - m, m}, suffix);
-}
-
-static bool is_format_known(const char *name, himc_error *error)
-{
-    if (has_suffix(name, ".bvh") || has_suffix(name, ".c3d") || has_suffix(name, ".trc"))
-        return true;
-    return himc_error_set(error, "%s: not a take by its name, allowed .bvh .c3d .trc", name);
-}
-
-static bool read_format(himc_take *take, const void *bytes, size_t size, const char *name,
-                        himc_error *error)
-{
-    if (size == 0)
-        return himc_error_set(error, "%s: the file is empty", take->file);
-    if (has_suffix(name, ".bvh"))
-        return himc_bvh_read(take, bytes, size, error);
-    if (has_suffix(name, ".c3d"))
-        return himc_c3d_read(take, bytes, size, error);
-    return himc_trc_read(take, bytes, size, error);
-}
-
-// a long path keeps its end, which tells files apart
-static void set_file(himc_take *take, const char *name)
-{
-    size_t n = strlen(name), room = sizeof take->file - 4;
-    snprintf(take->file, sizeof take->file, "%s%s", n > room ? "..." : "",
-             n > room ? name + n - room : name);
-}
-
-// names from a file may hold anything, an error is one line of printable characters
-static void keep_one_line(himc_error *error)
-{
-    for (char *c = error ? error->text : NULL; c && *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 127)
-            *c = '?';
-}
-
-himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
-                          const himc_take_options *options, himc_error *error)
-{
-    himc_take_options usual = himc_take_default();
-    options = options ? options : &usual;
-    if (!is_format_known(name, error) || !check_options(options, error))
-        return NULL;
-    himc_take *take = calloc(1, sizeof *take);
-    if (!take) {
-        himc_error_set(error, "%s: no memory", name);
-        return NULL;
-    }
-    set_file(take, name);
-    if (read_format(take, bytes, size, name, error) && himc_take_settle(take, options, error))
-        return take;
-    himc_take_free(take);
-    keep_one_line(error);
-    return NULL;
-}
-
-// the whole file, to be freed; NULL with errno
-static void *read_file(const char *path, size_t *size)
-{
-    struct stat status;
-    if (stat(path, &status) != 0)
-        return NULL;
-    if (!S_ISREG(status.st_mode) || status.st_size > MOST_BYTES) {
-        errno = S_ISREG(status.st_mode) ? EFBIG : EINVAL;
-        return NULL;
-    }
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return NULL;
-    char *bytes = malloc((size_t)status.st_size + 1);
-    errno = bytes ? 0 : ENOMEM;
-    if (bytes) {
-        *size = fread(bytes, 1, (size_t)status.st_size, file);
-        if (ferror(file)) {
-            free(bytes);
-            bytes = NULL;
-        }
-    }
-    int why = errno;
-    fclose(file);
-    errno = why;
-    return bytes;
-}
-
-himc_take *himc_take_load(const char *path, const himc_take_options *options, himc_error *error)
-{
-    if (!is_format_known(path, error))
-        return NULL;
-    size_t size = 0;
-    void *bytes = read_file(path, &size);
-    if (!bytes) {
-        const char *why = errno == EINVAL  ? "not a file"
-                          : errno == EFBIG ? "larger than 1 GiB"
-                                           : strerror(errno);
-        himc_error_set(error, "%s: cannot be read: %s", path, why);
-        return NULL;
-    }
-    himc_take *take = himc_take_read(bytes, size, path, options, error);
-    free(bytes);
-    return take;
-}
-
 double himc_take_rate(const himc_take *take)
 {
     return take->rate;
@@ -243,16 +129,6 @@ int himc_take_missing(const himc_take *take, int point)
     return count;
 }
 
-int himc_take_events(const himc_take *take)
-{
-    return take->event_count;
-}
-
-const himc_take_event *himc_take_event_at(const himc_take *take, int index)
-{
-    return &take->events[index];
-}
-
 bool himc_take_has_skeleton(const himc_take *take)
 {
     return take->parents != NULL;
@@ -273,4 +149,90 @@ himc_quat himc_take_rotation(const himc_take *take, int frame, int point)
     if (!take->rotations)
         return himc_quat_identity();
     return take->rotations[(size_t)frame * (size_t)take->points + (size_t)point];
+}
+
+void himc_take_plain_name(const char *name, char plain[TAKE_NAME])
+{
+    const char *colon = strrchr(name, ':');
+    size_t n = 0;
+    for (const char *c = colon ? colon + 1 : name; *c && n < TAKE_NAME - 1; c++) {
+        if (*c >= 'A' && *c <= 'Z')
+            plain[n++] = (char)(*c - 'A' + 'a');
+        else if ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9'))
+            plain[n++] = *c;
+    }
+    plain[n] = 0;
+}
+
+int himc_take_find(const himc_take *take, const char *name)
+{
+    for (int i = 0; i < take->points; i++)
+        if (strcmp(take->names[i], name) == 0)
+            return i;
+    char wanted[TAKE_NAME], plain[TAKE_NAME];
+    himc_take_plain_name(name, wanted);
+    for (int i = 0; i < take->points && wanted[0]; i++) {
+        himc_take_plain_name(take->names[i], plain);
+        if (strcmp(plain, wanted) == 0)
+            return i;
+    }
+    return -1;
+}
+
+static const char *skip_words(const char *at, const char *const *words, char *rest)
+{
+    for (int i = 0; words[i];) {
+        size_t n = strlen(words[i]);
+        bool fits = strncmp(at, words[i], n) == 0;
+        if (fits) {
+            strncat(rest, at, n);
+            at += n;
+        }
+        i = fits ? 0 : i + 1;
+    }
+    return at;
+}
+
+int himc_take_side(const char *plain, const char *const *words, char rest[TAKE_NAME])
+{
+    static const struct {
+        const char *word;
+        int hand;
+    } sides[] = {{"left", HIMC_LEFT},
+                 {"right", HIMC_RIGHT},
+                 {"l", HIMC_LEFT},
+                 {"r", HIMC_RIGHT},
+                 {"", HIMC_HANDS}};
+    rest[0] = 0;
+    const char *at = skip_words(plain, words, rest);
+    size_t before = strlen(rest);
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
+        size_t n = strlen(sides[i].word);
+        rest[before] = 0;
+        if (strncmp(at, sides[i].word, n) == 0 && !*skip_words(at + n, words, rest) && rest[0])
+            return sides[i].hand;
+    }
+    return -1;
+}
+
+// uniform in (0, 1]
+static double uniform(uint64_t *state)
+{
+    return ldexp((double)(himc_random_bits(state) >> 11) + 1, -53);
+}
+
+static double normal(uint64_t *state)
+{
+    double radius = sqrt(-2 * log(uniform(state)));
+    return radius * cos(2 * HIMC_PI * uniform(state));
+}
+
+void himc_take_add_noise(himc_take *take, double deviation, uint64_t seed)
+{
+    for (size_t i = 0; i < (size_t)take->frames * (size_t)take->points; i++) {
+        himc_vec3 *x = &take->x[i];
+        x->x += deviation * normal(&seed);
+        x->y += deviation * normal(&seed);
+        x->z += deviation * normal(&seed);
+    }
 }

@@ -1,19 +1,263 @@
-/// take_frame.c: from the file's axes into the library's: x forward, y left, z up.
+/// take_frame.c: from the file's unit and axes to the library's: metres, x forward, y left, z up.
 ///
-/// With the file's up axis u and its axis f that goes forward (to the right of the screen if the
-/// file says, else x, or y if x is up), the rows of the rotation are f, u x f, u: y up becomes (x,
-/// -z, y). A turn about z then brings the body's left side to +y: by any angle if hips, else
-/// shoulders or the like, are named in pairs, by quarter turns if only the tips tell (players do
-/// not strike exactly along their room's axes, but their hands are not exactly abreast either). A
-/// skeleton's joint frames get a rest rotation of their own, found from the bones in the zero pose,
-/// so that the zero pose looks along x whichever way the player faced on the day: with A for the
-/// points and B for the zero pose, a root turns by A R B^T, other joints by B R B^T, and offsets
-/// become B o; forward kinematics then gives A times the points.
-#include "capture/take_data.h"
+/// Unit. The user's or the file's unit is checked against the size of people. A BVH never states a
+/// unit, but has a skeleton: the longest path along the bones (toe to head, or hand to hand) of an
+/// adult player, sticks included, is 1.2 to 3.2 m. The first unit that makes it so is taken, of m,
+/// cm, mm and CMU's 1/0.45 inch, which do not overlap, then, for bodies with legs, inches and feet;
+/// a skeleton without legs may be 0.3 m long, but then only in m, cm or mm. Marker files do state a
+/// unit, not always the right one: points that lie more than 8 m apart within one frame, or stay
+/// within 2 cm over the whole take, are read again in the one metric unit that makes the distance
+/// 0.2 .. 4 m and leaves them within 100 m of the origin, and a note says so. If no unit does, small
+/// sizes are accepted as the file states them, and large ones are refused.
+///
+/// Axes. With the file's up axis u and its axis f that goes forward (to the right of the screen if
+/// the file states it, else x, or y if x is up), the rows of the rotation are f, u x f, u: y up
+/// becomes (x, -z, y). A rotation about z then brings the body's left side to +y: by any angle if
+/// hips, else shoulders or the like, are named in pairs; by quarter turns if only the tips show it
+/// (players do not strike exactly along their room's axes, but their hands are not exactly abreast
+/// either). A skeleton's joint frames get a rest rotation of their own, found from the bones in the
+/// zero pose, so that the zero pose looks along x in whichever direction the player faced: with A
+/// for the points and B for the zero pose, a root's rotation becomes A R B^T, that of other joints
+/// B R B^T, and offsets become B o; forward kinematics then gives A times the points.
+#include "base/order.h"
+#include "capture/take.h"
+#include "capture/take_text.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// The unit of length.
+
+#define SAMPLED 200 // chosen: about so many frames, spread over the take, are looked at
+
+static const struct {
+    const char *name;
+    double metres;
+} units[] = {{"m", 1},
+             {"cm", 0.01},
+             {"mm", 0.001},
+             {"CMU units of 0.056444 m", 0.0254 / 0.45},
+             {"inches", 0.0254},
+             {"feet", 0.3048},
+             {"meters", 1},
+             {"centimeters", 0.01},
+             {"millimeters", 0.001},
+             {"metres", 1},
+             {"centimetres", 0.01},
+             {"millimetres", 0.001},
+             {"meter", 1},
+             {"in", 0.0254},
+             {"ft", 0.3048},
+             {"um", 1e-6}};
+#define UNITS ((int)(sizeof units / sizeof units[0]))
+#define METRIC 3       // the first three: m, cm, mm
+#define GUESSED 6      // the first six are tried for skeletons with legs ...
+#define GUESSED_ARMS 4 // ... and the first four for those without
+
+// sizes of a player; chosen: 1.2 m is a child's height, 3.2 m a tall player's span with sticks (m)
+#define LEAST_SKELETON 1.2
+#define LEAST_ARMS 0.3 // chosen: one forearm with a stick
+#define MOST_SKELETON 3.2
+// sizes of markers (m)
+#define LEAST_SPREAD 0.2 // chosen: one forearm's markers ...
+#define MOST_SPREAD 4.0  // ... to a player and a drum
+#define TOO_WIDE 8.0     // chosen: no player and drums are so far apart
+#define TOO_SMALL 0.02   // chosen: a tip that plays moves farther
+#define FARTHEST 100.0   // chosen: of a room's origin
+#define STILL_SHARE 0.05 // chosen: smaller shares of the whole spread are those of one marker
+
+double himc_take_unit(const char *name)
+{
+    for (int i = 0; i < UNITS; i++)
+        if (himc_span_is((himc_span){name, strlen(name)}, units[i].name))
+            return units[i].metres;
+    return 0;
+}
+
+static double distance(himc_vec3 a, himc_vec3 b)
+{
+    return himc_vec3_length(himc_vec3_sub(a, b));
+}
+
+// the longest path along the bones between any two nodes (file units); -1 without memory
+static double skeleton_size(const himc_take *take)
+{
+    double *deepest = calloc((size_t)take->points, sizeof *deepest), size = 0;
+    if (!deepest)
+        return -1;
+    // children come after parents, so backwards every branch is complete before it joins
+    for (int i = take->points - 1; i > 0; i--) {
+        int parent = take->parents[i];
+        if (parent < 0)
+            continue;
+        double down = deepest[i] + himc_vec3_length(take->offsets[i]);
+        size = fmax(size, deepest[parent] + down);
+        deepest[parent] = fmax(deepest[parent], down);
+    }
+    free(deepest);
+    return size;
+}
+
+static double guess_unit(double size, double least, double most, int candidates)
+{
+    for (int i = 0; i < candidates; i++)
+        if (size * units[i].metres >= least && size * units[i].metres <= most)
+            return units[i].metres;
+    return 0;
+}
+
+typedef struct box {
+    himc_vec3 low, high;
+} box;
+
+static box box_empty(void)
+{
+    return (box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void box_add(box *b, himc_vec3 x)
+{
+    if (!himc_vec3_finite(x))
+        return;
+    b->low = himc_vec3_make(fmin(b->low.x, x.x), fmin(b->low.y, x.y), fmin(b->low.z, x.z));
+    b->high = himc_vec3_make(fmax(b->high.x, x.x), fmax(b->high.y, x.y), fmax(b->high.z, x.z));
+}
+
+static double box_size(const box *b)
+{
+    return b->high.x >= b->low.x ? distance(b->high, b->low) : 0;
+}
+
+// in file units
+typedef struct sizes {
+    double typical; // median over the frames of the diagonal of the box around the points
+    double all;     // diagonal of the box around all frames
+    double far;     // largest coordinate
+} sizes;
+
+static sizes marker_sizes(const himc_take *take)
+{
+    double spread[SAMPLED + 1];
+    int count = 0, step = take->frames / SAMPLED + 1;
+    box whole = box_empty();
+    for (int frame = 0; frame < take->frames; frame += step) {
+        box one = box_empty();
+        for (int i = 0; i < take->points; i++) {
+            box_add(&one, *himc_take_at(take, frame, i));
+            box_add(&whole, *himc_take_at(take, frame, i));
+        }
+        spread[count++] = box_size(&one);
+    }
+    qsort(spread, (size_t)count, sizeof spread[0], himc_order_doubles);
+    double low = fmax(-whole.low.x, fmax(-whole.low.y, -whole.low.z));
+    double high = fmax(whole.high.x, fmax(whole.high.y, whole.high.z));
+    return (sizes){spread[count / 2], box_size(&whole), fmax(low, high)};
+}
+
+static const char *unit_name(double metres, char text[32])
+{
+    for (int i = 0; i < UNITS; i++)
+        if (units[i].metres == metres)
+            return units[i].name;
+    snprintf(text, 32, "units of %g m", metres);
+    return text;
+}
+
+static bool has_legs(const himc_take *take)
+{
+    static const char *const words[] = {"foot", "toe", "base", "end",   "ankle", "knee",
+                                        "leg",  "up",  "low",  "lower", NULL};
+    char plain[TAKE_NAME], rest[TAKE_NAME];
+    for (int i = 0; i < take->points; i++) {
+        himc_take_plain_name(take->names[i], plain);
+        int side = himc_take_side(plain, words, rest);
+        if (side >= 0 && strcmp(rest, "end") != 0 && strcmp(rest, "base") != 0)
+            return true;
+    }
+    return false;
+}
+
+static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
+{
+    double size = skeleton_size(take);
+    if (size < 0)
+        return himc_error_set(error, "%s: no memory", take->file);
+    bool legs = has_legs(take);
+    *unit = guess_unit(size, LEAST_SKELETON, MOST_SKELETON, legs ? GUESSED : GUESSED_ARMS);
+    if (*unit == 0 && !legs)
+        *unit = guess_unit(size, LEAST_ARMS, MOST_SKELETON, METRIC);
+    char text[32];
+    if (*unit == 0)
+        return himc_error_set(
+            error,
+            "%s: skeleton: the longest path along its bones is %.4g units, in m, cm, mm, CMU units, "
+            "inches or feet no player's size, allowed %g .. %g m",
+            take->file, size, legs ? LEAST_SKELETON : LEAST_ARMS, MOST_SKELETON);
+    snprintf(take->units_text, sizeof take->units_text,
+             "%s, guessed from the skeleton: %.4g units along its bones", unit_name(*unit, text),
+             size);
+    return true;
+}
+
+// the metric unit that gives the points a player's size near the origin; 0 if none
+static double guess_marker_unit(const sizes *s)
+{
+    double size = s->typical > STILL_SHARE * s->all ? s->typical : s->all;
+    double unit = guess_unit(size, LEAST_SPREAD, MOST_SPREAD, METRIC);
+    return s->far * unit <= FARTHEST ? unit : 0;
+}
+
+static bool settle_markers(himc_take *take, double *unit, himc_error *error)
+{
+    sizes s = marker_sizes(take);
+    double said = take->file_unit, in = said > 0 ? said : 1;
+    bool small = s.all * said < TOO_SMALL && s.all > 0 && take->frames > 1;
+    bool fits = said > 0 && s.typical * said <= TOO_WIDE && !small;
+    char text[32], other[32];
+    *unit = fits ? said : guess_marker_unit(&s);
+    // one marker may hardly move: a small size that no other unit explains is accepted
+    if (*unit == 0 && said > 0 && small) {
+        *unit = said;
+        fits = true;
+    }
+    if (*unit == 0)
+        return himc_error_set(error,
+                              "%s: the points are %.4g m apart if the unit is %s, no metric unit "
+                              "makes that a player's size, allowed %g .. %g m",
+                              take->file, fmax(s.typical, small ? s.all : 0) * in,
+                              unit_name(in, text), LEAST_SPREAD, MOST_SPREAD);
+    snprintf(take->units_text, sizeof take->units_text, "%s, %s", unit_name(*unit, text),
+             fits ? "stated by the file" : "guessed from the distances between points");
+    if (said > 0 && !fits)
+        himc_take_note(take, "units: read as %s, because in %s the points are %.4g m apart",
+                       unit_name(*unit, text), unit_name(said, other), s.typical * said);
+    return true;
+}
+
+static void scale(himc_take *take, double unit)
+{
+    size_t all = (size_t)take->frames * (size_t)take->points;
+    for (size_t i = 0; i < all; i++)
+        take->x[i] = himc_vec3_scale(take->x[i], unit);
+    for (int i = 0; i < take->points && take->offsets; i++)
+        take->offsets[i] = himc_vec3_scale(take->offsets[i], unit);
+}
+
+static bool settle_units(himc_take *take, const himc_take_options *options, himc_error *error)
+{
+    double unit = options->unit;
+    char text[32];
+    if (unit > 0)
+        snprintf(take->units_text, sizeof take->units_text, "%s, set by the user",
+                 unit_name(unit, text));
+    else if (!(take->parents ? settle_skeleton(take, &unit, error)
+                             : settle_markers(take, &unit, error)))
+        return false;
+    scale(take, unit);
+    return true;
+}
+
+// The axes.
 
 static const char *const side_words[] = {
     "shoulder", "sho", "collar", "clavicle", "clav", "acromion", "acr", "upper", "upleg", "leg",
@@ -27,8 +271,11 @@ static const char *const low_words[] = {"hips", "hip",  "joint", "pelvis", "asis
                                         "psi",  "knee", "ankle", "foot",   "toe",  "heel", NULL};
 static const char *const shoulder_words[] = {"shoulder", "sho", "acromion", "acr", "joint", NULL};
 
-#define BLURRED 40.0 // a blow's few milliseconds are less than a third of a frame (Hz)
-#define SAMPLED 200  // frames looked at are about so many, spread over the take
+#define BLURRED 40.0      // chosen: a contact of some 7 ms is less than a third of a frame (Hz)
+#define CLEARLY 0.8       // chosen: share of a direction along one axis that makes it that axis
+#define STEADY 0.5        // chosen: share of the summed lengths, less is a player who turns round
+#define LEAST_ACROSS 0.03 // chosen: a shorter left-to-right vector has no direction (m)
+#define MOST_PAIRS 16     // chosen: a body has fewer
 
 static int named(const himc_take *take, int point, const char *const *words, char rest[TAKE_NAME])
 {
@@ -37,7 +284,7 @@ static int named(const himc_take *take, int point, const char *const *words, cha
     return himc_take_side(plain, words, rest);
 }
 
-// mean over frames of b - a; false if they are never seen together
+// mean over the frames of b - a; false if they are never seen together
 static bool mean_difference(const himc_take *take, int a, int b, himc_vec3 *mean)
 {
     himc_vec3 sum = {0, 0, 0};
@@ -58,7 +305,7 @@ typedef struct pair {
     int left, right;
 } pair;
 
-// left and right of the same thing of these words, at most `capacity`
+// left and right points of the same name made of these words, at most `capacity`
 static int find_pairs_of(const himc_take *take, const char *const *words, pair *pairs, int capacity)
 {
     int count = 0;
@@ -75,14 +322,14 @@ static int find_pairs_of(const himc_take *take, const char *const *words, pair *
     return count;
 }
 
-// those of the hips, for a player's shoulders turn towards what is struck; else any
+// pairs at the hips, because a player's shoulders turn towards the drum; else any
 static int find_pairs(const himc_take *take, pair *pairs, int capacity)
 {
     int count = find_pairs_of(take, hip_words, pairs, capacity);
     return count > 0 ? count : find_pairs_of(take, side_words, pairs, capacity);
 }
 
-// the axis heads lie above hips on, clear or nothing; the points' names go to the reason
+// the axis along which heads are above hips, if it is clear; names the points in axes_text
 static bool up_from_data(himc_take *take, himc_vec3 *up)
 {
     int high = -1, low = -1;
@@ -96,13 +343,13 @@ static bool up_from_data(himc_take *take, himc_vec3 *up)
     }
     if (high < 0 || low < 0 || !mean_difference(take, low, high, &d))
         return false;
-    double clear = 0.8 * himc_vec3_length(d);
+    double clear = CLEARLY * himc_vec3_length(d);
     *up = himc_vec3_make(copysign(fabs(d.x) > clear, d.x), copysign(fabs(d.y) > clear, d.y),
                          copysign(fabs(d.z) > clear, d.z));
     if (himc_vec3_length(*up) != 1)
         return false;
-    snprintf(take->axes_text, sizeof take->axes_text, "for %.40s is above %.40s", take->names[high],
-             take->names[low]);
+    snprintf(take->axes_text, sizeof take->axes_text, "because %.40s is above %.40s",
+             take->names[high], take->names[low]);
     return true;
 }
 
@@ -110,17 +357,17 @@ static himc_vec3 find_up(himc_take *take, himc_up asked)
 {
     himc_vec3 up;
     if (asked != HIMC_UP_AUTO) {
-        snprintf(take->axes_text, sizeof take->axes_text, "as asked for");
+        snprintf(take->axes_text, sizeof take->axes_text, "set by the user");
         return asked == HIMC_UP_Y ? himc_vec3_make(0, 1, 0) : himc_vec3_make(0, 0, 1);
     }
     if (himc_vec3_length(take->file_up) > 0) {
-        snprintf(take->axes_text, sizeof take->axes_text, "as the file says");
+        snprintf(take->axes_text, sizeof take->axes_text, "stated by the file");
         return take->file_up;
     }
     if (up_from_data(take, &up))
         return up;
-    snprintf(take->axes_text, sizeof take->axes_text, "the habit of %.4s files", take->format);
-    return take->habit_up;
+    snprintf(take->axes_text, sizeof take->axes_text, "as usual in %.4s files", take->format);
+    return take->format_up;
 }
 
 static himc_mat3 rows_of(himc_vec3 x, himc_vec3 y, himc_vec3 z)
@@ -128,7 +375,7 @@ static himc_mat3 rows_of(himc_vec3 x, himc_vec3 y, himc_vec3 z)
     return (himc_mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
 }
 
-static himc_mat3 stand_up(himc_vec3 up, himc_vec3 right)
+static himc_mat3 upright_axes(himc_vec3 up, himc_vec3 right)
 {
     himc_vec3 forward = right;
     if (himc_vec3_length(right) == 0 || himc_vec3_dot(right, up) != 0)
@@ -136,8 +383,8 @@ static himc_mat3 stand_up(himc_vec3 up, himc_vec3 right)
     return rows_of(forward, himc_vec3_cross(up, forward), up);
 }
 
-// the turn about z that brings a horizontal direction to +y
-static himc_mat3 turn_to_left(himc_vec3 d, bool quarters)
+// the rotation about z that brings a horizontal direction to +y
+static himc_mat3 rotate_to_left(himc_vec3 d, bool quarters)
 {
     double angle = HIMC_PI / 2 - atan2(d.y, d.x);
     if (quarters)
@@ -149,82 +396,82 @@ static himc_mat3 turn_to_left(himc_vec3 d, bool quarters)
 
 static bool is_long_enough(himc_vec3 d)
 {
-    return hypot(d.x, d.y) > 0.03;
+    return hypot(d.x, d.y) > LEAST_ACROSS;
 }
 
-// the body's left side in the stood-up frame, over the take, or at its start if the player turns
-// round
-static bool left_of_body(const himc_take *take, const himc_mat3 *stand, himc_vec3 *left)
+// the body's left side in the upright frame: mean over the take, or at its start if the player
+// turns round
+static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_vec3 *left)
 {
-    pair pairs[16];
+    pair pairs[MOST_PAIRS];
     himc_vec3 sum = {0, 0, 0}, first = {0, 0, 0}, d;
     double lengths = 0;
-    int count = find_pairs(take, pairs, 16);
+    int count = find_pairs(take, pairs, MOST_PAIRS);
     for (int frame = 0; frame < take->frames && count; frame += take->frames / SAMPLED + 1) {
         himc_vec3 now = {0, 0, 0};
         for (int i = 0; i < count; i++) {
             d = himc_vec3_sub(*himc_take_at(take, frame, pairs[i].left),
                               *himc_take_at(take, frame, pairs[i].right));
             if (himc_vec3_finite(d))
-                now = himc_vec3_add(now, himc_mat3_apply(stand, d));
+                now = himc_vec3_add(now, himc_mat3_apply(upright, d));
         }
         first = is_long_enough(first) ? first : now;
         sum = himc_vec3_add(sum, now);
         lengths += hypot(now.x, now.y);
     }
-    *left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first;
+    *left = hypot(sum.x, sum.y) > STEADY * lengths ? sum : first;
     return is_long_enough(*left);
 }
 
-// the left side as the sticks tell it: from the right tip to the left one, or a quarter turn from
-// where the arm points
+// the left side by the sticks: from the right tip to the left one, or a quarter turn from the
+// direction of the arm
 static bool left_of_tips(const himc_take *take, const himc_take_options *options,
-                         const himc_mat3 *stand, himc_vec3 *left, const char **reason)
+                         const himc_mat3 *upright, himc_vec3 *left, const char **reason)
 {
     int l = himc_take_find_tip(take, HIMC_LEFT, options),
         r = himc_take_find_tip(take, HIMC_RIGHT, options);
     char rest[TAKE_NAME];
     himc_vec3 d;
     if (l >= 0 && r >= 0 && mean_difference(take, r, l, &d)) {
-        *left = himc_mat3_apply(stand, d);
-        *reason = "turned so that the left tip is left of the right one";
+        *left = himc_mat3_apply(upright, d);
+        *reason = "rotated so that the left tip is left of the right one";
         return is_long_enough(*left);
     }
     for (int i = 0; i < take->points && (l >= 0 || r >= 0); i++)
         if (named(take, i, shoulder_words, rest) >= 0 &&
             mean_difference(take, i, l >= 0 ? l : r, &d)) {
-            d = himc_mat3_apply(stand, d);
+            d = himc_mat3_apply(upright, d);
             *left = himc_vec3_make(-d.y, d.x, 0);
-            *reason = "turned so that the tip is in front of the shoulder";
+            *reason = "rotated so that the tip is in front of the shoulder";
             return is_long_enough(*left);
         }
     return false;
 }
 
 // the left side in the zero pose: positions are sums of offsets
-static bool left_of_rest(const himc_take *take, const himc_mat3 *stand, himc_vec3 *left)
+static bool left_of_rest(const himc_take *take, const himc_mat3 *upright, himc_vec3 *left)
 {
-    pair pairs[16];
+    pair pairs[MOST_PAIRS];
     himc_vec3 sum = {0, 0, 0};
-    int count = find_pairs(take, pairs, 16);
+    int count = find_pairs(take, pairs, MOST_PAIRS);
     for (int i = 0; i < count; i++) {
         for (int j = pairs[i].left; j >= 0; j = take->parents[j])
             sum = himc_vec3_add(sum, take->offsets[j]);
         for (int j = pairs[i].right; j >= 0; j = take->parents[j])
             sum = himc_vec3_sub(sum, take->offsets[j]);
     }
-    *left = himc_mat3_apply(stand, sum);
+    *left = himc_mat3_apply(upright, sum);
     return is_long_enough(*left);
 }
 
-static void turn_points(himc_take *take, const himc_mat3 *a)
+static void rotate_points(himc_take *take, const himc_mat3 *a)
 {
     size_t all = (size_t)take->frames * (size_t)take->points;
     for (size_t i = 0; i < all; i++)
         take->x[i] = himc_mat3_apply(a, take->x[i]);
 }
 
-static void turn_skeleton(himc_take *take, const himc_mat3 *a, const himc_mat3 *b)
+static void rotate_skeleton(himc_take *take, const himc_mat3 *a, const himc_mat3 *b)
 {
     himc_quat qa = himc_quat_from_mat3(*a), qb = himc_quat_from_mat3(*b), back = himc_quat_conj(qb);
     for (int i = 0; i < take->points; i++)
@@ -249,7 +496,7 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-// what is asked for by name is the first of that name
+// points with equal names: himc_take_find gives the first
 static void note_names(himc_take *take)
 {
     size_t count = (size_t)take->points;
@@ -271,32 +518,32 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
 {
     if (!take->parents)
         himc_take_drop_zeros(take);
-    if (!himc_take_settle_units(take, options, error))
+    if (!settle_units(take, options, error))
         return false;
     himc_take_drop_spikes(take);
     note_names(take);
     if (take->rate < BLURRED)
-        himc_take_note(take, "rate: at %g Hz strikes are blurred, and may be missed or misplaced",
+        himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);
     himc_vec3 up = find_up(take, options->up), left, rest_left;
-    himc_mat3 stand = stand_up(up, take->file_right), a = stand, b;
+    himc_mat3 upright = upright_axes(up, take->file_right), a = upright, b;
     const char *heading = "heading as in the file";
-    if (left_of_body(take, &stand, &left)) {
-        himc_mat3 turn = turn_to_left(left, false);
-        a = himc_mat3_mul(&turn, &stand);
-        heading = "turned so that the body looks along x";
-    } else if (left_of_tips(take, options, &stand, &left, &heading)) {
-        himc_mat3 turn = turn_to_left(left, true);
-        a = himc_mat3_mul(&turn, &stand);
+    if (left_of_body(take, &upright, &left)) {
+        himc_mat3 rotation = rotate_to_left(left, false);
+        a = himc_mat3_mul(&rotation, &upright);
+        heading = "rotated so that the body faces along x";
+    } else if (left_of_tips(take, options, &upright, &left, &heading)) {
+        himc_mat3 rotation = rotate_to_left(left, true);
+        a = himc_mat3_mul(&rotation, &upright);
     }
     b = a;
-    if (take->parents && left_of_rest(take, &stand, &rest_left)) {
-        himc_mat3 turn = turn_to_left(rest_left, false);
-        b = himc_mat3_mul(&turn, &stand);
+    if (take->parents && left_of_rest(take, &upright, &rest_left)) {
+        himc_mat3 rotation = rotate_to_left(rest_left, false);
+        b = himc_mat3_mul(&rotation, &upright);
     }
-    turn_points(take, &a);
+    rotate_points(take, &a);
     if (take->parents)
-        turn_skeleton(take, &a, &b);
+        rotate_skeleton(take, &a, &b);
     say_axes(take, up, heading);
     return true;
 }

@@ -1,37 +1,48 @@
-/// take_strikes.c: where a stick struck, from its tip's track alone.
+/// take_strikes.c: strikes of a stick, found in the trajectory of its tip alone.
 ///
-/// A strike is a spike of upward acceleration that ends a fall. Over 30 ms to either side of a
-/// candidate the vertical speed rises by D; a hand that turns a stick in the air spreads D over
-/// that whole time, a drumhead gives it within a few milliseconds. So with the largest second
+/// A strike is a peak of upward acceleration that ends a fall. Within 30 ms to either side of a
+/// candidate the vertical speed rises by D. A hand that reverses a stick in the air spreads D over
+/// that whole time; a drumhead does it within a few milliseconds. So with the largest second
 /// difference A (m/s^2) the width D / A is compared: 4 Hz strokes in the air have 55 ms, a blow on
 /// a head 8 to 18 ms even in a track that was low-pass filtered (24 ms allowed, and 3 frames where
 /// frames are longer than 8 ms).
 ///
-/// The track near the touch is blunted by the capture's filter, so what happens is read from
-/// before: a parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall,
-/// those before the deceleration reaches a tenth of A. A must stand out of what noise alone gives
-/// (noise.c), over longer differences where a track is noisy. In a sharp track (nearly all of D in
-/// two frames) the touch is where the parabolas from before and after meet; in a blunted one, where
-/// the one from before passes the height of the lowest position. In a sharp track the speed is the
-/// parabola's slope there; in a blunted one its slope at the last undisturbed sample, for what lies
-/// beyond is not the filter's to tell.
+/// The capture's filter blunts the track near the touch, so time and speed come from before it: a
+/// parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall, before the
+/// deceleration reaches a tenth of A. A must be larger than noise alone makes it (noise.c); a noisy
+/// track is judged by longer differences. In a sharp track (nearly all of D in two frames) the touch
+/// is where the parabolas before and after intersect, and the speed is the slope there. In a blunted
+/// track the touch is where the parabola before passes the height of the lowest position, and the
+/// speed is its slope at the last undisturbed sample.
 ///
-/// Where the tip was not seen for longer than a contact there is no telling: what fills a gap bends
-/// as it likes.
+/// In a gap longer than a contact no strike is reported, because the curve that bridges a gap bends
+/// arbitrarily.
 #include "himc/mocap.h"
 
 #include "base/noise.h"
-#include "capture/take_data.h"
+#include "base/order.h"
+#include "capture/take.h"
 
 #include <stdlib.h>
 
-#define LEAST_SPEED 0.3 // slower touches are no strokes (m/s)
-#define REFRACTORY 0.05 // strikes of one hand are further apart (s)
-#define WINDOW 0.03     // (s)
-#define CONTACT 0.007   // of a felt mallet with a drumhead (s)
-#define UNSEEN 0.012    // longer gaps hide whether there was one (s)
-#define CERTAIN 5.0     // standard deviations of noise that a bend must exceed
-#define CALM 100.0      // noise's bend, that many times, up to which differences stay short (m/s^2)
+#define LEAST_SPEED 0.3    // chosen: slower touches are not strokes (m/s)
+#define MOST_SINKING 0.3   // chosen: speed of a fall that goes on after it, as a share of its speed
+#define REFRACTORY 0.05    // chosen: strikes of one hand are further apart (s)
+#define STRIKE_WINDOW 0.03 // chosen: D is taken within this time, longer than any contact (s)
+#define STRIKE_WIDTH 0.024 // chosen: most of D / A, between a head's 18 ms and the air's 55 (s)
+#define STRIKE_FRAMES 3    // chosen: the same in frames, if these are long
+#define FALL_TIME 0.024    // chosen: length of the parabolas, short beside a fall of 0.2 s (s)
+#define CONTACT 0.007      // of a felt mallet with the simulated head (s)
+#define LONGEST_UNSEEN 0.012   // chosen: longer gaps may hide a strike (s)
+#define NOISE_DEVIATIONS 5.0   // chosen: standard deviations of noise that a bend must exceed
+#define SHORT_DIFFERENCE 0.006 // chosen: of quiet tracks, about a contact (s) ...
+#define LONG_DIFFERENCE 0.012  // ... and at most, of noisy ones (s)
+#define QUIET_BEND 100.0       // chosen: noise up to which differences stay short (m/s^2)
+#define SHARPEST_WITHIN 0.008  // chosen: time around a candidate for its largest bend (s)
+#define LOWEST_WITHIN 0.025    // chosen: time around it for the lowest position (s)
+#define FALL_DIFFERENCE 0.004  // chosen: of the bends that end the undisturbed fall (s)
+#define DISTURBED 0.1          // chosen: share of the largest bend that ends the undisturbed fall
+#define SHARP 0.8              // chosen: share of D that a sharp track has in two frames
 
 typedef struct track {
     const himc_take *take;
@@ -65,25 +76,25 @@ static int frames_of(const track *t, double seconds, int least)
     return n < least ? least : n;
 }
 
-// standard deviation of bends over h frames by noise alone, times CERTAIN: for x_h - 2 x_0 + x_-h
-// the variance is 6 sigma^2
+// NOISE_DEVIATIONS standard deviations of bends over h frames by noise alone: for x_h - 2 x_0 +
+// x_-h the variance is 6 sigma^2
 static double noise_bend(const track *t, int h)
 {
     double s = t->rate / h;
-    return CERTAIN * sqrt(6) * t->noise * s * s;
+    return NOISE_DEVIATIONS * sqrt(6) * t->noise * s * s;
 }
 
 // frames of the differences in which strikes are looked for
 static int difference(const track *t)
 {
-    int h = frames_of(t, 0.006, 1), longest = frames_of(t, 0.012, 1);
-    while (h < longest && noise_bend(t, h) > CALM)
+    int h = frames_of(t, SHORT_DIFFERENCE, 1), longest = frames_of(t, LONG_DIFFERENCE, 1);
+    while (h < longest && noise_bend(t, h) > QUIET_BEND)
         h++;
     return h;
 }
 
-// least squares over samples origin, origin + step, ...; n >= 2, at the take's edges whatever there
-// is
+// least squares over n samples origin, origin + step, ...; fewer than 3 at the take's edges give a
+// line or a constant
 static parabola fit(const track *t, int origin, int step, int n)
 {
     double s[5] = {0, 0, 0, 0, 0}, r[3] = {0, 0, 0};
@@ -142,11 +153,11 @@ static int lowest(const track *t, int from, int to)
     return best;
 }
 
-// a spike's facts
-typedef struct spike {
+// a peak of upward acceleration
+typedef struct candidate {
     int frame;
     double bend, rise; // A, D
-} spike;
+} candidate;
 
 static bool is_unseen(const track *t, int frame)
 {
@@ -154,10 +165,10 @@ static bool is_unseen(const track *t, int frame)
            !himc_vec3_finite(*himc_take_at(t->take, frame, t->point));
 }
 
-// whether frames from .. to reach into a gap that hides a strike; at the take's ends any does
+// true if frames from .. to reach into a gap that may hide a strike; at the take's ends any gap may
 static bool in_gap(const track *t, int from, int to)
 {
-    int most = frames_of(t, UNSEEN, 2);
+    int most = frames_of(t, LONGEST_UNSEEN, 2);
     for (int i = from; i <= to; i++) {
         int begin = i, end = i;
         while (begin >= 0 && is_unseen(t, begin) && i - begin <= most)
@@ -170,22 +181,21 @@ static bool in_gap(const track *t, int from, int to)
     return false;
 }
 
-static bool is_strike(const track *t, int i, int h, spike *s)
+static bool is_strike(const track *t, int i, int h, candidate *s)
 {
-    int w = frames_of(t, WINDOW, 3);
+    int w = frames_of(t, STRIKE_WINDOW, 3);
     int before = i - h - w < 0 ? 0 : i - h - w,
         after = i + h + w >= t->frames ? t->frames - 1 : i + h + w;
-    int near = frames_of(t, 0.012, 1);
-    // the fastest fall before and the fastest rise after, each over 12 ms so that noise does not
-    // count
+    int near = frames_of(t, LONG_DIFFERENCE, 1);
+    // the fastest fall before and the fastest rise after, each over 12 ms to average noise
     double down = 0, up = -INFINITY;
     for (int k = before; k + near <= i; k++)
         down = fmin(down, speed(t, k, k + near));
     for (int k = i; k + near <= after; k++)
         up = fmax(up, speed(t, k, k + near));
-    *s = (spike){i, bend(t, i, h), up - down};
-    double width = fmax(0.024, 3 / t->rate);
-    return down < -LEAST_SPEED && up > 0.3 * down && s->rise < width * s->bend &&
+    *s = (candidate){i, bend(t, i, h), up - down};
+    double width = fmax(STRIKE_WIDTH, STRIKE_FRAMES / t->rate);
+    return down < -LEAST_SPEED && up > MOST_SINKING * down && s->rise < width * s->bend &&
            s->bend > noise_bend(t, h) && !in_gap(t, i - h, i + h);
 }
 
@@ -197,20 +207,20 @@ static double bend_or_zero(const track *t, int i, int h)
 // the frame of the largest bend by differences of h frames, near `frame`
 static int sharpest(const track *t, int frame, int h)
 {
-    int w = frames_of(t, 0.008, 2), best = frame;
+    int w = frames_of(t, SHARPEST_WITHIN, 2), best = frame;
     for (int i = frame - w; i <= frame + w; i++)
         if (bend_or_zero(t, i, h) > bend_or_zero(t, best, h))
             best = i;
     return best;
 }
 
-// the last frame before a blunt spike in which the fall is still undisturbed
+// the last frame before a blunt peak in which the fall is still undisturbed
 static int clean_end(const track *t, int frame)
 {
-    int h = frames_of(t, 0.004, 1), limit = frame - frames_of(t, WINDOW, 3);
+    int h = frames_of(t, FALL_DIFFERENCE, 1), limit = frame - frames_of(t, STRIKE_WINDOW, 3);
     double largest = bend_or_zero(t, sharpest(t, frame, h), h);
     for (int i = frame - h; i > limit && i >= h; i--)
-        if (bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z)
+        if (bend(t, i, h) < DISTURBED * largest && t->x[i + h].z < t->x[i].z)
             return i + h;
     return frame > 0 ? frame - 1 : 0;
 }
@@ -223,13 +233,14 @@ static himc_vec3 place_between(const track *t, double frame, double height)
     return x;
 }
 
-static himc_take_strike measure(const track *t, const spike *s, himc_hand hand)
+static himc_take_strike measure(const track *t, const candidate *s, himc_hand hand)
 {
-    int peak = sharpest(t, s->frame, 1), w = frames_of(t, 0.025, 2), n = frames_of(t, 0.024, 4);
+    int peak = sharpest(t, s->frame, 1), w = frames_of(t, LOWEST_WITHIN, 2),
+        n = frames_of(t, FALL_TIME, 4);
     double earlier = bend_or_zero(t, peak - 1, 1), later = bend_or_zero(t, peak + 1, 1);
-    bool sharp = bend_or_zero(t, peak, 1) + fmax(earlier, later) > 0.8 * s->rise * t->rate;
+    bool sharp = bend_or_zero(t, peak, 1) + fmax(earlier, later) > SHARP * s->rise * t->rate;
     int low = lowest(t, peak < w ? 0 : peak - w, peak + w < t->frames ? peak + w : t->frames - 1);
-    // a kink between two frames bends the track in both, so before it ends with the earlier one
+    // a kink between two frames bends the track in both: the fall ends with the earlier one
     int end = sharp ? peak - (earlier > later) : clean_end(t, peak);
     parabola before = fit(t, end, -1, n < end + 1 ? n : end + 1);
     parabola after = {t->x[low].z, 0, 0, low};
@@ -251,7 +262,7 @@ static himc_take_strike measure(const track *t, const spike *s, himc_hand hand)
 static bool next_strike(const track *t, int *from, himc_hand hand, himc_take_strike *strike)
 {
     int h = difference(t), apart = frames_of(t, REFRACTORY, 1);
-    spike best = {-1, 0, 0}, s;
+    candidate best = {-1, 0, 0}, s;
     int i = *from < h ? h : *from;
     for (; i + h < t->frames && (best.frame < 0 || i < best.frame + apart); i++)
         if (bend(t, i, h) > best.bend && is_strike(t, i, h, &s))
@@ -262,15 +273,9 @@ static bool next_strike(const track *t, int *from, himc_hand hand, himc_take_str
     return best.frame >= 0;
 }
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, int count)
 {
-    qsort(values, (size_t)count, sizeof *values, compare);
+    qsort(values, (size_t)count, sizeof *values, himc_order_doubles);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
@@ -286,7 +291,7 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
         tracks[h].noise = tips[h].present ? himc_noise(tips[h].x, tracks[h].frames) : 0;
         waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
     }
-    // two sorted lists are merged as they are found
+    // merges the two sorted lists while they are found
     while (waits[HIMC_LEFT] || waits[HIMC_RIGHT]) {
         int h = !waits[HIMC_LEFT] ||
                 (waits[HIMC_RIGHT] && next[HIMC_RIGHT].time < next[HIMC_LEFT].time);
@@ -308,14 +313,15 @@ himc_take_strike *himc_take_find_strikes(const himc_take *take,
     return strikes;
 }
 
-// how far the head is above where fall and rebound meet: v t down and u (CONTACT - t) up again
-static double above_meeting(const himc_take_strike *s)
+// height of the head above the point where fall and rebound intersect: v t down and u (CONTACT - t)
+// up again
+static double above_intersection(const himc_take_strike *s)
 {
     double sum = s->velocity + s->rebound;
     return sum > 0 ? CONTACT * s->velocity * s->rebound / sum : 0;
 }
 
-// the middle of one hand's strikes along one axis; false if it has none
+// the median position of one hand's strikes along one axis; false if it has none
 static bool hand_median(const himc_take_strike *strikes, int count, int hand, int axis,
                         double *scratch, double *middle)
 {
@@ -323,7 +329,9 @@ static bool hand_median(const himc_take_strike *strikes, int count, int hand, in
     for (int i = 0; i < count; i++)
         if ((int)strikes[i].hand == hand) {
             himc_vec3 x = strikes[i].x;
-            scratch[n++] = axis == 0 ? x.x : axis == 1 ? x.y : x.z + above_meeting(&strikes[i]);
+            scratch[n++] = axis == 0   ? x.x
+                           : axis == 1 ? x.y
+                                       : x.z + above_intersection(&strikes[i]);
         }
     if (n > 0)
         *middle = median(scratch, n);

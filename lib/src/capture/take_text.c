@@ -1,4 +1,4 @@
-/// take_text.c: takes as text, line by line, over bytes that may be anything.
+/// take_text.c: text takes, read line by line from bytes that may be anything, and written.
 ///
 /// Numbers: up to 19 significant digits are gathered in a 64-bit integer m and the decimal exponent
 /// e in an int; the value m 10^e is formed in long double by powers of ten, which is within one
@@ -11,7 +11,7 @@
 
 himc_text himc_text_open(const char *bytes, size_t size)
 {
-    // a byte order mark is no part of the first line
+    // a byte order mark is not part of the first line
     size_t skip =
         size >= 3 && bytes[0] == '\xEF' && bytes[1] == '\xBB' && bytes[2] == '\xBF' ? 3 : 0;
     return (himc_text){bytes + skip, bytes + size, 0};
@@ -111,7 +111,7 @@ static bool is_digit(himc_span s, size_t i)
     return i < s.length && s.at[i] >= '0' && s.at[i] <= '9';
 }
 
-// digits from `i` on into *m, counting in *e those that no longer fit; returns where they end
+// reads digits from `i` on into *m; *e counts those that no longer fit. Returns their end
 static size_t take_digits(himc_span s, size_t i, uint64_t *m, int *e, int step)
 {
     for (; is_digit(s, i); i++) {
@@ -125,7 +125,7 @@ static size_t take_digits(himc_span s, size_t i, uint64_t *m, int *e, int step)
     return i;
 }
 
-// the exponent after "e"; false if there are no digits
+// reads the exponent after "e"; false if there are no digits
 static bool take_exponent(himc_span s, size_t i, int *e)
 {
     bool minus = i < s.length && s.at[i] == '-';
@@ -184,4 +184,22 @@ bool himc_span_integer(himc_span s, long low, long high, long *value)
         return false;
     *value = (long)v;
     return true;
+}
+
+void himc_text_put_number(FILE *file, double value, int digits)
+{
+    char text[64];
+    snprintf(text, sizeof text, "%.*f", digits, value);
+    for (char *c = text; *c; c++)
+        if (*c == ',')
+            *c = '.';
+    fputs(text, file);
+}
+
+void himc_text_put_row(FILE *file, const double *value, int count, int digits, char separator)
+{
+    for (int i = 0; i < count; i++) {
+        fputc(separator, file);
+        himc_text_put_number(file, value[i], digits);
+    }
 }

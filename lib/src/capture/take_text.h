@@ -1,16 +1,18 @@
-/// take_text.h: lines, words and numbers of text takes, whatever the program's locale; private.
+/// take_text.h: lines, words and numbers of text takes, independent of the locale; private.
 #ifndef HIMC_TAKE_TEXT_H
 #define HIMC_TAKE_TEXT_H
 
 #include "himc/base.h"
 
-/// A piece of text that is not terminated.
+#include <stdio.h>
+
+/// A part of a text; no 0 at its end.
 typedef struct himc_span {
     const char *at;
     size_t length;
 } himc_span;
 
-/// Where a reader is; `line` counts from 1 and is the line last taken.
+/// Position of a reader; `line` is the number of the last line taken, from 1.
 typedef struct himc_text {
     const char *at, *end;
     int line;
@@ -23,14 +25,14 @@ bool himc_text_line(himc_text *text, himc_span *line);
 bool himc_text_filled_line(himc_text *text, himc_span *line);
 
 himc_span himc_span_trim(himc_span span);
-/// Takes the first word (blanks around it dropped) off `rest`; false if only blanks are left.
+/// Takes the first word off `rest`; false if only blanks are left.
 bool himc_span_word(himc_span *rest, himc_span *word);
 /// Takes the cell up to the next `separator` off `rest`, trimmed. Call while `rest->at` is not
 /// NULL.
 himc_span himc_span_cell(himc_span *rest, char separator);
-/// Equal to a word, letters' case aside.
+/// Compares with a word; upper and lower case are equal.
 bool himc_span_is(himc_span span, const char *word);
-/// The span as a string for a message, cut to 40 characters, unprintable ones as '?'.
+/// The span as a string for a message: cut to 40 characters, '?' for unprintable ones.
 const char *himc_span_text(himc_span span, char text[44]);
 
 /// Reads a decimal number with a point (never a comma), the whole span. Beyond double's range:
@@ -38,5 +40,10 @@ const char *himc_span_text(himc_span span, char text[44]);
 bool himc_span_number(himc_span span, double *value);
 /// Reads a whole number.
 bool himc_span_integer(himc_span span, long low, long high, long *value);
+
+/// Writes numbers with a decimal point, each after the separator.
+void himc_text_put_row(FILE *file, const double *value, int count, int digits, char separator);
+/// Writes one number with a decimal point.
+void himc_text_put_number(FILE *file, double value, int digits);
 
 #endif

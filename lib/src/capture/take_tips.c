@@ -1,100 +1,49 @@
-/// take_tips.c: gaps. Trajectories of the stick tips without holes, and lost markers that were
-/// written as zeros.
-///
-/// A gap from t0 to t1 is bridged, per coordinate, by the cubic Hermite polynomial through both
-/// edges with the speeds the marker had there, each the end slope of a parabola fitted by least
-/// squares to at least 3 and at most 20 ms of samples next to the gap (fewer samples: the slope of
-/// the chord). A ballistic arc is thus restored exactly; limiters as in PCHIP would flatten the
-/// turning points of a stroke. At the ends of a take there is only one edge, and the position is
-/// held: a guess that never moves a stick.
-#include "capture/take_data.h"
+/// take_tips.c: the stick tips: points found by their names, with gaps bridged.
+#include "capture/take.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static himc_take_gap next_gap(const himc_take *take, int point, int from)
+// 0 for a name that is not a stick's; higher for a name closer to the very end of the stick
+static int tip_rank(const char *rest)
 {
-    himc_take_gap g = {from, from};
-    while (g.begin < take->frames && himc_vec3_finite(*himc_take_at(take, g.begin, point)))
-        g.begin++;
-    for (g.end = g.begin;
-         g.end < take->frames && !himc_vec3_finite(*himc_take_at(take, g.end, point));)
-        g.end++;
-    return g;
+    if (strstr(rest, "tip"))
+        return 4;
+    if (strstr(rest, "bead") || strstr(rest, "end"))
+        return strcmp(rest, "end") && strcmp(rest, "headend") ? 3 : 0;
+    if (strstr(rest, "mallet") || strstr(rest, "beater"))
+        return 2;
+    return strstr(rest, "stick") ? 1 : 0;
 }
 
-// slope at the sample `edge`, from it and its neighbours on the side `step`; false with fewer than
-// three
-static bool edge_slope(const himc_vec3 *x, int frames, int edge, int step, double rate,
-                       himc_vec3 *slope)
+static int best_tip(const himc_take *take, int side)
 {
-    int most = (int)fmax(3, floor(0.02 * rate)), n = 0;
-    double s[5] = {0, 0, 0, 0, 0};
-    himc_vec3 b[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    for (int i = edge; n < most && i >= 0 && i < frames && himc_vec3_finite(x[i]); i += step, n++) {
-        // differences from the edge keep the sums small; u counts frames
-        himc_vec3 d = himc_vec3_sub(x[i], x[edge]);
-        double u = step * n, p = 1;
-        for (int k = 0; k < 5; k++, p *= u)
-            s[k] += p;
-        for (int k = 0, m = 1; k < 3; k++, m *= step * n)
-            b[k] = himc_vec3_madd(b[k], m, d);
+    // longer words first: "drumstick" must not be read as "drum" and a remainder
+    static const char *const words[] = {"stick",   "mallet", "beater", "bead", "drum",
+                                        "timpani", "tip",    "head",   "end",  NULL};
+    int best = -1, best_rank = 0;
+    for (int i = 0; i < take->points; i++) {
+        char plain[TAKE_NAME], rest[TAKE_NAME];
+        himc_take_plain_name(take->names[i], plain);
+        int hand = himc_take_side(plain, words, rest), rank = hand == side ? tip_rank(rest) : 0;
+        if (rank > best_rank) {
+            best = i;
+            best_rank = rank;
+        }
     }
-    if (n < 3)
-        return false;
-    // the slope of a + c u + e u^2 at u = 0 by Cramer's rule on the normal equations
-    double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[2] * s[3]) +
-                 s[2] * (s[1] * s[3] - s[2] * s[2]);
-    himc_vec3 c = himc_vec3_scale(b[0], s[2] * s[3] - s[1] * s[4]);
-    c = himc_vec3_madd(c, s[0] * s[4] - s[2] * s[2], b[1]);
-    c = himc_vec3_madd(c, s[1] * s[2] - s[0] * s[3], b[2]);
-    *slope = himc_vec3_scale(c, 1 / det);
-    return true;
+    return best;
 }
 
-static void bridge(himc_vec3 *x, int frames, himc_take_gap g, double rate)
+int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_options *options)
 {
-    int a = g.begin - 1, b = g.end;
-    double h = b - a;
-    himc_vec3 xa = x[a], xb = x[b], chord = himc_vec3_scale(himc_vec3_sub(xb, xa), 1 / h),
-              va = chord, vb = chord;
-    edge_slope(x, frames, a, -1, rate, &va);
-    edge_slope(x, frames, b, 1, rate, &vb);
-    for (int i = g.begin; i < g.end; i++) {
-        double u = (i - a) / h, w = 1 - u;
-        himc_vec3 y = himc_vec3_scale(xa, w * w * (1 + 2 * u));
-        y = himc_vec3_madd(y, u * u * (1 + 2 * w), xb);
-        y = himc_vec3_madd(y, h * u * w * w, va);
-        x[i] = himc_vec3_madd(y, -h * u * u * w, vb);
-    }
-}
-
-static void fill(himc_vec3 *x, int frames, himc_take_gap g, double rate)
-{
-    if (g.begin > 0 && g.end < frames) {
-        bridge(x, frames, g, rate);
-        return;
-    }
-    for (int i = g.begin; i < g.end; i++)
-        x[i] = g.begin > 0 ? x[g.begin - 1] : x[g.end];
-}
-
-int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
-                   himc_take_gap *gap)
-{
-    int filled = 0;
-    for (int i = 0; i < take->frames; i++)
-        x[i] = *himc_take_at(take, i, point);
-    for (*gap = next_gap(take, point, 0); gap->begin < take->frames;
-         *gap = next_gap(take, point, gap->end)) {
-        int length = gap->end - gap->begin;
-        if (length / take->rate > longest || length == take->frames)
-            return -1;
-        fill(x, take->frames, *gap, take->rate);
-        filled += length;
-    }
-    return filled;
+    const char *name = hand == HIMC_LEFT ? options->left_tip : options->right_tip;
+    if (name)
+        return himc_take_find(take, name);
+    int found = best_tip(take, hand);
+    if (found < 0 && hand == HIMC_RIGHT) // a lone bead without a side
+        found = best_tip(take, HIMC_HANDS);
+    const char *other = hand == HIMC_LEFT ? options->right_tip : options->left_tip;
+    return found >= 0 && other && himc_take_find(take, other) == found ? -1 : found;
 }
 
 static bool refuse_gap(const himc_take *take, himc_hand hand, int point, himc_take_gap g,
@@ -102,7 +51,7 @@ static bool refuse_gap(const himc_take *take, himc_hand hand, int point, himc_ta
 {
     bool never = g.end - g.begin == take->frames;
     return himc_error_set(
-        error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), allowed are gaps of %g s",
+        error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), allowed: gaps up to %g s",
         take->file, himc_hand_name(hand), take->names[point], never ? "never seen" : "missing",
         take->first_frame + g.begin, take->first_frame + g.end - 1, (g.end - g.begin) / take->rate,
         longest);
@@ -166,7 +115,8 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
         if (point < 0)
             continue;
         if (found && tips[HIMC_LEFT].point == point)
-            return himc_error_set(error, "%s: %s is named as both tips, allowed: one for each",
+            return himc_error_set(error,
+                                  "%s: %s is named as both tips, allowed: one point for each tip",
                                   take->file, take->names[point]);
         if (!fill_tip(take, (himc_hand)hand, point, options->longest_gap, &tips[hand], error))
             return false;
@@ -178,40 +128,7 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
     list_points(take, points, sizeof points);
     return himc_error_set(
         error,
-        "%s: no stick tip (RTIP, STICK_L, RightStick_end, bead, ...), name it with --left-tip "
-        "or --right-tip, allowed: %s",
+        "%s: no point has a stick tip's name (RTIP, STICK_L, RightStick_end, bead, ...), name it "
+        "with --left-tip or --right-tip, allowed: %s",
         take->file, points);
-}
-
-static bool is_zero(himc_vec3 x)
-{
-    return x.x == 0 && x.y == 0 && x.z == 0;
-}
-
-static bool is_far(const himc_take *take, int frame, int point, double far)
-{
-    return frame >= 0 && frame < take->frames &&
-           himc_vec3_length(*himc_take_at(take, frame, point)) > far;
-}
-
-void himc_take_drop_zeros(himc_take *take)
-{
-    // a jump is more than 0.1 m at more than 30 m/s; millimetres where the file does not say
-    double far = fmax(0.1, 30 / take->rate) / (take->file_unit > 0 ? take->file_unit : 0.001);
-    int dropped = 0, first = -1;
-    for (int i = 0; i < take->points; i++)
-        for (int begin = 0, end; begin < take->frames; begin = end + 1) {
-            for (end = begin; end < take->frames && is_zero(*himc_take_at(take, end, i));)
-                end++;
-            if (end == begin || (!is_far(take, begin - 1, i, far) && !is_far(take, end, i, far)))
-                continue;
-            for (int frame = begin; frame < end; frame++)
-                *himc_take_at(take, frame, i) = himc_vec3_gap();
-            first = first < 0 ? i : first;
-            dropped += end - begin;
-        }
-    if (dropped)
-        himc_take_note(
-            take, "gaps: %d positions of exactly 0 0 0 that a trajectory jumps to, the first of %s",
-            dropped, take->names[first]);
 }

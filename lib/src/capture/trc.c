@@ -1,15 +1,18 @@
-/// trc.c: reads TRC, the text table of marker trajectories of Motion Analysis and OpenSim.
+/// trc.c: TRC, the text table of marker trajectories of Motion Analysis and OpenSim; read and
+/// written (in millimetres, y up).
 ///
 /// Line 1 names the format; lines 2 and 3 are keys and values (DataRate, NumFrames, NumMarkers,
 /// Units); line 4 is "Frame#", "Time" and a marker's name over every third column; line 5 (X1 Y1 Z1
-/// ...) says nothing new; then one row per frame. Cells are split by tabs, else semicolons, else
+/// ...) is skipped; then one row per frame. Cells are split by tabs, else semicolons, else
 /// commas, whichever the row of names has. An empty cell, "nan" or 9999999 (Motion Analysis's own
-/// mark) is a gap; a point of which only some coordinates are there is refused, for then columns
-/// have slipped. The header's counts must be what is in the file.
-#include "capture/take_data.h"
+/// mark) is a gap; a point with only some of its coordinates is refused, because then columns are
+/// shifted. The header's counts must agree with the rows and names of the file.
+#include "capture/take.h"
 #include "capture/take_text.h"
 
 #include <string.h>
+
+#define TIME_TOLERANCE 0.01 // chosen: relative, above the rounding of the column
 
 typedef struct trc {
     himc_take *take;
@@ -66,9 +69,9 @@ static bool read_header(trc *r)
     himc_span units = header_value(keys, values, separator, "Units");
     if (!himc_span_number(rate, &r->rate))
         return refuse_value(r, "DataRate", rate, "a number (Hz)");
-    if (!himc_span_integer(frames, 1, 1000000, &r->frames))
+    if (!himc_span_integer(frames, 1, TAKE_MOST_FRAMES, &r->frames))
         return refuse_value(r, "NumFrames", frames, "1 .. 1000000");
-    if (!himc_span_integer(markers, 1, 65536, &r->markers))
+    if (!himc_span_integer(markers, 1, TAKE_MOST_POINTS, &r->markers))
         return refuse_value(r, "NumMarkers", markers, "1 .. 65536");
     char unit[44];
     r->take->file_unit = himc_take_unit(himc_span_text(units, unit));
@@ -80,24 +83,29 @@ static bool read_header(trc *r)
     return true;
 }
 
-// rows that are not blank from here on; the text stays where it is
+// true if the row has a cell that is not blank
+static bool is_filled(const trc *r, himc_span row)
+{
+    bool filled = false;
+    while (row.at && !filled)
+        filled = himc_span_cell(&row, r->separator).length > 0;
+    return filled;
+}
+
+// counts the filled rows from here on, without moving in the text
 static int count_rows(const trc *r, himc_span *first)
 {
     himc_text text = r->text;
     himc_span row;
     int rows = 0;
     while (himc_text_line(&text, &row)) {
-        himc_span rest = row;
-        bool filled = false;
-        while (rest.at && !filled)
-            filled = himc_span_cell(&rest, r->separator).length > 0;
-        if (filled && rows++ == 0)
+        if (is_filled(r, row) && rows++ == 0)
             *first = row;
     }
     return rows;
 }
 
-// the name of marker i stands over its first column, 2 + 3 i
+// the name of marker i is above its first column, 2 + 3 i
 static bool read_names(trc *r)
 {
     himc_span rest = r->names;
@@ -110,9 +118,8 @@ static bool read_names(trc *r)
         if ((column - 2) % 3 != 0 || (column - 2) / 3 >= r->markers)
             return himc_error_set(
                 r->error,
-                "%s:4: marker \"%s\" stands over column %ld, allowed: every third from 3 on, "
-                "for %ld markers",
-                r->take->file, himc_span_text(cell, text), column + 1, r->markers);
+                "%s:4: marker \"%s\" is above column %ld, allowed: every third column, 3 .. %ld",
+                r->take->file, himc_span_text(cell, text), column + 1, 3 * r->markers);
         himc_take_set_name(r->take, (int)((column - 2) / 3), cell.at, cell.length);
         given++;
     }
@@ -126,8 +133,9 @@ static bool refuse_cell(const trc *r, int point, int axis, himc_span cell)
 {
     char text[44];
     return himc_error_set(
-        r->error, "%s:%d: %s %c is \"%s\", allowed: a number, or nothing for a gap", r->take->file,
-        r->text.line, r->take->names[point], "XYZ"[axis], himc_span_text(cell, text));
+        r->error, "%s:%d: %s %c is \"%s\", allowed: a number up to 1e8, or an empty cell for a gap",
+        r->take->file, r->text.line, r->take->names[point], "XYZ"[axis],
+        himc_span_text(cell, text));
 }
 
 static bool is_gap_mark(himc_span cell, double value)
@@ -145,7 +153,7 @@ static bool read_point(trc *r, himc_span *rest, int frame, int point)
         bool number = himc_span_number(cell, &v[axis]);
         if (is_gap_mark(cell, v[axis]))
             continue;
-        if (!number || !(fabs(v[axis]) <= TAKE_FAR))
+        if (!number || !(fabs(v[axis]) <= TAKE_LARGEST))
             return refuse_cell(r, point, axis, cell);
         seen++;
     }
@@ -176,21 +184,16 @@ static bool read_row(trc *r, himc_span row, int frame, double *time)
     while (row.at) {
         himc_span cell = himc_span_cell(&row, r->separator);
         if (cell.length > 0)
-            return refuse_value(r, "a cell beyond the last marker", cell, "nothing");
+            return refuse_value(r, "the cell after the last marker", cell, "an empty cell");
     }
     return true;
 }
 
-// rows with at least one filled cell
 static bool read_rows(trc *r, double *first, double *last)
 {
     himc_span row;
     for (int frame = 0; frame < r->take->frames && himc_text_line(&r->text, &row);) {
-        himc_span rest = row;
-        bool filled = false;
-        while (rest.at && !filled)
-            filled = himc_span_cell(&rest, r->separator).length > 0;
-        if (!filled)
+        if (!is_filled(r, row))
             continue;
         if (!read_row(r, row, frame, frame ? last : first))
             return false;
@@ -199,31 +202,31 @@ static bool read_rows(trc *r, double *first, double *last)
     return true;
 }
 
-// the Time column is not used, but if it disagrees someone should know
+// the Time column is not used; a note says if it disagrees with the rate
 static void check_time(trc *r, double first, double last)
 {
     double step = (last - first) / (r->take->frames - 1), said = 1 / r->rate;
-    if (r->take->frames > 1 && isfinite(step) && fabs(step - said) > 0.01 * said)
-        himc_take_note(
-            r->take, "rate: the Time column steps by %.6g s, DataRate says %.6g s and is followed",
-            step, said);
+    if (r->take->frames > 1 && isfinite(step) && fabs(step - said) > TIME_TOLERANCE * said)
+        himc_take_note(r->take,
+                       "rate: the Time column steps by %.6g s, DataRate means %.6g s and is used",
+                       step, said);
 }
 
-bool himc_trc_read(himc_take *take, const char *bytes, size_t size, himc_error *error)
+bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
     trc r = {.take = take, .text = himc_text_open(bytes, size), .error = error};
     memcpy(take->format, "TRC", 4);
-    take->habit_up = himc_vec3_make(0, 1, 0);
+    take->format_up = himc_vec3_make(0, 1, 0);
     himc_span axes, row = {"", 0};
     if (!read_header(&r))
         return false;
     if (!himc_text_line(&r.text, &axes))
-        return refuse_line(&r, "the file ends before its rows");
+        return refuse_line(&r, "the file ends before its first row");
     int rows = count_rows(&r, &row);
     if (rows != r.frames)
         return himc_error_set(error, "%s: the header says %ld frames, the file has %d rows",
                               take->file, r.frames, rows);
-    // rows may end early, but not so early that the file is shorter than a byte for each point
+    // rows may be shorter than their points, but a file has at least a byte for each point
     if (size / (size_t)r.markers < (size_t)rows)
         return himc_error_set(error, "%s:3: NumMarkers is %ld, more than the rows have cells for",
                               take->file, r.markers);
@@ -232,5 +235,49 @@ bool himc_trc_read(himc_take *take, const char *bytes, size_t size, himc_error *
         !read_rows(&r, &first, &last))
         return false;
     check_time(&r, first, last);
+    return true;
+}
+
+#define MILLIMETRES 1000.0
+
+static void put_marker_names(FILE *file, const himc_take *take)
+{
+    fputs("Frame#\tTime", file);
+    for (int i = 0; i < take->points; i++)
+        fprintf(file, "\t%s\t\t", take->names[i]);
+    fputs("\n\t", file);
+    for (int i = 1; i <= take->points; i++)
+        fprintf(file, "\tX%d\tY%d\tZ%d", i, i, i);
+    fputc('\n', file);
+}
+
+bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error)
+{
+    (void)error;
+    fprintf(file, "PathFileType\t4\t(X/Y/Z)\t%s\n", take->file);
+    fputs("DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
+          "OrigNumFrames\n",
+          file);
+    himc_text_put_number(file, take->rate, 6);
+    fputc('\t', file);
+    himc_text_put_number(file, take->rate, 6);
+    fprintf(file, "\t%d\t%d\tmm\t", take->frames, take->points);
+    himc_text_put_number(file, take->rate, 6);
+    fprintf(file, "\t1\t%d\n", take->frames);
+    put_marker_names(file, take);
+    for (int frame = 0; frame < take->frames; frame++) {
+        fprintf(file, "%d\t", frame + 1);
+        himc_text_put_number(file, frame / take->rate, 6);
+        for (int i = 0; i < take->points; i++) {
+            himc_vec3 x =
+                himc_vec3_scale(himc_take_y_up(*himc_take_at(take, frame, i)), MILLIMETRES);
+            double place[3] = {x.x, x.y, x.z};
+            if (himc_vec3_finite(x))
+                himc_text_put_row(file, place, 3, 4, '\t');
+            else
+                fputs("\t\t\t", file);
+        }
+        fputc('\n', file);
+    }
     return true;
 }

@@ -1,26 +1,46 @@
-/// units.c: the fall of a captured stroke as a polynomial that knows where it begins and ends.
+/// units.c: the fall of a captured stroke as a polynomial with fixed ends.
 ///
 /// With u the share of the fall's time and h the share of its height,
 ///     h(u) = A(u) + a B(u) + s C(u) + u^3 (1 - u)^3 (b0 + b1 u + b2 u^2)
 /// where A falls from 1 to 0 at rest at both ends, B has the second derivative 1 at u = 0, C the
-/// slope -1 at u = 1 (quintics, else zero at both ends up to second derivatives). So a tip begins
-/// still, with the acceleration a, and lands with the speed s and without acceleration, whatever
-/// a, s and b are; they are found by least squares from the frames of the fall, without those
-/// that the impact has blunted. Another landing speed is another s. A fall that is not monotone
-/// is no unit.
+/// slope -1 at u = 1 (quintics, else zero at both ends up to second derivatives). So for all a, s
+/// and b a tip begins at rest with the acceleration a, and lands with the speed s and without
+/// acceleration. They are found by least squares from the frames of the fall, without those that
+/// the impact has blunted. Another landing speed is another s. A fall that is not monotone is not a
+/// unit.
 #include "capture/units.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define LONGEST_FALL 0.5    // (s)
-#define SHORTEST_FALL 0.03  // (s)
-#define LONGEST_REBOUND 0.4 // (s)
-#define BLUNT 0.008         // before the touch, not fitted (s)
-#define TOP 0.985           // of the height: the fall begins there
-#define LEAST_HEIGHT 0.02   // (m)
-#define RESTITUTION 0.85
-#define UNKNOWNS 5
+// chosen: a stroke falls for 0.2 to 0.4 s; longer or shorter is another motion (s)
+#define LONGEST_FALL 0.5
+#define SHORTEST_FALL 0.03
+#define LONGEST_RISE 0.5    // chosen: of the way up to the apex (s)
+#define LONGEST_REBOUND 0.4 // chosen (s)
+#define BLUNT 0.008         // chosen: time before the touch that a capture's filter blunts (s)
+#define TOP 0.985           // chosen: share of the height at which the fall begins
+#define LEAST_HEIGHT 0.02   // chosen: lower ones are noise or rolls (m)
+#define RESTITUTION 0.85    // chosen: rebound speed over landing speed of a mallet on a head
+#define RIDGE 1e-9          // chosen: keeps the normal equations regular, far below their entries
+#define UNKNOWNS 5          // a, s, b0, b1, b2
+
+// a fall is monotone and between its ends, within this
+#define MOST_EXCESS 0.02  // chosen (heights, heights per fall)
+#define LEAST_LANDING 0.5 // chosen (heights per fall)
+#define MOST_LANDING 4.0
+
+// ranges of the motion around the fall, chosen: those of the built-in strokes and somewhat more
+#define LEAST_REBOUND_HEIGHT 0.2 // (heights)
+#define MOST_REBOUND_HEIGHT 1.2
+#define CLEAR_REBOUND 0.005 // a lower rebound has no duration (m)
+#define LEAST_PULL 0.7      // (rebound height / rebound speed)
+#define MOST_PULL 2.4
+#define USUAL_PULL 2.0
+#define LEAST_LIFT 0.15 // (s)
+#define MOST_LIFT 0.4
+#define RISE_NOISE 1e-4 // (m)
+#define MOST_DEPTH 0.25 // (m)
 
 typedef struct terms {
     double value[3][1 + UNKNOWNS]; // of A, B, C and the three bends; then derivatives
@@ -56,11 +76,11 @@ void himc_unit_at(const himc_unit *unit, double share, double landing, double fa
     }
 }
 
-// solves the normal equations in place; false if they say too little
+// solves the normal equations in place; false if they are singular
 static bool solve(double a[UNKNOWNS][UNKNOWNS + 1])
 {
     for (int k = 0; k < UNKNOWNS; k++) {
-        a[k][k] += 1e-9;
+        a[k][k] += RIDGE;
         for (int i = 0; i < UNKNOWNS; i++) {
             double f = i == k ? 0 : a[i][k] / a[k][k];
             for (int j = k; j <= UNKNOWNS; j++)
@@ -73,18 +93,18 @@ static bool solve(double a[UNKNOWNS][UNKNOWNS + 1])
     return true;
 }
 
-static bool falls(const himc_unit *unit, double landing)
+static bool is_fall(const himc_unit *unit, double landing)
 {
     double fall[3];
     for (int i = 1; i <= 32; i++) {
         himc_unit_at(unit, i / 33.0, landing, fall);
-        if (fall[1] > 0.02 || fall[0] > 1.02 || fall[0] < -0.02)
+        if (fall[1] > MOST_EXCESS || fall[0] > 1 + MOST_EXCESS || fall[0] < -MOST_EXCESS)
             return false;
     }
-    return landing > 0.5 && landing < 4;
+    return landing > LEAST_LANDING && landing < MOST_LANDING;
 }
 
-// one hand's capture around one strike
+// the capture of one hand around one strike
 typedef struct cut {
     const himc_vec3 *x;
     int frames;
@@ -121,7 +141,7 @@ static bool fit_fall(const cut *c, int first, himc_unit *unit)
     for (int i = 0; i < 3; i++)
         unit->bend[i] = a[2 + i][UNKNOWNS];
     unit->speed = landing * unit->height / unit->down;
-    return falls(unit, landing);
+    return is_fall(unit, landing);
 }
 
 // the rise after the touch, up to its top or the next fall
@@ -133,22 +153,23 @@ static void measure_rebound(const cut *c, himc_unit *unit)
         if (height(c, i) > height(c, top))
             top = i;
     double high = height(c, top), time = top / c->rate - c->strike->time;
-    unit->rebound = fmin(fmax(high / unit->height, 0.2), 1.2);
-    unit->pull = high > 0.005 ? fmin(fmax(time * RESTITUTION * unit->speed / high, 0.7), 2.4) : 2;
+    unit->rebound = fmin(fmax(high / unit->height, LEAST_REBOUND_HEIGHT), MOST_REBOUND_HEIGHT);
+    double pull = time * RESTITUTION * unit->speed / high;
+    unit->pull = high > CLEAR_REBOUND ? fmin(fmax(pull, LEAST_PULL), MOST_PULL) : USUAL_PULL;
 }
 
 static void measure_lift(const cut *c, int top, himc_unit *unit)
 {
     int low = top;
-    while (low > 0 && low / c->rate > fmax(c->before, top / c->rate - 0.5) &&
-           height(c, low - 1) <= height(c, low) + 1e-4)
+    while (low > 0 && low / c->rate > fmax(c->before, top / c->rate - LONGEST_RISE) &&
+           height(c, low - 1) <= height(c, low) + RISE_NOISE)
         low--;
-    unit->lift = fmin(fmax((top - low) / c->rate, 0.15), 0.4);
+    unit->lift = fmin(fmax((top - low) / c->rate, LEAST_LIFT), MOST_LIFT);
     unit->depth = 0;
     for (int i = low; i < c->strike->frame; i++)
         unit->depth =
             fmax(unit->depth, hypot(c->x[i].x - c->strike->x.x, c->x[i].y - c->strike->x.y));
-    unit->depth = fmin(unit->depth, 0.25);
+    unit->depth = fmin(unit->depth, MOST_DEPTH);
 }
 
 static bool cut_unit(const cut *c, himc_unit *unit)
@@ -170,6 +191,7 @@ static bool cut_unit(const cut *c, himc_unit *unit)
     return true;
 }
 
+// time of the hand's next (step 1) or last (step -1) touch, infinite without one
 static double touch_of_hand(const himc_take_strike *strikes, int count, int i, int step)
 {
     himc_hand hand = strikes[i].hand;
@@ -203,7 +225,8 @@ int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit 
     }
     free(strikes);
     if (count == 0) {
-        himc_error_set(error, "%d strokes, none of them one clear fall from above", found);
+        himc_error_set(error, "%d strokes, allowed: at least one that is a clear fall from above",
+                       found);
         return -1;
     }
     return count;

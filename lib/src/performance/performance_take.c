@@ -7,7 +7,7 @@
 /// player's own way instead: the mean and the habit, the usual one corrected by this take's
 /// postures.
 #include "performance/performance_state.h"
-#include "capture/take_data.h"
+#include "capture/take.h"
 #include "base/head_frame.h"
 #include "performance/research.h"
 
@@ -240,8 +240,9 @@ bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_pla
     return played;
 }
 
-bool himc_performance_play_take(himc_performance *p, himc_take *take, const char *name,
-                                himc_error *error)
+// plays a take by the player it shows
+static bool play_own_player(himc_performance *p, himc_take *take, const char *name,
+                            himc_error *error)
 {
     himc_player *player = himc_player_new(take, &p->take_options, &p->body, error);
     bool played = himc_performance_play_player(p, take, player, name, error);
@@ -252,7 +253,7 @@ bool himc_performance_play_take(himc_performance *p, himc_take *take, const char
 bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_take *take = himc_take_load(c->atom[0].symbol, &p->take_options, error);
-    bool played = take && himc_performance_play_take(p, take, c->atom[0].symbol, error);
+    bool played = take && play_own_player(p, take, c->atom[0].symbol, error);
     himc_take_free(take);
     return played;
 }

@@ -10,7 +10,7 @@
 #include "plan/track_time.h"
 
 #include "base/noise.h"
-#include "capture/player_sit.h"
+#include "capture/player.h"
 #include "base/head_frame.h"
 
 #include <stdlib.h>

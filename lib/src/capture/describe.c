@@ -1,0 +1,197 @@
+/// describe.c: a take and its player in lines for a person, one per fact: `himc info`.
+#include "base/line_sink.h"
+#include "capture/take.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GAP_LINES 40    // chosen: points with gaps that are listed
+#define STRIKE_LINES 64 // chosen: strikes that are listed
+#define GAP_RANGES 6    // chosen: gaps of one point that are listed
+#define ONE_DRUM 0.45   // radius of a large timpano's head (m)
+
+// names in lines of at most 100 characters
+static void tell_points(const himc_take *take, const himc_line_sink *to)
+{
+    char text[128];
+    int used = snprintf(text, sizeof text,
+                        "%s %d:", himc_take_has_skeleton(take) ? "joints" : "points", take->points);
+    for (int i = 0; i < take->points; i++) {
+        if (used + (int)strlen(take->names[i]) > 98) {
+            himc_tell(to, "%s", text);
+            used = snprintf(text, sizeof text, "   ");
+        }
+        used += snprintf(text + used, sizeof text - (size_t)used, " %s", take->names[i]);
+    }
+    himc_tell(to, "%s", text);
+}
+
+// "gap: NAME is missing in 92 frames: 1-40 77-128", at most GAP_RANGES of them
+static void tell_gap(const himc_take *take, int point, int missing, const himc_line_sink *to)
+{
+    char text[200] = "";
+    size_t used = 0;
+    int shown = 0;
+    for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
+        bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
+        if (!seen && begin < 0)
+            begin = i;
+        if (seen && begin >= 0) {
+            int first = take->first_frame + begin, last = take->first_frame + i - 1;
+            used += shown == GAP_RANGES ? (size_t)snprintf(text + used, sizeof text - used, " ...")
+                    : first == last
+                        ? (size_t)snprintf(text + used, sizeof text - used, " %d", first)
+                        : (size_t)snprintf(text + used, sizeof text - used, " %d-%d", first, last);
+            begin = -1;
+            shown++;
+        }
+    }
+    himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
+}
+
+static void tell_gaps(const himc_take *take, const himc_line_sink *to)
+{
+    int points = 0, all = 0;
+    for (int i = 0; i < take->points; i++) {
+        int missing = himc_take_missing(take, i);
+        points += missing > 0;
+        all += missing;
+        if (missing > 0 && points <= GAP_LINES)
+            tell_gap(take, i, missing, to);
+    }
+    himc_tell(to, "gaps: %d frames in %d points", all, points);
+}
+
+static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                         const himc_line_sink *to)
+{
+    int count;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
+    if (!strikes)
+        return;
+    himc_tell(to, "strikes: %d", count);
+    for (int i = 0; i < count && i < STRIKE_LINES; i++)
+        himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", strikes[i].time,
+                  himc_hand_name(strikes[i].hand), strikes[i].x.x, strikes[i].x.y, strikes[i].x.z,
+                  strikes[i].velocity);
+    himc_vec3 place;
+    if (himc_take_strike_place(strikes, count, &place))
+        himc_tell(
+            to,
+            "drum: centre of the strikes at %.3f %.3f m, tips touch the head at a height of %.3f m",
+            place.x, place.y, place.z);
+    int far = 0;
+    for (int i = 0; i < count; i++)
+        far += hypot(strikes[i].x.x - place.x, strikes[i].x.y - place.y) > ONE_DRUM;
+    if (far > 0)
+        himc_tell(
+            to,
+            "drum: %d strikes are more than %g m from that centre, but a take is played on one drum",
+            far, ONE_DRUM);
+    free(strikes);
+}
+
+static void tell_tips(himc_take *take, const himc_take_options *options, const himc_line_sink *to)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_error error = {""};
+    if (!himc_take_tips(take, options, tips, &error)) {
+        himc_tell(to, "tips: %.249s", error.text);
+        return;
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (tips[hand].present)
+            himc_tell(to, "tip: %s is %s, %d frames in gaps are filled",
+                      himc_hand_name((himc_hand)hand), tips[hand].name, tips[hand].filled);
+    tell_strikes(take, tips, to);
+}
+
+void himc_take_describe(himc_take *take, const himc_take_options *options,
+                        void (*line)(void *, const char *), void *user)
+{
+    himc_line_sink to = {line, user};
+    himc_tell(&to, "format: %s", take->format);
+    himc_tell(&to, "length: %d frames at %g Hz, %.3f s, from frame %d", take->frames, take->rate,
+              take->frames / take->rate, take->first_frame);
+    tell_points(take, &to);
+    himc_tell(&to, "units: %s", take->units_text);
+    himc_tell(&to, "axes: %s", take->axes_text);
+    for (int i = 0; i < take->note_count; i++)
+        himc_tell(&to, "note: %s", take->notes[i]);
+    tell_gaps(take, &to);
+    for (int i = 0; i < take->event_count; i++)
+        himc_tell(&to, "event: %.3f s %s", take->events[i].time, take->events[i].label);
+    tell_tips(take, options, &to);
+}
+
+// "upper-arm 0.281 0.283": left and right
+static void tell_lengths(const himc_skeleton_config *c, const himc_line_sink *to)
+{
+    char text[220] = "";
+    size_t used = 0;
+    for (int i = 0; i < HIMC_SEGMENTS && used < sizeof text; i++) {
+        const char *name = himc_segment_name(i);
+        bool paired = i >= HIMC_LEFT_UPPER_ARM;
+        if (c->length[i] <= 0)
+            continue;
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
+                                 paired ? name + strlen("left-") : name, c->length[i]);
+        if (paired && used < sizeof text)
+            used += (size_t)snprintf(text + used, sizeof text - used, " %.3f", c->length[++i]);
+    }
+    if (used)
+        himc_tell(to, "lengths (m):%s", text);
+}
+
+static void tell_measures(const himc_player *player, const himc_line_sink *to)
+{
+    const himc_skeleton_config *c = &player->config;
+    const char *from = player->height_from[0] ? player->height_from : "the default";
+    if (player->mass_stated)
+        himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (stated by the file)", c->height, from,
+                  c->mass);
+    else
+        himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f)",
+                  c->height, from, c->mass, c->mass / (c->height * c->height));
+    tell_lengths(c, to);
+}
+
+static void tell_posture(const himc_player *player, const himc_line_sink *to)
+{
+    char text[220] = "";
+    size_t used = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (player->known[j] && used < sizeof text)
+            used += (size_t)snprintf(text + used, sizeof text - used, " %s", himc_joint_name(j));
+    himc_tell(to, "posture:%s%s",
+              used ? " known joints" : " natural, because the take shows no joint", text);
+}
+
+// in the world, with its origin on the floor under the player, and in the take
+static void tell_places(const himc_player *player, const himc_head_frame *drum,
+                        const himc_line_sink *to)
+{
+    himc_vec3 floor = himc_vec3_scale(player->offset, -1);
+    himc_vec3 head = himc_vec3_add(drum->center, floor), hips = player->hips;
+    himc_tell(to, "seat: hip joints %.3f m above the floor, %s; in the take at %.3f %.3f %.3f m",
+              himc_skeleton_seat(&player->config),
+              player->placed ? "as the take shows" : "by the tips", hips.x, hips.y, hips.z);
+    himc_tell(
+        to,
+        "drumhead: centre %.3f m in front of the player, %.3f m to the left, %.3f m high; in the take "
+        "at %.3f %.3f %.3f m",
+        drum->center.x, drum->center.y, drum->center.z, head.x, head.y, head.z);
+}
+
+void himc_player_describe(const himc_player *player, const himc_head_frame *drum,
+                          void (*line)(void *, const char *), void *user)
+{
+    himc_line_sink to = {line, user};
+    tell_measures(player, &to);
+    tell_posture(player, &to);
+    for (int i = 0; i < player->note_count; i++)
+        himc_tell(&to, "note: %.240s", player->notes[i]);
+    if (player->seated && drum)
+        tell_places(player, drum, &to);
+}

@@ -1,0 +1,159 @@
+/// take.h: the data of a take, shared by readers, writers and analysis; private.
+///
+/// A reader fills format, rate, frames, points, and the unit and axes that the file states, all in
+/// the unit and axes of the file; himc_take_settle then converts everything into the library's
+/// frame.
+#ifndef HIMC_TAKE_H
+#define HIMC_TAKE_H
+
+#include "himc/mocap.h"
+
+#include <stdio.h>
+
+#define TAKE_NAME 64  ///< bytes of a point's name, with the final 0
+#define TAKE_NOTES 16 ///< chosen: notes kept
+
+// chosen: an hour at 250 Hz has 900000 frames, and 30 million positions take 720 MB
+#define TAKE_MOST_FRAMES 1000000
+#define TAKE_MOST_POSITIONS 30000000 ///< frames x points
+#define TAKE_MOST_POINTS 65536       ///< a C3D counts its points in 16 bits
+
+// players (kg, m): the ranges of himc_skeleton_config
+#define TAKE_LEAST_MASS 30.0
+#define TAKE_MOST_MASS 200.0
+#define TAKE_LEAST_HEIGHT 1.19
+#define TAKE_MOST_HEIGHT 2.21
+#define TAKE_LARGEST 1e8 ///< chosen: no coordinate, offset or angle of a real file is larger
+
+typedef struct himc_take_event {
+    char label[32]; ///< "Right Foot Strike": context and label
+    double time;    ///< from the first frame (s)
+} himc_take_event;
+
+struct himc_take {
+    char file[192];           ///< name of the file in error lines
+    char format[48];          ///< "C3D (Intel, floats)"
+    double rate;              ///< (Hz)
+    int frames, points;       ///< counts
+    int first_frame;          ///< number of frame 0 in the file
+    char (*names)[TAKE_NAME]; ///< (points)
+    himc_vec3 *x;             ///< (frames x points), NaN in gaps
+    int *parents;             ///< (points), NULL without skeleton
+    himc_vec3 *offsets;       ///< (points), NULL without skeleton
+    himc_quat *rotations;     ///< (frames x points), NULL without skeleton
+    himc_take_event *events;  ///< (event_count)
+    int event_count;
+
+    double mass, height;         ///< of the player as the file states (kg, m), 0 if it does not
+    double file_unit;            ///< length unit that the file states (m), 0 if it does not
+    himc_vec3 file_up;           ///< unit axis that the file states, 0 if it does not
+    himc_vec3 file_right;        ///< axis towards the right of the screen, or 0
+    himc_vec3 format_up;         ///< up axis that is usual in this format
+    char units_text[128];        ///< the unit and its source, for himc_take_describe
+    char axes_text[192];         ///< the axes and their source
+    char notes[TAKE_NOTES][192]; ///< repairs and doubts
+    int note_count;
+
+    himc_vec3 *tip[HIMC_HANDS]; ///< (frames), gaps filled
+};
+
+// The data: take.c.
+
+/// Checks rate and counts, and allocates; names are empty, positions 0. The limits are those of
+/// himc_take_load.
+bool himc_take_allocate(himc_take *take, double rate, int frames, int points, bool skeleton,
+                        himc_error *error);
+/// Sets a point's name: printable characters only, blanks at the ends removed; "P7" if nothing is
+/// left.
+void himc_take_set_name(himc_take *take, int point, const char *name, size_t length);
+/// Keeps a line for himc_take_describe; drops it if TAKE_NOTES are there.
+void himc_take_note(himc_take *take, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int himc_take_missing(const himc_take *take, int point); ///< frames in which the point is in a gap
+
+static inline himc_vec3 *himc_take_at(const himc_take *take, int frame, int point)
+{
+    return &take->x[(size_t)frame * (size_t)take->points + (size_t)point];
+}
+
+static inline himc_vec3 himc_vec3_gap(void)
+{
+    return himc_vec3_make(NAN, NAN, NAN);
+}
+
+/// Copies letters and digits in lower case, without a prefix that ends in ':'.
+void himc_take_plain_name(const char *name, char plain[TAKE_NAME]);
+/// Reads a plain name as known words and at most one word for the side ("l", "left", "r", "right").
+/// Returns the hand, HIMC_HANDS if no side is given, or -1 if anything else is in the name. `words`
+/// ends with NULL; `rest` gets the words without the side.
+int himc_take_side(const char *plain, const char *const *words, char rest[TAKE_NAME]);
+
+// Gaps: take_gaps.c.
+
+/// Frames [begin, end) in which a point is not seen.
+typedef struct himc_take_gap {
+    int begin, end;
+} himc_take_gap;
+
+/// Turns runs of exact zeros to which a trajectory jumps into gaps, with a note (marker files, in
+/// the file's unit).
+void himc_take_drop_zeros(himc_take *take);
+/// Turns frames in which a point jumps away and back into gaps, with a note (in metres).
+void himc_take_drop_spikes(himc_take *take);
+/// Writes the positions of a point (frames) with gaps bridged. Returns the number of bridged
+/// frames; -1 if a gap is longer than `longest` (s) or the point is never seen, then `gap` is that
+/// gap.
+int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
+                   himc_take_gap *gap);
+
+// Stick tips and strikes: take_tips.c, take_strikes.c.
+
+/// Index of the point that is a hand's tip by its name, or -1.
+int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_options *options);
+/// Finds strikes in order of time; writes at most `capacity`, returns the number of all.
+int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                      himc_take_strike *strikes, int capacity);
+/// Place of a tip that touches the drumhead under these strikes: the mean over the hands of the
+/// median place of their strikes (m). A fall and its rebound meet below the head: on the simulated
+/// head a mallet stays some 7 ms, and the head is put so high that such a contact joins the two.
+/// False without strikes.
+bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place);
+
+// The library's frame: take_frame.c.
+
+/// Metres per unit by the unit's name ("mm", "Centimeters", "in"); 0 if unknown.
+double himc_take_unit(const char *name);
+/// Converts everything into metres and the library's axes.
+bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_error *error);
+
+/// Library axes to those of BVH and TRC files, which are y up: (x, y, z) becomes (x, z, -y).
+static inline himc_vec3 himc_take_y_up(himc_vec3 x)
+{
+    return himc_vec3_make(x.x, x.z, -x.y);
+}
+
+// Formats: bvh.c, c3d.c, trc.c. A reader gets the bytes of the whole file. All return false with a
+// complete error line.
+
+bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_c3d_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_bvh_write(FILE *file, const himc_take *take, himc_error *error);
+bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error);
+bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error);
+
+// Files: take_file.c.
+
+/// himc_take_load from memory; `name` gives the suffix and begins the error line. The bytes are not
+/// kept.
+himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
+                          const himc_take_options *options, himc_error *error);
+/// True if the suffix is that of a format; else the error line lists the formats.
+bool himc_take_is_format(const char *path, himc_error *error);
+
+// Recordings: recording.c.
+
+/// The recording so far as a take, to be freed by the caller; NULL if there are no frames or no
+/// memory.
+himc_take *himc_recording_take(const himc_recording *recording, himc_error *error);
+
+#endif

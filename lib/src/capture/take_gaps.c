@@ -1,0 +1,206 @@
+/// take_gaps.c: gaps: positions that a point cannot have had become gaps, and gaps are bridged.
+///
+/// Spikes: nothing of a player, stick tips included, is faster than 30 m/s. Frames between which a
+/// point moves faster, and farther than noise does, cut its trajectory into runs; a run that is too
+/// short to be a trajectory belongs to another marker or a reflection, and becomes a gap. If more
+/// than 5 % of a point's frames were such runs, the file's unit or rate is rather wrong, and the
+/// point stays as it is. Lost markers that were written as 0 0 0 are found by the same jump.
+///
+/// Bridges: a gap from t0 to t1 is filled, per coordinate, by the cubic Hermite polynomial through
+/// both edges with the velocity of the marker there: the end slope of a parabola fitted by least
+/// squares to the samples of 20 ms next to the gap, at least 3 (fewer samples: the slope of the
+/// chord). A ballistic arc is thus restored exactly; limiters as in PCHIP would flatten the turning
+/// points of a stroke. At the ends of a take there is only one edge, and the position is held: no
+/// stick moves on a guess.
+#include "capture/take.h"
+
+#include <stdlib.h>
+
+#define FASTEST 30.0       // chosen: four times the mallet of a hard blow (m/s)
+#define LEAST_JUMP 0.1     // chosen: noise of a tracker is far smaller (m)
+#define LONGEST_SPIKE 0.1  // chosen: a marker that stays elsewhere for longer was there (s)
+#define MOST_SPIKES 0.05   // chosen: of a point's frames
+#define DEFAULT_UNIT 0.001 // of marker files that do not state one (m)
+#define EDGE_TIME 0.02     // chosen: an edge's parabola is short beside a stroke of 0.2 s (s)
+
+static bool is_zero(himc_vec3 x)
+{
+    return x.x == 0 && x.y == 0 && x.z == 0;
+}
+
+static bool is_far(const himc_take *take, int frame, int point, double far)
+{
+    return frame >= 0 && frame < take->frames &&
+           himc_vec3_length(*himc_take_at(take, frame, point)) > far;
+}
+
+void himc_take_drop_zeros(himc_take *take)
+{
+    double unit = take->file_unit > 0 ? take->file_unit : DEFAULT_UNIT;
+    double far = fmax(LEAST_JUMP, FASTEST / take->rate) / unit;
+    int dropped = 0, first = -1;
+    for (int i = 0; i < take->points; i++)
+        for (int begin = 0, end; begin < take->frames; begin = end + 1) {
+            for (end = begin; end < take->frames && is_zero(*himc_take_at(take, end, i));)
+                end++;
+            if (end == begin || (!is_far(take, begin - 1, i, far) && !is_far(take, end, i, far)))
+                continue;
+            for (int frame = begin; frame < end; frame++)
+                *himc_take_at(take, frame, i) = himc_vec3_gap();
+            first = first < 0 ? i : first;
+            dropped += end - begin;
+        }
+    if (dropped)
+        himc_take_note(
+            take,
+            "gaps: %d positions of exactly 0 0 0 after a jump are read as gaps, the first of %s",
+            dropped, take->names[first]);
+}
+
+static int next_seen(const himc_take *take, int point, int from)
+{
+    while (from < take->frames && !himc_vec3_finite(*himc_take_at(take, from, point)))
+        from++;
+    return from;
+}
+
+static bool jumps(const himc_take *take, int point, int from, int to)
+{
+    himc_vec3 way = himc_vec3_sub(*himc_take_at(take, to, point), *himc_take_at(take, from, point));
+    return himc_vec3_length(way) > fmax(LEAST_JUMP, FASTEST * (to - from) / take->rate);
+}
+
+// the end of the run that begins at a seen frame; `*last` is its last seen frame
+static int run_end(const himc_take *take, int point, int begin, int *last)
+{
+    int at = begin;
+    *last = begin;
+    while ((at = next_seen(take, point, at + 1)) < take->frames && !jumps(take, point, *last, at))
+        *last = at;
+    return at;
+}
+
+// finds a point's spikes, and with `drop` makes them gaps; returns the number of frames, `*first`
+// is the first of them
+static int spikes(himc_take *take, int point, bool drop, int *first)
+{
+    int longest = (int)fmax(1, LONGEST_SPIKE * take->rate), count = 0, last;
+    for (int begin = next_seen(take, point, 0), end; begin < take->frames; begin = end) {
+        end = run_end(take, point, begin, &last);
+        bool alone = begin == next_seen(take, point, 0) && end == take->frames;
+        if (alone || last - begin + 1 > longest)
+            continue;
+        *first = count == 0 ? begin : *first;
+        count += last - begin + 1;
+        for (int i = begin; drop && i <= last; i++)
+            *himc_take_at(take, i, point) = himc_vec3_gap();
+    }
+    return count;
+}
+
+void himc_take_drop_spikes(himc_take *take)
+{
+    int points = 0, frames = 0, frame = 0;
+    const char *name = "";
+    for (int i = 0; i < take->points; i++) {
+        int first, count = spikes(take, i, false, &first);
+        if (count == 0 || count > MOST_SPIKES * take->frames)
+            continue;
+        spikes(take, i, true, &first);
+        if (points++ == 0) {
+            name = take->names[i];
+            frame = take->first_frame + first;
+        }
+        frames += count;
+    }
+    if (points)
+        himc_take_note(
+            take,
+            "gaps: %d positions of %d points, reached by jumps faster than %g m/s, are read "
+            "as gaps, the first of %s in frame %d",
+            frames, points, FASTEST, name, frame);
+}
+
+static himc_take_gap next_gap(const himc_take *take, int point, int from)
+{
+    himc_take_gap g = {from, from};
+    while (g.begin < take->frames && himc_vec3_finite(*himc_take_at(take, g.begin, point)))
+        g.begin++;
+    for (g.end = g.begin;
+         g.end < take->frames && !himc_vec3_finite(*himc_take_at(take, g.end, point));)
+        g.end++;
+    return g;
+}
+
+// slope at the sample `edge`, from it and its neighbours in the direction `step`; false with fewer
+// than three
+static bool edge_slope(const himc_vec3 *x, int frames, int edge, int step, double rate,
+                       himc_vec3 *slope)
+{
+    int most = (int)fmax(3, floor(EDGE_TIME * rate)), n = 0;
+    double s[5] = {0, 0, 0, 0, 0};
+    himc_vec3 b[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    for (int i = edge; n < most && i >= 0 && i < frames && himc_vec3_finite(x[i]); i += step, n++) {
+        // differences from the edge keep the sums small; u counts frames
+        himc_vec3 d = himc_vec3_sub(x[i], x[edge]);
+        double u = step * n, p = 1;
+        for (int k = 0; k < 5; k++, p *= u)
+            s[k] += p;
+        for (int k = 0, m = 1; k < 3; k++, m *= step * n)
+            b[k] = himc_vec3_madd(b[k], m, d);
+    }
+    if (n < 3)
+        return false;
+    // the slope of a + c u + e u^2 at u = 0 by Cramer's rule on the normal equations
+    double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[2] * s[3]) +
+                 s[2] * (s[1] * s[3] - s[2] * s[2]);
+    himc_vec3 c = himc_vec3_scale(b[0], s[2] * s[3] - s[1] * s[4]);
+    c = himc_vec3_madd(c, s[0] * s[4] - s[2] * s[2], b[1]);
+    c = himc_vec3_madd(c, s[1] * s[2] - s[0] * s[3], b[2]);
+    *slope = himc_vec3_scale(c, 1 / det);
+    return true;
+}
+
+static void bridge(himc_vec3 *x, int frames, himc_take_gap g, double rate)
+{
+    int a = g.begin - 1, b = g.end;
+    double h = b - a;
+    himc_vec3 xa = x[a], xb = x[b], chord = himc_vec3_scale(himc_vec3_sub(xb, xa), 1 / h),
+              va = chord, vb = chord;
+    edge_slope(x, frames, a, -1, rate, &va);
+    edge_slope(x, frames, b, 1, rate, &vb);
+    for (int i = g.begin; i < g.end; i++) {
+        double u = (i - a) / h, w = 1 - u;
+        himc_vec3 y = himc_vec3_scale(xa, w * w * (1 + 2 * u));
+        y = himc_vec3_madd(y, u * u * (1 + 2 * w), xb);
+        y = himc_vec3_madd(y, h * u * w * w, va);
+        x[i] = himc_vec3_madd(y, -h * u * u * w, vb);
+    }
+}
+
+static void fill(himc_vec3 *x, int frames, himc_take_gap g, double rate)
+{
+    if (g.begin > 0 && g.end < frames) {
+        bridge(x, frames, g, rate);
+        return;
+    }
+    for (int i = g.begin; i < g.end; i++)
+        x[i] = g.begin > 0 ? x[g.begin - 1] : x[g.end];
+}
+
+int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
+                   himc_take_gap *gap)
+{
+    int filled = 0;
+    for (int i = 0; i < take->frames; i++)
+        x[i] = *himc_take_at(take, i, point);
+    for (*gap = next_gap(take, point, 0); gap->begin < take->frames;
+         *gap = next_gap(take, point, gap->end)) {
+        int length = gap->end - gap->begin;
+        if (length / take->rate > longest || length == take->frames)
+            return -1;
+        fill(x, take->frames, *gap, take->rate);
+        filled += length;
+    }
+    return filled;
+}
