@@ -69,7 +69,7 @@ static void set_measures(trial_config *config, int row)
 {
     config->kind.law = laws[row / ERRORS];
     config->gain = row / ERRORS == 0 ? gains[0] : 1;
-    config->mismeasured = errors[row % ERRORS];
+    config->length_error = errors[row % ERRORS];
 }
 
 static trial_config config_of(const claim *c, int item)

@@ -45,7 +45,7 @@
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
 // The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
-// five drums in an arc.
+// four timpani in an arc.
 #define TRUNK_LEAN 0.09         // (rad)
 #define LEAN_BEGINS 0.60        // strike points farther than this make the trunk lean more (m) ...
 #define LEAN_SLOPE 1.4          // ... by this (rad/m) ...

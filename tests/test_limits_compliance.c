@@ -1,4 +1,4 @@
-/// test_limits_yield.c: accelerations under joint limits: the future position of a stopped joint,
+/// test_limits_compliance.c: accelerations under joint limits: the future position of a stopped joint,
 /// the compensation at the tips, the speed of return, the count of limit hits; and the strength
 /// table.
 #include "control/controller.h"
