@@ -16,9 +16,12 @@
 /// whole take.
 #include "capture/player.h"
 
+#include "himc/command.h"
+
 #include "base/head_frame.h"
 #include "body/posture.h"
 #include "capture/take.h"
+#include "himc/command.h"
 
 #include <stdlib.h>
 #include <string.h>
