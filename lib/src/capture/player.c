@@ -16,8 +16,6 @@
 /// whole take.
 #include "capture/player.h"
 
-#include "himc/command.h"
-
 #include "base/head_frame.h"
 #include "body/posture.h"
 #include "capture/take.h"
