@@ -6,7 +6,7 @@
 # sanitizers. tests/realtime/test_storm.sh adds how late blocks are.
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 dir=$HIMC_BUILD/tests/storm
-port=$((20000 + $$ % 20000)) # and the one after it; ours, should two of these run at once
+port=$((20000 + 8 * $$ % 12000)) # and 7 after it; ours, should two of these run at once, and below those that the system gives
 packets=200000 rate=100000
 [ -n "$HIMC_LONG" ] && packets=6000000
 seconds=$((packets / rate)) # of a run without a storm, for tests/realtime

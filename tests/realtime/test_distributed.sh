@@ -6,7 +6,7 @@
 cd "$(dirname "$0")/../.." || exit 1
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 dir=$HIMC_BUILD/tests/realtime/distributed
-port=$((20000 + $$ % 20000)) # and the two after it; ours, should two of these run at once
+port=$((20000 + 8 * $$ % 12000)) # and 7 after it; ours, should two of these run at once, and below those that the system gives
 seconds=12 latency=50
 [ -n "$HIMC_LONG" ] && seconds=60
 mkdir -p "$dir"

@@ -30,26 +30,26 @@
 
 #define RECORDS 1024         // chosen: poses of 4 s at 250 Hz
 #define COMMANDS_WAITING 512 // chosen: half a second of 1000 points
-#define LINES 64             // chosen
+#define LINES 64             // chosen: the host reads them after each block
 #define NICE 5               // chosen: sound goes first
 #define PACKETS_AT_ONCE 256  // read in one pass; chosen: then states are sent again
 #define PACKET_SIZE 65536    // largest of UDP (bytes)
 #define WAIT_SUBSCRIBED 2    // (ms) chosen: a strike leaves within it
-#define WAIT_IDLE 20         // (ms) chosen
-#define REST 1000000         // in a flood (ns) chosen
+#define WAIT_IDLE 20         // (ms) chosen: a packet ends the wait, only a local subscription waits
+#define REST 1000000         // in a flood (ns) chosen: the socket holds more than arrives in it
 
-#define PACKETS_PER_SECOND 8000.0 // chosen: reading these takes the thread a few per cent of a core
+#define PACKETS_PER_SECOND 8000.0 // chosen: far more than players send
 #define POINTS_PER_SECOND 1000.0  // of commands; chosen: 4 targets at 250 Hz
 #define POINTS_AT_ONCE 4000.0     // chosen: a score of 1000 strokes, sent one by one
-#define LINES_PER_SECOND 50.0     // of answers; chosen: less goes out than comes in
-#define WORK_SHARE 0.1            // of the host's time, for commands; chosen
-#define WORK_AT_ONCE 0.05         // (s) chosen: two heads of 2000 modes
+#define LINES_PER_SECOND 50.0     // of answers; chosen: a stranger gets no more than he sends
+#define WORK_SHARE 0.1    // of the host's time, for commands; chosen: the sound needs the rest
+#define WORK_AT_ONCE 0.05 // (s) chosen: two heads of 2000 modes
 
-#define OFFSET_FOLLOW 0.002 // of the distance, each block; chosen: 1 s for blocks of 2 ms
-#define OFFSET_JUMP 0.1     // (s) chosen: sound was off, not late
-#define BLOCK_WORK 2e-4     // no further command in a block once they took so long (s); chosen
-#define STATUS_PERIOD 1.0   // (s) chosen
-#define SET_BACK 2.0        // (s) a next time so far ahead: the clock was set back; chosen
+#define OFFSET_TIME 1.0   // (s) time constant; chosen: longer than the bursts of a host
+#define OFFSET_JUMP 0.1   // (s) chosen: sound was off, not late
+#define BLOCK_WORK 2e-4   // no further command in a block once they took so long (s); chosen
+#define STATUS_PERIOD 1.0 // (s) chosen: as often as a user reads it
+#define SET_BACK 2.0      // (s) a next time so far ahead: the clock was set back; chosen
 
 typedef struct osc_bucket {
     double level, rate, size, last;
@@ -79,6 +79,7 @@ typedef struct osc_order {
 
 // owned by the host's thread
 typedef struct osc_host {
+    double time;                 // t, of the last block (s)
     double offset;               // W - t (s)
     double next_pose, next_head; // (s, of the performance)
     double next_status;          // (s, wall clock)
@@ -257,7 +258,9 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
     osc_host *h = &osc->host;
     himc_performance_stats stats = himc_performance_measure(performance);
     double now = osc->clock.wall(osc->clock.user), t = stats.seconds, apart = now - t - h->offset;
-    h->offset += fabs(apart) > OFFSET_JUMP ? apart : OFFSET_FOLLOW * apart;
+    double follow = fmin(fmax(t - h->time, 0) / OFFSET_TIME, 1);
+    h->offset += fabs(apart) > OFFSET_JUMP ? apart : follow * apart;
+    h->time = t;
     h->published = t + h->offset;
     h->busy += busy;
     int hz = atomic_load_explicit(&osc->subscriptions.head_hz, memory_order_relaxed);
