@@ -20,6 +20,9 @@
 ///     himc/membrane.h   drumhead, pickups, contact
 ///     himc/osc.h        commands in and poses, strikes, states out over the network
 ///
+/// Two further headers are tables: himc/command_rows.h, a row for each command, and himc/ranges.h,
+/// the ranges that structs share with commands.
+///
 /// docs/api.md states what each tier promises. The sources in lib/src stand in folders in the order
 /// of the data flow: base, body, capture, plan, control, drum, performance, osc.
 #ifndef HIMC_H

@@ -6,6 +6,7 @@
 #include "himc/himc.h"
 #include "himc/membrane.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define RATE 48000

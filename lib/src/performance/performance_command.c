@@ -13,11 +13,11 @@
 #define LONGEST_RECORDING 1200.0 // (s)
 
 // the action of each row for the performer is himc_performance_do_ and its word
-#define ACTION_DRUM(ID, word)
-#define ACTION_PERFORMER(ID, word) performance_action himc_performance_do_##word;
-#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) ACTION_##receiver(ID, word)
+#define ACTION_DRUM(ID, word, when)
+#define ACTION_PERFORMER(ID, word, when) performance_action himc_performance_do_##word;
+#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) \
+    ACTION_##receiver(ID, word, when)
 #include "himc/command_rows.h"
-#undef ACTION_PERFORMER
 
 bool himc_performance_do_mode(himc_performance *p, const himc_command *c, himc_error *error)
 {
@@ -258,9 +258,8 @@ static performance_action *const actions[HIMC_COMMANDS] = {
 #define ACTION_AT_SAMPLE(word) himc_performance_do_##word
 #define ACTION_HOST(word) leave_to_host
 #define ACTION_NETWORK(word) refuse_network
+#undef ACTION_PERFORMER
 #define ACTION_PERFORMER(ID, word, when) [HIMC_COMMAND_##ID] = ACTION_##when(word),
-#undef ACTION_DRUM
-#define ACTION_DRUM(ID, word, when)
 #define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) \
     ACTION_##receiver(ID, word, when)
 #include "himc/command_rows.h"
