@@ -193,9 +193,26 @@ $(CLIPS): $(BUILD)/tools/clips/clips
 
 $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
-	$(Q)$(COMPILE) -c $< -o $@
+	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-$(BUILD)/viewer/pages.o: $(wildcard viewer/page/*)
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs two
+# files of the library and no other package, so that `make viewer` needs none either
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o
+$(BUILD)/tools/skeleton/table: $(SKELETON_O)
+	$(call say,link)
+	$(Q)$(LINK) $^ -lm -o $@
+
+$(BUILD)/viewer/skeleton.h: $(BUILD)/tools/skeleton/table
+	$(call say,make)
+	$(Q)$< c >$@
+
+$(BUILD)/viewer/skeleton.js: $(BUILD)/tools/skeleton/table
+	$(call say,make)
+	$(Q)$< js >$@
+
+$(VIEWER_O): $(BUILD)/viewer/skeleton.h
+$(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
+-include $(VIEWER_O:.o=.d)
 
 $(VIEWER): $(VIEWER_O)
 	$(call say,link)

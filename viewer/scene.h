@@ -6,12 +6,14 @@
 #ifndef VIEWER_SCENE_H
 #define VIEWER_SCENE_H
 
+#include "skeleton.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 enum {
-    SCENE_SEGMENTS = 20,
+    SCENE_SEGMENTS = SKELETON_SEGMENTS,
     SCENE_HANDS = 2,
     SCENE_PERFORMERS = 16,
     SCENE_DRUMS = 32,

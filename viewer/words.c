@@ -21,12 +21,7 @@
 
 #define FAR 1000.0 // no coordinate is larger (m)
 
-static const char *const segments[SCENE_SEGMENTS] = {
-    "pelvis",         "trunk",           "neck",           "head",
-    "left-upper-arm", "right-upper-arm", "left-forearm",   "right-forearm",
-    "left-hand",      "right-hand",      "left-stick",     "right-stick",
-    "left-upper-leg", "right-upper-leg", "left-lower-leg", "right-lower-leg",
-    "left-foot",      "right-foot",      "left-toes",      "right-toes"};
+static const char *const segments[SCENE_SEGMENTS] = {SKELETON_SEGMENT_NAMES};
 
 /// A message being heard.
 typedef struct heard {

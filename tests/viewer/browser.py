@@ -1,4 +1,4 @@
-"""A real Chromium, headless, driven over WebDriver by the standard library alone."""
+"""Chromium without a window, controlled over WebDriver with the standard library alone."""
 
 import base64
 import json
@@ -68,8 +68,8 @@ class Browser:
             "POST", self.session + "/execute/sync", {"script": script, "args": list(args)}
         )
 
-    def wait(self, script, seconds=30):
-        """The first true answer of `script`; the last one if none is within `seconds`."""
+    def wait(self, script, seconds=100):
+        """The first true answer of `script`; the last answer if none is true within `seconds`."""
         end = time.time() + seconds
         while True:
             answer = self.run(script)
@@ -78,7 +78,7 @@ class Browser:
             time.sleep(0.1)
 
     def downloads(self, folder):
-        """Where files that the page saves go."""
+        """Files that the page saves go into `folder`."""
         self.call(
             "POST",
             self.session + "/goog/cdp/execute",
@@ -104,5 +104,5 @@ class Browser:
         except (OSError, RuntimeError):
             pass
         self.driver.terminate()
-        self.driver.wait(10)
+        self.driver.wait(100)
         shutil.rmtree(self.home, ignore_errors=True)
