@@ -92,12 +92,15 @@ view: deps ## build the viewer and show the improvisation in the browser
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
 	$(VIEWER) --play $(BUILD)/demo/view.csv
 
-still: deps ## a picture of it, by a browser without a window, in build/demo/still.png
+# the picture of `make still`: the camera (stage front side top eye) and the time (s)
+CAMERA ?= stage
+AT     ?= 20.2
+still: deps ## a picture of it, by a browser without a window, in build/demo/still.png; CAMERA=eye AT=20.2
 	@tools/deps.sh tools/deps-viewer.txt tools/deps-browser.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
-	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png 20.2
+	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png $(AT) $(CAMERA)
 
 viewer: ## the viewer alone, build/bin/himc-viewer
 	@tools/deps.sh tools/deps-viewer.txt
@@ -132,9 +135,12 @@ check-bench: all $(BENCH)
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
 ##@ Documentation
-figures: deps ## the pictures and sounds in docs, as far as they are out of date
+figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
 	@tools/deps.sh tools/deps-figures.txt
 	@$(MAKE) check-figures
+
+trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
+	@$(MAKE) check-trials
 
 air-table: ## lib/src/drum/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table

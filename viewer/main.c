@@ -1,6 +1,6 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
-#include "ear.h"
+#include "receive.h"
 #include "web.h"
 
 #include <signal.h>
@@ -38,7 +38,7 @@ static void on_signal(int number)
     stop = 1;
 }
 
-static int complain(const char *text)
+static int fail(const char *text)
 {
     fprintf(stderr, "himc-viewer: %s\n", text);
     return 1;
@@ -151,19 +151,19 @@ static int serve(const options *o, char error[256])
     web_config config = {.address = o->address, .port = o->http};
     char *motion = o->play ? read_motion(o->play, &config.play_size, error) : NULL, url[128];
     if (o->play && !motion)
-        return complain(error);
+        return fail(error);
     config.play = motion;
-    config.ear = ear_open(o->address, o->osc, error);
+    config.ear = receive_open(o->address, o->osc, error);
     web *w = config.ear < 0 ? NULL : web_new(&config, &s, error);
     if (!w) {
         free(motion);
-        return complain(error);
+        return fail(error);
     }
     // before anybody knows that we are there
     handle_signals();
     print_url(url, o->address, web_port(w));
     printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address,
-           ear_port(config.ear));
+           receive_port(config.ear));
     fflush(stdout);
     if (o->browser)
         open_browser(url);
@@ -182,6 +182,6 @@ int main(int argc, char **argv)
         return 0;
     }
     if (!parse(&o, argv, error))
-        return complain(error);
+        return fail(error);
     return serve(&o, error);
 }

@@ -7,7 +7,7 @@
 /// here.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
-#include "ear.h"
+#include "receive.h"
 #include "pages.h"
 
 #include <arpa/inet.h>
@@ -21,7 +21,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { CLIENTS = 32, CHUNK = 32768, BATCH = 512, REST = 3 /* (ms) */, NAME_MAX_LENGTH = 256 };
+enum { CLIENTS = 32, CHUNK = 32768, BATCH = 512, PAUSE = 3 /* (ms) */, NAME_MAX_LENGTH = 256 };
 
 /// A connection's own.
 typedef struct session {
@@ -36,7 +36,7 @@ struct web {
     web_config config;
     int clients;
     struct lws *ear;
-    uint64_t turned_away;
+    uint64_t rejected;
     lws_sorted_usec_list_t rest, second;
     double cpu, clock; // at the last report (s)
     unsigned char out[LWS_PRE + SCENE_FRAME_MAX];
@@ -62,7 +62,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
 
 static int refuse(struct lws *wsi, unsigned status)
 {
-    web_of(wsi)->turned_away++;
+    web_of(wsi)->rejected++;
     lws_return_http_status(wsi, status, NULL);
     return -1;
 }
@@ -103,7 +103,7 @@ static bool from_our_page(struct lws *wsi)
 }
 
 // the body of that path; false if there is none
-static bool look_up(const web *w, const char *path, session *own, const char **type)
+static bool find_body(const web *w, const char *path, session *own, const char **type)
 {
     const page *found = pages_find(path);
     if (found) {
@@ -129,7 +129,7 @@ static int begin_page(struct lws *wsi, session *own, const char *path)
         return refuse(wsi, HTTP_STATUS_FORBIDDEN);
     if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0)
         return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED);
-    if (!look_up(web_of(wsi), path, own, &type))
+    if (!find_body(web_of(wsi), path, own, &type))
         return refuse(wsi, HTTP_STATUS_NOT_FOUND);
     if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, (lws_filepos_t)(own->end - own->at),
                                     &p, end) ||
@@ -161,7 +161,7 @@ static int send_chunk(struct lws *wsi, session *own)
 static int send_news(struct lws *wsi, session *own)
 {
     web *w = web_of(wsi);
-    size_t size = scene_encode(w->s, &own->reader, ear_clock(), w->out + LWS_PRE);
+    size_t size = scene_encode(w->s, &own->reader, wall_clock(), w->out + LWS_PRE);
     if (size && lws_write(wsi, w->out + LWS_PRE, size, LWS_WRITE_BINARY) < 0)
         return -1;
     if (own->reader.events != w->s->events)
@@ -179,18 +179,18 @@ static void wake(web *w)
 // hears what waits; whoever listens is woken for whole poses and events
 static void hear(web *w)
 {
-    if (ear_listen(w->config.ear, w->s, BATCH))
+    if (receive_waiting(w->config.ear, w->s, BATCH))
         wake(w);
 }
 
 // the rest is over: what came meanwhile is heard together, and poses in pieces are waited for no
 // longer than they may be
-static void on_rest_over(lws_sorted_usec_list_t *list)
+static void on_pause_over(lws_sorted_usec_list_t *list)
 {
     web *w = lws_container_of(list, web, rest);
     hear(w);
-    if (scene_unsettled(w->s))
-        lws_sul_schedule(w->context, 0, list, on_rest_over, REST * LWS_US_PER_MS);
+    if (scene_pose_pending(w->s))
+        lws_sul_schedule(w->context, 0, list, on_pause_over, PAUSE * LWS_US_PER_MS);
     else
         lws_rx_flow_control(w->ear, 1);
 }
@@ -202,7 +202,7 @@ static void on_packet(web *w, struct lws *wsi)
     w->ear = wsi;
     hear(w);
     lws_rx_flow_control(wsi, 0);
-    lws_sul_schedule(w->context, 0, &w->rest, on_rest_over, REST * LWS_US_PER_MS);
+    lws_sul_schedule(w->context, 0, &w->rest, on_pause_over, PAUSE * LWS_US_PER_MS);
 }
 
 static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
@@ -234,7 +234,7 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
         return lws_callback_on_writable(wsi) < 0;
     case LWS_CALLBACK_SERVER_WRITEABLE: return send_news(wsi, own);
     case LWS_CALLBACK_RECEIVE:
-        w->turned_away++;
+        w->rejected++;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, NULL, 0);
         return -1;
     case LWS_CALLBACK_CLOSED: w->clients--; return 0;
@@ -266,15 +266,15 @@ static void on_second(lws_sorted_usec_list_t *list)
 {
     web *w = lws_container_of(list, web, second);
     const scene_counts *c = &w->s->count;
-    double now = ear_clock(), cpu = cpu_seconds();
-    scene_say(w->s, now,
-              "{\"event\":\"bridge\",\"packets\":%llu,\"messages\":%llu,"
-              "\"malformed\":%llu,\"unknown\":%llu,"
-              "\"refused\":%llu,\"turned_away\":%llu,\"clients\":%d,\"load\":%.4f}",
-              (unsigned long long)c->packets, (unsigned long long)c->messages,
-              (unsigned long long)c->malformed, (unsigned long long)c->unknown,
-              (unsigned long long)c->refused, (unsigned long long)w->turned_away, w->clients,
-              now > w->clock ? (cpu - w->cpu) / (now - w->clock) : 0);
+    double now = wall_clock(), cpu = cpu_seconds();
+    scene_add_event(w->s, now,
+                    "{\"event\":\"bridge\",\"packets\":%llu,\"messages\":%llu,"
+                    "\"malformed\":%llu,\"unknown\":%llu,"
+                    "\"refused\":%llu,\"rejected\":%llu,\"clients\":%d,\"load\":%.4f}",
+                    (unsigned long long)c->packets, (unsigned long long)c->messages,
+                    (unsigned long long)c->malformed, (unsigned long long)c->unknown,
+                    (unsigned long long)c->refused, (unsigned long long)w->rejected, w->clients,
+                    now > w->clock ? (cpu - w->cpu) / (now - w->clock) : 0);
     w->cpu = cpu;
     w->clock = now;
     wake(w);
@@ -344,7 +344,7 @@ web *web_new(const web_config *config, scene *s, char error[256])
         web_free(w);
         return NULL;
     }
-    w->clock = ear_clock();
+    w->clock = wall_clock();
     w->cpu = cpu_seconds();
     on_second(&w->second);
     return w;

@@ -119,9 +119,10 @@ def test_pictures_and_films_are_saved():
     browser.downloads(home)
     with sender("--start", "18"):
         assert browser.wait("return viewer.joints()")
-        browser.run("viewer.stage.quality = 0.3; dispatchEvent(new Event('resize'))")
+        # the cheapest picture: without a graphics card a full one takes half a second
+        browser.run("viewer.stage.simplify(4); dispatchEvent(new Event('resize'))")
         browser.run("viewer.actions.picture(); viewer.actions.film(); viewer.scripts.length = 0")
-        assert browser.wait("return viewer.scripts.length > 25 && viewer.recorder.filmed > 1000")
+        assert browser.wait("return viewer.scripts.length > 12 && viewer.recorder.filmed > 1000")
         browser.run("viewer.actions.film()")
         end, sizes = time.time() + WAIT, {}
         while time.time() < end and not (sizes.get("png") and sizes.get("webm")):

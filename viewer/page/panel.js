@@ -2,7 +2,7 @@
 const $ = id => document.getElementById(id);
 const short = value => (typeof value === "number" ? +value.toPrecision(4) : value);
 const STATUS_SHOWN = ["load", "sound", "physics", "task", "strokes", "played", "recoveries"];
-const SPAN = 8000; // of the running score (ms); chosen: two bars of a moderate tempo
+const SPAN = 8000; // of the running score (ms); chosen: two bars at 60 beats a minute
 const NOTE_TIME = 6000; // a message stays (ms); chosen: long enough to read a line
 const LOUDEST = 0.004, // full deflection of the level, largest displacement (m); chosen
     STRONGEST = 150; // tallest note of the running score (N); chosen: a forte stroke
