@@ -11,8 +11,8 @@
 ///     /viewer/camera, /viewer/show, ...               for the page: see docs/viewer.md
 ///
 /// A performer that shares its port with others puts a name into its addresses, /himc/NAME/body.
-/// Numbers may have any numeric OSC type but must be finite. Types are written n for a number, s for
-/// a word, * for any further atoms.
+/// Numbers may have any numeric OSC type but must be finite. Types are written n for a number, s
+/// for a word, * for any further atoms.
 #include "addresses.h"
 
 #include <math.h>
@@ -246,7 +246,8 @@ static const address addresses[] = {
     {"membrane", "head", "*", on_head},      {"membrane", "place", "nnnnn", on_place},
 };
 
-// copies the next "/part" of an address and returns the rest; NULL if there is none or it is too long
+// copies the next "/part" of an address and returns the rest; NULL if there is none or it is too
+// long
 static const char *next_part(const char *at, char part[SCENE_NAME])
 {
     size_t length = *at == '/' ? strcspn(at + 1, "/") : 0;

@@ -8,8 +8,8 @@
 int receive_open(const char *address, int port, char error[256]);
 /// The port of the socket.
 int receive_port(int fd);
-/// Receives the waiting packets, at most `most`. True if the scene has a new complete pose, drum state
-/// or event.
+/// Receives the waiting packets, at most `most`. True if the scene has a new complete pose, drum
+/// state or event.
 bool receive_waiting(int fd, scene *s, int most);
 /// Stores one packet of the sender `key` in the scene; a malformed one is only counted.
 void receive_packet(scene *s, const char *key, const void *packet, size_t size, double now);

@@ -1,8 +1,8 @@
 /// scene.h: everything the viewer has received: performers, drums and events.
 ///
 /// Of performers and drums only the latest values are kept: a slow reader gets the newest pose and
-/// no backlog. Events (strikes, beats, counters) are a ring, and each reader has its own position in
-/// it. All of it has a fixed size and is used by one thread.
+/// no backlog. Events (strikes, beats, counters) are a ring, and each reader has its own position
+/// in it. All of it has a fixed size and is used by one thread.
 #ifndef VIEWER_SCENE_H
 #define VIEWER_SCENE_H
 
@@ -78,8 +78,8 @@ scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double 
 
 /// Stores one segment of a pose.
 void scene_set_body(scene_performer *p, int segment, const float body[7], double now);
-/// Marks poses as complete: those with all segments, and those begun more than 5 ms ago (a bundle may
-/// be split, and a packet lost). True if there is one.
+/// Marks poses as complete: those with all segments, and those begun more than 5 ms ago (a bundle
+/// may be split, and a packet lost). True if there is one.
 bool scene_complete_poses(scene *s, double now);
 /// True while a pose is incomplete.
 bool scene_pose_pending(const scene *s);

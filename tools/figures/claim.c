@@ -1,13 +1,15 @@
 /// claim.c: on what the published claim depends: HIMC has a smaller error of the tip than joint
 /// space control, by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section
-/// 3.3.2). `claim rates|nuances|measures TRIALS` prints a CSV table; errors in percent of amplitude,
-/// `gain` over the stiffness of a player (the default gain is 3), difference is ID minus HIMC.
+/// 3.3.2). `claim rates|nuances|measures TRIALS` prints a CSV table; errors in percent of
+/// amplitude, `gain` over the stiffness of a player (the default gain is 3), difference is ID minus
+/// HIMC.
 ///
 /// `rates`: legato at 1 to 3 strokes a second with each hand under the printed law, three gains,
-/// joint limits on and off (claim.gp). `measures`: legato at its own rate, limits on, limbs measured
-/// with errors of 0 to 2 %, the printed law with the softest gain and each law with the default one
-/// (measures.gp). `nuances`: each nuance at its own rate under the printed law with the softest gain,
-/// limits on (evaluation.gp, the same columns as spread.awk). Trials run on all cores.
+/// joint limits on and off (claim.gp). `measures`: legato at its own rate, limits on, limbs
+/// measured with errors of 0 to 2 %, the printed law with the softest gain and each law with the
+/// default one (measures.gp). `nuances`: each nuance at its own rate under the printed law with the
+/// softest gain, limits on (evaluation.gp, the same columns as spread.awk). Trials run on all
+/// cores.
 #include "../pool.h"
 #include "../trial.h"
 #include "control/controller.h"

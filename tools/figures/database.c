@@ -1,11 +1,11 @@
 /// database.c: distance of the sticks from the captured ones without any disturbance: all 45
 /// sequences of the motion database, without tracker noise, with the masses known exactly.
 ///
-/// Prints a row for each nuance with `himc`, by computed torque at its own rate and by feedforward at
-/// 2 strokes a second with each hand, and one for all nuances: law, nuance, RMS error outside contact
-/// and with impacts (% of amplitude), smallest and largest range of the elbow's height over the
-/// captured one, RMS angle of shoulder, elbow and wrist to the captured joints (degrees), strokes
-/// landed of all strokes.
+/// Prints a row for each nuance with `himc`, by computed torque at its own rate and by feedforward
+/// at 2 strokes a second with each hand, and one for all nuances: law, nuance, RMS error outside
+/// contact and with impacts (% of amplitude), smallest and largest range of the elbow's height over
+/// the captured one, RMS angle of shoulder, elbow and wrist to the captured joints (degrees),
+/// strokes landed of all strokes.
 #include "../pool.h"
 #include "../trial.h"
 #include "control/controller.h"

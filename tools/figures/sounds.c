@@ -1,8 +1,8 @@
 /// sounds.c: four short OGG files of the drum alone: `sounds FOLDER`.
 ///
-/// scale: D3 to A3 on a 23 inch timpano; roll: 13 strokes a second from pp to ff and back; glissando:
-/// a stroke, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood. The drum
-/// is in air. Stereo, one pickup on each side.
+/// scale: D3 to A3 on a 23 inch timpano; roll: 13 strokes a second from pp to ff and back;
+/// glissando: a stroke, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood.
+/// The drum is in air. Stereo, one pickup on each side.
 #include "himc/himc.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /// spectrogram.c: a sound file's spectrogram as numbers, for spectrograms.gp: `spectrogram FILE`.
 ///
-/// A line has a time (s), a frequency (Hz) and the level (dB re full scale); the lines of one time are
-/// a block. Hann windows of 4096 samples, one every 20 ms, by the Goertzel recurrence, which computes
-/// only the frequencies that are drawn.
+/// A line has a time (s), a frequency (Hz) and the level (dB re full scale); the lines of one time
+/// are a block. Hann windows of 4096 samples, one every 20 ms, by the Goertzel recurrence, which
+/// computes only the frequencies that are drawn.
 #include "himc/base.h"
 
 #include <math.h>

@@ -8,9 +8,9 @@
 /// nuance with `himc`: nuance, depth and height of the right tip, captured and simulated (cm)
 /// (phases.gp).
 ///
-/// Flexions are computed alike for all: of the elbow the angle between upper arm and forearm, of the
-/// shoulder the angle of the upper arm from hanging in the sagittal plane, of the wrist the elevation
-/// of the hand minus that of the forearm.
+/// Flexions are computed alike for all: of the elbow the angle between upper arm and forearm, of
+/// the shoulder the angle of the upper arm from hanging in the sagittal plane, of the wrist the
+/// elevation of the hand minus that of the forearm.
 #include "../trial.h"
 #include "control/controller.h"
 

@@ -1,5 +1,5 @@
-/// timbre.c: spectra of single strokes on a 23 inch timpano at D3, for timbre.gp: the same stroke at
-/// three places, with four mallets, at three velocities.
+/// timbre.c: spectra of single strokes on a 23 inch timpano at D3, for timbre.gp: the same stroke
+/// at three places, with four mallets, at three velocities.
 ///
 /// Prints one block for each panel: frequency (Hz), then the spectrum of each sound (dB re 1 s of
 /// full scale) over the first second. The window is the falling half of a Hann window, so that the

@@ -8,7 +8,7 @@ const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     SECTORS = 72,
     MODES = 64,
     ABSENT_AFTER = 4000, // without amplitudes (ms); chosen: a drum at rest may send rarely
-    LARGEST_HEIGHT = 0.22, // of the head as drawn, fraction of the radius; chosen: clear of the sticks
+    LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
     AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
 export const usualPlace = [0.7, 0, 0.85, 0, 0.2921]; // 23 inches, where the library puts a drum
@@ -265,7 +265,8 @@ export class Drum {
         this.wasStill = still;
     }
 
-    // Heights, exaggerated but limited, and normals from the differences along and across the rings.
+    // Heights, exaggerated but limited, and normals from the differences along and across the
+    // rings.
     draw(exaggeration) {
         const { position, normal } = this.head.geometry.attributes,
             p = position.array,

@@ -10,7 +10,8 @@ import { segments, tip, malletRadius } from "./skeleton.js";
 const BUTT = 0.1; // length of the stick behind the grip: the library's default grip (m)
 
 // Rotation vectors of the rest pose (rad), for a pair of joints the left one. Chosen: seated, close
-// to the playing poses, so that the skin is deformed little. Joints that are not listed are at zero.
+// to the playing poses, so that the skin is deformed little. Joints that are not listed are at
+// zero.
 const rest = {
     waist: [0, 0.09, 0],
     neck: [0, 0.11, 0],
@@ -185,23 +186,25 @@ function hair() {
 }
 
 function eyes() {
+    const h = bone("head");
     return {
         soft: 0.001,
         blend: 0.03,
         cell: 0.0026,
         solids: both((s, y) => [
-            ellipsoid(bone("head"), [0.0755, 0.0305 * y, 0.0925], [0.0095, 0.0125, 0.0058]),
+            ellipsoid(h, [0.0755, 0.0305 * y, 0.0925], [0.0095, 0.0125, 0.0058]),
         ]),
     };
 }
 
 function brows() {
+    const h = bone("head");
     return {
         soft: 0.004,
         blend: 0.03,
         cell: 0.003,
         solids: both((s, y) => [
-            cone(bone("head"), [0.0885, 0.016 * y, 0.1165], 0.0042, [0.077, 0.046 * y, 0.1135], 0.003),
+            cone(h, [0.0885, 0.016 * y, 0.1165], 0.0042, [0.077, 0.046 * y, 0.1135], 0.003),
         ]),
     };
 }

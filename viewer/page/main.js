@@ -20,7 +20,7 @@ const performers = new Map(),
     recorder = new Recorder(canvas);
 const shown = { targets: true, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 60, script: 0, latency: null, render: 0 };
-const clock = () => performance.timeOrigin + performance.now(); // the same clock as himc-viewer's (ms)
+const clock = () => performance.timeOrigin + performance.now(); // himc-viewer's clock too (ms)
 const latencies = [],
     scripts = [];
 let exaggeration = 25,

@@ -45,8 +45,8 @@ export function shape(i, r, theta) {
     return bessel(m, zero * r) * (sine ? Math.sin(m * theta) : Math.cos(m * theta));
 }
 
-// Heights at the points of a polar net (rings x sectors) from modal amplitudes: first a sum for each
-// ring and order, then round the circle, so the cost is modes x rings + orders x points.
+// Heights at the points of a polar net (rings x sectors) from modal amplitudes: first a sum for
+// each ring and order, then round the circle, so the cost is modes x rings + orders x points.
 export class Net {
     constructor(rings, sectors) {
         ((this.rings = rings), (this.sectors = sectors));
@@ -84,8 +84,8 @@ const STRIKES_KEPT = 12;
 const HEAD = { radius: 0.2921, tension: 3700, density: 0.2653, s0: 2.2, s1: 3e-7 };
 
 // Vibration of the default head after strikes. A strike is an impulse J (N s) at (x, y), and each
-// mode answers with a decaying sine, q = -J phi / (m w) e^(-d t) sin(w t) (Morse & Ingard 1968); the
-// answers to the last 12 strikes are added (chosen: older ones have died away).
+// mode answers with a decaying sine, q = -J phi / (m w) e^(-d t) sin(w t) (Morse & Ingard 1968);
+// the answers to the last 12 strikes are added (chosen: older ones have died away).
 export class Ringing {
     constructor() {
         const { radius, tension, density, s0, s1 } = HEAD;

@@ -1,7 +1,7 @@
 // Playback of a motion.csv (from `himc render --motion`) as poses, targets and strikes. Joint
 // rotations are rotation vectors from the zero pose of the default performer. A strike is an
-// interval of force on a stick. The drumhead is the library's default one; its vibration is computed
-// from the strikes, as if each fell on a head at rest.
+// interval of force on a stick. The drumhead is the library's default one; its vibration is
+// computed from the strikes, as if each fell on a head at rest.
 import { HANDS, kinematics } from "./body.js";
 import { segments } from "./skeleton.js";
 import { usualPlace } from "./drum.js";

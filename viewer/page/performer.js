@@ -74,8 +74,8 @@ export class Performer {
         return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
     }
 
-    // the pose to show at `now`; a third of an interval and 3 ms more than one interval late, so that
-    // the next pose is nearly always there (chosen)
+    // the pose to show at `now`; a third of an interval and 3 ms more than one interval late, so
+    // that the next pose is nearly always there (chosen)
     interpolateAt(now) {
         const moment = now - this.lag - Math.min(LONGEST_DELAY, 1.35 * this.interval + 3),
             list = this.poses;

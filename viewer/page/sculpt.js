@@ -225,9 +225,9 @@ function skinWeights(part, near, x, y, z) {
     };
 }
 
-// A skinned geometry from a part and the rest matrices of the bones. Part: solids; soft, the width of
-// their joints (m); blend, of the change from bone to bone (m); cell, of the mesh (m); cut, solids
-// taken away; shape, a function that changes the distance.
+// A skinned geometry from a part and the rest matrices of the bones. Part: solids; soft, the width
+// of their joints (m); blend, of the change from bone to bone (m); cell, of the mesh (m); cut,
+// solids taken away; shape, a function that changes the distance.
 export function sculpt(part, rest) {
     const { distance, near } = field(part, rest);
     const { position, index } = mesh(distance, bounds(part, rest), part.cell);

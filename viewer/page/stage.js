@@ -205,7 +205,8 @@ export class Stage {
         camera.updateProjectionMatrix();
     }
 
-    // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time (ms)
+    // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time
+    // (ms)
     adapt(frame, camera) {
         this.late =
             frame > LATE_FRAME ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
@@ -215,8 +216,8 @@ export class Stage {
         this.resize(camera);
     }
 
-    // step 0: full quality; 1: no more pixels than the screen's; 2: smaller shadow map; 3: one light,
-    // no shadows; 4: half the resolution
+    // step 0: full quality; 1: no more pixels than the screen's; 2: smaller shadow map; 3: one
+    // light, no shadows; 4: half the resolution
     simplify(step) {
         this.step = step;
         this.quality = Math.min(this.quality, step >= 4 ? 0.5 : 1);

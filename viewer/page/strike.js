@@ -1,5 +1,5 @@
-// Marks of a strike: light on the head, an arrow as long as the force, the force in newtons; and the
-// trails of the tips. Sizes and colours: chosen by eye.
+// Marks of a strike: light on the head, an arrow as long as the force, the force in newtons; and
+// the trails of the tips. Sizes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 
