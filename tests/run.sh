@@ -5,7 +5,7 @@
 # is printed per program, what failed or was ignored in full, and last of all `N passed, N failed`. A program that
 # crashes, ends without its summary, or runs longer than TEST_TIMEOUT seconds counts as one more failure. That limit is for
 # programs that hang: it must be long enough for a busy machine.
-: "${JOBS:=$(nproc 2>/dev/null || echo 1)}" "${TEST_TIMEOUT:=600}" "${HIMC_BUILD:=build}"
+: "${JOBS:=$(nproc 2>/dev/null || echo 1)}" "${TEST_TIMEOUT:=900}" "${HIMC_BUILD:=build}"
 export HIMC_BUILD TEST_TIMEOUT
 logs=$HIMC_BUILD/tests/logs
 

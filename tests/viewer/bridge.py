@@ -23,7 +23,7 @@ import report
 
 BUILD = os.environ["HIMC_BUILD"]
 VIEWER = os.path.join(BUILD, "bin/himc-viewer")
-WAIT = 100  # longest wait for an event (s): only a test that fails waits so long
+WAIT = 300  # longest wait for an event (s): only a test that fails waits so long
 
 
 class Viewer:

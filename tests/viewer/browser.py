@@ -47,7 +47,7 @@ class Browser:
             },
         )
         self.session = "/session/" + answer["sessionId"]
-        self.call("POST", self.session + "/timeouts", {"script": 120000})
+        self.call("POST", self.session + "/timeouts", {"script": 300000})
 
     def call(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
@@ -55,7 +55,7 @@ class Browser:
             self.url + path, data, {"Content-Type": "application/json"}, method=method
         )
         try:
-            with urllib.request.urlopen(request, timeout=180) as answer:
+            with urllib.request.urlopen(request, timeout=300) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
@@ -68,7 +68,7 @@ class Browser:
             "POST", self.session + "/execute/sync", {"script": script, "args": list(args)}
         )
 
-    def wait(self, script, seconds=100):
+    def wait(self, script, seconds=300):
         """The first true answer of `script`; the last answer if none is true within `seconds`."""
         end = time.time() + seconds
         while True:
@@ -104,5 +104,5 @@ class Browser:
         except (OSError, RuntimeError):
             pass
         self.driver.terminate()
-        self.driver.wait(100)
+        self.driver.wait(300)
         shutil.rmtree(self.home, ignore_errors=True)
