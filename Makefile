@@ -105,12 +105,15 @@ view: deps ## build the viewer and show the improvisation in the browser
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
 	$(VIEWER) --play $(BUILD)/demo/view.csv
 
-still: deps ## a picture of it, by a browser without a window, in build/demo/still.png
+# the picture of `make still`: the camera (stage front side top eye) and the time (s)
+CAMERA ?= stage
+AT     ?= 20.2
+still: deps ## a picture of it, by a browser without a window, in build/demo/still.png; CAMERA=eye AT=20.2
 	@tools/deps.sh tools/deps-viewer.txt tools/deps-browser.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
-	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png 20.2
+	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png $(AT) $(CAMERA)
 
 viewer: ## the viewer alone, build/bin/himc-viewer
 	@tools/deps.sh tools/deps-viewer.txt
@@ -151,9 +154,12 @@ check-bench: all $(BENCH)
 	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
 ##@ Documentation
-figures: deps ## the pictures and sounds in docs, as far as they are out of date
+figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
 	@tools/deps.sh tools/deps-figures.txt
 	@$(MAKE) check-figures
+
+trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
+	@$(MAKE) check-trials
 
 air-table: ## lib/src/drum/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
@@ -227,9 +233,26 @@ $(CLIPS): $(BUILD)/tools/clips/clips
 
 $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
-	$(Q)$(COMPILE) -c $< -o $@
+	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-$(BUILD)/viewer/pages.o: $(wildcard viewer/page/*)
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs two
+# files of the library and no other package, so that `make viewer` needs none either
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o
+$(BUILD)/tools/skeleton/table: $(SKELETON_O)
+	$(call say,link)
+	$(Q)$(LINK) $^ -lm -o $@
+
+$(BUILD)/viewer/skeleton.h: $(BUILD)/tools/skeleton/table
+	$(call say,make)
+	$(Q)$< c >$@
+
+$(BUILD)/viewer/skeleton.js: $(BUILD)/tools/skeleton/table
+	$(call say,make)
+	$(Q)$< js >$@
+
+$(VIEWER_O): $(BUILD)/viewer/skeleton.h
+$(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
+-include $(VIEWER_O:.o=.d)
 
 $(VIEWER): $(VIEWER_O)
 	$(call say,link)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The viewer's bridge: what it lets out, whom it lets in, what OSC does to it.
-# tests/viewer/bridge.py does the work.
+# The viewer without a browser: what it serves, which clients it refuses, how it treats OSC.
+# tests/viewer/bridge.py has the tests.
 : "${HIMC_BUILD:=build}"
 export HIMC_BUILD
 if [ ! -x "$HIMC_BUILD/bin/himc-viewer" ] || ! command -v python3 >/dev/null; then

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Plays patches/01-improvisation.pd headless in Pure Data, the same score by himc render, and draws
-# what happened.
+# Plays patches/01-improvisation.pd in Pure Data without its window and the same score by himc render,
+# and draws the performance.
 #   tools/demo.sh
 # Run from the repository's root after make (make demo does both). Leaves improvisation.wav (Pd's
 # sound), strokes.csv, motion.csv and improvisation.png in build/demo. Fails if Pd and himc render
@@ -22,7 +22,7 @@ fail() {
     exit 1
 }
 
-# where the samples of a WAV file begin (bytes)
+# offset of the samples in a WAV file (bytes)
 samples_at() {
     head -c 4096 "$1" | LC_ALL=C grep -abo data | head -n 1 | awk -F: '{print $1 + 8}'
 }
@@ -56,7 +56,7 @@ play_in_pd() {
     mv "$work/pd.wav" "$out/improvisation.wav"
 }
 
-# Pd stops recording when the performer is at rest, himc render when the drum is; what both have
+# Pd stops recording when the performer is at rest, himc render when the drum is; the common part
 # must be equal
 compare() {
     tail -c "+$(($(samples_at "$1") + 1))" "$1" >"$work/a"
@@ -76,9 +76,9 @@ envelope() {
         }'
 }
 
-# the five strokes of figure 8: three of rising force, then two that are most alike, the second
-# after a rest; where a piece has none, those around the loudest. Prints from, to (s) and what they
-# are.
+# five strokes as in figure 8: three of rising force, then two of nearly equal force, the second
+# after a rest; in a piece without such strokes, those around the loudest. Prints from, to (s) and
+# the caption.
 find_excerpt() {
     awk -F, '
         NR > 1 { t[++n] = $1; f[n] = $8 }
@@ -95,10 +95,10 @@ find_excerpt() {
                     at = i
                 }
             }
-            what = "excerpt: three blows of rising force, then two equal ones"
+            what = "excerpt: three strokes of rising force, then two equal ones"
             if (!at) {
                 at = top > 2 ? top - 2 : 1
-                what = "excerpt: the loudest blow and those around it"
+                what = "excerpt: the loudest stroke and those around it"
             }
             last = at + 4 > n ? n : at + 4
             margin = 0.1 * (t[last] - t[at])
@@ -142,7 +142,7 @@ fi
 length=$(length_of "$out/improvisation.wav")
 echo
 echo "in $out: improvisation.wav ($length s, from Pd), improvisation.png, strokes.csv, motion.csv"
-echo "strokes   $landed landed within 5 ms and 2 cm of where the score wants them," \
+echo "strokes   $landed landed within 5 ms and 2 cm of their place in the score," \
     "at up to $(number peak_force_n) N"
 echo "sticks    $apart mm (RMS) off their targets," \
     "$(number tip_rms_percent | awk '{printf "%.2g", $1}') % of the height of a stroke"

@@ -1,6 +1,6 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
-#include "ear.h"
+#include "receive.h"
 #include "web.h"
 
 #include <signal.h>
@@ -12,12 +12,12 @@
 
 #define OSC_PORT 9001
 #define HTTP_PORT 8080
-#define PLAY_MAX (512L << 20) // (bytes)
+#define PLAY_MAX (512L << 20) // largest motion (bytes); chosen: half an hour
 
 static const char help[] =
     "usage: himc-viewer [OPTION...]\n\n"
-    "shows the performer in the browser: hears OSC, serves one page and streams to it\n\n"
-    "  --osc PORT       hear OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
+    "shows the performer in the browser: receives OSC, serves one page and streams to it\n\n"
+    "  --osc PORT       receive OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
     "  --http PORT      serve the page on this port (8080)\n"
     "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in\n"
     "  --play FILE.csv  play a motion that himc render --motion wrote, without OSC\n"
@@ -38,7 +38,7 @@ static void on_signal(int number)
     stop = 1;
 }
 
-static int complain(const char *text)
+static int fail(const char *text)
 {
     fprintf(stderr, "himc-viewer: %s\n", text);
     return 1;
@@ -56,7 +56,7 @@ static bool parse_port(const char *name, const char *text, int *port, char error
     return true;
 }
 
-// an option that takes a value; false if it is none
+// an option with a value; false with a line in `error` if it is not one
 static bool parse_option(options *o, const char *name, const char *value, char error[256])
 {
     bool known = !strcmp(name, "--osc") || !strcmp(name, "--http") || !strcmp(name, "--bind") ||
@@ -89,7 +89,7 @@ static bool parse(options *o, char **argv, char error[256])
     return true;
 }
 
-// the motion's text; NULL with a line in `error`
+// the text of a motion; NULL with a line in `error`
 static char *read_motion(const char *path, size_t *size, char error[256])
 {
     static const char first[] = "time_s,";
@@ -118,11 +118,11 @@ static char *read_motion(const char *path, size_t *size, char error[256])
     return text;
 }
 
-// for the browser, which cannot go to 0.0.0.0
+// a browser cannot open 0.0.0.0
 static void print_url(char url[128], const char *address, int port)
 {
-    bool any = !strcmp(address, "0.0.0.0") || !strcmp(address, "::");
-    const char *host = any ? "127.0.0.1" : address;
+    bool all = !strcmp(address, "0.0.0.0") || !strcmp(address, "::");
+    const char *host = all ? "127.0.0.1" : address;
     snprintf(url, 128, strchr(host, ':') ? "http://[%s]:%d/" : "http://%s:%d/", host, port);
 }
 
@@ -151,19 +151,19 @@ static int serve(const options *o, char error[256])
     web_config config = {.address = o->address, .port = o->http};
     char *motion = o->play ? read_motion(o->play, &config.play_size, error) : NULL, url[128];
     if (o->play && !motion)
-        return complain(error);
+        return fail(error);
     config.play = motion;
-    config.ear = ear_open(o->address, o->osc, error);
-    web *w = config.ear < 0 ? NULL : web_new(&config, &s, error);
+    config.osc = receive_open(o->address, o->osc, error);
+    web *w = config.osc < 0 ? NULL : web_new(&config, &s, error);
     if (!w) {
         free(motion);
-        return complain(error);
+        return fail(error);
     }
-    // before anybody knows that we are there
+    // before the address is printed, so that a signal sent after it ends the program cleanly
     handle_signals();
     print_url(url, o->address, web_port(w));
     printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address,
-           ear_port(config.ear));
+           receive_port(config.osc));
     fflush(stdout);
     if (o->browser)
         open_browser(url);
@@ -182,6 +182,6 @@ int main(int argc, char **argv)
         return 0;
     }
     if (!parse(&o, argv, error))
-        return complain(error);
+        return fail(error);
     return serve(&o, error);
 }

@@ -1,5 +1,4 @@
-/// pages.h: the files the viewer serves, all of them, linked into the program: nothing else can be
-/// asked for.
+/// pages.h: all files that the viewer serves, linked into the program.
 #ifndef VIEWER_PAGES_H
 #define VIEWER_PAGES_H
 

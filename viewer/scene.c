@@ -1,27 +1,28 @@
 /// scene.c: tables of performers and drums by sender, and the ring of events.
 ///
-/// A sender is an address and port (and a name, if its messages carry one), so that two performers
-/// never mix and one that comes back from the same port is the same. A full table gives the place
-/// of one that fell silent to a newcomer; as long as all speak, newcomers are refused and counted:
-/// a storm from random ports changes nothing.
+/// A sender is an address and port (and a name, if the messages have one), so two performers never
+/// mix, and a performer that returns from the same port is the same. In a full table a new sender
+/// gets the place of a silent one; while all send, new senders are refused and counted, so a flood
+/// from random ports changes nothing.
 #include "scene.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#define SPLIT 0.005 // pieces of a pose come within this (s)
+#define POSE_TIMEOUT \
+    0.005 // (s); chosen: above the delay between two packets, below the 30 ms between poses
 
-static bool left(double heard, double now)
+static bool absent(double received, double now)
 {
-    return now - heard > SCENE_SILENCE;
+    return now - received > SCENE_SILENCE;
 }
 
-// versions go on growing when a place changes hands, so that readers notice
-static scene_performer *seat_performer(scene_performer *p, const char *key, double now)
+// the version grows on when a place gets a new owner, so that readers notice it
+static scene_performer *place_performer(scene_performer *p, const char *key, double now)
 {
     uint64_t version = p->version;
-    *p = (scene_performer){.version = version, .heard = now};
+    *p = (scene_performer){.version = version, .received = now};
     snprintf(p->key, sizeof p->key, "%s", key);
     return p;
 }
@@ -32,22 +33,22 @@ scene_performer *scene_find_performer(scene *s, const char *key, double now)
     for (int i = 0; i < SCENE_PERFORMERS; i++) {
         scene_performer *p = &s->performer[i];
         if (strcmp(p->key, key) == 0) {
-            p->heard = now;
+            p->received = now;
             return p;
         }
-        if ((!p->key[0] || left(p->heard, now)) && (!vacant || p->heard < vacant->heard))
+        if ((!p->key[0] || absent(p->received, now)) && (!vacant || p->received < vacant->received))
             vacant = p;
     }
     if (vacant)
-        return seat_performer(vacant, key, now);
+        return place_performer(vacant, key, now);
     s->count.refused++;
     return NULL;
 }
 
-static scene_drum *seat_drum(scene_drum *d, const char *key, const char *name, double now)
+static scene_drum *place_drum(scene_drum *d, const char *key, const char *name, double now)
 {
     uint64_t version = d->version;
-    *d = (scene_drum){.version = version, .heard = now};
+    *d = (scene_drum){.version = version, .received = now};
     snprintf(d->key, sizeof d->key, "%s", key);
     snprintf(d->name, sizeof d->name, "%s", name);
     return d;
@@ -59,14 +60,14 @@ scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double 
     for (int i = 0; i < SCENE_DRUMS; i++) {
         scene_drum *d = &s->drum[i];
         if (strcmp(d->key, key) == 0 && strcmp(d->name, name) == 0) {
-            d->heard = now;
+            d->received = now;
             return d;
         }
-        if ((!d->key[0] || left(d->heard, now)) && (!vacant || d->heard < vacant->heard))
+        if ((!d->key[0] || absent(d->received, now)) && (!vacant || d->received < vacant->received))
             vacant = d;
     }
     if (vacant)
-        return seat_drum(vacant, key, name, now);
+        return place_drum(vacant, key, name, now);
     s->count.refused++;
     return NULL;
 }
@@ -74,7 +75,7 @@ scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double 
 void scene_set_body(scene_performer *p, int segment, const float body[7], double now)
 {
     uint32_t bit = UINT32_C(1) << segment;
-    // a segment heard twice begins the next pose: the last one is as whole as it will get
+    // a segment received twice begins the next pose: the last one will get no more parts
     if (p->pending & bit) {
         p->version++;
         p->pending = 0;
@@ -86,13 +87,13 @@ void scene_set_body(scene_performer *p, int segment, const float body[7], double
     p->pending |= bit;
 }
 
-bool scene_settle(scene *s, double now)
+bool scene_complete_poses(scene *s, double now)
 {
     bool any = false;
     for (int i = 0; i < SCENE_PERFORMERS; i++) {
         scene_performer *p = &s->performer[i];
         if (!p->pending ||
-            (p->pending != (UINT32_C(1) << SCENE_SEGMENTS) - 1 && now - p->begun < SPLIT))
+            (p->pending != (UINT32_C(1) << SCENE_SEGMENTS) - 1 && now - p->begun < POSE_TIMEOUT))
             continue;
         p->pending = 0;
         p->version++;
@@ -101,7 +102,7 @@ bool scene_settle(scene *s, double now)
     return any;
 }
 
-bool scene_unsettled(const scene *s)
+bool scene_pose_pending(const scene *s)
 {
     for (int i = 0; i < SCENE_PERFORMERS; i++)
         if (s->performer[i].pending)
@@ -109,7 +110,7 @@ bool scene_unsettled(const scene *s)
     return false;
 }
 
-void scene_say(scene *s, double now, const char *format, ...)
+void scene_add_event(scene *s, double now, const char *format, ...)
 {
     scene_event *e = &s->event[s->events % SCENE_EVENTS];
     va_list args;
@@ -117,7 +118,7 @@ void scene_say(scene *s, double now, const char *format, ...)
     int length = vsnprintf(e->text, sizeof e->text, format, args);
     va_end(args);
     if (length < 0 || (size_t)length >= sizeof e->text)
-        return; // half an object is none
+        return; // a truncated object is useless
     e->time = now;
     s->events++;
 }

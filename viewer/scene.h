@@ -1,22 +1,24 @@
-/// scene.h: what the viewer has heard: performers, drums, and events that happened.
+/// scene.h: everything the viewer has received: performers, drums and events.
 ///
-/// Performers and drums are latest values: who reads slowly sees the newest pose, never a backlog.
-/// Events (strikes, beats, counters) are a ring in which each reader has its own place. All of it
-/// is of fixed size, in one thread.
+/// Of performers and drums only the latest values are kept: a slow reader gets the newest pose and
+/// no backlog. Events (strikes, beats, counters) are a ring, and each reader has its own position
+/// in it. All of it has a fixed size and is used by one thread.
 #ifndef VIEWER_SCENE_H
 #define VIEWER_SCENE_H
+
+#include "skeleton.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 enum {
-    SCENE_SEGMENTS = 20,
+    SCENE_SEGMENTS = SKELETON_SEGMENTS,
     SCENE_HANDS = 2,
     SCENE_PERFORMERS = 16,
     SCENE_DRUMS = 32,
-    SCENE_MODES = 64,   ///< modal amplitudes kept of a drum
-    SCENE_EVENTS = 256, ///< kept for readers that lag
+    SCENE_MODES = 64,   ///< modal amplitudes kept of a drum; chosen: as many as the page draws
+    SCENE_EVENTS = 256, ///< kept for slow readers; chosen: 2 s of eight rolls
     SCENE_TEXT = 1400,  ///< longest event (bytes)
     SCENE_KEY = 80,     ///< longest sender with its zero: "ADDRESS:PORT" or "ADDRESS:PORT/NAME"
     SCENE_NAME = 32     ///< longest drum's name with its zero
@@ -24,12 +26,12 @@ enum {
 
 /// A body in the world.
 typedef struct scene_performer {
-    char key[SCENE_KEY];           ///< who sends it; empty if the place is free
-    uint64_t version;              ///< grows when a whole pose is there
-    double heard;                  ///< when last (s, wall clock)
-    double begun;                  ///< when the first piece of the pending pose came (s)
-    uint32_t known, pending;       ///< segments ever heard; heard since the last whole pose
-    uint32_t targets;              ///< hands whose target is known
+    char key[SCENE_KEY];           ///< the sender; empty if the place is free
+    uint64_t version;              ///< grows with each complete pose
+    double received;               ///< time of the last message (s, wall clock)
+    double begun;                  ///< time of the first part of the pending pose (s)
+    uint32_t known, pending;       ///< segments received ever; since the last complete pose (bits)
+    uint32_t targets;              ///< hands with a known target (bits)
     float body[SCENE_SEGMENTS][7]; ///< x y z (m) qw qx qy qz
     float target[SCENE_HANDS][3];  ///< (m)
 } scene_performer;
@@ -37,10 +39,10 @@ typedef struct scene_performer {
 typedef struct scene_drum {
     char key[SCENE_KEY], name[SCENE_NAME];
     uint64_t version;
-    double heard;                 ///< (s, wall clock)
-    bool placed;                  ///< whether `place` was heard
+    double received;              ///< time of the last message (s, wall clock)
+    bool placed;                  ///< `place` has been received
     float place[5];               ///< centre x y z (m), tilt (rad), radius (m)
-    uint32_t modes;               ///< how many amplitudes
+    uint32_t modes;               ///< number of amplitudes
     float amplitude[SCENE_MODES]; ///< (m)
 } scene_drum;
 
@@ -49,12 +51,12 @@ typedef struct scene_event {
     char text[SCENE_TEXT];
 } scene_event;
 
-/// What came in, since the start.
+/// Counters since the start.
 typedef struct scene_counts {
     uint64_t packets, messages, bytes;
-    uint64_t malformed; ///< not OSC, or an atom of the wrong kind, not finite, out of range
-    uint64_t unknown;   ///< an address that the viewer does not know
-    uint64_t refused;   ///< a performer or drum too many
+    uint64_t malformed; ///< not OSC, or an atom of the wrong type, not finite or out of range
+    uint64_t unknown;   ///< address not in the table
+    uint64_t refused;   ///< messages of a performer or drum for which there is no place
 } scene_counts;
 
 typedef struct scene {
@@ -65,38 +67,39 @@ typedef struct scene {
     scene_counts count;
 } scene;
 
-/// Seconds of silence after which a performer or drum has left, and its place may be given to
-/// another.
+/// A performer or drum that is silent for so long may lose its place (s). Chosen: longer than the
+/// page shows a silent one.
 #define SCENE_SILENCE 3.0
 
-/// The performer of that sender, new if need be; NULL if all places are taken (counted).
+/// The performer of that sender, created if there is none; NULL if all places are taken (counted).
 scene_performer *scene_find_performer(scene *s, const char *key, double now);
 /// The drum of that name and sender, the same way.
 scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double now);
 
-/// Takes in one segment of a pose.
+/// Stores one segment of a pose.
 void scene_set_body(scene_performer *p, int segment, const float body[7], double now);
-/// Declares poses whole: those with all segments, and those whose first piece is older than 5 ms (a
-/// bundle may be split, and a packet lost). True if one is.
-bool scene_settle(scene *s, double now);
-/// True while a pose is in pieces.
-bool scene_unsettled(const scene *s);
+/// Marks poses as complete: those with all segments, and those begun more than 5 ms ago (a bundle
+/// may be split, and a packet lost). True if there is one.
+bool scene_complete_poses(scene *s, double now);
+/// True while a pose is incomplete.
+bool scene_pose_pending(const scene *s);
 
 /// Adds an event, a JSON object (printf format).
-void scene_say(scene *s, double now, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void scene_add_event(scene *s, double now, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-/// What one reader has seen already.
+/// Everything one reader has seen: versions of performers and drums, number of events.
 typedef struct scene_reader {
     uint64_t performer[SCENE_PERFORMERS], drum[SCENE_DRUMS], events;
 } scene_reader;
 
-/// A reader that has seen no event but those to come.
+/// A reader that gets only the events from now on.
 scene_reader scene_reader_new(const scene *s);
 /// Largest result of scene_encode (bytes).
 #define SCENE_FRAME_MAX 65536
-/// Writes what the reader has not seen into `frame` (SCENE_FRAME_MAX) and returns its bytes, 0 if
-/// nothing is new. What does not fit comes with the next call. The layout is in scene_encode.c; the
-/// page reads it in stream.js.
+/// Writes the news for the reader into `frame` (SCENE_FRAME_MAX bytes) and returns its length, 0 if
+/// there is none. Events that do not fit are left for the next call. The layout is in
+/// scene_encode.c; the page reads it in stream.js.
 size_t scene_encode(const scene *s, scene_reader *reader, double now, uint8_t *frame);
 
 #endif

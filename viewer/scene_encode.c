@@ -1,6 +1,6 @@
 /// scene_encode.c: the news for one reader as one binary frame.
 ///
-/// A frame is a row of blocks, each a multiple of 8 bytes, in the byte order of the machine
+/// A frame is a sequence of blocks, each a multiple of 8 bytes, in the byte order of the machine
 /// (little-endian everywhere this runs; the page reads so):
 ///
 ///     u32 kind, u32 bytes that follow the head, f64 wall clock (ms), then
@@ -17,6 +17,7 @@ enum {
     DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES)
 };
 
+_Static_assert(SCENE_SEGMENTS <= 32, "a bit for each segment");
 _Static_assert(POSE % 8 == 0 && DRUM % 8 == 0, "blocks keep the alignment of doubles");
 // all events may be left for the next frame, all poses and drums must fit into one
 _Static_assert(SCENE_PERFORMERS *(HEAD + POSE) + SCENE_DRUMS * (HEAD + DRUM) + HEAD + SCENE_TEXT +
@@ -24,22 +25,22 @@ _Static_assert(SCENE_PERFORMERS *(HEAD + POSE) + SCENE_DRUMS * (HEAD + DRUM) + H
                    SCENE_FRAME_MAX,
                "one frame holds the scene");
 
-typedef struct pen {
+typedef struct writer {
     uint8_t *at;
-} pen;
+} writer;
 
-static void put(pen *p, const void *bytes, size_t size)
+static void put(writer *p, const void *bytes, size_t size)
 {
     memcpy(p->at, bytes, size);
     p->at += size;
 }
 
-static void put_u32(pen *p, uint32_t value)
+static void put_u32(writer *p, uint32_t value)
 {
     put(p, &value, sizeof value);
 }
 
-static void put_head(pen *p, uint32_t kind, size_t bytes, double time)
+static void put_head(writer *p, uint32_t kind, size_t bytes, double time)
 {
     double milliseconds = 1e3 * time;
     put_u32(p, kind);
@@ -47,19 +48,19 @@ static void put_head(pen *p, uint32_t kind, size_t bytes, double time)
     put(p, &milliseconds, sizeof milliseconds);
 }
 
-static void put_pose(pen *p, const scene_performer *who)
+static void put_pose(writer *p, const scene_performer *from)
 {
-    put_head(p, 1, POSE, who->heard);
-    put(p, who->key, sizeof who->key);
-    put_u32(p, who->known);
-    put_u32(p, who->targets);
-    put(p, who->body, sizeof who->body);
-    put(p, who->target, sizeof who->target);
+    put_head(p, 1, POSE, from->received);
+    put(p, from->key, sizeof from->key);
+    put_u32(p, from->known);
+    put_u32(p, from->targets);
+    put(p, from->body, sizeof from->body);
+    put(p, from->target, sizeof from->target);
 }
 
-static void put_drum(pen *p, const scene_drum *drum)
+static void put_drum(writer *p, const scene_drum *drum)
 {
-    put_head(p, 2, DRUM, drum->heard);
+    put_head(p, 2, DRUM, drum->received);
     put(p, drum->key, sizeof drum->key);
     put(p, drum->name, sizeof drum->name);
     put_u32(p, drum->placed);
@@ -69,7 +70,7 @@ static void put_drum(pen *p, const scene_drum *drum)
     put(p, drum->amplitude, sizeof drum->amplitude);
 }
 
-static void put_event(pen *p, const scene_event *e)
+static void put_event(writer *p, const scene_event *e)
 {
     static const char spaces[8] = "        ";
     size_t length = strlen(e->text), padding = (8 - length % 8) % 8;
@@ -85,20 +86,20 @@ scene_reader scene_reader_new(const scene *s)
 
 size_t scene_encode(const scene *s, scene_reader *reader, double now, uint8_t *frame)
 {
-    pen p = {frame};
+    writer p = {frame};
     for (int i = 0; i < SCENE_PERFORMERS; i++) {
-        const scene_performer *who = &s->performer[i];
-        if (reader->performer[i] != who->version && now - who->heard < SCENE_SILENCE)
-            put_pose(&p, who);
-        reader->performer[i] = who->version;
+        const scene_performer *performer = &s->performer[i];
+        if (reader->performer[i] != performer->version && now - performer->received < SCENE_SILENCE)
+            put_pose(&p, performer);
+        reader->performer[i] = performer->version;
     }
     for (int i = 0; i < SCENE_DRUMS; i++) {
         const scene_drum *drum = &s->drum[i];
-        if (reader->drum[i] != drum->version && now - drum->heard < SCENE_SILENCE)
+        if (reader->drum[i] != drum->version && now - drum->received < SCENE_SILENCE)
             put_drum(&p, drum);
         reader->drum[i] = drum->version;
     }
-    // a reader that the ring has overtaken goes on with the oldest there is
+    // a reader that the ring has overtaken continues with the oldest event
     if (s->events - reader->events > SCENE_EVENTS)
         reader->events = s->events - SCENE_EVENTS;
     while (reader->events < s->events && p.at + HEAD + SCENE_TEXT + 8 <= frame + SCENE_FRAME_MAX)

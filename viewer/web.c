@@ -1,13 +1,12 @@
 /// web.c: one thread, one loop: OSC comes in through an adopted descriptor, pages and news go out.
 ///
-/// A browser that wants the stream must come from the page itself: its Origin must be the Host it
-/// asks, and the Host an address or this machine's name, so that neither a foreign page nor a
-/// rebound DNS name reaches it. The page never speaks: whoever sends anything but control frames is
-/// shown out. A slow browser is sent the newest pose when it is ready for it, so nothing piles up
-/// here.
+/// The stream is for the page alone: the Origin of a request must equal its Host, and the Host must
+/// be an address or this machine's name, so that neither a foreign page nor a rebound DNS name gets
+/// it. The page never sends data; clients that send anything but control frames are disconnected. A
+/// slow browser gets the newest pose when it is ready for it, so no queue grows here.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
-#include "ear.h"
+#include "receive.h"
 #include "pages.h"
 
 #include <arpa/inet.h>
@@ -21,11 +20,18 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { CLIENTS = 32, CHUNK = 32768, BATCH = 512, REST = 3 /* (ms) */, NAME_MAX_LENGTH = 256 };
+// all chosen
+enum {
+    CLIENTS = 32,         // more than one room has screens
+    CHUNK = 32768,        // of a page in one write (bytes)
+    BATCH = 512,          // packets received at once, so that a flood leaves time for the pages
+    PAUSE = 3,            // (ms), a tenth of the time between poses: waking up costs most
+    NAME_MAX_LENGTH = 256 // of a host with its zero; longer ones are refused
+};
 
-/// A connection's own.
+/// State of one connection.
 typedef struct session {
-    const char *at, *end; // what is left of the page being sent
+    const char *at, *end; // rest of the page being sent
     scene_reader reader;
 } session;
 
@@ -35,14 +41,14 @@ struct web {
     scene *s;
     web_config config;
     int clients;
-    struct lws *ear;
-    uint64_t turned_away;
-    lws_sorted_usec_list_t rest, second;
+    struct lws *osc; // the OSC socket in the loop
+    uint64_t rejected;
+    lws_sorted_usec_list_t pause, second;
     double cpu, clock; // at the last report (s)
     unsigned char out[LWS_PRE + SCENE_FRAME_MAX];
 };
 
-static const char headers[] =
+static const char security_policy[] =
     "default-src 'none'; script-src 'self'; style-src 'self'; "
     "img-src 'self' blob: data:; media-src blob:; "
     "connect-src 'self' ws:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -62,7 +68,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
 
 static int refuse(struct lws *wsi, unsigned status)
 {
-    web_of(wsi)->turned_away++;
+    web_of(wsi)->rejected++;
     lws_return_http_status(wsi, status, NULL);
     return -1;
 }
@@ -75,8 +81,8 @@ static void host_name(const char *host, char name[NAME_MAX_LENGTH])
     snprintf(name, NAME_MAX_LENGTH, "%.*s", (int)length, from);
 }
 
-// a Host that only this machine's own addresses and names can have
-static bool host_is_ours(const char *host)
+// true for a numeric address, localhost and this machine's name
+static bool host_is_local(const char *host)
 {
     char name[NAME_MAX_LENGTH], own[NAME_MAX_LENGTH] = "";
     unsigned char address[16];
@@ -97,13 +103,13 @@ static bool header(struct lws *wsi, enum lws_token_indexes token, char out[NAME_
 static bool from_our_page(struct lws *wsi)
 {
     char host[NAME_MAX_LENGTH], origin[NAME_MAX_LENGTH];
-    return header(wsi, WSI_TOKEN_HOST, host) && host_is_ours(host) &&
+    return header(wsi, WSI_TOKEN_HOST, host) && host_is_local(host) &&
            header(wsi, WSI_TOKEN_ORIGIN, origin) && strncmp(origin, "http://", 7) == 0 &&
            strcmp(origin + 7, host) == 0;
 }
 
-// the body of that path; false if there is none
-static bool look_up(const web *w, const char *path, session *own, const char **type)
+// the file of that path; false if there is none
+static bool find_file(const web *w, const char *path, session *own, const char **type)
 {
     const page *found = pages_find(path);
     if (found) {
@@ -125,15 +131,15 @@ static int begin_page(struct lws *wsi, session *own, const char *path)
                                           *end = buffer + sizeof buffer;
     char host[NAME_MAX_LENGTH];
     const char *type;
-    if (!header(wsi, WSI_TOKEN_HOST, host) || !host_is_ours(host))
+    if (!header(wsi, WSI_TOKEN_HOST, host) || !host_is_local(host))
         return refuse(wsi, HTTP_STATUS_FORBIDDEN);
     if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0)
         return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED);
-    if (!look_up(web_of(wsi), path, own, &type))
+    if (!find_file(web_of(wsi), path, own, &type))
         return refuse(wsi, HTTP_STATUS_NOT_FOUND);
     if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, (lws_filepos_t)(own->end - own->at),
                                     &p, end) ||
-        !add_header(wsi, "content-security-policy:", headers, &p, end) ||
+        !add_header(wsi, "content-security-policy:", security_policy, &p, end) ||
         !add_header(wsi, "x-content-type-options:", "nosniff", &p, end) ||
         !add_header(wsi, "referrer-policy:", "no-referrer", &p, end) ||
         !add_header(wsi, "cross-origin-resource-policy:", "same-origin", &p, end) ||
@@ -161,7 +167,7 @@ static int send_chunk(struct lws *wsi, session *own)
 static int send_news(struct lws *wsi, session *own)
 {
     web *w = web_of(wsi);
-    size_t size = scene_encode(w->s, &own->reader, ear_clock(), w->out + LWS_PRE);
+    size_t size = scene_encode(w->s, &own->reader, wall_clock(), w->out + LWS_PRE);
     if (size && lws_write(wsi, w->out + LWS_PRE, size, LWS_WRITE_BINARY) < 0)
         return -1;
     if (own->reader.events != w->s->events)
@@ -171,38 +177,37 @@ static int send_news(struct lws *wsi, session *own)
 
 static const struct lws_protocols protocols[3];
 
-static void wake(web *w)
+static void request_writes(web *w)
 {
     lws_callback_on_writable_all_protocol(w->context, &protocols[1]);
 }
 
-// hears what waits; whoever listens is woken for whole poses and events
-static void hear(web *w)
+// receives the waiting packets; clients get complete poses and events
+static void receive(web *w)
 {
-    if (ear_listen(w->config.ear, w->s, BATCH))
-        wake(w);
+    if (receive_waiting(w->config.osc, w->s, BATCH))
+        request_writes(w);
 }
 
-// the rest is over: what came meanwhile is heard together, and poses in pieces are waited for no
-// longer than they may be
-static void on_rest_over(lws_sorted_usec_list_t *list)
+// the packets of the pause are received together; while a pose is incomplete the pauses go on, so
+// that it is sent when it is complete or its time is over
+static void on_pause_over(lws_sorted_usec_list_t *list)
 {
-    web *w = lws_container_of(list, web, rest);
-    hear(w);
-    if (scene_unsettled(w->s))
-        lws_sul_schedule(w->context, 0, list, on_rest_over, REST * LWS_US_PER_MS);
+    web *w = lws_container_of(list, web, pause);
+    receive(w);
+    if (scene_pose_pending(w->s))
+        lws_sul_schedule(w->context, 0, list, on_pause_over, PAUSE * LWS_US_PER_MS);
     else
-        lws_rx_flow_control(w->ear, 1);
+        lws_rx_flow_control(w->osc, 1);
 }
 
-// a packet after silence is heard at once; then the socket rests a little, for most of the cost is
-// in waking up
+// a packet after silence is received at once; then the socket pauses, because waking up costs most
 static void on_packet(web *w, struct lws *wsi)
 {
-    w->ear = wsi;
-    hear(w);
+    w->osc = wsi;
+    receive(w);
     lws_rx_flow_control(wsi, 0);
-    lws_sul_schedule(w->context, 0, &w->rest, on_rest_over, REST * LWS_US_PER_MS);
+    lws_sul_schedule(w->context, 0, &w->pause, on_pause_over, PAUSE * LWS_US_PER_MS);
 }
 
 static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
@@ -234,7 +239,7 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
         return lws_callback_on_writable(wsi) < 0;
     case LWS_CALLBACK_SERVER_WRITEABLE: return send_news(wsi, own);
     case LWS_CALLBACK_RECEIVE:
-        w->turned_away++;
+        w->rejected++;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, NULL, 0);
         return -1;
     case LWS_CALLBACK_CLOSED: w->clients--; return 0;
@@ -266,22 +271,22 @@ static void on_second(lws_sorted_usec_list_t *list)
 {
     web *w = lws_container_of(list, web, second);
     const scene_counts *c = &w->s->count;
-    double now = ear_clock(), cpu = cpu_seconds();
-    scene_say(w->s, now,
-              "{\"event\":\"bridge\",\"packets\":%llu,\"messages\":%llu,"
-              "\"malformed\":%llu,\"unknown\":%llu,"
-              "\"refused\":%llu,\"turned_away\":%llu,\"clients\":%d,\"load\":%.4f}",
-              (unsigned long long)c->packets, (unsigned long long)c->messages,
-              (unsigned long long)c->malformed, (unsigned long long)c->unknown,
-              (unsigned long long)c->refused, (unsigned long long)w->turned_away, w->clients,
-              now > w->clock ? (cpu - w->cpu) / (now - w->clock) : 0);
+    double now = wall_clock(), cpu = cpu_seconds();
+    scene_add_event(w->s, now,
+                    "{\"event\":\"bridge\",\"packets\":%llu,\"messages\":%llu,"
+                    "\"malformed\":%llu,\"unknown\":%llu,"
+                    "\"refused\":%llu,\"rejected\":%llu,\"clients\":%d,\"load\":%.4f}",
+                    (unsigned long long)c->packets, (unsigned long long)c->messages,
+                    (unsigned long long)c->malformed, (unsigned long long)c->unknown,
+                    (unsigned long long)c->refused, (unsigned long long)w->rejected, w->clients,
+                    now > w->clock ? (cpu - w->cpu) / (now - w->clock) : 0);
     w->cpu = cpu;
     w->clock = now;
-    wake(w);
+    request_writes(w);
     lws_sul_schedule(w->context, 0, list, on_second, LWS_US_PER_SEC);
 }
 
-// libwebsockets says only in its log why a port cannot be had, so it is tried first
+// libwebsockets gives the reason for a refused port only in its log, so the port is tried first
 static bool port_free(const web_config *c, char error[256])
 {
     char service[16];
@@ -320,10 +325,10 @@ static bool listen_to_all(web *w)
                                              .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS |
                                                         LWS_SERVER_OPTION_DISABLE_IPV6 *
                                                             !strchr(w->config.address, ':')};
-    lws_sock_file_fd_type ear = {.filefd = w->config.ear};
+    lws_sock_file_fd_type osc = {.filefd = w->config.osc};
     w->context = lws_create_context(&info);
     w->vhost = w->context ? lws_create_vhost(w->context, &info) : NULL;
-    return w->vhost && lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, ear,
+    return w->vhost && lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, osc,
                                                   protocols[0].name, NULL);
 }
 
@@ -344,7 +349,7 @@ web *web_new(const web_config *config, scene *s, char error[256])
         web_free(w);
         return NULL;
     }
-    w->clock = ear_clock();
+    w->clock = wall_clock();
     w->cpu = cpu_seconds();
     on_second(&w->second);
     return w;

@@ -5,16 +5,16 @@
 #include "scene.h"
 
 typedef struct web_config {
-    const char *address; ///< numeric, to listen on
-    int port;            ///< 0 takes a free one
-    int ear;             ///< the OSC socket, read whenever something waits
-    const char *play;    ///< a motion's text, served as /play.csv, or NULL
+    const char *address; ///< numeric
+    int port;            ///< 0 takes any free one
+    int osc;             ///< the OSC socket
+    const char *play;    ///< text of a motion, served as /play.csv, or NULL
     size_t play_size;    ///< (bytes)
 } web_config;
 
 typedef struct web web;
 
-/// Listens. NULL with a line in `error`. `s` is borrowed.
+/// Opens the port; NULL with a line in `error` on failure. `s` must live as long.
 web *web_new(const web_config *config, scene *s, char error[256]);
 int web_port(const web *w);
 /// Serves until `*stop` is set (by a signal).

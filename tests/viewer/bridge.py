@@ -1,10 +1,17 @@
-"""himc-viewer without a browser: sockets only."""
+"""himc-viewer without a browser: sockets only.
 
+No test depends on the speed of the machine: each waits for the event it needs. A mark is a message
+that comes back as an event of the stream; all that was sent before it has been heard by then.
+"""
+
+import contextlib
 import json
 import os
 import random
 import resource
+import re
 import shutil
+import signal
 import socket
 import struct
 import subprocess
@@ -14,7 +21,9 @@ import time
 
 import report
 
-VIEWER = os.path.join(os.environ["HIMC_BUILD"], "bin/himc-viewer")
+BUILD = os.environ["HIMC_BUILD"]
+VIEWER = os.path.join(BUILD, "bin/himc-viewer")
+WAIT = 300  # longest wait for an event (s): only a test that fails waits so long
 
 
 class Viewer:
@@ -31,20 +40,37 @@ class Viewer:
         self.osc = int(line.split()[-1])
         self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.udp.bind(("127.0.0.1", 0))
+        self.sent = self.marks = 0
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
         self.process.terminate()
-        self.code = self.process.wait(10)
+        self.code = self.process.wait(WAIT)
 
     def send(self, *packets):
         for packet in packets:
             self.udp.sendto(packet, ("127.0.0.1", self.osc))
+            self.sent += 1
+
+    def state(self):
+        with open(f"/proc/{self.process.pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()
+
+    @contextlib.contextmanager
+    def stopped(self):
+        """Packets sent meanwhile wait in the socket and are heard together."""
+        self.process.send_signal(signal.SIGSTOP)
+        while self.state()[0] != "T":
+            time.sleep(0.001)
+        try:
+            yield
+        finally:
+            self.process.send_signal(signal.SIGCONT)
 
     def cpu(self):
-        fields = open(f"/proc/{self.process.pid}/stat").read().rsplit(")", 1)[1].split()
+        fields = self.state()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def memory(self):
@@ -53,7 +79,7 @@ class Viewer:
         )
 
     def get(self, path, host=None, method="GET", extra=""):
-        with socket.create_connection(("127.0.0.1", self.http), 5) as s:
+        with socket.create_connection(("127.0.0.1", self.http), WAIT) as s:
             s.sendall(
                 f"{method} {path} HTTP/1.1\r\nHost: {host or f'127.0.0.1:{self.http}'}\r\n"
                 f"Connection: close\r\n{extra}\r\n".encode()
@@ -80,7 +106,7 @@ class Stream:
     """A web socket, as a page has it."""
 
     def __init__(self, viewer, origin="", host=None):
-        self.s = socket.create_connection(("127.0.0.1", viewer.http), 5)
+        self.s = socket.create_connection(("127.0.0.1", viewer.http), WAIT)
         host = host or f"127.0.0.1:{viewer.http}"
         origin = f"http://{host}" if origin == "" else origin
         line = f"Origin: {origin}\r\n" if origin else ""
@@ -102,47 +128,64 @@ class Stream:
         self.status = int(head.split()[1]) if head else 0
 
     def frame(self):
-        """(opcode, payload) of the next one; None if the other side is gone."""
+        """(opcode, payload) of the next one; None if the other side is gone. After a time-out
+        what has come of a frame is kept."""
 
-        def take(n):
+        def need(n):
             while len(self.rest) < n:
                 piece = self.s.recv(65536)
                 if not piece:
                     raise EOFError
                 self.rest += piece
-            out, self.rest = self.rest[:n], self.rest[n:]
-            return out
 
         try:
-            a, length = take(2)
-            if length == 126:
-                length = struct.unpack(">H", take(2))[0]
-            elif length == 127:
-                length = struct.unpack(">Q", take(8))[0]
-            return a & 15, take(length)
+            need(2)
+            opcode, length, at = self.rest[0] & 15, self.rest[1], 2
+            if length >= 126:
+                form, at = (">H", 4) if length == 126 else (">Q", 10)
+                need(at)
+                (length,) = struct.unpack(form, self.rest[2:at])
+            need(at + length)
         except (EOFError, ConnectionError):
             return None
+        payload, self.rest = self.rest[at : at + length], self.rest[at + length :]
+        return opcode, payload
 
     def blocks(self, seconds):
-        """(kind, bytes) of all that comes within that time."""
-        end, out = time.time() + seconds, []
-        while time.time() < end:
-            self.s.settimeout(max(0.01, end - time.time()))
-            try:
-                got = self.frame()
-            except TimeoutError:
-                break
-            if not got:
-                break
-            at, payload = 0, got[1]
-            while got[0] == 2 and at < len(payload):
-                kind, size = struct.unpack_from("<II", payload, at)
-                out.append((kind, payload[at + 16 : at + 16 + size]))
-                at += 16 + size
+        """(kind, bytes) of the next frame; none if nothing comes within that time."""
+        self.s.settimeout(seconds)
+        try:
+            opcode, payload = self.frame() or (0, b"")
+        except TimeoutError:
+            return []
+        at, out = 0, []
+        while opcode == 2 and at < len(payload):
+            kind, size = struct.unpack_from("<II", payload, at)
+            out.append((kind, payload[at + 16 : at + 16 + size]))
+            at += 16 + size
         return out
 
-    def events(self, seconds):
-        return [json.loads(b) for kind, b in self.blocks(seconds) if kind == 3]
+    def until(self, wanted, again=None):
+        """All blocks up to the frame after which `wanted(blocks)` is true; `again` is called ten
+        times a second meanwhile."""
+        begin, repeated, out = time.time(), 0, []
+        while not wanted(out):
+            waited = time.time() - begin
+            assert waited < WAIT, f"no such frame within {WAIT} s"
+            if again and waited > repeated + 0.1:
+                repeated = waited
+                again()
+            out += self.blocks(0.1)
+        return out
+
+    def until_mark(self, viewer):
+        """All blocks of what was sent before."""
+        viewer.marks += 1
+        mark = {"event": "view", "what": "mark", "values": [viewer.marks]}
+        packet = osc("/viewer/mark", viewer.marks)
+        viewer.send(packet)
+        # sent again only where a flood before it has filled the socket
+        return self.until(lambda blocks: mark in events(blocks), lambda: viewer.send(packet))
 
     def say(self, payload):
         mask = b"\x00\x00\x00\x00"
@@ -155,6 +198,25 @@ class Stream:
             self.s.sendall(head + mask + payload)
         except ConnectionError:
             pass
+
+
+def events(blocks):
+    return [json.loads(b.decode("utf-8", "replace")) for kind, b in blocks if kind == 3]
+
+
+def poses(blocks):
+    return [b for kind, b in blocks if kind == 1]
+
+
+def sender_of(block):
+    return block[:80].rstrip(b"\0").decode()
+
+
+def listen(viewer):
+    """A stream that has begun: it gets each event from now on."""
+    stream = Stream(viewer)
+    stream.until_mark(viewer)
+    return stream
 
 
 def string(s):
@@ -182,11 +244,13 @@ def bundle(*messages):
     )
 
 
-SEGMENTS = ["pelvis", "trunk", "neck", "head"] + [
-    f"{side}-{part}"
-    for part in ("upper-arm", "forearm", "hand", "stick", "upper-leg", "lower-leg", "foot", "toes")
-    for side in ("left", "right")
-]
+def skeleton():
+    """The library's table of segments as it prints it now, a JavaScript module."""
+    table = os.path.join(BUILD, "tools/skeleton/table")
+    return subprocess.run([table, "js"], capture_output=True, check=True).stdout
+
+
+SEGMENTS = re.findall(r'name: "([^"]*)"', skeleton().decode())
 
 
 def pose(shift=0.0):
@@ -200,15 +264,18 @@ STRIKE = osc("/himc/strike", 1.5, "left", "kettle", -0.2, 0.015, 2.0, 25.0, 0.00
 
 
 def counts(viewer):
-    """The bridge's counters once what was sent has been heard."""
-    stream = Stream(viewer)
-    found = [e for e in stream.events(2.2) if e["event"] == "bridge"]
-    return found[-1]
+    """The viewer's counters when each packet that was sent has been counted."""
+
+    def found(blocks):
+        last = [e for e in events(blocks) if e["event"] == "bridge"][-1:]
+        return [e for e in last if e["packets"] == viewer.sent]
+
+    return found(Stream(viewer).until(found))[0]
 
 
 def test_every_page_file_is_served_and_nothing_else():
     with Viewer() as v:
-        names = ["/", "/style.css", "/three.js"] + [
+        names = ["/", "/style.css", "/three.js", "/skeleton.js"] + [
             "/" + f for f in os.listdir("viewer/page") if f.endswith((".js", ".svg"))
         ]
         for name in names:
@@ -233,6 +300,35 @@ def test_every_page_file_is_served_and_nothing_else():
             assert v.get("/main.js")[2] == file.read()
 
 
+def test_skeleton_of_the_page_is_the_librarys():
+    with Viewer() as v:
+        assert v.get("/skeleton.js")[2] == skeleton()
+    assert len(SEGMENTS) == 20 and SEGMENTS[0] == "pelvis" and SEGMENTS[-1] == "right-toes"
+
+
+def test_no_list_of_segments_is_written_in_the_viewer():
+    """Single names are there, where a part of the figure belongs to a segment: at most two a line."""
+    for folder in ("viewer", "viewer/page"):
+        for name in os.listdir(folder):
+            path = os.path.join(folder, name)
+            if not name.endswith((".c", ".h", ".js")):
+                continue
+            with open(path) as file:
+                for number, line in enumerate(file, 1):
+                    found = [s for s in SEGMENTS if f'"{s}"' in line]
+                    assert len(found) < 2, (path, number, found)
+
+
+def test_each_segment_of_the_library_is_known():
+    with Viewer() as v:
+        stream = listen(v)
+        for i, message in enumerate(pose()):
+            v.send(message)
+            got = poses(stream.until(poses))
+            assert struct.unpack_from("<I", got[-1], 80)[0] == (2 << i) - 1, SEGMENTS[i]
+        assert counts(v)["malformed"] == 0
+
+
 def test_foreign_origins_and_rebound_names_are_refused():
     with Viewer() as v:
         assert Stream(v).status == 101
@@ -249,12 +345,12 @@ def test_foreign_origins_and_rebound_names_are_refused():
         assert v.get("/", host="evil.example")[0] == 403
 
 
-def test_whoever_speaks_to_the_stream_is_shown_out():
+def test_a_client_that_sends_data_is_disconnected():
     with Viewer() as v:
         for size in (1, 300, 70000, 2000000):
             stream = Stream(v)
             stream.say(b"x" * size)
-            stream.s.settimeout(3)
+            stream.s.settimeout(WAIT)
             got = (0, b"")
             while got and got[0] != 8:
                 got = stream.frame()
@@ -264,65 +360,57 @@ def test_whoever_speaks_to_the_stream_is_shown_out():
 
 def test_a_pose_reaches_the_stream_whole():
     with Viewer() as v:
-        stream = Stream(v)
-        time.sleep(0.1)
+        stream = listen(v)
         v.send(bundle(*pose(0.25)))
-        poses = [b for kind, b in stream.blocks(0.4) if kind == 1]
-        assert len(poses) == 1
-        assert poses[0][:80].rstrip(b"\0").decode() == "127.0.0.1:%d" % v.udp.getsockname()[1]
-        assert struct.unpack_from("<I", poses[0], 80)[0] == 0xFFFFF
-        body = struct.unpack_from("<140f", poses[0], 88)
+        (got,) = poses(stream.until_mark(v))
+        assert sender_of(got) == "127.0.0.1:%d" % v.udp.getsockname()[1]
+        assert struct.unpack_from("<I", got, 80)[0] == 0xFFFFF
+        body = struct.unpack_from("<140f", got, 88)
         assert all(abs(body[7 * i] - 0.25 - 0.01 * i) < 1e-6 for i in range(20))
 
 
 def test_a_pose_split_over_two_bundles_is_one_pose():
     with Viewer() as v:
-        stream = Stream(v)
-        time.sleep(0.1)
+        stream = listen(v)
         parts = pose()
-        v.send(bundle(*parts[:11]), bundle(*parts[11:]))
-        assert len([1 for kind, _ in stream.blocks(0.4) if kind == 1]) == 1
+        with v.stopped():
+            v.send(bundle(*parts[:11]), bundle(*parts[11:]))
+        got = stream.until_mark(v)
+        time.sleep(0.02)  # more than a pose in pieces is waited for: what is left of it would come
+        assert len(poses(got + stream.until_mark(v))) == 1
 
 
 def test_a_name_in_the_address_makes_another_performer():
     with Viewer() as v:
-        stream = Stream(v)
-        time.sleep(0.1)
+        stream = listen(v)
         v.send(
             bundle(*pose()),
             bundle(*[m.replace(string("/himc/body"), string("/himc/ann/body")) for m in pose()]),
         )
-        keys = {b[:80].rstrip(b"\0").decode() for kind, b in stream.blocks(0.4) if kind == 1}
+        keys = {sender_of(b) for b in poses(stream.until_mark(v))}
         assert len(keys) == 2 and any(k.endswith("/ann") for k in keys), keys
 
 
 def test_strike_beat_status_and_view_become_events():
     with Viewer() as v:
-        stream = Stream(v)
-        time.sleep(0.1)
+        stream = listen(v)
         v.send(
             STRIKE,
             osc("/himc/beat", 4),
             osc("/himc/status", "load", 0.25),
             osc("/viewer/camera", "top"),
         )
-        events = {e["event"]: e for e in stream.events(0.4)}
-        assert (
-            events["strike"]["force"] == 25
-            and events["strike"]["hand"] == "left"
-            and events["beat"]["beat"] == 4
-        )
-        assert events["status"]["values"] == ["load", 0.25] and events["view"] == {
-            "event": "view",
-            "what": "camera",
-            "values": ["top"],
-        }
+        got = events(stream.until_mark(v))
+        heard = {e["event"]: e for e in got if e.get("what") != "mark"}
+        assert heard["strike"]["force"] == 25 and heard["strike"]["hand"] == "left"
+        assert heard["beat"]["beat"] == 4
+        assert heard["status"]["values"] == ["load", 0.25]
+        assert heard["view"] == {"event": "view", "what": "camera", "values": ["top"]}
 
 
 def test_text_from_the_network_stays_text():
     with Viewer() as v:
-        stream = Stream(v)
-        time.sleep(0.1)
+        stream = listen(v)
         v.send(
             osc(
                 "/himc/strike",
@@ -337,7 +425,7 @@ def test_text_from_the_network_stays_text():
                 "\x01\x7f",
             )
         )
-        strike = [e for e in stream.events(0.4) if e["event"] == "strike"][0]
+        strike = [e for e in events(stream.until_mark(v)) if e["event"] == "strike"][0]
         assert strike["drum"] == "a?b?c?<script>" and strike["nuance"] == "??"
 
 
@@ -389,51 +477,61 @@ def test_a_storm_of_random_bytes_does_not_disturb():
         packets.append(bytes(broken))
     long = bool(os.environ.get("HIMC_LONG"))
     with Viewer() as v:
-        stream = Stream(v)
+        stream = listen(v)
         v.send(*packets)
-        before, sent, end = v.memory(), 0, time.time() + (60 if long else 3)
-        while time.time() < end:
+        before = v.memory()
+        for i in range(10000 if long else 300):
             v.send(*packets)
-            sent += len(packets)
+            if i % 10 == 0:
+                stream.until_mark(v)
         stream.s.close()
-        time.sleep(0.5)
+        stream = listen(v)
         assert v.process.poll() is None
         assert v.memory() - before < 4 << 20, v.memory() - before
-        stream = Stream(v)
-        v.send(bundle(*pose()))
-        assert counts(v)["packets"] > 1000 and [
-            1 for kind, _ in stream.blocks(0.5) if kind in (1, 3)
-        ]
-        return f"{sent} packets"
+        v.send(bundle(*pose()), STRIKE)
+        got = stream.until_mark(v)
+        last = [e for e in events(got) if e["event"] == "strike"][-1]
+        assert sender_of(poses(got)[-1]) == last["from"] and last["force"] == 25, last
+        return f"{v.sent} packets"
 
 
 def test_performers_beyond_the_seats_are_refused_and_counted():
     with Viewer() as v:
-        for i in range(40):
-            v.send(osc(f"/himc/p{i}/targets", "left", 0.0, 0.0, 1.0))
+        # at one time: a performer that is silent for 3 s would give up the seat
+        with v.stopped():
+            v.send(*(osc(f"/himc/p{i}/targets", "left", 0.0, 0.0, 1.0) for i in range(40)))
         assert counts(v)["refused"] == 24
+
+
+def test_eight_performers_and_their_drums_reach_the_stream():
+    with Viewer() as v:
+        stream = listen(v)
+        senders = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(8)]
+        for i, s in enumerate(senders):
+            s.sendto(bundle(*pose()), ("127.0.0.1", v.osc))
+            s.sendto(osc(f"/membrane/kettle{i}/head", 1e-5), ("127.0.0.1", v.osc))
+        stream.until(
+            lambda blocks: len({sender_of(b) for b in poses(blocks)}) == 8
+            and len({b[:112] for kind, b in blocks if kind == 2}) == 8
+        )
 
 
 def test_a_slow_reader_gets_the_newest_and_stalls_nobody():
     with Viewer() as v:
-        slow, quick = Stream(v), Stream(v)
+        slow, quick = listen(v), listen(v)
         slow.s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-        before = v.memory()
+        before, got = v.memory(), []
         for i in range(400):
             v.send(bundle(*pose(i / 1000)), STRIKE)
-            time.sleep(0.002)
-        got = quick.blocks(0.5)
-        assert len([1 for kind, _ in got if kind == 3]) >= 400
-        assert (
-            abs(struct.unpack_from("<f", [b for kind, b in got if kind == 1][-1], 88)[0] - 0.399)
-            < 1e-6
-        )
+            got += quick.until_mark(v)
+        assert len([e for e in events(got) if e["event"] == "strike"]) == 400
+        assert abs(struct.unpack_from("<f", poses(got)[-1], 88)[0] - 0.399) < 1e-6
         assert v.memory() - before < 4 << 20
 
 
-def complaint(*options):
+def error_line(*options):
     done = subprocess.run(
-        [VIEWER, "--no-browser", *options], capture_output=True, text=True, timeout=10
+        [VIEWER, "--no-browser", *options], capture_output=True, text=True, timeout=WAIT
     )
     assert done.returncode == 1 and done.stdout == "" and done.stderr.count("\n") == 1, done
     return done.stderr
@@ -441,16 +539,16 @@ def complaint(*options):
 
 def test_trouble_is_one_clear_line():
     with Viewer() as v:
-        assert f"port {v.http} is taken" in complaint("--osc", "0", "--http", str(v.http))
-        assert f"port {v.osc} (UDP, for OSC) is taken" in complaint(
+        assert f"port {v.http} is taken" in error_line("--osc", "0", "--http", str(v.http))
+        assert f"port {v.osc} (UDP, for OSC) is taken" in error_line(
             "--http", "0", "--osc", str(v.osc)
         )
-    assert "allowed 0 .. 65535" in complaint("--osc", "70000")
-    assert "wants a value" in complaint("--http")
-    assert "unknown option" in complaint("--nonsense", "1")
-    assert "not an address" in complaint("--bind", "nowhere")
-    assert "cannot be read" in complaint("--play", "/nowhere.csv")
-    assert "Makefile:1: not a motion" in complaint("--play", "Makefile")
+    assert "allowed 0 .. 65535" in error_line("--osc", "70000")
+    assert "wants a value" in error_line("--http")
+    assert "unknown option" in error_line("--nonsense", "1")
+    assert "not an address" in error_line("--bind", "nowhere")
+    assert "cannot be read" in error_line("--play", "/nowhere.csv")
+    assert "Makefile:1: not a motion" in error_line("--play", "Makefile")
 
 
 def test_it_ends_cleanly_when_told():
@@ -461,7 +559,7 @@ def test_it_ends_cleanly_when_told():
 
 def test_it_runs_as_an_ordinary_user():
     if os.geteuid() != 0:
-        return "as we do"
+        return "as this test does"
     home = tempfile.mkdtemp(prefix="himc-viewer-")
     try:
         os.chmod(home, 0o755)
@@ -472,36 +570,9 @@ def test_it_runs_as_an_ordinary_user():
         ) as viewer:
             line = viewer.stdout.readline()
             viewer.terminate()
-            assert viewer.wait(10) == 0 and "http://127.0.0.1" in line, line
+            assert viewer.wait(WAIT) == 0 and "http://127.0.0.1" in line, line
     finally:
         shutil.rmtree(home)
-
-
-def test_eight_performers_and_drums_cost_less_than_a_twentieth_of_a_core():
-    with Viewer() as v:
-        stream = Stream(v)
-        senders = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(8)]
-        seconds, begin, cpu, frames = 6, time.time(), v.cpu(), 0
-        packets = [
-            (
-                bundle(
-                    *pose(),
-                    osc("/himc/targets", "left", 0.0, 0.0, 1.0),
-                    osc("/himc/targets", "right", 0.0, 0.0, 1.0),
-                ),
-                osc(f"/membrane/kettle{i}/head", *[1e-5 * k for k in range(40)]),
-            )
-            for i in range(8)
-        ]
-        while time.time() - begin < seconds:
-            for s, (body, head) in zip(senders, packets):
-                s.sendto(body, ("127.0.0.1", v.osc))
-                s.sendto(head, ("127.0.0.1", v.osc))
-            frames += len(stream.blocks(1 / 33))
-        load = (v.cpu() - cpu) / (time.time() - begin)
-        assert load < 0.05, load
-        assert frames > seconds * 8 * 30
-        return f"{100 * load:.1f} % of a core"
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A real Chromium, headless, driven over WebDriver by the standard library alone."""
+"""Chromium without a window, controlled over WebDriver with the standard library alone."""
 
 import base64
 import json
@@ -47,7 +47,7 @@ class Browser:
             },
         )
         self.session = "/session/" + answer["sessionId"]
-        self.call("POST", self.session + "/timeouts", {"script": 120000})
+        self.call("POST", self.session + "/timeouts", {"script": 300000})
 
     def call(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
@@ -55,7 +55,7 @@ class Browser:
             self.url + path, data, {"Content-Type": "application/json"}, method=method
         )
         try:
-            with urllib.request.urlopen(request, timeout=180) as answer:
+            with urllib.request.urlopen(request, timeout=300) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
@@ -68,8 +68,8 @@ class Browser:
             "POST", self.session + "/execute/sync", {"script": script, "args": list(args)}
         )
 
-    def wait(self, script, seconds=30):
-        """The first true answer of `script`; the last one if none is within `seconds`."""
+    def wait(self, script, seconds=300):
+        """The first true answer of `script`; the last answer if none is true within `seconds`."""
         end = time.time() + seconds
         while True:
             answer = self.run(script)
@@ -78,7 +78,7 @@ class Browser:
             time.sleep(0.1)
 
     def downloads(self, folder):
-        """Where files that the page saves go."""
+        """Files that the page saves go into `folder`."""
         self.call(
             "POST",
             self.session + "/goog/cdp/execute",
@@ -104,5 +104,5 @@ class Browser:
         except (OSError, RuntimeError):
             pass
         self.driver.terminate()
-        self.driver.wait(10)
+        self.driver.wait(300)
         shutil.rmtree(self.home, ignore_errors=True)

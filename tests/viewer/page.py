@@ -1,16 +1,19 @@
-"""The viewer end to end, in a real Chromium."""
+"""The viewer end to end, in a real Chromium.
+
+No test depends on the speed of the machine: each waits for what must come, as long as the browser
+answers. What the viewer must do in real time is in realtime.py.
+"""
 
 import os
 import shutil
 import socket
-import statistics
 import subprocess
 import sys
 import tempfile
 import time
 
 import report
-from bridge import osc
+from bridge import WAIT, osc
 from browser import Browser
 
 BUILD = os.environ["HIMC_BUILD"]
@@ -18,7 +21,7 @@ VIEWER, MADE = os.path.join(BUILD, "bin/himc-viewer"), os.path.join(BUILD, "test
 MOTION, STROKES, EXPECTED = (
     os.path.join(MADE, f) for f in ("motion.csv", "strokes.csv", "expected.txt")
 )
-# fixed, since the page must find a restarted bridge again; ours, should two of these run at once
+# fixed, because the page must find a restarted viewer again; different for each run of this file
 HTTP = 20000 + os.getpid() % 20000
 OSC, SERVE = HTTP + 1, HTTP + 2
 MARKS = 7  # layer of the marks of strikes
@@ -40,7 +43,7 @@ class Started:
 
     def __exit__(self, *_):
         self.process.terminate()
-        self.process.wait(30)
+        self.process.wait(WAIT)
 
 
 def viewer(*options):
@@ -55,12 +58,12 @@ def sender(*options):
 
 def open_page():
     browser.open(f"http://127.0.0.1:{HTTP}/")
-    assert browser.wait("return !!(window.viewer && viewer.stream.connections)", 60)
+    assert browser.wait("return !!(window.viewer && viewer.stream.connections)")
 
 
 def draw(yes):
-    """Without a graphics card a picture takes 50 to 500 ms, and most tests need none: frames go on,
-    but the camera sees only the marks of strikes."""
+    """Without a graphics card a picture takes 50 to 500 ms, and most tests need none: with False
+    frames go on, but the camera sees only the marks of strikes."""
     browser.run("viewer.view.camera.layers.set(arguments[0])", 0 if yes else MARKS)
 
 
@@ -70,7 +73,7 @@ def expected():
 
 
 def joints_error():
-    """Largest distance of a joint or tip in the scene from where the library says (m)."""
+    """Largest distance of a joint or tip in the scene from its place by the library (m)."""
     there = browser.run("return viewer.joints()")
     return (
         max(
@@ -82,23 +85,23 @@ def joints_error():
     )
 
 
-def settle(limit=0.001, seconds=30):
-    end = time.time() + seconds
-    while joints_error() > limit and time.time() < end:
+def settle(limit=0.001):
+    end, error = time.time() + WAIT, joints_error()
+    while error >= limit:
+        assert time.time() < end, f"{1000 * error:.3f} mm"
         time.sleep(0.1)
-    error = joints_error()
-    assert error < limit, f"{1000 * error:.3f} mm"
+        error = joints_error()
     return f"{1000 * error:.4f} mm"
 
 
 def expect(start):
-    """Has the library say where the joints are at that time of the motion."""
+    """Writes the joints at that time of the motion, by the library, into EXPECTED."""
     with sender("--still", "--start", start, "--expect", EXPECTED, "--seconds", "0") as once:
-        once.process.wait(30)
+        once.process.wait(WAIT)
 
 
 def gone():
-    assert browser.wait("return !viewer.joints()", 20), "the performer stays"
+    assert browser.wait("return !viewer.joints()"), "the performer stays"
 
 
 # --- one bridge and one page for all of these
@@ -106,7 +109,7 @@ def gone():
 
 def test_page_loads_without_errors():
     open_page()
-    browser.wait("return viewer.numbers.render > 0", 30)
+    browser.wait("return viewer.numbers.render > 0")
     trouble = [line for line in browser.log() if "play.csv" not in line]
     assert not trouble, trouble
 
@@ -115,13 +118,13 @@ def test_pictures_and_films_are_saved():
     home = tempfile.mkdtemp(prefix="himc-saved-")
     browser.downloads(home)
     with sender("--start", "18"):
-        assert browser.wait("return viewer.joints()", 20)
-        browser.run("viewer.stage.quality = 0.3; dispatchEvent(new Event('resize'))")
+        assert browser.wait("return viewer.joints()")
+        # the cheapest picture: without a graphics card a full one takes half a second
+        browser.run("viewer.stage.simplify(4); dispatchEvent(new Event('resize'))")
         browser.run("viewer.actions.picture(); viewer.actions.film(); viewer.scripts.length = 0")
-        browser.wait("return viewer.scripts.length > 25", 20)
-        time.sleep(1.5)  # what was drawn is encoded
+        assert browser.wait("return viewer.scripts.length > 12 && viewer.recorder.filmed > 1000")
         browser.run("viewer.actions.film()")
-        end, sizes = time.time() + 20, {}
+        end, sizes = time.time() + WAIT, {}
         while time.time() < end and not (sizes.get("png") and sizes.get("webm")):
             time.sleep(0.2)
             sizes = {
@@ -152,16 +155,15 @@ def test_figure_stands_where_the_poses_say_within_1_mm():
 def test_figure_moves_and_strikes_leave_marks():
     gone()
     with sender("--start", "18"):
-        assert browser.wait("return viewer.joints()", 20)
+        assert browser.wait("return viewer.joints()")
         first = browser.run("return viewer.joints()")
-        assert browser.wait("return viewer.marks.shown > 2 && viewer.marks.visible() > 0", 20)
+        assert browser.wait("return viewer.marks.shown > 2 && viewer.marks.visible() > 0")
         assert browser.wait(
             "return viewer.joints().some((p, i) =>"
-            " Math.hypot(...p.map((v, k) => v - %s[i][k])) > 0.02)" % first,
-            20,
+            " Math.hypot(...p.map((v, k) => v - %s[i][k])) > 0.02)" % first
         )
         # the head moves with its modes
-        assert browser.wait("return [...viewer.drums.values()].some(d => d.excursion > 1e-5)", 20)
+        assert browser.wait("return [...viewer.drums.values()].some(d => d.excursion > 1e-5)")
         strike = browser.run(
             "const {hand, force, drum} = viewer.panel.strikes[0]; return {hand, force, drum}"
         )
@@ -172,7 +174,7 @@ def test_performer_leaves_and_comes_back():
     gone()
     with sender("--still"):
         assert browser.wait(
-            "return [...viewer.performers.values()].some(p => p.group.visible)", 20
+            "return [...viewer.performers.values()].some(p => p.group.visible)"
         )
 
 
@@ -186,45 +188,19 @@ def test_camera_and_controls_obey_buttons_and_osc():
     assert browser.run(pressed + "'false'")
     say(OSC, osc("/viewer/camera", "eye"), osc("/viewer/show", "trails", 1))
     say(OSC, osc("/viewer/exaggeration", 80.0))
-    assert browser.wait("return viewer.view.name === 'eye'", 10)
-    assert browser.wait(pressed + "'true'", 10)
-    assert browser.wait("return document.body.textContent.includes('80')", 10)
+    assert browser.wait("return viewer.view.name === 'eye'")
+    assert browser.wait(pressed + "'true'")
+    assert browser.wait("return document.body.textContent.includes('80')")
     say(OSC, osc("/viewer/camera", "stage"), osc("/viewer/exaggeration", 25.0))
-    assert browser.wait("return viewer.view.name === 'stage'", 10)
+    assert browser.wait("return viewer.view.name === 'stage'")
 
 
-def test_strike_is_drawn_within_50_ms():
-    gone()
-    browser.run("viewer.panel.strikes.length = 0")
-    with sender("--start", "10"):
-        # only the marks are drawn: what is timed is the way of a strike into a frame's pixels;
-        # the sender's strikes carry the wall clock, and all is one machine
-        end, late = time.time() + 25, []
-        while len(late) < 16 and time.time() < end:
-            time.sleep(0.5)
-            late = browser.run(
-                "return viewer.panel.strikes.filter(s => s.drawn).map(s => s.drawn - 1000 * s.time)"
-            )
-        frames = browser.run("return viewer.numbers.fps")
-        heard = browser.run("return viewer.panel.strikes.map(s => s.now - 1000 * s.time)")
-    assert len(late) >= 10, late
-    median, page = statistics.median(late), statistics.median(heard)
-    said = f"median {median:.1f} ms to drawn, {page:.1f} ms to the page, at {frames:.0f} frames/s"
-    assert median < 50, said
-    return said
-
-
-def test_eight_performers_take_less_than_4_ms_of_script_a_frame():
+def test_eight_performers_are_shown_and_come_and_go():
     gone()
     with sender("--performers", "8", "--start", "10"):
         assert browser.wait(
-            "return [...viewer.performers.values()].filter(p => p.group.visible).length === 8", 30
+            "return [...viewer.performers.values()].filter(p => p.group.visible).length === 8"
         )
-        browser.run("viewer.scripts.length = 0")
-        browser.wait("return viewer.scripts.length > 80", 20)
-        script = statistics.median(browser.run("return viewer.scripts"))
-    assert script < 4, f"{script:.2f} ms"
-    return f"{script:.2f} ms, the median of frames"
 
 
 def test_himc_serve_is_shown_with_drum_strikes_and_status():
@@ -235,14 +211,16 @@ def test_himc_serve_is_shown_with_drum_strikes_and_status():
         for what in ("pose", "targets", "strikes", "head"):
             say(SERVE, osc("/himc/subscribe", "127.0.0.1", OSC, what))
         say(SERVE, osc("/himc/play"))
-        assert browser.wait("return viewer.joints()", 15), "no performer"
-        assert browser.wait("return viewer.panel.strikes.some(s => s.drum === 'kettle')", 20)
+        assert browser.wait("return viewer.joints()"), "no performer"
+        assert browser.wait("return viewer.panel.strikes.some(s => s.drum === 'kettle')")
         drum = "[...viewer.drums.values()].find(d => d.name === 'kettle')"
-        assert browser.wait(f"return {drum}.excursion > 1e-6", 20), "the head is still"
-        assert browser.wait("return [...viewer.panel.status.values()].some(s => /load/.test(s))", 5)
-        assert browser.wait("return viewer.panel.beat !== null", 5), "no beat"
-        bridge = browser.wait("return viewer.panel.bridge", 5)
-        assert bridge["malformed"] == 0 and bridge["unknown"] == 0, bridge
+        assert browser.wait(f"return {drum}.excursion > 1e-6"), "the head is still"
+        assert browser.wait("return [...viewer.panel.status.values()].some(s => /load/.test(s))")
+        assert browser.wait("return viewer.panel.beat !== null"), "no beat"
+        counts = browser.wait(
+            "return viewer.panel.bridge.packets !== undefined && viewer.panel.bridge"
+        )
+        assert counts["malformed"] == 0 and counts["unknown"] == 0, counts
         rate = "Math.max(...[...viewer.performers.values()].map(p => p.rate))"
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
 
@@ -251,14 +229,13 @@ def test_page_finds_a_restarted_bridge_again():
     global bridge
     bridge.__exit__()
     before = browser.run("return viewer.stream.connections")
-    assert browser.wait("return document.body.classList.contains('lost')", 10)
+    assert browser.wait("return document.body.classList.contains('lost')")
     bridge = viewer()
     expect("3.6")
     with sender("--still", "--start", "3.6"):
         assert browser.wait(
             f"return viewer.stream.connections > {before}"
-            " && !document.body.classList.contains('lost')",
-            20,
+            " && !document.body.classList.contains('lost')"
         )
         return settle()
 
@@ -272,7 +249,7 @@ def test_playback_shows_a_motion_file_as_the_library_does():
     bridge = viewer("--play", MOTION)
     open_page()
     draw(False)
-    assert browser.wait("return !!viewer.motion", 30)
+    assert browser.wait("return !!viewer.motion")
     for start in ("12.5", "25.9"):
         expect(start)
         browser.run(
@@ -284,14 +261,6 @@ def test_playback_shows_a_motion_file_as_the_library_does():
     with open(STROKES) as file:
         assert strikes == len(file.readlines()) - 1, strikes
     return said
-
-
-def test_skeleton_of_the_page_is_the_librarys():
-    made = subprocess.run(
-        [os.path.join(MADE, "skeleton_table")], capture_output=True, text=True, check=True
-    ).stdout
-    with open("viewer/page/skeleton.js") as file:
-        assert file.read() == made
 
 
 if __name__ == "__main__":

@@ -1,16 +1,15 @@
-/// claim.c: what the published claim depends on: that HIMC misses less than joint space control,
-/// by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section 3.3.2), for
-/// claim.gp, evaluation.gp and measures.gp: `claim rates|nuances|measures TRIALS`.
+/// claim.c: on what the published claim depends: HIMC has a smaller error of the tip than joint
+/// space control, by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section
+/// 3.3.2). `claim rates|nuances|measures TRIALS` prints a CSV table; errors in percent of
+/// amplitude, `gain` over the stiffness of a player (the default gain is 3), difference is ID minus
+/// HIMC.
 ///
-/// `rates` plays legato at 1 to 3 strokes a second with each hand, under the printed law, with
-/// three gains, joint limits on and off: a block for each gain and limits, rows of rate (1/s), mean
-/// RMS of `id` and of `himc` (% of amplitude), mean and standard deviation over the trials of their
-/// difference. `nuances` plays each nuance at its own pace with the softest gain and limits on:
-/// rows of nuance, `id`, `himc` or `less` (their difference), law, mean (% of amplitude), standard
-/// deviation of all trials, and of those of the same sequence. `measures` plays legato at its own
-/// pace, limits on, limbs measured with errors of 0 to 2 %: a block for the printed law with the
-/// softest gain and one for each law with the default one, rows of error (%), then as in `rates`.
-/// Trials are spread over the cores.
+/// `rates`: legato at 1 to 3 strokes a second with each hand under the printed law, three gains,
+/// joint limits on and off (claim.gp). `measures`: legato at its own rate, limits on, limbs
+/// measured with errors of 0 to 2 %, the printed law with the softest gain and each law with the
+/// default one (measures.gp). `nuances`: each nuance at its own rate under the printed law with the
+/// softest gain, limits on (evaluation.gp, the same columns as spread.awk). Trials run on all
+/// cores.
 #include "../pool.h"
 #include "../trial.h"
 #include "control/controller.h"
@@ -19,14 +18,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TRIALS_MOST 100
-#define CONTROLS 2 // id, himc
+#define MOST_TRIALS 100 // as many as the evaluation has by default
+#define PLAYER 3.0      // default gain over a player's stiffness (docs/evaluation.md)
+#define CONTROLS 2      // id, himc
 #define GAINS 3
 #define RATES 5
 #define LAWS 4
 #define ERRORS 5
 
-static const double gains[GAINS] = {1.0 / 3, 2.0 / 3, 1};
+static const double gains[GAINS] = {1 / PLAYER, 2 / PLAYER, 1};
 static const double rates[RATES] = {1, 1.5, 2, 2.5, 3};
 static const himc_pipeline controls[CONTROLS] = {HIMC_PIPELINE_ID, HIMC_PIPELINE_HIMC};
 static const himc_law laws[LAWS] = {HIMC_LAW_PRINTED, HIMC_LAW_PRINTED, HIMC_LAW_FEEDFORWARD,
@@ -35,9 +35,8 @@ static const double errors[ERRORS] = {0, 0.005, 0.01, 0.015, 0.02};
 
 typedef struct claim claim;
 
-/// What a table's rows are.
 typedef struct table {
-    const char *name;
+    const char *name, *columns;
     int rows;
     void (*set)(trial_config *config, int row); ///< from a printed legato trial with limits
     void (*print)(const claim *c, int row);
@@ -99,10 +98,10 @@ static bool done(void *user, int item, const void *result, himc_error *error)
     return true;
 }
 
-/// Of a row's trials, `id` times a plus `himc` times b.
+/// Statistics of a * id + b * himc over the trials of a row (% of amplitude).
 typedef struct spread {
     double mean, deviation; ///< of all trials
-    double disturbance;     ///< deviation of trials of the same sequence; NaN if there are no two
+    double disturbance;     ///< deviation within the same sequence; NaN if no two trials share one
 } spread;
 
 static spread spread_of(const claim *c, int row, double a, double b)
@@ -124,48 +123,48 @@ static spread spread_of(const claim *c, int row, double a, double b)
                     n > sequences ? sqrt(disturbed / (n - sequences)) : NAN};
 }
 
-static void print_spread(int nuance, const char *control, spread s)
+static void print_spread(const claim *c, int nuance, const char *control, spread s)
 {
-    printf("%s %s printed %.4f %.4f %.4f\n", himc_nuance_name((himc_nuance)nuance), control, s.mean,
-           s.deviation, s.disturbance);
+    printf("%g,%s,%s,printed,%d,%.4f,%.4f,%.4f\n", PLAYER * gains[0],
+           himc_nuance_name((himc_nuance)nuance), control, c->trials, s.mean, s.deviation,
+           s.disturbance);
 }
 
 static void print_nuance(const claim *c, int row)
 {
-    print_spread(row, "id", spread_of(c, row, 1, 0));
-    print_spread(row, "himc", spread_of(c, row, 0, 1));
-    print_spread(row, "less", spread_of(c, row, 1, -1));
+    print_spread(c, row, "id", spread_of(c, row, 1, 0));
+    print_spread(c, row, "himc", spread_of(c, row, 0, 1));
 }
 
-// a row of a curve over x
+// the rest of a row: x, trials, errors
 static void print_point(const claim *c, int row, double x)
 {
     spread id = spread_of(c, row, 1, 0), himc = spread_of(c, row, 0, 1);
-    spread less = spread_of(c, row, 1, -1);
-    printf("%.2f %.4f %.4f %.4f %.4f\n", x, id.mean, himc.mean, less.mean, less.deviation);
+    spread difference = spread_of(c, row, 1, -1);
+    printf("%g,%d,%.4f,%.4f,%.4f,%.4f\n", x, c->trials, id.mean, himc.mean, difference.mean,
+           difference.deviation);
 }
 
 static void print_rate(const claim *c, int row)
 {
-    if (row % RATES == 0)
-        printf("\n\n# gain %.4f, limits %s\n", gains[row / RATES / 2],
-               row / RATES % 2 ? "off" : "on");
+    printf("%g,%s,", PLAYER * gains[row / RATES / 2], row / RATES % 2 ? "off" : "on");
     print_point(c, row, rates[row % RATES]);
 }
 
 static void print_measures(const claim *c, int row)
 {
     trial_kind kind = {.law = laws[row / ERRORS]};
-    if (row % ERRORS == 0)
-        printf("\n\n# %s, gain %.4f\n", trial_law_name(&kind).text,
-               row / ERRORS == 0 ? gains[0] : 1);
+    printf("%g,%s,", PLAYER * (row / ERRORS == 0 ? gains[0] : 1), trial_law_name(&kind).text);
     print_point(c, row, 100 * errors[row % ERRORS]);
 }
 
+#define ERROR_COLUMNS "trials,id_percent,himc_percent,difference,difference_sd"
 static const table tables[] = {
-    {"rates", GAINS * 2 * RATES, set_rate, print_rate},
-    {"nuances", HIMC_NUANCES, set_nuance, print_nuance},
-    {"measures", LAWS *ERRORS, set_measures, print_measures},
+    {"rates", "gain,limits,strokes_per_s," ERROR_COLUMNS, GAINS * 2 * RATES, set_rate, print_rate},
+    {"nuances", "gain,nuance,controller,law,trials,mean_percent,sd,sequence_sd", HIMC_NUANCES,
+     set_nuance, print_nuance},
+    {"measures", "gain,law,error_percent," ERROR_COLUMNS, LAWS *ERRORS, set_measures,
+     print_measures},
 };
 
 static const table *find_table(const char *name)
@@ -191,11 +190,13 @@ int main(int count, char **word)
     himc_error error;
     claim c = {.table = count == 3 ? find_table(word[1]) : NULL,
                .trials = count == 3 ? atoi(word[2]) : 0};
-    if (!c.table || c.trials < 1 || c.trials > TRIALS_MOST) {
-        fprintf(stderr, "claim: wanted is rates|nuances|measures TRIALS, 1 .. %d\n", TRIALS_MOST);
+    if (!c.table || c.trials < 1 || c.trials > MOST_TRIALS) {
+        fprintf(stderr, "usage: claim rates|nuances|measures TRIALS (1 .. %d)\n", MOST_TRIALS);
         return 1;
     }
     bool good = measure(&c, &error);
+    if (good)
+        puts(c.table->columns);
     for (int row = 0; good && row < c.table->rows; row++)
         c.table->print(&c, row);
     if (!good)

@@ -1,12 +1,11 @@
-/// database.c: how close the sticks stay to the captured ones when nothing is disturbed: all 45
-/// sequences of the motion database, without a tracker's noise, segments as heavy as control
-/// believes.
+/// database.c: distance of the sticks from the captured ones without any disturbance: all 45
+/// sequences of the motion database, without tracker noise, with the masses known exactly.
 ///
-/// Prints a row for each nuance under `himc` with computed torque, at its own pace, and with
-/// velocity fed forward, at 2 strokes a second with each hand; then one for all: law, nuance, RMS
-/// outside contact and impacts included (% of amplitude), least and largest range of the elbow's
-/// height over the captured, RMS angle of shoulder, elbow and wrist to the captured joints
-/// (degrees), strokes and those of them that landed.
+/// Prints a row for each nuance with `himc`, by computed torque at its own rate and by feedforward
+/// at 2 strokes a second with each hand, and one for all nuances: law, nuance, RMS error outside
+/// contact and with impacts (% of amplitude), smallest and largest range of the elbow's height over
+/// the captured one, RMS angle of shoulder, elbow and wrist to the captured joints (degrees),
+/// strokes landed of all strokes.
 #include "../pool.h"
 #include "../trial.h"
 #include "control/controller.h"
@@ -53,7 +52,7 @@ static double square(double x)
     return x * x;
 }
 
-// root of the mean of squares of what is in percent of each sequence's own amplitude
+// errors are RMS over the sequences, each in percent of its own amplitude
 static void print_row(const trial_result *result, int count, const char *law, const char *nuance)
 {
     double outside = 0, rms = 0, angle[3] = {0}, least = INFINITY, most = 0;

@@ -1,132 +1,137 @@
-# figures.mk: the documentation's pictures and sounds, each from the program or score it shows. Included by the Makefile;
-# `make figures` installs what they need and makes those that are older than what they are made of.
+# figures.mk: the pictures and sounds of the documentation, each from the program, score or table that it shows. Included by
+# the Makefile.
 #
-# A new one is a file in FIGURES and a rule for it. Programs in tools/figures/ are built by the rule for tools/*/*.c.
-# both NAME: a curve as it is for the page and for print
-both     = docs/figures/$(1).svg docs/figures/$(1).png
-SOUNDS  := $(patsubst %,docs/sounds/%.ogg,scale roll glissando mallets)
-MOTION  := $(foreach name,strokes strokes-default phases legato-accent evaluation claim measures,$(call both,$(name)))
-FIGURES := docs/figures/timbre.svg docs/figures/spectrograms.png docs/figures/improvisation.png $(SOUNDS) \
-           docs/sounds/improvisation.ogg $(MOTION) $(BUILD)/figures/database.txt
+# `make figures` installs what they need and makes what is out of date, in build/figures and build/sounds, in less than a
+# minute. It reads the results of the trials, docs/figures/*.csv; only `make trials` writes these, in two hours on two cores.
+# Five files are committed, because README.md and docs/ show them: docs/figures/evaluation.png and improvisation.png and
+# docs/sounds/improvisation.ogg are copies of what `make figures` makes, docs/figures/viewer-stage.png of what `make still`
+# makes, docs/figures/panel.png is a picture of Pd's window.
+#
+# A new picture is a name in CURVES and a rule for it. Programs in tools/figures/ are built by the rule for tools/*/*.c.
+# KIND=svg draws for print.
+KIND   ?= png
+DRAWN  := $(BUILD)/figures
+CURVES := strokes strokes-default phases legato-accent evaluation claim measures timbre
+PLAYED := $(patsubst %,$(BUILD)/sounds/%.ogg,scale roll glissando mallets)
+FIGURES := $(patsubst %,$(DRAWN)/%.$(KIND),$(CURVES)) $(DRAWN)/spectrograms.png $(DRAWN)/improvisation.png \
+           $(PLAYED) $(BUILD)/sounds/improvisation.ogg
+STYLE  := tools/figures/style.gp
+RESULTS := docs/figures
 
-# trials of each row of the evaluation, and of each point of the claim's dependences; 100 take two cores two hours, 9 ten
-# minutes: make figures TRIALS=9
-TRIALS ?= 100
-CLAIM  ?= 3
-MEASURES ?= 3
+# draw SCRIPT SETTINGS; SAID is the line below the title
+define draw
+	@mkdir -p $(@D) && echo "draw $@"
+	$(Q)gnuplot -e "kind='$(KIND)'; out='$@'; $(2)" tools/figures/$(1).gp
+endef
 
-docs/figures/timbre.svg: $(BUILD)/tools/figures/timbre tools/figures/timbre.gp
-	@mkdir -p $(BUILD)/figures && echo "draw $@"
-	$(Q)$< >$(BUILD)/figures/timbre.txt
-	$(Q)gnuplot -e "data='$(BUILD)/figures/timbre.txt'; out='$@'" tools/figures/timbre.gp
-	$(Q)sed -i 's/[[:blank:]]*$$//; s/\t/  /g' $@
+# play PROGRAM ARGUMENTS
+define play
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$(1) >$@
+endef
 
-$(SOUNDS) &: $(BUILD)/tools/figures/sounds
-	@echo "play $(SOUNDS)"
-	$(Q)$< docs/sounds
+# from the results of trials
+$(DRAWN)/evaluation.$(KIND): $(RESULTS)/spread.csv tools/figures/evaluation.gp $(STYLE)
+	$(call draw,evaluation,data='$<')
 
-docs/figures/spectrograms.png: $(BUILD)/tools/figures/spectrogram tools/figures/spectrograms.gp $(SOUNDS)
-	@mkdir -p $(BUILD)/figures && echo "draw $@"
-	$(Q)for s in scale roll glissando mallets; do $< docs/sounds/$$s.ogg >$(BUILD)/figures/$$s.txt || exit 1; done
-	$(Q)gnuplot -e "folder='$(BUILD)/figures'; out='$@'" tools/figures/spectrograms.gp
+$(DRAWN)/claim.$(KIND): $(RESULTS)/claim.csv tools/figures/claim.gp $(STYLE)
+	$(call draw,claim,data='$<')
 
-# what make demo leaves: Pd's own sound, and its picture
+$(DRAWN)/measures.$(KIND): $(RESULTS)/measures.csv tools/figures/measures.gp $(STYLE)
+	$(call draw,measures,data='$<')
+
+$(DRAWN)/strokes.$(KIND): SAID := legato, right side; printed law, gain × 1, joint limits on
+$(DRAWN)/strokes.$(KIND): $(RESULTS)/strokes.csv tools/figures/follow.gp $(STYLE)
+	$(call draw,follow,data='$<'; said='$(SAID)')
+
+$(DRAWN)/strokes-default.$(KIND): SAID := legato, right side; computed torque, gain × 3, the default
+$(DRAWN)/strokes-default.$(KIND): $(RESULTS)/strokes-default.csv tools/figures/follow.gp $(STYLE)
+	$(call draw,follow,data='$<'; said='$(SAID)')
+
+$(DRAWN)/phases.$(KIND): SAID := right hand; printed law, gain × 1, joint limits on
+$(DRAWN)/phases.$(KIND): $(RESULTS)/phases.csv tools/figures/phases.gp $(STYLE)
+	$(call draw,phases,data='$<'; said='$(SAID)')
+
+# a score
+$(DRAWN)/beats.txt: tools/figures/score.awk tools/figures/legato-accent.txt
+	$(call play,awk -f $^)
+
+$(DRAWN)/legato-accent.csv: tools/figures/legato-accent.txt $(PROGRAM)
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$(PROGRAM) render $< -o $(DRAWN)/legato-accent.wav --motion $@ >/dev/null
+
+$(DRAWN)/legato-accent.$(KIND): $(DRAWN)/beats.txt $(DRAWN)/legato-accent.csv tools/figures/score.gp $(STYLE)
+	$(call draw,score,beats='$<'; motion='$(word 2,$^)')
+
+# the drum alone
+$(DRAWN)/timbre.txt: $(BUILD)/tools/figures/timbre
+	$(call play,$<)
+
+$(DRAWN)/timbre.$(KIND): $(DRAWN)/timbre.txt tools/figures/timbre.gp $(STYLE)
+	$(call draw,timbre,data='$<')
+
+$(PLAYED) &: $(BUILD)/tools/figures/sounds
+	@mkdir -p $(BUILD)/sounds && echo "play $(PLAYED)"
+	$(Q)$< $(BUILD)/sounds
+
+$(DRAWN)/spectrograms.png: $(BUILD)/tools/figures/spectrogram tools/figures/spectrograms.gp $(PLAYED)
+	@mkdir -p $(@D) && echo "draw $@"
+	$(Q)for s in $(PLAYED); do $< $$s >$(DRAWN)/$$(basename $$s .ogg).txt || exit 1; done
+	$(Q)gnuplot -e "folder='$(DRAWN)'; out='$@'" tools/figures/spectrograms.gp
+
+# sound and picture that make demo leaves; the sound is Pd's own
 $(BUILD)/demo/improvisation.wav: patches/improvisation.txt patches/01-improvisation.pd $(PROGRAM) $(EXTERNALS)
 	$(Q)HIMC_BUILD=$(BUILD) tools/demo.sh
 
-docs/figures/improvisation.png: $(BUILD)/demo/improvisation.wav
-	@echo "copy $@"
+$(DRAWN)/improvisation.png: $(BUILD)/demo/improvisation.wav
+	@mkdir -p $(@D) && echo "copy $@"
 	$(Q)cp $(BUILD)/demo/improvisation.png $@
 
-docs/sounds/improvisation.ogg: $(BUILD)/demo/improvisation.wav
-	@echo "play $@"
+$(BUILD)/sounds/improvisation.ogg: $(BUILD)/demo/improvisation.wav
+	@mkdir -p $(@D) && echo "play $@"
 	$(Q)sox $< -C 2 $@
 
-# the papers' figures; a curve is drawn twice, as SVG and as PNG. Gains are said over those of a player's own stiffness, a
-# third of the default ones.
-FOLLOW := $(BUILD)/tools/figures/strokes
-CURVES := $(BUILD)/figures
-STYLE  := tools/figures/style.gp
+# the trials: TRIALS of each row of the evaluation, RATES and LIMBS of each point of claim and measures
+TRIALS ?= 100
+RATES  ?= 3
+LIMBS  ?= 3
+CLAIM  := $(BUILD)/tools/figures/claim
+TRIED  := $(BUILD)/trials
 
-# draw SCRIPT NAME SETTINGS; the line below the title is SAID
-define draw
-	@echo "draw docs/figures/$(2)"
-	$(Q)for kind in svg png; do \
-	    gnuplot -e "kind='$$kind'; out='docs/figures/$(2).$$kind'; said='$(SAID)'; $(3)" tools/figures/$(1).gp || exit 1; \
-	done
-	$(Q)sed -i 's/[[:blank:]]*$$//; s/\t/  /g' docs/figures/$(2).svg
-endef
-
-$(CURVES)/printed.txt: $(FOLLOW)
+# trials that are in the log are not done again, unless the program has changed
+$(TRIED)/evaluation.csv: $(PROGRAM)
 	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< follow printed 0.333333 >$@
+	$(Q)test $(TRIED)/log.csv -nt $(PROGRAM) || rm -f $(TRIED)/log.csv
+	$(Q)$(PROGRAM) evaluate --trials $(TRIALS) --log $(TRIED)/log.csv --csv $@
 
-$(CURVES)/default.txt: $(FOLLOW)
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< follow computed-torque 1 >$@
+$(TRIED)/nuances.csv: $(CLAIM)
+	$(call play,$< nuances $(TRIALS))
 
-$(CURVES)/phases.txt: $(FOLLOW)
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< phases printed 0.333333 >$@
+$(TRIED)/spread.csv: $(TRIED)/nuances.csv $(TRIED)/evaluation.csv tools/figures/spread.awk
+	$(call play,cat $<)
+	$(Q)awk -f tools/figures/spread.awk $(TRIED)/log.csv >>$@
 
-$(CURVES)/rates.txt: $(BUILD)/tools/figures/claim
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< rates $(CLAIM) >$@
+$(TRIED)/claim.csv: $(CLAIM)
+	$(call play,$< rates $(RATES))
 
-$(CURVES)/measures.txt: $(BUILD)/tools/figures/claim
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< measures $(MEASURES) >$@
+$(TRIED)/measures.csv: $(CLAIM)
+	$(call play,$< measures $(LIMBS))
 
-$(CURVES)/nuances.txt: $(BUILD)/tools/figures/claim
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< nuances $(TRIALS) >$@
+# excerpts of single trials; gains are relative to the default ones, a player's are a third of them
+STROKES := $(BUILD)/tools/figures/strokes
+$(TRIED)/strokes.csv: $(STROKES)
+	$(call play,$< follow printed 0.333333 2.2 5)
 
-$(CURVES)/beats.txt: tools/figures/score.awk tools/figures/legato-accent.txt
-	@mkdir -p $(@D)
-	$(Q)awk -f $^ >$@
+$(TRIED)/strokes-default.csv: $(STROKES)
+	$(call play,$< follow computed-torque 1 2.2 5)
 
-$(CURVES)/legato-accent.csv: tools/figures/legato-accent.txt $(PROGRAM)
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$(PROGRAM) render $< -o $(CURVES)/legato-accent.wav --motion $@ >/dev/null
-
-# trials already in the log are not done again, but for those of a program that was another
-docs/figures/evaluation.csv: $(PROGRAM)
-	@echo "play $@"
-	$(Q)test $(BUILD)/evaluation-trials.csv -nt $(PROGRAM) || rm -f $(BUILD)/evaluation-trials.csv
-	$(Q)$(PROGRAM) evaluate --trials $(TRIALS) --log $(BUILD)/evaluation-trials.csv --csv $@
-
-$(call both,strokes): SAID := legato, right side; printed law, gain × 1, joint limits on
-$(call both,strokes) &: $(CURVES)/printed.txt tools/figures/follow.gp $(STYLE)
-	$(call draw,follow,strokes,data='$<'; from=2.2; to=5)
-
-$(call both,strokes-default): SAID := legato, right side; computed torque, gain × 3, as himc plays by default
-$(call both,strokes-default) &: $(CURVES)/default.txt tools/figures/follow.gp $(STYLE)
-	$(call draw,follow,strokes-default,data='$<'; from=2.2; to=5)
-
-$(call both,phases): SAID := right hand; printed law, gain × 1, joint limits on
-$(call both,phases) &: $(CURVES)/phases.txt tools/figures/phases.gp $(STYLE)
-	$(call draw,phases,phases,data='$<'; from=2; to=4.6)
-
-$(call both,legato-accent) &: $(CURVES)/beats.txt $(CURVES)/legato-accent.csv tools/figures/score.gp $(STYLE)
-	$(call draw,score,legato-accent,beats='$<'; motion='$(word 2,$^)')
-
-$(call both,claim): SAID := printed law, legato made slower and faster; mean and deviation of $(CLAIM) players
-$(call both,claim) &: $(CURVES)/rates.txt tools/figures/claim.gp $(STYLE)
-	$(call draw,claim,claim,data='$<')
-
-$(call both,measures): SAID := legato, joint limits on; mean and deviation of $(MEASURES) players
-$(call both,measures) &: $(CURVES)/measures.txt tools/figures/measures.gp $(STYLE)
-	$(call draw,measures,measures,data='$<')
-
-$(CURVES)/spread.txt: docs/figures/evaluation.csv tools/figures/spread.awk
-	@mkdir -p $(@D)
-	$(Q)awk -f tools/figures/spread.awk $(BUILD)/evaluation-trials.csv >$@
-
-$(call both,evaluation): SAID := $(TRIALS) trials of each nuance; joint limits on
-$(call both,evaluation) &: $(CURVES)/nuances.txt $(CURVES)/spread.txt tools/figures/evaluation.gp $(STYLE)
-	$(call draw,evaluation,evaluation,gentle='$<'; table='$(word 2,$^)')
+$(TRIED)/phases.csv: $(STROKES)
+	$(call play,$< phases printed 0.333333 2 4.6)
 
 # the table of the undisturbed database in docs/evaluation.md
-$(CURVES)/database.txt: $(BUILD)/tools/figures/database
-	@mkdir -p $(@D) && echo "play $@"
-	$(Q)$< >$@
+$(TRIED)/database.txt: $(BUILD)/tools/figures/database
+	$(call play,$<)
+
+check-trials: $(patsubst %,$(TRIED)/%.csv,evaluation spread claim measures strokes strokes-default phases) $(TRIED)/database.txt
+	cp $(filter %.csv,$^) $(RESULTS)
+.PHONY: trials check-trials

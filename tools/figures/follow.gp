@@ -1,19 +1,18 @@
-# follow.gp: figure 5 of Bouënard, Gibet and Wanderley 2012 remade from what `strokes follow` prints. Wanted:
+# follow.gp: figure 5 of Bouënard, Gibet and Wanderley 2012 remade from the table of `strokes follow`. Variables:
 #   data, said   the table and the line below the title
-#   from, to     of the excerpt (s)
 #   kind, out    svg or png, the file to write
 load "tools/figures/style.gp"
 eval terminal(1500, 860)
 set output out
 
-# captured is the same in all blocks; columns 2 .. 7 captured, 8 .. 13 simulated
-set xrange [from:to]
+set datafile separator ","
+set xrange [*:*] noextend
 set xtics 0.5
-stats data index 0 using 5 nooutput
+array of[6] = ["wrist_deg", "elbow_deg", "shoulder_deg", "tip_cm", "wrist_cm", "elbow_cm"]
+stats data using (column("captured_tip_cm")) nooutput
 head = STATS_min
-# of the six, three are angles and the fourth is shown from the head
-which(c) = (c - 2) % 6
-shown(c) = which(c) < 3 ? column(c) : 100 * (column(c) - (which(c) == 3 ? head : 0))
+# the tip's height is drawn from the head
+shown(motion, i) = column(motion."_".of[i]) - (i == 4 ? head : 0)
 
 unset key
 set multiplot
@@ -26,21 +25,20 @@ set label 2 said at screen 0.065,0.917 font ",13" textcolor rgb soft
 array name[6] = ["(a) wrist flexion (°)", "(b) elbow flexion (°)", "(c) shoulder flexion (°)", \
                  "(d) stick's tip above the head (cm)", "(e) height of the wrist (cm)", \
                  "(f) height of the elbow (cm)"]
-do for [i = 0:5] {
-    left = 0.065 + 0.320 * (i % 3)
+do for [i = 1:6] {
+    left = 0.065 + 0.320 * ((i - 1) % 3)
     set lmargin at screen left
     set rmargin at screen left + 0.272
-    set tmargin at screen (i < 3 ? 0.825 : 0.425)
-    set bmargin at screen (i < 3 ? 0.520 : 0.120)
-    set title name[i + 1] font ",13" textcolor rgb ink offset 0,-0.4
-    if (i < 3) { set format x "" } else { set format x "%g"; set xlabel "time (s)" textcolor rgb ink }
+    set tmargin at screen (i <= 3 ? 0.825 : 0.425)
+    set bmargin at screen (i <= 3 ? 0.520 : 0.120)
+    set title name[i] font ",13" textcolor rgb ink offset 0,-0.4
+    if (i <= 3) { set format x "" } else { set format x "%g"; set xlabel "time (s)" textcolor rgb ink }
     set yrange [*:*]
-    if (i == 5) { set ytics 1 }
-    c = i + 2
-    plot data index 0 using 1:(shown(c)) with lines linewidth 2.6 linecolor rgb captured, \
-         data index 0 using 1:(shown(c + 6)) with lines linewidth 1.6 linecolor rgb ik, \
-         data index 1 using 1:(shown(c + 6)) with lines linewidth 1.6 linecolor rgb id, \
-         data index 2 using 1:(shown(c + 6)) with lines linewidth 1.6 linecolor rgb himc
+    if (i == 6) { set ytics 1 }
+    plot data using (column("time_s")):(shown("captured", i)) with lines linewidth 2.6 linecolor rgb captured, \
+         data using (column("time_s")):(shown("ik", i)) with lines linewidth 1.6 linecolor rgb ik, \
+         data using (column("time_s")):(shown("id", i)) with lines linewidth 1.6 linecolor rgb id, \
+         data using (column("time_s")):(shown("himc", i)) with lines linewidth 1.6 linecolor rgb himc
     unset label
     unset arrow
     set ytics autofreq

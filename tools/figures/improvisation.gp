@@ -2,12 +2,12 @@
 # Wanderley 2012.
 #
 # Three rows share their time axis: heights of the drumstick tips, contact forces, sound; on the
-# left the whole piece, on the right an excerpt of it. Wanted, by gnuplot -e:
+# left the whole piece, on the right an excerpt of it. Variables, set by gnuplot -e:
 #   motion, strokes   tables of himc render
 #   sound             time, least and greatest sample of each millisecond
 #   from, to, length  of the excerpt and of the whole (s)
 #   title, said       the line on top and the one below it
-#   excerpt           what the excerpt shows
+#   excerpt           caption of the excerpt
 #   picture           the PNG to write
 set terminal pngcairo size 1600,1000 font "DejaVu Sans,12" background "#ffffff"
 set output picture

@@ -1,4 +1,4 @@
-# score.awk: when each beat of a score is played, tempo by tempo: `time stroke HAND NUANCE` and `time tempo BPM -`.
+# score.awk: the time of each stroke and tempo of a score (s): `time stroke HAND NUANCE` and `time tempo BPM -`.
 # A tempo holds from its beat on; without one it holds from the beginning.
 function when(beat) {
     return at + (beat - from) * 60 / bpm

@@ -1,5 +1,5 @@
 # score.gp: figure 5 of Bouënard, Gibet and Wanderley 2009 (Real-time simulation and interaction of percussion
-# gestures, preprint) remade: a score of legato and accent beats, and the heights of both tips while it is played. Wanted:
+# gestures, preprint) remade: a score of legato and accent beats, and the heights of both tips while it is played. Variables:
 #   beats        of score.awk
 #   motion       table of himc render
 #   kind, out    svg or png, the file to write
@@ -24,7 +24,7 @@ set xrange [0.5:last]
 set xtics 1
 set label 1 "Legato and accent beats under a varying tempo" at screen 0.065,0.958 font bold textcolor rgb ink
 how = "the score, notes where they sound: right hand stems up, left hand stems down, > an accent; " \
-    . "below, what the virtual timpanist plays"
+    . "below, the tips of the virtual timpanist"
 set label 2 how at screen 0.065,0.916 font ",13" textcolor rgb soft
 
 # the score: notes stand where they sound, so a hurrying tempo draws them together

@@ -1,8 +1,8 @@
-/// sounds.c: what the drum alone can do, as four short OGG files: `sounds FOLDER`.
+/// sounds.c: four short OGG files of the drum alone: `sounds FOLDER`.
 ///
-/// scale: D3 to A3 on a 23 inch timpano; roll: 13 blows a second from pp to ff and back; glissando:
-/// a blow, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood. The drum
-/// stands in air. Stereo, heard from both sides.
+/// scale: D3 to A3 on a 23 inch timpano; roll: 13 strokes a second from pp to ff and back;
+/// glissando: a stroke, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood.
+/// The drum is in air. Stereo, one pickup on each side.
 #include "himc/himc.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 
 #define RATE 48000
 #define BLOCK 240
-#define LONGEST 8.0 // (s)
+#define LONGEST_SOUND 8.0 // (s); the longest of the four lasts 7 s
 
 typedef struct player {
     himc_drum *drum;
@@ -111,11 +111,11 @@ static void mallets(player *p)
     }
 }
 
-static void keep(const player *p, const char *folder, const char *name)
+static void save(const player *p, const char *folder, const char *name)
 {
     char path[400];
     SF_INFO info = {.samplerate = RATE, .channels = 2, .format = SF_FORMAT_OGG | SF_FORMAT_VORBIS};
-    double quality = 0.4;
+    double quality = 0.4; // chosen: no difference to be heard, 40 kB a sound
     snprintf(path, sizeof path, "%s/%s.ogg", folder, name);
     SNDFILE *file = sf_open(path, SFM_WRITE, &info);
     if (!file)
@@ -133,12 +133,12 @@ int main(int count, char **argument)
         void (*make)(player *);
     } pieces[] = {{"scale", scale}, {"roll", roll}, {"glissando", glissando}, {"mallets", mallets}};
     if (count != 2)
-        fail("takes a folder");
+        fail("usage: sounds FOLDER");
     for (int i = 0; i < 4; i++) {
-        player p = {.sound = calloc((size_t)(2 * LONGEST * RATE), sizeof(double))};
+        player p = {.sound = calloc((size_t)(2 * LONGEST_SOUND * RATE), sizeof(double))};
         p.drum = himc_drum_new("sounds", 23, RATE, &p.error);
         if (!p.drum || !p.sound)
-            fail("no memory");
+            fail("out of memory");
         say(&p, "air 1");
         say(&p, "decay 0.5 3e-7");
         say(&p, "tune D3");
@@ -146,7 +146,7 @@ int main(int count, char **argument)
         say(&p, "channel 1 air 1.2 0.4 1");
         say(&p, "channel 2 air -1.2 0.4 1");
         pieces[i].make(&p);
-        keep(&p, argument[1], pieces[i].name);
+        save(&p, argument[1], pieces[i].name);
         himc_drum_release(p.drum);
         free(p.sound);
     }

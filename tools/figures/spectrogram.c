@@ -1,8 +1,8 @@
 /// spectrogram.c: a sound file's spectrogram as numbers, for spectrograms.gp: `spectrogram FILE`.
 ///
-/// A line is a time (s), then a frequency (Hz) and the level there (dB re full scale); lines of one
-/// time are a block. Windows of 4096 samples by Hann, every 20 ms, by the Goertzel recurrence,
-/// which needs no more than the frequencies one looks at.
+/// A line has a time (s), a frequency (Hz) and the level (dB re full scale); the lines of one time
+/// are a block. Hann windows of 4096 samples, one every 20 ms, by the Goertzel recurrence, which
+/// computes only the frequencies that are drawn.
 #include "himc/base.h"
 
 #include <math.h>
@@ -10,11 +10,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+// all chosen for the picture: a window resolves the modes (12 Hz) and the strokes of a roll (85 ms)
 #define WINDOW 4096
-#define HOP 0.020    // (s)
-#define STEP 8.0     // (Hz)
-#define TOP 1400.0   // (Hz)
-#define SILENT 1e-12 // power
+#define HOP 0.020      // (s)
+#define RESOLUTION 8.0 // (Hz)
+#define HIGHEST 1400.0 // (Hz)
+#define LEAST 1e-12    // power: -120 dB
 
 static void fail(const char *what)
 {
@@ -30,7 +31,7 @@ static double *read_sound(const char *path, SF_INFO *info)
         fail(sf_strerror(NULL));
     double *all = malloc(sizeof(double) * (size_t)info->frames * (size_t)info->channels);
     if (!all || sf_readf_double(file, all, info->frames) != info->frames)
-        fail("cannot read all of it");
+        fail("cannot read the whole file");
     sf_close(file);
     for (sf_count_t i = 0; i < info->frames; i++)
         all[i] = all[i * info->channels];
@@ -54,16 +55,16 @@ int main(int count, char **argument)
 {
     SF_INFO info = {0};
     if (count != 2)
-        fail("takes a sound file");
+        fail("usage: spectrogram FILE");
     double *sound = read_sound(argument[1], &info), windowed[WINDOW];
     int hop = (int)(HOP * info.samplerate);
     for (sf_count_t at = 0; at + WINDOW <= info.frames; at += hop) {
         for (int i = 0; i < WINDOW; i++)
             windowed[i] = sound[at + i] * (0.5 - 0.5 * cos(2 * HIMC_PI * (i + 0.5) / WINDOW));
         double time = ((double)at + WINDOW / 2.0) / info.samplerate;
-        for (double f = 40; f <= TOP; f += STEP)
+        for (double f = 40; f <= HIGHEST; f += RESOLUTION)
             printf("%.3f %g %.1f\n", time, f,
-                   10 * log10(power(windowed, 2 * HIMC_PI * f / info.samplerate) + SILENT));
+                   10 * log10(power(windowed, 2 * HIMC_PI * f / info.samplerate) + LEAST));
         puts("");
     }
     free(sound);

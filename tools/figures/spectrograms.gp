@@ -1,4 +1,4 @@
-# spectrograms.gp: the four sounds of sounds.c by spectrogram.c, one below the other:
+# spectrograms.gp: spectrograms of the four sounds of sounds.c, by spectrogram.c:
 #   gnuplot -e "folder='build/figures'; out='spectrograms.png'" spectrograms.gp
 set terminal pngcairo size 1200,1300 font "DejaVu Sans,11" background "#ffffff"
 set output out
@@ -15,7 +15,7 @@ set title "roll: pp to ff to pp"
 plot folder."/roll.txt" using 1:2:3 with image notitle
 set title "glissando: D3 to A3 and back while it rings"
 plot folder."/glissando.txt" using 1:2:3 with image notitle
-set title "mallets: soft, medium, hard, wood; the same blow"
+set title "mallets: soft, medium, hard, wood; the same stroke"
 set xlabel "s"
 plot folder."/mallets.txt" using 1:2:3 with image notitle
 unset multiplot

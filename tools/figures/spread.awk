@@ -1,10 +1,10 @@
-# spread.awk: the rows of claim.c's `nuances` from the log of himc evaluate: nuance, controller, law, mean of the trials'
-# RMS error (% of amplitude), their standard deviation, and the deviation of trials of the same sequence (trials whose
-# numbers differ by nine), NaN if there are no two.
+# spread.awk: spread of the trials' errors from the log of himc evaluate, with the columns of `claim nuances`: gain over the
+# stiffness of a player (3, the default), nuance, controller, law, trials, mean RMS error (% of amplitude), standard
+# deviation of all trials, deviation within a sequence (trials whose numbers differ by nine; NaN if there are no two).
 BEGIN { FS = ","; SEQUENCES = 9 }
-$4 !~ /^[0-9]+$/ || seen[$0]++ { next }
+$4 !~ /^[0-9]+$/ || $2 == "ik" || seen[$0]++ { next }
 {
-    row = $1 " " $2 " " $3
+    row = $1 "," $2 "," $3
     if (!(row in n)) order[++rows] = row
     x = 100 * $5 / $7
     n[row]++; sum[row] += x; squares[row] += x * x
@@ -19,6 +19,6 @@ END {
         all = n[row] > 1 ? sqrt((squares[row] - n[row] * mean ^ 2) / (n[row] - 1)) : 0
         free = n[row] - sequences[row]
         same = free > 0 ? sprintf("%.4f", sqrt((squares[row] - between[row]) / free)) : "NaN"
-        printf "%s %.4f %.4f %s\n", row, mean, all, same
+        printf "3,%s,%d,%.4f,%.4f,%s\n", row, n[row], mean, all, same
     }
 }

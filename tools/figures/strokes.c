@@ -1,14 +1,16 @@
-/// strokes.c: captured strokes and what the controllers make of them, for figures 5 and 6(a) of
-/// Bouënard, Gibet & Wanderley 2012: `strokes follow LAW GAIN` and `strokes phases LAW GAIN`.
+/// strokes.c: captured strokes and the same strokes as the controllers play them, for figures 5 and
+/// 6(a) of Bouënard, Gibet & Wanderley 2012: `strokes follow|phases LAW GAIN FROM TO` prints a CSV
+/// table of an excerpt (s), one row for every second frame.
 ///
-/// `follow` plays the first trial of the evaluation, legato, under `ik`, `id` and `himc`, one block
-/// each: time (s); captured flexion of wrist, elbow and shoulder (degrees), heights of tip, wrist
-/// and elbow (m), all of the right side; the same six as simulated. `phases` has a block for each
-/// nuance: time; depth and height of the right tip, captured, then simulated by `himc` (m).
+/// `follow` plays the first trial of the evaluation, legato, with `ik`, `id` and `himc`: time (s),
+/// then for the captured motion and each controller flexion of wrist, elbow and shoulder (degrees)
+/// and heights of tip, wrist and elbow (cm), all of the right side (follow.gp). `phases` plays each
+/// nuance with `himc`: nuance, depth and height of the right tip, captured and simulated (cm)
+/// (phases.gp).
 ///
-/// Flexions are read off the segments' directions alike in both: of the elbow the angle between
-/// upper arm and forearm, of the shoulder the upper arm's from hanging, in the sagittal plane, of
-/// the wrist the hand's elevation over the forearm's.
+/// Flexions are computed alike for all: of the elbow the angle between upper arm and forearm, of
+/// the shoulder the angle of the upper arm from hanging in the sagittal plane, of the wrist the
+/// elevation of the hand minus that of the forearm.
 #include "../trial.h"
 #include "control/controller.h"
 
@@ -17,6 +19,17 @@
 #include <string.h>
 
 #define HAND HIMC_RIGHT
+#define EVERY 2 // frames for a row; chosen: 125 rows a second, finer than a pixel
+#define MOST_ROWS 1000
+#define ARM 6     // values of an arm
+#define MOTIONS 4 // captured, ik, id, himc
+
+typedef struct excerpt {
+    double from, to; // (s)
+    const char *nuance;
+    int motion, frame, rows; // of `value`: being filled, frames so far, rows so far
+    double time[MOST_ROWS], value[MOST_ROWS][MOTIONS][ARM];
+} excerpt;
 
 static himc_vec3 origin(const himc_body_state *body, int k)
 {
@@ -28,57 +41,89 @@ static himc_vec3 along(const himc_body_state *body, int k)
     return himc_vec3_unit(himc_vec3_sub(origin(body, k + 1), origin(body, k)));
 }
 
-static void print_arm(const himc_body_state *body)
+static void measure_arm(const himc_body_state *body, double value[ARM])
 {
     himc_vec3 upper = along(body, 0), fore = along(body, 1), hand = along(body, 2);
-    double shoulder = atan2(upper.x, -upper.z), elbow = acos(himc_vec3_dot(upper, fore));
-    double wrist = asin(hand.z) - asin(fore.z), degree = HIMC_PI / 180;
-    printf(" %.3f %.3f %.3f %.5f %.5f %.5f", wrist / degree, elbow / degree, shoulder / degree,
-           body->tip[HAND].z, origin(body, 2).z, origin(body, 1).z);
+    double degree = HIMC_PI / 180;
+    value[0] = (asin(hand.z) - asin(fore.z)) / degree;
+    value[1] = acos(himc_vec3_dot(upper, fore)) / degree;
+    value[2] = atan2(upper.x, -upper.z) / degree;
+    value[3] = 100 * body->tip[HAND].z;
+    value[4] = 100 * origin(body, 2).z;
+    value[5] = 100 * origin(body, 1).z;
 }
 
-static void print_follow(void *user, const trial_frame *frame)
+static bool in_excerpt(excerpt *e, const trial_frame *frame)
 {
-    (void)user;
-    printf("%.4f", frame->time);
-    print_arm(frame->captured);
-    print_arm(frame->simulated_body);
-    puts("");
+    return frame->time >= e->from && frame->time <= e->to && e->frame++ % EVERY == 0;
+}
+
+static void keep_follow(void *user, const trial_frame *frame)
+{
+    excerpt *e = user;
+    if (!in_excerpt(e, frame) || e->rows == MOST_ROWS)
+        return;
+    e->time[e->rows] = frame->time;
+    measure_arm(frame->captured, e->value[e->rows][0]);
+    measure_arm(frame->simulated_body, e->value[e->rows++][e->motion]);
 }
 
 static void print_phase(void *user, const trial_frame *frame)
 {
-    (void)user;
+    excerpt *e = user;
     himc_vec3 a = frame->captured->tip[HAND], b = frame->simulated->tip[HAND];
-    printf("%.4f %.5f %.5f %.5f %.5f\n", frame->time, a.x, a.z, b.x, b.z);
+    if (in_excerpt(e, frame))
+        printf("%s,%.2f,%.2f,%.2f,%.2f\n", e->nuance, 100 * a.x, 100 * a.z, 100 * b.x, 100 * b.z);
 }
 
 static bool play(trial_kind kind, double gain, void (*frame)(void *, const trial_frame *),
-                 himc_error *error)
+                 excerpt *e, himc_error *error)
 {
     trial_result result;
     trial_config config = trial_default(&kind, 1);
     config.gain = gain;
     config.frame = frame;
-    bool good = trial_run(&config, &result, error);
-    puts("\n");
-    return good;
+    config.user = e;
+    e->frame = e->rows = 0;
+    return trial_run(&config, &result, error);
 }
 
-static bool follow(himc_law law, double gain, himc_error *error)
+static void print_follow(const excerpt *e, const char *const motions[MOTIONS])
+{
+    static const char *const columns[ARM] = {"wrist_deg", "elbow_deg", "shoulder_deg",
+                                             "tip_cm",    "wrist_cm",  "elbow_cm"};
+    printf("time_s");
+    for (int i = 0; i < MOTIONS * ARM; i++)
+        printf(",%s_%s", motions[i / ARM], columns[i % ARM]);
+    for (int row = 0; row < e->rows; row++) {
+        printf("\n%.3f", e->time[row]);
+        for (int i = 0; i < MOTIONS * ARM; i++)
+            printf(",%.2f", e->value[row][i / ARM][i % ARM]);
+    }
+    puts("");
+}
+
+static bool follow(himc_law law, double gain, excerpt *e, himc_error *error)
 {
     static const himc_pipeline order[] = {HIMC_PIPELINE_IK, HIMC_PIPELINE_ID, HIMC_PIPELINE_HIMC};
-    for (int i = 0; i < 3; i++)
-        if (!play((trial_kind){HIMC_LEGATO, order[i], law}, gain, print_follow, error))
+    static const char *const motions[MOTIONS] = {"captured", "ik", "id", "himc"};
+    for (e->motion = 1; e->motion < MOTIONS; e->motion++)
+        if (!play((trial_kind){HIMC_LEGATO, order[e->motion - 1], law}, gain, keep_follow, e,
+                  error))
             return false;
+    print_follow(e, motions);
     return true;
 }
 
-static bool phases(himc_law law, double gain, himc_error *error)
+static bool phases(himc_law law, double gain, excerpt *e, himc_error *error)
 {
-    for (int n = 0; n < HIMC_NUANCES; n++)
-        if (!play((trial_kind){(himc_nuance)n, HIMC_PIPELINE_HIMC, law}, gain, print_phase, error))
+    puts("nuance,captured_depth_cm,captured_height_cm,himc_depth_cm,himc_height_cm");
+    for (int n = 0; n < HIMC_NUANCES; n++) {
+        e->nuance = himc_nuance_name((himc_nuance)n);
+        if (!play((trial_kind){(himc_nuance)n, HIMC_PIPELINE_HIMC, law}, gain, print_phase, e,
+                  error))
             return false;
+    }
     return true;
 }
 
@@ -95,16 +140,20 @@ static int find_law(const char *name)
 
 int main(int count, char **word)
 {
+    static excerpt e;
     himc_error error;
-    int law = count == 4 ? find_law(word[2]) : -1;
-    double gain = count == 4 ? atof(word[3]) : 0;
+    int law = count == 6 ? find_law(word[2]) : -1;
+    double gain = count == 6 ? atof(word[3]) : 0;
     if (law < 0 || !(gain > 0) || (strcmp(word[1], "follow") && strcmp(word[1], "phases"))) {
-        fprintf(stderr, "strokes: wanted is follow|phases LAW GAIN\n");
+        fprintf(stderr, "usage: strokes follow|phases LAW GAIN FROM TO\n");
         return 1;
     }
-    bool good = strcmp(word[1], "follow") ? phases((himc_law)law, gain, &error)
-                                          : follow((himc_law)law, gain, &error);
-    if (!good)
-        fprintf(stderr, "strokes: %s\n", error.text);
-    return !good;
+    e.from = atof(word[4]);
+    e.to = atof(word[5]);
+    bool (*make)(himc_law, double, excerpt *, himc_error *) =
+        strcmp(word[1], "follow") ? phases : follow;
+    if (make((himc_law)law, gain, &e, &error))
+        return 0;
+    fprintf(stderr, "strokes: %s\n", error.text);
+    return 1;
 }

@@ -1,4 +1,4 @@
-# style.gp: what the figures of motion share; wants `kind`, svg or png. Colours as in the papers.
+# style.gp: common to the figures; variable: kind, svg or png. Colours as in the papers.
 captured = "#111111"
 ik = "#2a9d4a"
 id = "#1f5fbf"

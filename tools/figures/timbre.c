@@ -1,8 +1,9 @@
-/// timbre.c: spectra of single blows on a 23 inch timpano at D3, for timbre.gp: the same blow at
-/// three places, with four mallets, at three speeds.
+/// timbre.c: spectra of single strokes on a 23 inch timpano at D3, for timbre.gp: the same stroke
+/// at three places, with four mallets, at three velocities.
 ///
 /// Prints one block for each panel: frequency (Hz), then the spectrum of each sound (dB re 1 s of
-/// full scale) over its first second, by a Hann window's falling half, so that the attack counts.
+/// full scale) over the first second. The window is the falling half of a Hann window, so that the
+/// attack is included.
 #include "himc/himc.h"
 #include "himc/membrane.h"
 
@@ -11,15 +12,15 @@
 
 #define RATE 48000
 #define LENGTH RATE
-#define STEP 2.0 // (Hz)
-#define TOP 1600.0
+#define RESOLUTION 2.0 // (Hz); chosen: the windows of one second resolve no more
+#define HIGHEST 1600.0 // (Hz); chosen: the modes that are heard apart
 
-typedef struct blow {
+typedef struct stroke {
     const char *mallet;
-    double place, velocity; // from the centre per radius, m/s
-} blow;
+    double place, velocity; // distance from the centre per radius; (m/s)
+} stroke;
 
-static const blow panels[3][4] = {
+static const stroke panels[3][4] = {
     {{"medium", 0.0, 3}, {"medium", 0.75, 3}, {"medium", 0.92, 3}, {NULL, 0, 0}},
     {{"soft", 0.75, 3}, {"medium", 0.75, 3}, {"hard", 0.75, 3}, {"wood", 0.75, 3}},
     {{"medium", 0.75, 0.5}, {"medium", 0.75, 2}, {"medium", 0.75, 8}, {NULL, 0, 0}},
@@ -32,7 +33,7 @@ static bool say(himc_drum *drum, const char *text, himc_error *error)
            himc_drum_command(drum, &command, error);
 }
 
-static bool sound_of(const blow *b, double *sound, himc_error *error)
+static bool sound_of(const stroke *b, double *sound, himc_error *error)
 {
     char text[64];
     himc_drum *drum = himc_drum_new("figure", 23, RATE, error);
@@ -47,17 +48,23 @@ static bool sound_of(const blow *b, double *sound, himc_error *error)
         himc_drum_advance(drum, 480, NULL, NULL, NULL);
         himc_drum_read(drum, (uint64_t)at, 480, sound + at, NULL);
     }
+    for (int i = 0; i < LENGTH; i++)
+        sound[i] *= 0.5 + 0.5 * cos(HIMC_PI * i / LENGTH);
     himc_drum_release(drum);
     return good;
 }
 
-static double level(const double *sound, double frequency)
+// level of a windowed sound; the phasor (c, s) turns by w a sample
+static double level(const double *windowed, double frequency)
 {
-    double w = 2 * HIMC_PI * frequency / RATE, re = 0, im = 0;
+    double w = 2 * HIMC_PI * frequency / RATE, re = 0, im = 0, c = 1, s = 0;
+    double cos_w = cos(w), sin_w = sin(w);
     for (int i = 0; i < LENGTH; i++) {
-        double window = 0.5 + 0.5 * cos(HIMC_PI * i / LENGTH);
-        re += window * sound[i] * cos(w * i);
-        im += window * sound[i] * sin(w * i);
+        re += windowed[i] * c;
+        im += windowed[i] * s;
+        double next = c * cos_w - s * sin_w;
+        s = s * cos_w + c * sin_w;
+        c = next;
     }
     return 20 * log10(hypot(re, im) / RATE + 1e-12);
 }
@@ -73,7 +80,7 @@ int main(void)
                 fprintf(stderr, "timbre: %s\n", error.text);
                 return 1;
             }
-        for (double f = 40; f <= TOP; f += STEP) {
+        for (double f = 40; f <= HIGHEST; f += RESOLUTION) {
             printf("%g", f);
             for (int i = 0; i < count; i++)
                 printf(" %.2f", level(sound[i], f));

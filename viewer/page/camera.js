@@ -1,9 +1,9 @@
-// The camera: mouse (left turns, right or shift moves, wheel nears), touch (one finger turns, two
-// near and move), and presets.
+// The camera: mouse (left button rotates, right button or shift moves, wheel zooms), touch (one
+// finger rotates, two move and zoom), and presets. Factors of mouse and touch: chosen by hand.
 import * as THREE from "./three.js";
 
 const presets = {
-    // target, azimuth (0 faces the performer), elevation, distance
+    // target (m), azimuth (0 faces the performer) and elevation (rad), distance (m); chosen by eye
     stage: [[0.34, 0, 0.68], -0.75, 0.2, 2.95],
     front: [[0.3, 0, 0.68], 0, 0.16, 2.9],
     side: [[0.32, 0, 0.68], -1.5708, 0.1, 2.75],
@@ -16,7 +16,7 @@ export class View {
         this.camera.up.set(0, 0, 1);
         this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
-        this.spread = 0; // how far the ensemble reaches sideways (m)
+        this.spread = 0; // half the width of the group of performers (m)
         this.pointers = new Map();
         this.preset("stage");
         this.copy();
@@ -31,7 +31,7 @@ export class View {
         on("pointermove", e => this.drag(e));
         for (const name of ["pointerup", "pointercancel"])
             on(name, e => this.pointers.delete(e.pointerId));
-        on("wheel", e => (e.preventDefault(), this.near(Math.exp(0.0012 * e.deltaY))));
+        on("wheel", e => (e.preventDefault(), this.zoom(Math.exp(0.0012 * e.deltaY))));
         on("contextmenu", e => e.preventDefault());
     }
 
@@ -59,7 +59,7 @@ export class View {
         return this.name === name;
     }
 
-    near(factor) {
+    zoom(factor) {
         this.goal.distance = Math.min(30, Math.max(0.35, this.goal.distance * factor));
         this.leave();
     }
@@ -78,7 +78,7 @@ export class View {
         if (all.length === 2) {
             const other = all.find(([id]) => id !== e.pointerId)[1],
                 length = (x, y) => Math.hypot(x - other[0], y - other[1]);
-            this.near(length(...before) / Math.max(1, length(e.clientX, e.clientY)));
+            this.zoom(length(...before) / Math.max(1, length(e.clientX, e.clientY)));
             this.move(dx / 2, dy / 2);
         } else if (e.buttons & 2 || e.shiftKey) this.move(dx, dy);
         else {
@@ -104,7 +104,7 @@ export class View {
 
     update(dt, performer) {
         const eye = this.name === "eye" && performer && performer.group.visible;
-        if (performer) performer.figure.behead(eye);
+        if (performer) performer.figure.showHead(!eye);
         if (eye) return this.look(performer);
         if (this.camera.fov !== 38) ((this.camera.fov = 38), this.camera.updateProjectionMatrix());
         const k = 1 - Math.exp(-dt / 120),

@@ -1,4 +1,4 @@
-// Colours as one picks them, for lights and materials that reckon in linear light.
+// sRGB colours converted to linear light, in which three.js computes lights and materials.
 import * as THREE from "./three.js";
 
 export const rgb = name => new THREE.Color(name).convertSRGBToLinear();

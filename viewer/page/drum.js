@@ -1,12 +1,15 @@
-// A kettle drum at its place, its head moved by modal amplitudes.
+// A kettledrum at its place; modal amplitudes move its head. Shapes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
 import { rod } from "./performer.js";
 
-const RINGS = 22,
+const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     SECTORS = 72,
-    LEAVES = 4000;
+    MODES = 64,
+    ABSENT_AFTER = 4000, // without amplitudes (ms); chosen: a drum at rest may send rarely
+    LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
+    AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
 export const usualPlace = [0.7, 0, 0.85, 0, 0.2921]; // 23 inches, where the library puts a drum
 
@@ -122,7 +125,7 @@ function ring(radius, tube, material, z) {
     return mesh;
 }
 
-// in the head's frame, `z` its height over the floor
+// in the head's frame; `z` is the height of the head above the floor
 function stand(a, z, m) {
     const group = new THREE.Group(),
         v = (r, t, h) => new THREE.Vector3(r * Math.cos(t), r * Math.sin(t), h);
@@ -201,11 +204,11 @@ export class Drum {
         this.tilted = new THREE.Group();
         this.group.add(this.tilted);
         this.height = new Float32Array((RINGS + 1) * SECTORS);
-        ((this.from = new Float32Array(64)),
-            (this.to = new Float32Array(64)),
-            (this.now = new Float32Array(64)));
+        ((this.from = new Float32Array(MODES)),
+            (this.to = new Float32Array(MODES)),
+            (this.now = new Float32Array(MODES)));
         this.fromTime = this.toTime = 0;
-        this.excursion = 0; // the largest, where the head is (m)
+        this.excursion = 0; // largest displacement of the head now, not exaggerated (m)
         this.setPlace(usualPlace);
         stage.scene.add(this.group);
     }
@@ -244,7 +247,7 @@ export class Drum {
     }
 
     present(now) {
-        return this.heard !== undefined && now - this.heard < LEAVES;
+        return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
     }
 
     update(now, exaggeration) {
@@ -253,17 +256,17 @@ export class Drum {
                 ? Math.min(1, (now - this.fromTime) / (this.toTime - this.fromTime))
                 : 1;
         let energy = 0;
-        for (let i = 0; i < 64; i++) {
+        for (let i = 0; i < MODES; i++) {
             this.now[i] = this.from[i] + t * (this.to[i] - this.from[i]);
             energy += this.now[i] * this.now[i];
         }
-        const still = energy < 1e-16;
+        const still = energy < AT_REST;
         if (!(still && this.wasStill)) this.draw(exaggeration);
         this.wasStill = still;
     }
 
-    // heights, exaggerated but never past the rim's reach, and normals from their differences along
-    // and across the rings
+    // Heights, exaggerated but limited, and normals from the differences along and across the
+    // rings.
     draw(exaggeration) {
         const { position, normal } = this.head.geometry.attributes,
             p = position.array,
@@ -272,7 +275,7 @@ export class Drum {
         const a = this.place[4],
             dr = a / RINGS,
             b = SECTORS,
-            limit = 0.22 * a;
+            limit = LARGEST_HEIGHT * a;
         net.fill(this.now, h);
         this.excursion = 0;
         for (let i = 0; i < h.length; i++) {

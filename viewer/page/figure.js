@@ -1,57 +1,42 @@
-// The figure: clothes, skin, hair and shoes sculpted once around the default skeleton in a seated
-// rest pose, then moved by the 20 segments of a pose. Measures in metres, in each segment's frame
+// The figure: clothes, skin, hair and shoes, modelled once round the default skeleton in a seated
+// rest pose, then moved by the segments of a pose. Lengths in metres, in each segment's frame
 // (zero pose: x forward, y left, z up).
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
 import { cone, ellipsoid, sculpt } from "./sculpt.js";
-import { segments, root, tip, malletRadius } from "./skeleton.js";
+import { HANDS, bone, jointKind, kinematics } from "./body.js";
+import { segments, tip, malletRadius } from "./skeleton.js";
 
-export const bone = Object.fromEntries(segments.map((s, i) => [s.name, i]));
-const PLAYERS_BUTT = 0.1; // of the stick, behind the grip
+const BUTT = 0.1; // length of the stick behind the grip: the library's default grip (m)
 
+// Rotation vectors of the rest pose (rad), for a pair of joints the left one. Chosen: seated, close
+// to the playing poses, so that the skin is deformed little. Joints that are not listed are at
+// zero.
 const rest = {
     waist: [0, 0.09, 0],
     neck: [0, 0.11, 0],
     head: [0, 0.11, 0],
-    "left-shoulder": [0.32, -0.1, -0.3],
-    "right-shoulder": [-0.32, -0.1, 0.3],
-    "left-elbow": [0, -1.35, 0],
-    "right-elbow": [0, -1.35, 0],
-    "left-grip": [0, -0.4, 0],
-    "right-grip": [0, -0.4, 0],
-    "left-hip": [0.228, -0.998, 0.41],
-    "right-hip": [-0.228, -0.998, -0.41],
-    "left-knee": [0, 1.015, 0],
-    "right-knee": [0, 1.015, 0],
+    shoulder: [0.32, -0.1, -0.3],
+    elbow: [0, -1.35, 0],
+    grip: [0, -0.4, 0],
+    hip: [0.228, -0.998, 0.41],
+    knee: [0, 1.015, 0],
 };
 
-// Rotation vectors by joint to [x y z qw qx qy qz] by segment: the library's forward kinematics
-// (pose.h)
-export function kinematics(rotation, out = new Float64Array(7 * segments.length)) {
-    const q = segments.map(() => new THREE.Quaternion()),
-        p = segments.map(() => new THREE.Vector3());
-    segments.forEach((s, i) => {
-        if (s.parent < 0) p[i].set(...root);
-        else {
-            const r = rotation(s.joint),
-                angle = Math.hypot(...r);
-            if (angle > 1e-12)
-                q[i].setFromAxisAngle(new THREE.Vector3(...r).divideScalar(angle), angle);
-            q[i].premultiply(q[s.parent]);
-            p[i]
-                .set(...s.origin)
-                .applyQuaternion(q[s.parent])
-                .add(p[s.parent]);
-        }
-        out.set([p[i].x, p[i].y, p[i].z, q[i].w, q[i].x, q[i].y, q[i].z], 7 * i);
-    });
-    return out;
+const kinds = new Set(segments.map(s => jointKind(s.joint)));
+for (const name in rest) if (!kinds.has(name)) throw new Error(`no joint is called ${name}`);
+
+// the right side mirrors the left one
+function restRotation(joint) {
+    const [x, y, z] = rest[jointKind(joint)] || [0, 0, 0];
+    return joint.startsWith("right-") ? [-x, y, -z] : [x, y, z];
 }
 
-const mirror = (side, f) => side.map(s => f(s, s === "left" ? 1 : -1));
-const both = f => mirror(["left", "right"], f).reduce((a, b) => a.concat(b), []);
+// f(side, sign of y) for both sides of the body
+const both = f => HANDS.flatMap(side => f(side, side === "left" ? 1 : -1));
 
-// folds of cloth: a few slanted waves near the surface
+// Folds of cloth: a few oblique waves near the surface; `depth` their amplitude (m), u and v their
+// wave numbers (rad/m). All numbers of the clothes and the body below: chosen by eye.
 function cloth(depth, u, v) {
     return (d, local, x, y, z) =>
         Math.abs(d) > 0.03
@@ -63,8 +48,8 @@ function cloth(depth, u, v) {
 }
 
 function shirt() {
-    const t = bone.trunk,
-        p = bone.pelvis;
+    const t = bone("trunk"),
+        p = bone("pelvis");
     return {
         soft: 0.07,
         blend: 0.07,
@@ -83,8 +68,8 @@ function shirt() {
 }
 
 function sleeve(side) {
-    const u = bone[side + "-upper-arm"],
-        f = bone[side + "-forearm"];
+    const u = bone(side + "-upper-arm"),
+        f = bone(side + "-forearm");
     return {
         soft: 0.035,
         blend: 0.035,
@@ -100,8 +85,8 @@ function sleeve(side) {
 }
 
 function hand(side) {
-    const f = bone[side + "-forearm"],
-        h = bone[side + "-hand"],
+    const f = bone(side + "-forearm"),
+        h = bone(side + "-hand"),
         y = side === "left" ? 1 : -1;
     const solids = [
         cone(f, [0, 0, -0.21], 0.029, [0, 0, -0.262], 0.026),
@@ -109,7 +94,7 @@ function hand(side) {
     ];
     const lengths = [1, 1.08, 1.0, 0.82];
     for (let i = 0; i < 4; i++) {
-        // knuckles beside and above the stick, fingers round it from above
+        // knuckles beside and above the stick, fingers closed round it
         const k = [0.021 - 0.004 * Math.abs(i - 1), (-0.006 + 0.0185 * i) * y, -0.083 + 0.006 * i],
             l = lengths[i];
         const a = [k[0] - 0.01, k[1], k[2] - 0.036 * l],
@@ -143,9 +128,9 @@ function hand(side) {
 }
 
 function head() {
-    const n = bone.neck,
-        h = bone.head,
-        t = bone.trunk;
+    const n = bone("neck"),
+        h = bone("head"),
+        t = bone("trunk");
     return {
         soft: 0.022,
         blend: 0.03,
@@ -181,7 +166,7 @@ function head() {
 }
 
 function hair() {
-    const h = bone.head;
+    const h = bone("head");
     return {
         soft: 0.03,
         blend: 0.03,
@@ -201,29 +186,31 @@ function hair() {
 }
 
 function eyes() {
+    const h = bone("head");
     return {
         soft: 0.001,
         blend: 0.03,
         cell: 0.0026,
         solids: both((s, y) => [
-            ellipsoid(bone.head, [0.0755, 0.0305 * y, 0.0925], [0.0095, 0.0125, 0.0058]),
+            ellipsoid(h, [0.0755, 0.0305 * y, 0.0925], [0.0095, 0.0125, 0.0058]),
         ]),
     };
 }
 
 function brows() {
+    const h = bone("head");
     return {
         soft: 0.004,
         blend: 0.03,
         cell: 0.003,
         solids: both((s, y) => [
-            cone(bone.head, [0.0885, 0.016 * y, 0.1165], 0.0042, [0.077, 0.046 * y, 0.1135], 0.003),
+            cone(h, [0.0885, 0.016 * y, 0.1165], 0.0042, [0.077, 0.046 * y, 0.1135], 0.003),
         ]),
     };
 }
 
 function trousers() {
-    const p = bone.pelvis;
+    const p = bone("pelvis");
     return {
         soft: 0.045,
         blend: 0.05,
@@ -233,17 +220,17 @@ function trousers() {
             ellipsoid(p, [0, 0, 0.03], [0.113, 0.15, 0.085]),
             ...both((s, y) => [
                 ellipsoid(p, [-0.035, 0.075 * y, -0.03], [0.095, 0.088, 0.075]),
-                cone(bone[s + "-upper-leg"], [0, 0, -0.01], 0.088, [0, 0, -0.395], 0.066),
-                cone(bone[s + "-lower-leg"], [0.008, 0, 0], 0.064, [-0.006, 0, -0.2], 0.06),
-                cone(bone[s + "-lower-leg"], [-0.006, 0, -0.2], 0.06, [-0.008, 0, -0.4], 0.052),
+                cone(bone(s + "-upper-leg"), [0, 0, -0.01], 0.088, [0, 0, -0.395], 0.066),
+                cone(bone(s + "-lower-leg"), [0.008, 0, 0], 0.064, [-0.006, 0, -0.2], 0.06),
+                cone(bone(s + "-lower-leg"), [-0.006, 0, -0.2], 0.06, [-0.008, 0, -0.4], 0.052),
             ]),
         ],
     };
 }
 
 function shoe(side) {
-    const f = bone[side + "-foot"],
-        t = bone[side + "-toes"];
+    const f = bone(side + "-foot"),
+        t = bone(side + "-toes");
     return {
         soft: 0.02,
         blend: 0.03,
@@ -286,10 +273,10 @@ const shirts = [
     "#56606b",
 ];
 
-let made; // shared by all performers
-function workshop() {
-    if (made) return made;
-    const at = kinematics(j => rest[j] || [0, 0, 0]);
+let model; // geometry, the same for all performers
+function sharedModel() {
+    if (model) return model;
+    const at = kinematics(restRotation);
     const matrices = segments.map((s, i) =>
         new THREE.Matrix4().compose(
             new THREE.Vector3(at[7 * i], at[7 * i + 1], at[7 * i + 2]),
@@ -297,12 +284,12 @@ function workshop() {
             new THREE.Vector3(1, 1, 1),
         ),
     );
-    const geometries = parts().map(([part, material, above]) => ({
+    const geometries = parts().map(([part, material, ofHead]) => ({
         geometry: sculpt(part, matrices),
         material,
-        above,
+        ofHead,
     }));
-    return (made = {
+    return (model = {
         geometries,
         inverses: matrices.map(m => new THREE.Matrix4().getInverse(m)),
         stick: stickParts(),
@@ -324,9 +311,9 @@ function stickParts() {
         [0.0058, -0.1],
         [0.0072, 0.02],
         [0.0078, 0.07],
-        [0.0062, PLAYERS_BUTT - 0.004],
-        [0.003, PLAYERS_BUTT],
-        [0, PLAYERS_BUTT],
+        [0.0062, BUTT - 0.004],
+        [0.003, BUTT],
+        [0, BUTT],
     ]);
     const felt = new THREE.SphereBufferGeometry(malletRadius, 28, 20);
     felt.scale(1, 1, 0.94);
@@ -366,20 +353,20 @@ function shadowed(mesh) {
 // frame.
 export class Figure {
     constructor(index, environment) {
-        const { geometries, inverses, stick } = workshop();
+        const { geometries, inverses, stick } = sharedModel();
         this.group = new THREE.Group();
         this.bones = segments.map(() => new THREE.Bone());
         this.skeleton = new THREE.Skeleton(this.bones, inverses);
         this.materials = materials(index, environment);
-        this.face = [];
-        for (const { geometry, material, above } of geometries) {
+        this.headMeshes = [];
+        for (const { geometry, material, ofHead } of geometries) {
             const mesh = shadowed(new THREE.SkinnedMesh(geometry, this.materials[material]));
             mesh.bindMode = "detached"; // bones live in the group's frame
             mesh.bind(this.skeleton, new THREE.Matrix4());
             this.group.add(mesh);
-            if (above) this.face.push(mesh);
+            if (ofHead) this.headMeshes.push(mesh);
         }
-        this.sticks = ["left", "right"].map(() => this.makeStick(stick));
+        this.sticks = HANDS.map(() => this.makeStick(stick));
         this.scale = new THREE.Vector3(1, 1, 1);
     }
 
@@ -398,16 +385,16 @@ export class Figure {
     set(pose) {
         const p = new THREE.Vector3(),
             q = new THREE.Quaternion(),
-            k = bone["left-upper-leg"] * 7,
-            n = bone["left-lower-leg"] * 7;
+            hip = bone("left-upper-leg") * 7,
+            knee = bone("left-lower-leg") * 7;
         const thigh = Math.hypot(
-            pose[n] - pose[k],
-            pose[n + 1] - pose[k + 1],
-            pose[n + 2] - pose[k + 2],
+            pose[knee] - pose[hip],
+            pose[knee + 1] - pose[hip + 1],
+            pose[knee + 2] - pose[hip + 2],
         );
         this.scale.setScalar(
             thigh > 0.2 && thigh < 0.8
-                ? thigh / segments[bone["left-lower-leg"]].origin[2] / -1
+                ? thigh / segments[bone("left-upper-leg")].length
                 : 1,
         );
         for (let i = 0; i < segments.length; i++) {
@@ -417,14 +404,14 @@ export class Figure {
             this.bones[i].matrixWorld.compose(p, q, this.scale);
         }
         this.sticks.forEach((stick, hand) => {
-            const o = 7 * (bone["left-stick"] + hand);
+            const o = 7 * bone(HANDS[hand] + "-stick");
             stick.position.set(pose[o], pose[o + 1], pose[o + 2]);
             stick.quaternion.set(pose[o + 4], pose[o + 5], pose[o + 6], pose[o + 3]);
         });
     }
 
-    // without its head, for looking out of its eyes
-    behead(yes) {
-        for (const mesh of this.face) mesh.visible = !yes;
+    // hidden for the camera of the performer's eye
+    showHead(yes) {
+        for (const mesh of this.headMeshes) mesh.visible = yes;
     }
 }

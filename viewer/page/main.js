@@ -1,5 +1,5 @@
-// The viewer's page: hears the bridge, keeps performers and drums, draws a frame whenever the
-// screen wants one.
+// The viewer's page: receives the stream of himc-viewer, keeps performers and drums, and draws a
+// frame whenever the browser asks for one.
 import * as THREE from "./three.js";
 import { Stage } from "./stage.js";
 import { View } from "./camera.js";
@@ -20,7 +20,7 @@ const performers = new Map(),
     recorder = new Recorder(canvas);
 const shown = { targets: true, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 60, script: 0, latency: null, render: 0 };
-const clock = () => performance.timeOrigin + performance.now(); // the bridge's too (ms)
+const clock = () => performance.timeOrigin + performance.now(); // himc-viewer's clock too (ms)
 const latencies = [],
     scripts = [];
 let exaggeration = 25,
@@ -60,7 +60,7 @@ function performer(key) {
     return performers.get(key);
 }
 
-// a drum is its sender's; a strike may name it before the drum itself is heard
+// a drum belongs to its sender; a strike may name it before the drum itself sends anything
 function drum(key, name) {
     const id = `${key} ${name}`;
     if (!drums.has(id)) {
@@ -97,19 +97,19 @@ const on = {
         else if (event.event === "beat") panel.hearBeat(event.beat, now);
         else if (event.event === "status") panel.hearStatus(event.from, event.values);
         else if (event.event === "bridge") panel.hearBridge(event, now);
-        else if (event.event === "view") obey(event.what, event.values);
+        else if (event.event === "view") control(event.what, event.values);
     },
     connected: yes => panel.connected(yes),
 };
 
 // /viewer/camera front, /viewer/show trails 0, /viewer/exaggeration 80
-function obey(what, [first, second]) {
+function control(what, [first, second]) {
     if (what === "camera") actions.camera(String(first));
     else if (what === "show") actions.show(String(first), !!second);
     else if (what === "exaggeration") actions.exaggerate(Number(first));
 }
 
-// one performer sits at the origin; several in an arc, all looking to its middle
+// one performer sits at the origin, several in an arc, all facing its centre (sizes chosen by eye)
 function arrange(now) {
     const here = [...performers.values()]
             .filter(p => p.present(now))
@@ -199,7 +199,8 @@ function next() {
     requestAnimationFrame(t => window.viewer.held || frame(t));
 }
 
-// while held: `ms` of playback later, drawn or not; time is then the playback's, not the clock's
+// while frames are held: advances the playback by `ms` and draws if asked to; time is then the
+// playback's, not the clock's
 function step(ms, draw = true) {
     virtual = (virtual || before) + ms;
     frame(0, virtual, draw);
@@ -231,19 +232,15 @@ fetch("/play.csv")
     .catch(() => null);
 next();
 
-// for tests and stills: what is in the scene, read back from it; `held` stops the frames, since a
-// software renderer has no time for pictures between them
+// For tests and pictures: joints and tips read back from the scene (m). `held` stops the frames,
+// because a software renderer is too slow to draw between them.
 function joints(key) {
-    const p = key ? performers.get(key) : [...performers.values()].find(q => q.group.visible),
-        at = {};
+    const p = key ? performers.get(key) : [...performers.values()].find(q => q.group.visible);
     if (!p || !p.group.visible) return null;
-    p.figure.bones.forEach(
-        (b, i) => (at[i] = new THREE.Vector3().setFromMatrixPosition(b.matrixWorld).toArray()),
-    );
-    p.figure.sticks.forEach(
-        (s, i) => (at[20 + i] = s.tip.getWorldPosition(new THREE.Vector3()).toArray()),
-    );
-    return Object.values(at);
+    return [
+        ...p.figure.bones.map(b => new THREE.Vector3().setFromMatrixPosition(b.matrixWorld)),
+        ...p.figure.sticks.map(s => s.tip.getWorldPosition(new THREE.Vector3())),
+    ].map(position => position.toArray());
 }
 window.viewer = {
     held: false,
@@ -261,6 +258,7 @@ window.viewer = {
     actions,
     view,
     stage,
+    recorder,
     get motion() {
         return motion;
     },

@@ -1,7 +1,8 @@
-// The modes of a round membrane, in the library's order (lib/himc/modes.h): by their Bessel zeros,
-// a pair as cosine and sine. phi_mn = J_m(j_mn r / a) cos or sin (m theta).
+// The modes of a round membrane in the library's order (lib/src/drum/modes.h): by increasing zero
+// of the Bessel function, each pair as cosine and sine.
+//     phi_mn = J_m(j_mn r / a) cos or sin (m theta)
 
-// Bessel's integral by the midpoint rule, exact to rounding for the few dozen modes drawn
+// Bessel's integral by the midpoint rule: exact to rounding for the 64 modes drawn
 export function bessel(m, x) {
     let sum = 0;
     const n = 96;
@@ -44,8 +45,8 @@ export function shape(i, r, theta) {
     return bessel(m, zero * r) * (sine ? Math.sin(m * theta) : Math.cos(m * theta));
 }
 
-// Heights of a polar net (rings x sectors) from amplitudes: by ring and order first, then round the
-// circle, so that the cost is (modes x rings + orders x net).
+// Heights at the points of a polar net (rings x sectors) from modal amplitudes: first a sum for
+// each ring and order, then round the circle, so the cost is modes x rings + orders x points.
 export class Net {
     constructor(rings, sectors) {
         ((this.rings = rings), (this.sectors = sectors));
@@ -78,12 +79,13 @@ export class Net {
     }
 }
 
-// the library's default head
+const STRIKES_KEPT = 12;
+// the library's default head: radius (m), tension (N/m), density (kg/m^2), losses (1/s, s)
 const HEAD = { radius: 0.2921, tension: 3700, density: 0.2653, s0: 2.2, s1: 3e-7 };
 
-// What blows leave on the default head: each a short impulse (N s) at (x, y), each mode a decaying
-// sine, q = -J phi / (m w) e^(-d t) sin(w t) (Morse & Ingard 1968); the answer to all blows is
-// their sum.
+// Vibration of the default head after strikes. A strike is an impulse J (N s) at (x, y), and each
+// mode answers with a decaying sine, q = -J phi / (m w) e^(-d t) sin(w t) (Morse & Ingard 1968);
+// the answers to the last 12 strikes are added (chosen: older ones have died away).
 export class Ringing {
     constructor() {
         const { radius, tension, density, s0, s1 } = HEAD;
@@ -96,23 +98,23 @@ export class Ringing {
                 mass: density * Math.PI * radius * radius * norm,
             };
         });
-        this.blows = [];
+        this.strikes = [];
     }
 
     strike(time, x, y, impulse) {
         const r = Math.hypot(x, y) / HEAD.radius,
             theta = Math.atan2(y, x);
         if (r < 1)
-            this.blows.push({
+            this.strikes.push({
                 time,
                 gain: this.mode.map((k, i) => (-impulse * shape(i, r, theta)) / (k.mass * k.omega)),
             });
-        if (this.blows.length > 12) this.blows.shift();
+        if (this.strikes.length > STRIKES_KEPT) this.strikes.shift();
     }
 
     at(time) {
         const q = new Float32Array(modes.length);
-        for (const { time: begin, gain } of this.blows) {
+        for (const { time: begin, gain } of this.strikes) {
             const t = time - begin;
             if (t < 0) continue;
             this.mode.forEach(

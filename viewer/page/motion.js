@@ -1,12 +1,15 @@
-// Playback: a motion.csv that `himc render --motion` wrote, as poses, targets and strikes. Joint
-// angles are rotation vectors from the zero pose, of the default performer; a strike is a stretch
-// of force on a stick. The head is the default one: how it rings is reckoned from the strikes,
-// which hit the head where it would be at rest.
-import { kinematics } from "./figure.js";
+// Playback of a motion.csv (from `himc render --motion`) as poses, targets and strikes. Joint
+// rotations are rotation vectors from the zero pose of the default performer. A strike is an
+// interval of force on a stick. The drumhead is the library's default one; its vibration is
+// computed from the strikes, as if each fell on a head at rest.
+import { HANDS, kinematics } from "./body.js";
+import { segments } from "./skeleton.js";
 import { usualPlace } from "./drum.js";
 import { Ringing } from "./modes.js";
 
-const STEP = 1000 / 60;
+const POSE_INTERVAL = 1000 / 60, // (ms); chosen: a frame of the usual screen
+    ALL_SEGMENTS = 2 ** segments.length - 1,
+    BOTH_HANDS = 3;
 
 export class Motion {
     constructor(text, name) {
@@ -14,7 +17,7 @@ export class Motion {
             names = lines[0].trim().split(",");
         this.name = name;
         this.column = Object.fromEntries(names.map((n, i) => [n, i]));
-        for (const want of ["time_s", "left_tip_x_m", "waist_x_rad", "left_force_n"])
+        for (const want of ["time_s", "left_tip_x_m", `${segments[1].joint}_x_rad`, "left_force_n"])
             if (!(want in this.column))
                 throw new Error(`${name}:1: not a motion: no column ${want}`);
         this.rows = [];
@@ -32,9 +35,9 @@ export class Motion {
         if (this.rows.length < 2) throw new Error(`${name}: no rows`);
         this.period = this.rows[1][0] - this.rows[0][0];
         this.length = 1000 * this.rows[this.rows.length - 1][0];
-        this.strikes = ["left", "right"]
-            .flatMap(hand => this.findStrikes(hand))
-            .sort((a, b) => a.time - b.time);
+        this.strikes = HANDS.flatMap(hand => this.findStrikes(hand)).sort(
+            (a, b) => a.time - b.time,
+        );
         this.ringing = new Ringing();
         this.at = 0; // (ms)
         this.playing = true;
@@ -84,15 +87,15 @@ export class Motion {
         this.at = Math.min(this.length, Math.max(0, ms));
         this.next = this.strikes.findIndex(s => 1000 * s.time >= this.at);
         if (this.next < 0) this.next = this.strikes.length;
-        this.ringing.blows.length = 0;
+        this.ringing.strikes.length = 0;
         this.sent = -Infinity;
     }
 
-    // what a performer would have sent meanwhile
+    // passes on what a performer would have sent in the last `dt` ms
     update(now, dt, on) {
         if (this.playing) this.at += dt;
         if (this.at > this.length) this.seek(0);
-        if (now - this.sent >= STEP - 1) {
+        if (now - this.sent >= POSE_INTERVAL - 1) {
             const i = Math.max(
                 0,
                 Math.min(
@@ -101,12 +104,10 @@ export class Motion {
                 ),
             );
             const target = Float32Array.from(
-                ["left", "right"].flatMap(h =>
-                    ["x", "y", "z"].map(a => this.get(i, `${h}_target_${a}_m`)),
-                ),
+                HANDS.flatMap(h => ["x", "y", "z"].map(a => this.get(i, `${h}_target_${a}_m`))),
             );
             on.drum(this.name, "kettle", now, null, this.ringing.at(this.at / 1000));
-            on.pose(this.name, now, 0xfffff, 3, this.body(i), target);
+            on.pose(this.name, now, ALL_SEGMENTS, BOTH_HANDS, this.body(i), target);
             this.sent = now;
         }
         while (
@@ -117,6 +118,7 @@ export class Motion {
             this.hit(this.strikes[this.next++], now, on);
     }
 
+    // the impulse is that of a half sine of the strike's peak force
     hit(strike, now, on) {
         this.ringing.strike(
             strike.time,

@@ -1,9 +1,11 @@
-// What is written over the stage: buttons, numbers, and the score of what was played, running
-// along.
+// Everything written over the stage: buttons, numbers, and the running score of what was played.
 const $ = id => document.getElementById(id);
 const short = value => (typeof value === "number" ? +value.toPrecision(4) : value);
-const TOLD = ["load", "sound", "physics", "task", "strokes", "played", "recoveries"]; // of a status
-const SPAN = 8000; // of the running score (ms)
+const STATUS_SHOWN = ["load", "sound", "physics", "task", "strokes", "played", "recoveries"];
+const SPAN = 8000; // of the running score (ms); chosen: two bars at 60 beats a minute
+const NOTE_TIME = 6000; // a message stays (ms); chosen: long enough to read a line
+const LOUDEST = 0.004, // full deflection of the level, largest displacement (m); chosen
+    STRONGEST = 150; // tallest note of the running score (N); chosen: a forte stroke
 const nuanceColor = {
     legato: "#8fd0ff",
     tenuto: "#b7e08a",
@@ -49,7 +51,7 @@ export class Panel {
         $("note").textContent = text;
         $("note").classList.add("on");
         clearTimeout(this.noteTimer);
-        this.noteTimer = setTimeout(() => $("note").classList.remove("on"), 6000);
+        this.noteTimer = setTimeout(() => $("note").classList.remove("on"), NOTE_TIME);
     }
 
     camera(name) {
@@ -88,12 +90,12 @@ export class Panel {
         const all = [];
         for (let i = 0; i + 1 < values.length; i += 2)
             all.push([values[i], `${values[i]} ${short(values[i + 1])}`]);
-        const chosen = all.filter(([name]) => TOLD.includes(name));
-        this.status.delete(from); // the latest last
+        const chosen = all.filter(([name]) => STATUS_SHOWN.includes(name));
+        this.status.delete(from); // so that the newest is the last
         this.status.set(from, (chosen.length ? chosen : all).map(pair => pair[1]).join("   "));
     }
 
-    // a few times a second
+    // the numbers; called a few times a second
     write(performers, numbers, now) {
         const here = performers.filter(p => p.present(now));
         document.body.classList.toggle("empty", !here.length);
@@ -136,7 +138,7 @@ export class Panel {
         $("clock").textContent = `${(motion.at / 1000).toFixed(1)} s`;
     }
 
-    // the level of the heads (m, largest excursion) and the strip
+    // the level (largest displacement of all heads, m; three decades) and the running score
     draw(excursion, now) {
         const c = this.ink,
             ratio = Math.min(devicePixelRatio || 1, 2),
@@ -146,7 +148,7 @@ export class Panel {
             ((this.strip.width = Math.round(w * ratio)),
                 (this.strip.height = Math.round(h * ratio)));
         this.level = Math.max(excursion, this.level * 0.93);
-        const decades = 1 + Math.log10(Math.max(1e-9, this.level / 0.004)) / 3;
+        const decades = 1 + Math.log10(Math.max(1e-9, this.level / LOUDEST)) / 3;
         $("level").style.transform = `scaleX(${Math.min(1, Math.max(0, decades))})`;
         c.setTransform(ratio, 0, 0, ratio, 0, 0);
         c.clearRect(0, 0, w, h);
@@ -164,7 +166,7 @@ export class Panel {
         }
         for (const s of this.strikes) {
             if (now - s.now > SPAN) continue;
-            const tall = 3 + (mid - 6) * Math.min(1, Math.sqrt(s.force / 150)),
+            const tall = 3 + (mid - 6) * Math.min(1, Math.sqrt(s.force / STRONGEST)),
                 up = s.hand === "left";
             c.fillStyle = nuanceColor[s.nuance] || "#d8d8e0";
             c.globalAlpha = 1 - 0.65 * ((now - s.now) / SPAN);

@@ -1,17 +1,20 @@
-// A performer: poses come at 33 Hz and late by more or less; shown is the pose of a moment ago,
-// between the two that enclose it, so that motion is even at any frame rate. The moment ago is as
-// short as the intervals allow.
+// A performer. Poses arrive at 33 Hz with a varying delay, so each frame shows the pose of a moment
+// ago, interpolated between the poses before and after that moment: motion is smooth at any frame
+// rate. The delay is as short as the intervals between poses allow.
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
-import { Figure, bone } from "./figure.js";
+import { HANDS, bone } from "./body.js";
+import { Figure } from "./figure.js";
+import { segments } from "./skeleton.js";
 import { Trail } from "./strike.js";
 
-const KEPT = 24,
-    LEAVES = 2000; // poses; silence after which a performer has left (ms)
+const KEPT = 24, // poses: chosen, 0.7 s at 33 Hz
+    ABSENT_AFTER = 2000, // without a pose (ms); chosen: longer than a pause of the network
+    LONGEST_DELAY = 120; // of the pose shown (ms); chosen: later than that looks late
 const qa = new THREE.Quaternion(),
     qb = new THREE.Quaternion();
 
-function between(a, b, t, out) {
+function interpolate(a, b, t, out) {
     for (let o = 0; o < a.length; o += 7) {
         for (let i = 0; i < 3; i++) out[o + i] = a[o + i] + t * (b[o + i] - a[o + i]);
         qa.set(a[o + 4], a[o + 5], a[o + 6], a[o + 3]);
@@ -29,11 +32,11 @@ export class Performer {
         this.group = this.figure.group;
         this.group.visible = false;
         this.poses = [];
-        this.pose = new Float32Array(140);
-        this.target = new Float32Array(6);
-        this.interval = 30;
-        this.lag = Infinity; // between the sender's clock and ours (ms), the least seen
-        this.rate = 0;
+        this.pose = new Float32Array(7 * segments.length);
+        this.target = new Float32Array(3 * HANDS.length);
+        this.interval = 30; // between poses, a running mean (ms)
+        this.lag = Infinity; // of the sender's clock behind ours, the least seen (ms)
+        this.rate = 0; // (Hz)
         this.trails = [new Trail("#6fd0ff"), new Trail("#ffb36f")];
         const ball = new THREE.SphereBufferGeometry(0.022, 24, 16);
         this.targets = this.trails.map(
@@ -68,12 +71,13 @@ export class Performer {
     }
 
     present(now) {
-        return this.heard !== undefined && now - this.heard < LEAVES;
+        return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
     }
 
-    // the pose to be seen at `now`
-    interpolate(now) {
-        const moment = now - this.lag - Math.min(120, 1.35 * this.interval + 3),
+    // the pose to show at `now`; a third of an interval and 3 ms more than one interval late, so
+    // that the next pose is nearly always there (chosen)
+    interpolateAt(now) {
+        const moment = now - this.lag - Math.min(LONGEST_DELAY, 1.35 * this.interval + 3),
             list = this.poses;
         let i = list.length - 1;
         while (i > 0 && list[i].time > moment) i--;
@@ -81,7 +85,7 @@ export class Performer {
             b = list[Math.min(i + 1, list.length - 1)];
         const t =
             b.time > a.time ? Math.min(1, Math.max(0, (moment - a.time) / (b.time - a.time))) : 0;
-        between(a.body, b.body, t, this.pose);
+        interpolate(a.body, b.body, t, this.pose);
         for (let k = 0; k < 6; k++) this.target[k] = a.target[k] + t * (b.target[k] - a.target[k]);
         this.haveTargets = a.targets;
     }
@@ -89,7 +93,7 @@ export class Performer {
     update(now, camera, shown) {
         this.group.visible = this.present(now) && this.poses.length > 0;
         if (!this.group.visible) return;
-        this.interpolate(now);
+        this.interpolateAt(now);
         this.figure.set(this.pose);
         this.targets.forEach((ball, hand) => {
             ball.visible = shown.targets && !!((this.haveTargets >> hand) & 1);
@@ -115,7 +119,7 @@ export class Performer {
     eye() {
         return new THREE.Matrix4().multiplyMatrices(
             this.group.matrixWorld,
-            this.figure.bones[bone.head].matrixWorld,
+            this.figure.bones[bone("head")].matrixWorld,
         );
     }
 }

@@ -1,4 +1,4 @@
-// Saving what is seen: a picture of the next frame, or a film of the frames to come.
+// Saves the next frame as a picture, or the coming frames as a film.
 function save(blob, suffix) {
     const link = document.createElement("a"),
         stamp = new Date().toISOString().slice(0, 19).replace(/[:T]/g, "-");
@@ -11,13 +11,14 @@ function save(blob, suffix) {
 export class Recorder {
     constructor(canvas) {
         this.canvas = canvas;
+        this.filmed = 0; // of the film so far (bytes)
     }
 
     picture() {
         this.wanted = true;
     }
 
-    // right after a frame is drawn, while its pixels are there
+    // called right after a frame is drawn: later its pixels are gone
     drawn() {
         if (!this.wanted) return;
         this.wanted = false;
@@ -41,7 +42,11 @@ export class Recorder {
             mimeType: type,
             videoBitsPerSecond: 12e6,
         });
-        this.film.ondataavailable = e => parts.push(e.data);
+        this.filmed = 0;
+        this.film.ondataavailable = e => {
+            parts.push(e.data);
+            this.filmed += e.data.size;
+        };
         this.film.onstop = () => {
             save(new Blob(parts, { type }), type.includes("mp4") ? "mp4" : "webm");
             this.film = null;

@@ -1,9 +1,9 @@
-// A smooth surface from soft solids: tapered capsules and ellipsoids, melted together, meshed with
-// naive surface nets (Gibson 1998), its normals from the gradient of the distance, its skin weights
-// from the distance to each bone's solids.
+// A smooth surface from simple solids (tapered capsules and ellipsoids): their distances are joined
+// by a smooth minimum, the surface is meshed with naive surface nets (Gibson 1998), normals are the
+// gradient of the distance, skin weights follow the distance to the solids of each bone.
 import * as THREE from "./three.js";
 
-// distance to a cone with round ends (Quilez 2018)
+// distance to a cone with round ends (Quilez, "Round cone", 2018)
 export function cone(bone, a, ra, b, rb) {
     const ba = b.map((v, i) => v - a[i]);
     const l2 = ba[0] * ba[0] + ba[1] * ba[1] + ba[2] * ba[2],
@@ -34,6 +34,7 @@ export function cone(bone, a, ra, b, rb) {
     };
 }
 
+// distance to an ellipsoid, approximate (Quilez, "Ellipsoid SDF", 2008)
 export function ellipsoid(bone, c, r) {
     return {
         bone,
@@ -50,12 +51,13 @@ export function ellipsoid(bone, c, r) {
     };
 }
 
-function melt(a, b, k) {
+// smooth minimum, quadratic over a width k (Quilez, "Smooth minimum", 2013)
+function smoothMin(a, b, k) {
     const h = Math.max(k - Math.abs(a - b), 0) / k;
     return Math.min(a, b) - h * h * k * 0.25;
 }
 
-// solids seen from the world: each bone's rest matrix inverted
+// distance of a point of the world to a part, by the inverse of each bone's rest matrix
 function field(part, rest) {
     const inverse = rest.map(m => new THREE.Matrix4().getInverse(m).elements);
     const near = (s, x, y, z) => {
@@ -76,8 +78,8 @@ function field(part, rest) {
     };
     const distance = (x, y, z) => {
         let d = 1e9;
-        for (const s of part.solids) d = melt(d, near(s, x, y, z), s.soft || part.soft);
-        for (const s of part.cut || []) d = -melt(-d, near(s, x, y, z), part.cutSoft || 0.01);
+        for (const s of part.solids) d = smoothMin(d, near(s, x, y, z), s.soft || part.soft);
+        for (const s of part.cut || []) d = -smoothMin(-d, near(s, x, y, z), part.cutSoft || 0.01);
         if (part.shape) d = part.shape(d, local, x, y, z);
         return d;
     };
@@ -96,8 +98,8 @@ function bounds(part, rest) {
     return box;
 }
 
-// a vertex in each cell that the surface crosses, at the mean of its crossings; a quad over each
-// crossed edge
+// one vertex in each cell that the surface crosses, at the mean of the crossings on its edges; one
+// quad over each crossed edge
 function mesh(distance, box, h) {
     const n = ["x", "y", "z"].map(a => Math.ceil((box.max[a] - box.min[a]) / h) + 1),
         [nx, ny, nz] = n;
@@ -109,7 +111,7 @@ function mesh(distance, box, h) {
             for (let i = 0; i < nx;) {
                 const v = distance(box.min.x + i * h, box.min.y + j * h, box.min.z + k * h);
                 d[at(i, j, k)] = v;
-                // far from the surface its neighbours are far too
+                // far from the surface the next points are far from it too: skip them
                 const skip = Math.max(1, Math.floor(((Math.abs(v) - 0.03) / h) * 0.5));
                 for (let s = 1; s < skip && i + s < nx; s++) d[at(i + s, j, k)] = v;
                 i += skip;
@@ -200,7 +202,7 @@ function mesh(distance, box, h) {
     return { position, index };
 }
 
-function weigh(part, near, x, y, z) {
+function skinWeights(part, near, x, y, z) {
     const nearest = new Map();
     for (const s of part.solids)
         nearest.set(
@@ -223,7 +225,9 @@ function weigh(part, near, x, y, z) {
     };
 }
 
-// { solids, soft, blend, cell, [shape] } and the bones' rest matrices to a skinned geometry
+// A skinned geometry from a part and the rest matrices of the bones. Part: solids; soft, the width
+// of their joints (m); blend, of the change from bone to bone (m); cell, of the mesh (m); cut,
+// solids taken away; shape, a function that changes the distance.
 export function sculpt(part, rest) {
     const { distance, near } = field(part, rest);
     const { position, index } = mesh(distance, bounds(part, rest), part.cell);
@@ -240,7 +244,7 @@ export function sculpt(part, rest) {
             ],
             l = Math.hypot(...g) || 1;
         normal.push(g[0] / l, g[1] / l, g[2] / l);
-        const w = weigh(part, near, x, y, z);
+        const w = skinWeights(part, near, x, y, z);
         bones.push(...w.bones);
         weights.push(...w.weights);
     }

@@ -1,8 +1,12 @@
-// The stage: light, floor, curtain of dark, and what metal mirrors.
+// The stage: light, floor, curtain, and the reflections in metal. Sizes, lights and colours: chosen
+// by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 
-// soft boxes in a dark room, seen once from the middle: the reflections in copper and steel
+const LATE_FRAME = 28, // (ms); chosen: below 36 frames/s motion is visibly uneven
+    LATE_FRAMES = 40; // before a step; chosen: about a second, so that one pause changes nothing
+
+// Bright panels in a dark room, rendered once from the centre: the reflections in copper and steel.
 function environment(renderer) {
     const room = new THREE.Scene(),
         camera = new THREE.CubeCamera(0.1, 20, 256);
@@ -97,8 +101,8 @@ function spot(color, intensity, from, to, angle, shadow) {
     return light;
 }
 
-// hangs in folds round the stage, its light painted on; seen from inside only, so that the camera
-// may go out
+// A curtain in folds round the stage, with painted light; visible from inside only, so that the
+// camera may be outside.
 function curtain() {
     const g = new THREE.CylinderBufferGeometry(1, 1, 7, 900, 12, true).rotateX(Math.PI / 2),
         p = g.attributes.position;
@@ -164,7 +168,7 @@ export class Stage {
         for (const l of this.set) this.scene.add(l, l.target);
     }
 
-    // widens the light to `reach` metres round (x, y)
+    // widens the light to `reach` metres round (x, 0)
     cover(x, reach) {
         const scale = Math.max(1, reach / 2);
         if (Math.abs(scale - (this.scale || 1)) < 0.01) return;
@@ -201,16 +205,19 @@ export class Stage {
         camera.updateProjectionMatrix();
     }
 
-    // less light and fewer pixels where frames come late again and again, a step at a time
+    // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time
+    // (ms)
     adapt(frame, camera) {
-        this.late = frame > 28 ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
-        if (this.late < 40 || this.step === 4) return;
+        this.late =
+            frame > LATE_FRAME ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
+        if (this.late < LATE_FRAMES || this.step === 4) return;
         this.late = 0;
         this.simplify((this.step || 0) + 1);
         this.resize(camera);
     }
 
-    // 0 all; 1 one pixel per pixel; 2 smaller shadows; 3 one lamp and no shadows; 4 half the pixels
+    // step 0: full quality; 1: no more pixels than the screen's; 2: smaller shadow map; 3: one
+    // light, no shadows; 4: half the resolution
     simplify(step) {
         this.step = step;
         this.quality = Math.min(this.quality, step >= 4 ? 0.5 : 1);

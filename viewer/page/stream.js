@@ -1,10 +1,48 @@
-// The bridge's stream: frames of blocks as scene_encode.c writes them; comes back by itself when
-// the bridge does.
+// The stream from himc-viewer: frames of blocks, in the layout of viewer/scene_encode.c. The page
+// connects again by itself when the program has been restarted.
+import { segments } from "./skeleton.js";
+
+// sizes in a block (bytes)
+const KEY = 80,
+    NAME = 32,
+    BODY = 4 * 7 * segments.length,
+    TARGET = 4 * 2 * 3;
+const FIRST_WAIT = 250, // before connecting again (ms); chosen
+    LONGEST_WAIT = 2000;
 const text = new TextDecoder();
 const word = (bytes, at, size) => {
     const end = bytes.indexOf(0, at);
     return text.decode(bytes.subarray(at, end < 0 || end > at + size ? at + size : end));
 };
+
+function readPose(buffer, view, bytes, at, time, on) {
+    const body = at + KEY + 8,
+        target = body + BODY;
+    on.pose(
+        word(bytes, at, KEY),
+        time,
+        view.getUint32(at + KEY, true),
+        view.getUint32(at + KEY + 4, true),
+        new Float32Array(buffer.slice(body, target)),
+        new Float32Array(buffer.slice(target, target + TARGET)),
+    );
+}
+
+function readDrum(buffer, view, bytes, at, time, on) {
+    const placed = at + KEY + NAME,
+        place = placed + 4,
+        modes = place + 20,
+        amplitude = modes + 8;
+    on.drum(
+        word(bytes, at, KEY),
+        word(bytes, at + KEY, NAME),
+        time,
+        view.getUint32(placed, true) ? new Float32Array(buffer.slice(place, modes)) : null,
+        new Float32Array(
+            buffer.slice(amplitude, amplitude + 4 * view.getUint32(modes, true)),
+        ),
+    );
+}
 
 export function readFrame(buffer, on) {
     const view = new DataView(buffer),
@@ -15,26 +53,9 @@ export function readFrame(buffer, on) {
             time = view.getFloat64(at + 8, true);
         at += 16;
         if (kind === 1)
-            on.pose(
-                word(bytes, at, 80),
-                time,
-                view.getUint32(at + 80, true),
-                view.getUint32(at + 84, true),
-                new Float32Array(buffer.slice(at + 88, at + 88 + 560)),
-                new Float32Array(buffer.slice(at + 648, at + 672)),
-            );
+            readPose(buffer, view, bytes, at, time, on);
         else if (kind === 2)
-            on.drum(
-                word(bytes, at, 80),
-                word(bytes, at + 80, 32),
-                time,
-                view.getUint32(at + 112, true)
-                    ? new Float32Array(buffer.slice(at + 116, at + 136))
-                    : null,
-                new Float32Array(
-                    buffer.slice(at + 144, at + 144 + 4 * view.getUint32(at + 136, true)),
-                ),
-            );
+            readDrum(buffer, view, bytes, at, time, on);
         else if (kind === 3) on.event(JSON.parse(text.decode(bytes.subarray(at, at + size))), time);
         at += size;
     }
@@ -43,7 +64,7 @@ export function readFrame(buffer, on) {
 export class Stream {
     constructor(on) {
         this.on = on;
-        this.wait = 250;
+        this.wait = FIRST_WAIT;
         this.connections = 0;
         this.open();
     }
@@ -52,7 +73,7 @@ export class Stream {
         const socket = new WebSocket(`ws://${location.host}/`, "scene");
         socket.binaryType = "arraybuffer";
         socket.onopen = () => {
-            this.wait = 250;
+            this.wait = FIRST_WAIT;
             this.connections++;
             this.on.connected(true);
         };
@@ -60,7 +81,7 @@ export class Stream {
         socket.onclose = () => {
             this.on.connected(false);
             setTimeout(() => this.open(), this.wait);
-            this.wait = Math.min(this.wait * 1.5, 2000);
+            this.wait = Math.min(this.wait * 1.5, LONGEST_WAIT);
         };
     }
 }

@@ -1,10 +1,11 @@
-// What a strike leaves for a moment: light on the head, an arrow as long as its force, the newtons;
-// and the tips' trails.
+// Marks of a strike: light on the head, an arrow as long as the force, the force in newtons; and
+// the trails of the tips. Sizes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 
-const LASTS = 1100,
-    PER_NEWTON = 0.0035; // (ms), (m)
+const MARK_TIME = 1100, // (ms)
+    ARROW_LENGTH = 0.0035, // (m/N)
+    STRONGEST = 300; // no arrow grows beyond this force (N)
 
 function glow() {
     const canvas = document.createElement("canvas"),
@@ -52,7 +53,7 @@ class Label {
     }
 }
 
-// One mark; a pool of them is used again and again.
+// One mark, taken from a pool.
 class Mark {
     constructor() {
         this.group = new THREE.Group();
@@ -90,7 +91,7 @@ class Mark {
         this.born = now;
         this.hand = strike.hand;
         this.latest = true;
-        this.length = 0.06 + PER_NEWTON * Math.min(strike.force, 300);
+        this.length = 0.06 + ARROW_LENGTH * Math.min(strike.force, STRONGEST);
         this.group.position.set(strike.x, strike.y, 0);
         this.size = 0.1 + 0.0011 * Math.min(strike.force, 200);
         const color = strike.hand === "left" ? "#7fd6ff" : "#ffb066";
@@ -99,9 +100,9 @@ class Mark {
         this.group.visible = true;
     }
 
-    // `near` is 1 where the writing has its usual size
+    // `near` scales the writing with the distance of the camera
     update(now, shown, near) {
-        const age = (now - this.born) / LASTS,
+        const age = (now - this.born) / MARK_TIME,
             fade = 1 - age;
         if (!this.group.visible) return;
         if (age > 1) {
@@ -131,11 +132,11 @@ export class Marks {
     constructor(count = 24) {
         this.pool = Array.from({ length: count }, () => new Mark());
         this.next = 0;
-        this.shown = 0; // ever
+        this.shown = 0; // marks since the page was loaded
     }
 
     add(parent, strike, now) {
-        // a hand's last force alone is written, or rolls could not be read
+        // only the last force of each hand is written, so that rolls stay readable
         for (const m of this.pool)
             if (m.hand === strike.hand && m.group.parent === parent) m.latest = false;
         this.pool[this.next++ % this.pool.length].show(parent, strike, now);
@@ -154,7 +155,7 @@ export class Marks {
 const POINTS = 60,
     TRAIL = 900; // (ms)
 
-// A ribbon that faces the camera and thins with age.
+// A ribbon that faces the camera and gets thinner with age.
 export class Trail {
     constructor(color) {
         this.points = [];

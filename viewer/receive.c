@@ -1,12 +1,12 @@
-/// ear.c: packets, bundles, messages.
+/// receive.c: packets, bundles, messages.
 ///
-/// The socket is our own, because a lo_server binds to all addresses and the viewer must not; so
-/// bundles are taken apart here (OSC 1.0: "#bundle", a time tag, then size and element in turn) and
-/// liblo decodes the messages in them. They are shown as they come, whatever their time tag.
-/// Invariant: whatever a packet holds, it costs at most its length.
+/// The viewer has its own socket, because a lo_server binds to all addresses. So bundles are split
+/// here (OSC 1.0: "#bundle", a time tag, then size and element in turn) and liblo decodes the
+/// messages. Messages act when they arrive; time tags are ignored. Invariant: the time for a packet
+/// is at most proportional to its length, whatever it contains.
 #define _POSIX_C_SOURCE 200809L
-#include "ear.h"
-#include "words.h"
+#include "receive.h"
+#include "addresses.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -19,9 +19,13 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { BUFFER = 65536, DEPTH = 8, BACKLOG = 1 << 20 };
+enum {
+    BUFFER = 65536,    // largest UDP packet (bytes)
+    DEEPEST = 8,       // bundle in a bundle; chosen: well-formed senders nest one or two
+    BACKLOG = 1 << 20, // socket queue (bytes); chosen: a second of 16 performers
+};
 
-double ear_clock(void)
+double wall_clock(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_REALTIME, &t);
@@ -43,7 +47,7 @@ static int fail(int fd, const char *address, int port, char error[256])
     return -1;
 }
 
-int ear_open(const char *address, int port, char error[256])
+int receive_open(const char *address, int port, char error[256])
 {
     char service[16];
     struct addrinfo hints = {.ai_socktype = SOCK_DGRAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE},
@@ -63,11 +67,11 @@ int ear_open(const char *address, int port, char error[256])
     if (!bound)
         return fail(fd, address, port, error);
     setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &backlog,
-               sizeof backlog); // a larger queue is welcome, not needed
+               sizeof backlog); // optional: works with less
     return fd;
 }
 
-int ear_port(int fd)
+int receive_port(int fd)
 {
     struct sockaddr_storage name;
     socklen_t size = sizeof name;
@@ -79,7 +83,7 @@ int ear_port(int fd)
     return number;
 }
 
-static void hear_message(scene *s, const char *key, const char *data, size_t size, double now)
+static void receive_message(scene *s, const char *key, const char *data, size_t size, double now)
 {
     int trouble = 0;
     lo_message message = lo_message_deserialise((void *)data, size, &trouble);
@@ -88,16 +92,16 @@ static void hear_message(scene *s, const char *key, const char *data, size_t siz
         s->count.malformed++;
         return;
     }
-    // the address is the data's first string; deserialise has seen its end
-    words_hear(s, key, data, message, now);
+    // the data begins with the address; lo_message_deserialise has checked that it ends
+    address_dispatch(s, key, data, message, now);
     lo_message_free(message);
 }
 
-static void hear_element(scene *s, const char *key, const char *data, size_t size, double now,
-                         int depth)
+static void receive_element(scene *s, const char *key, const char *data, size_t size, double now,
+                            int depth)
 {
     if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
-        hear_message(s, key, data, size, now);
+        receive_message(s, key, data, size, now);
         return;
     }
     for (size_t at = 16; at < size;) {
@@ -106,16 +110,16 @@ static void hear_element(scene *s, const char *key, const char *data, size_t siz
             length = (uint32_t)(uint8_t)data[at] << 24 | (uint32_t)(uint8_t)data[at + 1] << 16 |
                      (uint32_t)(uint8_t)data[at + 2] << 8 | (uint8_t)data[at + 3];
         at += 4;
-        if (length == 0 || length % 4 || at > size || length > size - at || depth == DEPTH) {
+        if (length == 0 || length % 4 || at > size || length > size - at || depth == DEEPEST) {
             s->count.malformed++;
             return;
         }
-        hear_element(s, key, data + at, length, now, depth + 1);
+        receive_element(s, key, data + at, length, now, depth + 1);
         at += length;
     }
 }
 
-void ear_hear(scene *s, const char *key, const void *packet, size_t size, double now)
+void receive_packet(scene *s, const char *key, const void *packet, size_t size, double now)
 {
     s->count.packets++;
     s->count.bytes += size;
@@ -123,7 +127,7 @@ void ear_hear(scene *s, const char *key, const void *packet, size_t size, double
         s->count.malformed++;
         return;
     }
-    hear_element(s, key, packet, size, now, 0);
+    receive_element(s, key, packet, size, now, 0);
 }
 
 // "127.0.0.1:9000"
@@ -145,11 +149,11 @@ static uint64_t drum_versions(const scene *s)
     return sum;
 }
 
-bool ear_listen(int fd, scene *s, int most)
+bool receive_waiting(int fd, scene *s, int most)
 {
     static char packet[BUFFER];
     uint64_t events = s->events, drums = drum_versions(s);
-    double now = ear_clock();
+    double now = wall_clock();
     for (int i = 0; i < most; i++) {
         struct sockaddr_storage from;
         socklen_t from_size = sizeof from;
@@ -158,8 +162,8 @@ bool ear_listen(int fd, scene *s, int most)
         if (size < 0)
             break;
         name_sender((struct sockaddr *)&from, from_size, key);
-        ear_hear(s, key, packet, (size_t)size, now);
+        receive_packet(s, key, packet, (size_t)size, now);
     }
-    bool whole = scene_settle(s, now);
-    return whole || s->events != events || drum_versions(s) != drums;
+    bool complete = scene_complete_poses(s, now);
+    return complete || s->events != events || drum_versions(s) != drums;
 }

@@ -1,35 +1,30 @@
-/// words.c: one table of addresses.
+/// addresses.c: one table of addresses.
 ///
-///     /himc/body      segment x y z qw qx qy qz       its joint (m), orientation
+///     /himc/body      segment x y z qw qx qy qz       joint (m), orientation
 ///     /himc/targets   hand x y z                      (m)
 ///     /himc/strike    time hand drum x y velocity force duration nuance ...
 ///     /himc/beat      beat
 ///     /himc/status    name value ...
-///     /himc/pose      (an empty mark before the bodies is allowed)
+///     /himc/pose      (allowed before the bodies, without effect)
 ///     /membrane/NAME/head    amplitude ...            (m), in the order of Bessel's zeros
 ///     /membrane/NAME/place   x y z tilt radius        (m, rad)
 ///     /viewer/camera, /viewer/show, ...               for the page: see docs/viewer.md
 ///
-/// A performer may put a name into its addresses, /himc/NAME/body, to share a port with others.
-/// Numbers may be of any numeric OSC type but must be finite. Types are written n for a number, s
-/// for a word, * for anything that may follow.
-#include "words.h"
+/// A performer that shares its port with others puts a name into its addresses, /himc/NAME/body.
+/// Numbers may have any numeric OSC type but must be finite. Types are written n for a number, s
+/// for a word, * for any further atoms.
+#include "addresses.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define FAR 1000.0 // no coordinate is larger (m)
+#define LARGEST_COORDINATE 1000.0 // (m); chosen: anything larger is an error of the sender
 
-static const char *const segments[SCENE_SEGMENTS] = {
-    "pelvis",         "trunk",           "neck",           "head",
-    "left-upper-arm", "right-upper-arm", "left-forearm",   "right-forearm",
-    "left-hand",      "right-hand",      "left-stick",     "right-stick",
-    "left-upper-leg", "right-upper-leg", "left-lower-leg", "right-lower-leg",
-    "left-foot",      "right-foot",      "left-toes",      "right-toes"};
+static const char *const segments[SCENE_SEGMENTS] = {SKELETON_SEGMENT_NAMES};
 
-/// A message being heard.
-typedef struct heard {
+/// A message with its sender.
+typedef struct received {
     scene *s;
     char key[SCENE_KEY];
     char name[SCENE_NAME]; // the middle of the address: a performer's or drum's name
@@ -38,20 +33,21 @@ typedef struct heard {
     lo_arg **args;
     int count;
     double now;
-} heard;
+} received;
 
-typedef struct word {
-    const char *room, *what, *types;
-    bool (*hear)(heard *h); // false if malformed
-} word;
+/// /group/what or /group/NAME/what
+typedef struct address {
+    const char *group, *what, *types;
+    bool (*act)(received *h); // false if malformed
+} address;
 
-// liblo keeps atoms at multiples of 4 bytes, so its union must not be looked into
-static const char *text(const heard *h, int i)
+// liblo aligns atoms to 4 bytes only, so members of its union must not be read directly
+static const char *text(const received *h, int i)
 {
     return (const char *)h->args[i];
 }
 
-static double number(const heard *h, int i)
+static double number(const received *h, int i)
 {
     return (double)lo_hires_val((lo_type)h->types[i], h->args[i]);
 }
@@ -66,8 +62,8 @@ static bool is_string(char type)
     return type == LO_STRING || type == LO_SYMBOL;
 }
 
-// a word for JSON: without what would end a string, cut to `size`; names in use are plain
-static void plain(char *out, size_t size, const char *from)
+// copies a word for JSON, cut to `size`; '?' replaces characters that JSON would have to escape
+static void json_word(char *out, size_t size, const char *from)
 {
     size_t i = 0;
     for (; i + 1 < size && from[i]; i++)
@@ -75,8 +71,8 @@ static void plain(char *out, size_t size, const char *from)
     out[i] = 0;
 }
 
-// types as wanted, numbers finite
-static bool fits(const heard *h, const char *wanted)
+// types as in the table, numbers finite
+static bool types_match(const received *h, const char *wanted)
 {
     int i = 0;
     for (; wanted[i] && wanted[i] != '*'; i++)
@@ -87,10 +83,10 @@ static bool fits(const heard *h, const char *wanted)
     return wanted[i] == '*' || i == h->count;
 }
 
-static bool near(const heard *h, int first, int count)
+static bool in_range(const received *h, int first, int count)
 {
     for (int i = first; i < first + count; i++)
-        if (fabs(number(h, i)) > FAR)
+        if (fabs(number(h, i)) > LARGEST_COORDINATE)
             return false;
     return true;
 }
@@ -108,7 +104,7 @@ static int find_segment(const char *name)
     return -1;
 }
 
-static bool hear_body(heard *h)
+static bool on_body(received *h)
 {
     int segment = find_segment(text(h, 0));
     float body[7];
@@ -117,7 +113,7 @@ static bool hear_body(heard *h)
         body[i] = (float)number(h, 1 + i);
     for (int i = 3; i < 7; i++)
         norm += (double)body[i] * (double)body[i];
-    if (segment < 0 || !near(h, 1, 3) || norm < 0.5 || norm > 2)
+    if (segment < 0 || !in_range(h, 1, 3) || norm < 0.5 || norm > 2)
         return false;
     for (int i = 3; i < 7; i++)
         body[i] /= (float)sqrt(norm);
@@ -127,16 +123,16 @@ static bool hear_body(heard *h)
     return true;
 }
 
-static bool hear_pose(heard *h)
+static bool on_pose(received *h)
 {
     (void)h;
     return true;
 }
 
-static bool hear_targets(heard *h)
+static bool on_targets(received *h)
 {
     int hand = find_hand(text(h, 0));
-    if (hand < 0 || !near(h, 1, 3))
+    if (hand < 0 || !in_range(h, 1, 3))
         return false;
     scene_performer *p = scene_find_performer(h->s, h->key, h->now);
     for (int i = 0; p && i < 3; i++)
@@ -146,38 +142,39 @@ static bool hear_targets(heard *h)
     return true;
 }
 
-static bool hear_strike(heard *h)
+static bool on_strike(received *h)
 {
     char drum[SCENE_NAME], nuance[SCENE_NAME];
-    if (find_hand(text(h, 1)) < 0 || !near(h, 3, 2))
+    if (find_hand(text(h, 1)) < 0 || !in_range(h, 3, 2))
         return false;
-    plain(drum, sizeof drum, text(h, 2));
-    plain(nuance, sizeof nuance, text(h, 8));
-    scene_say(h->s, h->now,
-              "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
-              "\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
-              "\"y\":%.5f,\"velocity\":%.4g,\"force\":%.5g,\"duration\":%.5g,\"nuance\":\"%s\"}",
-              h->key, number(h, 0), text(h, 1), drum, number(h, 3), number(h, 4), number(h, 5),
-              number(h, 6), number(h, 7), nuance);
+    json_word(drum, sizeof drum, text(h, 2));
+    json_word(nuance, sizeof nuance, text(h, 8));
+    scene_add_event(
+        h->s, h->now,
+        "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
+        "\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
+        "\"y\":%.5f,\"velocity\":%.4g,\"force\":%.5g,\"duration\":%.5g,\"nuance\":\"%s\"}",
+        h->key, number(h, 0), text(h, 1), drum, number(h, 3), number(h, 4), number(h, 5),
+        number(h, 6), number(h, 7), nuance);
     return true;
 }
 
-static bool hear_beat(heard *h)
+static bool on_beat(received *h)
 {
-    scene_say(h->s, h->now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key,
-              number(h, 0));
+    scene_add_event(h->s, h->now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key,
+                    number(h, 0));
     return true;
 }
 
-// all atoms as a JSON array; false if there is one that JSON cannot say
-static bool list(const heard *h, char *out, size_t size)
+// all atoms as the elements of a JSON array; false if JSON cannot express one of them
+static bool json_list(const received *h, char *out, size_t size)
 {
     size_t used = 0;
     for (int i = 0; i < h->count; i++) {
         char atom[64];
         if (is_string(h->types[i])) {
             char clean[48];
-            plain(clean, sizeof clean, text(h, i));
+            json_word(clean, sizeof clean, text(h, i));
             snprintf(atom, sizeof atom, "\"%s\"", clean);
         } else if (is_number(h->types[i]) && isfinite(number(h, i)))
             snprintf(atom, sizeof atom, "%.7g", number(h, i));
@@ -191,27 +188,28 @@ static bool list(const heard *h, char *out, size_t size)
     return true;
 }
 
-static bool hear_status(heard *h)
+static bool on_status(received *h)
 {
     char values[1000] = "";
-    if (!list(h, values, sizeof values))
+    if (!json_list(h, values, sizeof values))
         return false;
-    scene_say(h->s, h->now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}", h->key,
-              values);
+    scene_add_event(h->s, h->now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}", h->key,
+                    values);
     return true;
 }
 
-static bool hear_view(heard *h)
+static bool on_view(received *h)
 {
     char values[1000] = "", what[SCENE_NAME];
-    if (!list(h, values, sizeof values))
+    if (!json_list(h, values, sizeof values))
         return false;
-    plain(what, sizeof what, h->name);
-    scene_say(h->s, h->now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what, values);
+    json_word(what, sizeof what, h->name);
+    scene_add_event(h->s, h->now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what,
+                    values);
     return true;
 }
 
-static bool hear_head(heard *h)
+static bool on_head(received *h)
 {
     for (int i = 0; i < h->count; i++)
         if (!is_number(h->types[i]) || !isfinite(number(h, i)) || fabs(number(h, i)) > 1)
@@ -226,10 +224,10 @@ static bool hear_head(heard *h)
     return true;
 }
 
-static bool hear_place(heard *h)
+static bool on_place(received *h)
 {
     double radius = number(h, 4);
-    if (!near(h, 0, 3) || fabs(number(h, 3)) > 2 || radius < 0.02 || radius > 2)
+    if (!in_range(h, 0, 3) || fabs(number(h, 3)) > 2 || radius < 0.02 || radius > 2)
         return false;
     scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->now);
     if (!d)
@@ -241,14 +239,15 @@ static bool hear_place(heard *h)
     return true;
 }
 
-static const word words[] = {
-    {"himc", "body", "snnnnnnn", hear_body},   {"himc", "pose", "*", hear_pose},
-    {"himc", "targets", "snnn", hear_targets}, {"himc", "strike", "nssnnnnns*", hear_strike},
-    {"himc", "beat", "n", hear_beat},          {"himc", "status", "*", hear_status},
-    {"membrane", "head", "*", hear_head},      {"membrane", "place", "nnnnn", hear_place},
+static const address addresses[] = {
+    {"himc", "body", "snnnnnnn", on_body},   {"himc", "pose", "*", on_pose},
+    {"himc", "targets", "snnn", on_targets}, {"himc", "strike", "nssnnnnns*", on_strike},
+    {"himc", "beat", "n", on_beat},          {"himc", "status", "*", on_status},
+    {"membrane", "head", "*", on_head},      {"membrane", "place", "nnnnn", on_place},
 };
 
-// the next "/part" of an address; what follows it, or NULL if there is none or it is too long
+// copies the next "/part" of an address and returns the rest; NULL if there is none or it is too
+// long
 static const char *next_part(const char *at, char part[SCENE_NAME])
 {
     size_t length = *at == '/' ? strcspn(at + 1, "/") : 0;
@@ -259,11 +258,11 @@ static const char *next_part(const char *at, char part[SCENE_NAME])
     return at + 1 + length;
 }
 
-// "/room/name/what" or "/room/what" (then the name is empty); false if it is neither
-static bool split(const char *address, char room[SCENE_NAME], char name[SCENE_NAME],
+// "/group/name/what" or "/group/what" (then the name is empty); false if it is neither
+static bool split(const char *path, char group[SCENE_NAME], char name[SCENE_NAME],
                   char what[SCENE_NAME])
 {
-    const char *rest = next_part(address, room);
+    const char *rest = next_part(path, group);
     rest = rest ? next_part(rest, what) : NULL;
     name[0] = 0;
     if (!rest || !*rest)
@@ -273,35 +272,36 @@ static bool split(const char *address, char room[SCENE_NAME], char name[SCENE_NA
     return rest && !*rest;
 }
 
-static const word *find_word(const char *room, const char *what, bool named)
+static const address *find_address(const char *group, const char *what, bool named)
 {
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (strcmp(room, words[i].room) == 0 && strcmp(what, words[i].what) == 0 &&
-            (named || strcmp(room, "membrane") != 0))
-            return &words[i];
+    for (size_t i = 0; i < sizeof addresses / sizeof *addresses; i++)
+        if (strcmp(group, addresses[i].group) == 0 && strcmp(what, addresses[i].what) == 0 &&
+            (named || strcmp(group, "membrane") != 0))
+            return &addresses[i];
     return NULL;
 }
 
-void words_hear(scene *s, const char *key, const char *address, lo_message message, double now)
+void address_dispatch(scene *s, const char *key, const char *path, lo_message message, double now)
 {
-    static const word view = {"viewer", "", "*", hear_view};
-    char room[SCENE_NAME], name[SCENE_NAME], what[SCENE_NAME] = "";
-    heard h = {.s = s,
-               .message = message,
-               .types = lo_message_get_types(message),
-               .args = lo_message_get_argv(message),
-               .count = lo_message_get_argc(message),
-               .now = now};
-    const word *w = NULL;
-    if (split(address, room, name, what))
-        w = strcmp(room, "viewer") == 0 && !name[0] ? &view : find_word(room, what, name[0] != 0);
+    static const address view = {"viewer", "", "*", on_view};
+    char group[SCENE_NAME], name[SCENE_NAME], what[SCENE_NAME] = "";
+    received h = {.s = s,
+                  .message = message,
+                  .types = lo_message_get_types(message),
+                  .args = lo_message_get_argv(message),
+                  .count = lo_message_get_argc(message),
+                  .now = now};
+    const address *w = NULL;
+    if (split(path, group, name, what))
+        w = strcmp(group, "viewer") == 0 && !name[0] ? &view
+                                                     : find_address(group, what, name[0] != 0);
     if (!w) {
         s->count.unknown++;
         return;
     }
-    plain(h.name, sizeof h.name, w == &view ? what : name);
-    bool named = w != &view && strcmp(room, "himc") == 0 && name[0];
+    json_word(h.name, sizeof h.name, w == &view ? what : name);
+    bool named = w != &view && strcmp(group, "himc") == 0 && name[0];
     snprintf(h.key, sizeof h.key, "%.46s%s%s", key, named ? "/" : "", named ? h.name : "");
-    if (!fits(&h, w->types) || !w->hear(&h))
+    if (!types_match(&h, w->types) || !w->act(&h))
         s->count.malformed++;
 }

@@ -1,0 +1,17 @@
+# Sourced by the tests of the page: builds the sender and renders the motion it sends, or prints an
+# ignored test and ends where the browser is missing.
+: "${HIMC_BUILD:=build}" "${CC:=gcc}"
+export HIMC_BUILD
+dir=$HIMC_BUILD/tests/viewer
+for need in python3 chromedriver; do
+    if [ ! -x "$HIMC_BUILD/bin/himc-viewer" ] || ! command -v $need >/dev/null; then
+        echo "$0:0:$(basename "$0" .sh):IGNORE: needs what tools/deps-viewer.txt and tools/deps-browser.txt list"
+        echo "1 Tests 0 Failures 1 Ignored"
+        exit 0
+    fi
+done
+mkdir -p "$dir"
+"$CC" -std=c17 -O2 -Wall -Wextra -Wpedantic -Ilib tests/viewer/sender.c "$HIMC_BUILD/libhimc.a" \
+    -Wl,--as-needed -lode -llo -lsndfile -llapacke -llapack -lblas -lpthread -lm -o "$dir/sender" || exit 1
+"$HIMC_BUILD/bin/himc" render patches/improvisation.txt -o "$dir/play.wav" \
+    --motion "$dir/motion.csv" --strokes "$dir/strokes.csv" >/dev/null 2>&1 || exit 1
