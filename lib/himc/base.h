@@ -14,6 +14,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/// HIMC_BEGIN and HIMC_END stand around the declarations of each public header: C linkage for C++,
+/// and symbols that the shared library shows.
+#ifdef __cplusplus
+#define HIMC_BEGIN                                     \
+    _Pragma("GCC visibility push(default)") extern "C" \
+    {
+#define HIMC_END \
+    }            \
+    _Pragma("GCC visibility pop")
+#else
+#define HIMC_BEGIN _Pragma("GCC visibility push(default)")
+#define HIMC_END _Pragma("GCC visibility pop")
+#endif
+
+HIMC_BEGIN
+
 /// Marks a function that is safe in an audio callback; a test with its own malloc checks this.
 #define HIMC_RT
 
@@ -71,5 +87,7 @@ typedef struct himc_head_frame {
 /// The body's rigid segments and the ball joints between them (body.h names them).
 #define HIMC_SEGMENTS 20
 #define HIMC_JOINTS (HIMC_SEGMENTS - 1)
+
+HIMC_END
 
 #endif

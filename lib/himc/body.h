@@ -24,6 +24,8 @@
 
 #include "himc/vec.h"
 
+HIMC_BEGIN
+
 // Skeleton: the constant table
 
 /// The segments; of a pair the left one is even, the right one follows.
@@ -310,5 +312,7 @@ HIMC_RT void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_bod
 HIMC_RT double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state *state,
                                    const himc_articulation *articulation, himc_hand hand,
                                    himc_vec3 direction);
+
+HIMC_END
 
 #endif

@@ -7,6 +7,8 @@
 
 #include "himc/base.h"
 
+HIMC_BEGIN
+
 typedef enum himc_atom_kind { HIMC_ATOM_NUMBER, HIMC_ATOM_SYMBOL } himc_atom_kind;
 
 /// A number or a word, as Pd and OSC send them. `symbol` is borrowed.
@@ -149,5 +151,7 @@ typedef enum himc_file_use { HIMC_FILE_NONE, HIMC_FILE_READ, HIMC_FILE_WRITE } h
 
 /// What a command does with the file it names; `*atom` is the index of the file's name.
 HIMC_RT himc_file_use himc_command_file(const himc_command *command, int *atom);
+
+HIMC_END
 
 #endif

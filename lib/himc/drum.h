@@ -11,6 +11,8 @@
 
 #include "himc/command.h"
 
+HIMC_BEGIN
+
 typedef struct himc_drum himc_drum;
 typedef struct himc_membrane himc_membrane; ///< membrane.h
 
@@ -122,5 +124,7 @@ typedef struct himc_drum_driver {
 /// False if another performer drives the drum already. A driver with performer NULL gives it back.
 bool himc_drum_set_driver(himc_drum *drum, himc_drum_driver driver);
 HIMC_RT himc_drum_driver himc_drum_get_driver(const himc_drum *drum);
+
+HIMC_END
 
 #endif

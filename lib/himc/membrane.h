@@ -11,6 +11,8 @@
 #include "himc/base.h"
 #include "himc/ranges.h"
 
+HIMC_BEGIN
+
 /// A head of masses and springs, read from a file.
 typedef struct himc_grid himc_grid;
 
@@ -214,5 +216,7 @@ HIMC_RT void himc_contact_step(himc_membrane *membrane, himc_stick *const *stick
 
 /// Energy in a stick and its contact: m v^2/2 + k c^(alpha+1)/(alpha+1) (J); gravity not counted.
 HIMC_RT double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick);
+
+HIMC_END
 
 #endif

@@ -11,6 +11,8 @@
 
 #include "himc/body.h"
 
+HIMC_BEGIN
+
 // Takes.
 //
 // The points are in metres, z up, and rotated so that the performer faces along x; the origin stays
@@ -219,5 +221,7 @@ bool himc_performance_play_player(himc_performance *performance, himc_take *take
                                   himc_player *player, const char *name, himc_error *error);
 /// Offset from the coordinates of the take being played to the world's (m).
 himc_vec3 himc_performance_take_offset(const himc_performance *performance);
+
+HIMC_END
 
 #endif

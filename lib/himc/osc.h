@@ -16,6 +16,8 @@
 
 #include "himc/performance.h"
 
+HIMC_BEGIN
+
 #define HIMC_OSC_PORT 9000  ///< default port of `himc serve`; chosen
 #define HIMC_VMC_PORT 39539 ///< default port of programs that show avatars (protocol.vmc.info)
 #define HIMC_OSC_LINE 512   ///< longest line (bytes)
@@ -77,5 +79,7 @@ typedef struct himc_osc_counts {
 } himc_osc_counts;
 
 HIMC_RT himc_osc_counts himc_osc_count(const himc_osc *osc);
+
+HIMC_END
 
 #endif

@@ -11,6 +11,8 @@
 #include "himc/ranges.h"
 #include "himc/score.h"
 
+HIMC_BEGIN
+
 typedef struct himc_performance_config {
     double sample_rate;  ///< (Hz) 8000 .. 192000, default 48000
     double physics_rate; ///< (Hz) 500 .. 48000, default 10000; never above sample_rate
@@ -145,5 +147,7 @@ HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *
 /// Several lines about the state (mode, law, rates, drums, player, transport), for `info`.
 void himc_performance_describe(const himc_performance *performance,
                                void (*line)(void *, const char *), void *user);
+
+HIMC_END
 
 #endif

@@ -10,6 +10,8 @@
 #include "himc/command.h"
 #include "himc/ranges.h"
 
+HIMC_BEGIN
+
 #define HIMC_TEMPO 100 ///< default (beats per minute); chosen: a walking pace
 
 typedef struct himc_tempo_change {
@@ -48,5 +50,7 @@ HIMC_RT double himc_score_seconds(const himc_tempo_change *tempi, int count, dou
 
 /// The inverse of himc_score_seconds.
 HIMC_RT double himc_score_beat(const himc_tempo_change *tempi, int count, double seconds);
+
+HIMC_END
 
 #endif

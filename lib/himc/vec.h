@@ -10,6 +10,8 @@
 
 #include <math.h>
 
+HIMC_BEGIN
+
 /// A quaternion w + x i + y j + z k.
 typedef struct himc_quat {
     double w, x, y, z;
@@ -24,28 +26,33 @@ typedef struct himc_mat3 {
 
 static inline himc_vec3 himc_vec3_make(double x, double y, double z)
 {
-    return (himc_vec3){x, y, z};
+    himc_vec3 result = {x, y, z};
+    return result;
 }
 
 static inline himc_vec3 himc_vec3_add(himc_vec3 a, himc_vec3 b)
 {
-    return (himc_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+    himc_vec3 result = {a.x + b.x, a.y + b.y, a.z + b.z};
+    return result;
 }
 
 static inline himc_vec3 himc_vec3_sub(himc_vec3 a, himc_vec3 b)
 {
-    return (himc_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+    himc_vec3 result = {a.x - b.x, a.y - b.y, a.z - b.z};
+    return result;
 }
 
 static inline himc_vec3 himc_vec3_scale(himc_vec3 a, double s)
 {
-    return (himc_vec3){a.x * s, a.y * s, a.z * s};
+    himc_vec3 result = {a.x * s, a.y * s, a.z * s};
+    return result;
 }
 
 /// a + s b.
 static inline himc_vec3 himc_vec3_madd(himc_vec3 a, double s, himc_vec3 b)
 {
-    return (himc_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+    himc_vec3 result = {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+    return result;
 }
 
 static inline double himc_vec3_dot(himc_vec3 a, himc_vec3 b)
@@ -55,7 +62,8 @@ static inline double himc_vec3_dot(himc_vec3 a, himc_vec3 b)
 
 static inline himc_vec3 himc_vec3_cross(himc_vec3 a, himc_vec3 b)
 {
-    return (himc_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    himc_vec3 result = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return result;
 }
 
 /// |a|, the Euclidean norm.
@@ -81,22 +89,25 @@ static inline himc_vec3 himc_vec3_unit(himc_vec3 a)
 
 static inline himc_quat himc_quat_identity(void)
 {
-    return (himc_quat){1, 0, 0, 0};
+    himc_quat result = {1, 0, 0, 0};
+    return result;
 }
 
 /// The conjugate; of a unit quaternion the inverse rotation.
 static inline himc_quat himc_quat_conj(himc_quat q)
 {
-    return (himc_quat){q.w, -q.x, -q.y, -q.z};
+    himc_quat result = {q.w, -q.x, -q.y, -q.z};
+    return result;
 }
 
 /// The product a b: the rotation b followed by the rotation a.
 static inline himc_quat himc_quat_mul(himc_quat a, himc_quat b)
 {
-    return (himc_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-                       a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-                       a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-                       a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+    himc_quat result = {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+                        a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                        a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                        a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+    return result;
 }
 
 static inline double himc_quat_dot(himc_quat a, himc_quat b)
@@ -106,7 +117,8 @@ static inline double himc_quat_dot(himc_quat a, himc_quat b)
 
 static inline himc_quat himc_quat_scale(himc_quat q, double s)
 {
-    return (himc_quat){q.w * s, q.x * s, q.y * s, q.z * s};
+    himc_quat result = {q.w * s, q.x * s, q.y * s, q.z * s};
+    return result;
 }
 
 /// q / |q|; q must not be zero.
@@ -118,7 +130,8 @@ static inline himc_quat himc_quat_unit(himc_quat q)
 /// The vector part (x, y, z).
 static inline himc_vec3 himc_quat_vector(himc_quat q)
 {
-    return (himc_vec3){q.x, q.y, q.z};
+    himc_vec3 result = {q.x, q.y, q.z};
+    return result;
 }
 
 /// q v q^-1, the vector v rotated by the unit quaternion q.
@@ -134,7 +147,8 @@ static inline himc_quat himc_quat_exp(himc_vec3 rotation)
 {
     double angle = himc_vec3_length(rotation), half = 0.5 * angle;
     double s = angle > 1e-9 ? sin(half) / angle : 0.5;
-    return (himc_quat){cos(half), rotation.x * s, rotation.y * s, rotation.z * s};
+    himc_quat result = {cos(half), rotation.x * s, rotation.y * s, rotation.z * s};
+    return result;
 }
 
 /// The rotation vector (rad) of a unit quaternion, the shorter way round: |result| <= pi.
@@ -153,9 +167,10 @@ static inline himc_vec3 himc_quat_log(himc_quat q)
 static inline himc_mat3 himc_mat3_from_quat(himc_quat q)
 {
     double w = q.w, x = q.x, y = q.y, z = q.z;
-    return (himc_mat3){{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+    himc_mat3 result = {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                         {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                         {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+    return result;
 }
 
 /// The unit quaternion of a rotation matrix (Shepperd 1978: from the largest component).
@@ -164,30 +179,34 @@ himc_quat himc_quat_from_mat3(himc_mat3 a);
 /// The rotation matrix with the given orthonormal, right-handed axes as its columns.
 static inline himc_mat3 himc_mat3_from_axes(himc_vec3 x, himc_vec3 y, himc_vec3 z)
 {
-    return (himc_mat3){{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+    himc_mat3 result = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+    return result;
 }
 
 /// The product a v.
 static inline himc_vec3 himc_mat3_apply(const himc_mat3 *a, himc_vec3 v)
 {
-    return (himc_vec3){a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
-                       a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
-                       a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z};
+    himc_vec3 result = {a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
+                        a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
+                        a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z};
+    return result;
 }
 
 /// The product a' v, a' the transpose of a.
 static inline himc_vec3 himc_mat3_apply_transposed(const himc_mat3 *a, himc_vec3 v)
 {
-    return (himc_vec3){a->m[0][0] * v.x + a->m[1][0] * v.y + a->m[2][0] * v.z,
-                       a->m[0][1] * v.x + a->m[1][1] * v.y + a->m[2][1] * v.z,
-                       a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
+    himc_vec3 result = {a->m[0][0] * v.x + a->m[1][0] * v.y + a->m[2][0] * v.z,
+                        a->m[0][1] * v.x + a->m[1][1] * v.y + a->m[2][1] * v.z,
+                        a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
+    return result;
 }
 
 /// R diag(d) R' v: scales v by d.x, d.y, d.z along the columns of the rotation matrix R.
 static inline himc_vec3 himc_mat3_scale_along(const himc_mat3 *r, himc_vec3 d, himc_vec3 v)
 {
     himc_vec3 local = himc_mat3_apply_transposed(r, v);
-    return himc_mat3_apply(r, (himc_vec3){d.x * local.x, d.y * local.y, d.z * local.z});
+    himc_vec3 scaled = {d.x * local.x, d.y * local.y, d.z * local.z};
+    return himc_mat3_apply(r, scaled);
 }
 
 /// The product a b.
@@ -210,8 +229,11 @@ static inline himc_mat3 himc_mat3_inverse_symmetric(const himc_mat3 *a)
     double c12 = a->m[0][1] * a->m[0][2] - a->m[0][0] * a->m[1][2];
     double c22 = a->m[0][0] * a->m[1][1] - a->m[0][1] * a->m[0][1];
     double s = 1 / (a->m[0][0] * c00 + a->m[0][1] * c01 + a->m[0][2] * c02);
-    return (himc_mat3){
+    himc_mat3 result = {
         {{c00 * s, c01 * s, c02 * s}, {c01 * s, c11 * s, c12 * s}, {c02 * s, c12 * s, c22 * s}}};
+    return result;
 }
+
+HIMC_END
 
 #endif
