@@ -1,4 +1,4 @@
-/// osc.h: a performance on the network, as OSC over UDP: commands in; poses, strikes and states out.
+/// osc.h: a performance on the network, as OSC over UDP: commands in; poses, strikes, states out.
 ///
 /// A himc_osc has a thread of its own. Between it and the host (an audio callback, Pd's scheduler)
 /// are wait-free rings of fixed size: the host never waits for the network, and records that do not

@@ -109,6 +109,7 @@ static void test_the_audio_side_takes_microseconds(void)
     say("/himc/play", "");
     play(0.3);
     double longest = 0;
+    int slow = 0;
     for (int i = 0; i < 1000; i++) {
         himc_performance_process(performance, 96, (double *[HIMC_HANDS]){NULL, NULL});
         double begun = system_seconds();
@@ -117,8 +118,11 @@ static void test_the_audio_side_takes_microseconds(void)
             himc_osc_event(osc, &event);
         himc_osc_publish(osc, performance, 0);
         himc_osc_line(osc, line);
-        longest = fmax(longest, system_seconds() - begun);
+        double took = system_seconds() - begun;
+        slow += took > 1e-4;
+        longest = fmax(longest, took);
     }
+    TEST_ASSERT_TRUE_MESSAGE(slow < 100, "a tenth of the calls takes 100 us or more");
     printf("audio side: longest call %.1f us\n", 1e6 * longest);
 }
 
