@@ -25,6 +25,7 @@ enum {
     CLIENTS = 32,         // more than one room has screens
     CHUNK = 32768,        // of a page in one write (bytes)
     BATCH = 512,          // packets received at once, so that a flood leaves time for the pages
+    CLIENT_TIMEOUT = 20,  // of a client that takes no more of a page (s)
     PAUSE = 3,            // (ms), a tenth of the time between poses: waking up costs most
     NAME_MAX_LENGTH = 256 // of a host with its zero; longer ones are refused
 };
@@ -157,6 +158,8 @@ static int send_chunk(struct lws *wsi, session *own)
     memcpy(w->out + LWS_PRE, own->at, size);
     own->at += size;
     bool last = own->at == own->end;
+    // the limit is for a client without progress, not for the whole file
+    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, CLIENT_TIMEOUT);
     if (lws_write(wsi, w->out + LWS_PRE, size, last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < 0)
         return -1;
     if (!last)

@@ -529,6 +529,25 @@ def test_a_slow_reader_gets_the_newest_and_stalls_nobody():
         assert v.memory() - before < 4 << 20
 
 
+def test_a_slow_client_gets_the_whole_motion():
+    """At full length the transfer takes longer than the 20 s after which an idle client is dropped."""
+    seconds = 45 if os.environ.get("HIMC_LONG") else 1
+    with tempfile.NamedTemporaryFile("w", suffix=".csv") as motion:
+        motion.write("time_s,x\n" + "1,2\n" * 4000000)
+        motion.flush()
+        with Viewer("--play", motion.name) as v, socket.socket() as s:
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
+            s.settimeout(WAIT)
+            s.connect(("127.0.0.1", v.http))
+            s.sendall(f"GET /play.csv HTTP/1.1\r\nHost: 127.0.0.1:{v.http}\r\n\r\n".encode())
+            want, got = os.path.getsize(motion.name), 0
+            while got < want:  # and the headers
+                piece = s.recv(want // 100)
+                assert piece, f"{got} of {want} bytes"
+                got += len(piece)
+                time.sleep(seconds * len(piece) / want)
+
+
 def error_line(*options):
     done = subprocess.run(
         [VIEWER, "--no-browser", *options], capture_output=True, text=True, timeout=WAIT

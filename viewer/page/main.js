@@ -229,7 +229,7 @@ actions.exaggerate(exaggeration);
 const stream = new Stream(on);
 fetch("/play.csv")
     .then(answer => (answer.ok ? answer.text().then(text => play(text, "playback")) : null))
-    .catch(() => null);
+    .catch(error => panel.note(`play.csv: ${error.message}`));
 next();
 
 // For tests and pictures: joints and tips read back from the scene (m). `held` stops the frames,
