@@ -362,9 +362,10 @@ static void test_stick_and_body_stay_together_and_the_plan_joins_the_tip(void)
     for (int i = 0; i < 4 * 48000; i += 4) {
         himc_performance_process(p, 4, NULL);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            const touch *c = &p->touch[hand];
-            himc_vec3 d = himc_vec3_sub(p->state.tip[hand], p->reference.tip[hand].x);
-            himc_vec3 v = himc_vec3_sub(p->state.tip_velocity[hand], p->reference.tip[hand].v);
+            const stick_contact *c = &p->contacts.hand[hand];
+            himc_vec3 d = himc_vec3_sub(p->body->state.tip[hand], p->motion->reference.tip[hand].x);
+            himc_vec3 v =
+                himc_vec3_sub(p->body->state.tip_velocity[hand], p->motion->reference.tip[hand].v);
             if (c->touching)
                 parted = fmax(parted, fabs(c->offset));
             if (c->touching || c->released)

@@ -38,8 +38,8 @@ static himc_vec3 captured(const comparison *c, int which, double t)
 static void compare(void *user, const himc_tick *tick)
 {
     comparison *c = user;
-    const himc_track *track = c->performance->track;
-    double t = tick->time - c->performance->track_start, at[3];
+    const himc_track *track = c->performance->motion->track;
+    double t = tick->time - c->performance->motion->track_start, at[3];
     if (!(t >= -0.5 * EASE && t <= himc_track_length(track)))
         return;
     himc_track_warp(track, t, at);

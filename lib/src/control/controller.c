@@ -17,7 +17,9 @@
 #include "control/limit_torque.h"
 #include "control/strength.h"
 
-#define PD_STIFFER 3.0 // the default gains' frequencies above the table's
+// chosen: the published law without gravity lags by a third of a stroke at the table's frequencies
+#define PD_STIFFER 3.0             // usual gains' frequencies over the table below
+#define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
                     himc_vec3 normal, double remain)
@@ -50,7 +52,7 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
     double h = c->step;
     himc_vec3 angle = himc_vec3_madd(e->angle[j], h, e->rate[j]);
     himc_vec3 rate = himc_vec3_scale(spin, -1);
-    if (c->law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
+    if (c->config.law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
         rate = himc_vec3_madd(e->rate[j], h, e->acceleration[j]);
         angle = himc_vec3_madd(angle, h * h, e->acceleration[j]);
     }
@@ -98,7 +100,7 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
     himc_vec3 resistance[HIMC_JOINTS], relative[HIMC_JOINTS], force[HIMC_HANDS] = {{0, 0, 0}};
     for (int j = 0; j < HIMC_JOINTS; j++)
         torque[j] = himc_vec3_make(0, 0, 0);
-    if (c->law == HIMC_LAW_FEEDFORWARD)
+    if (c->config.law == HIMC_LAW_FEEDFORWARD)
         himc_inverse_dynamics(skeleton, s, NULL, true, torque);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 known = servo_known(c, s, e, himc_relative_spin(skeleton, s, j), j);
@@ -131,8 +133,8 @@ static void implicit_rates(double ks, double kd, double step, double rate[2])
 static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
                           const tracking_error *e)
 {
-    double w = 2 * HIMC_PI * c->bandwidth, x[2], y[2], z[2];
-    if (!c->gain_set[j])
+    double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
+    if (!c->config.gain_set[j])
         return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
     himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
     const himc_mat3 *r = &s->rotation[j + 1];
@@ -159,12 +161,12 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_arm_jacobian jacobian[HIMC_HANDS];
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
-        if (c->mode == HIMC_PIPELINE_HIMC)
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
+        if (c->config.mode == HIMC_PIPELINE_HIMC)
             himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand,
                                     &jacobian[hand], &e);
     }
-    if (c->law == HIMC_LAW_COMPUTED_TORQUE) {
+    if (c->config.law == HIMC_LAW_COMPUTED_TORQUE) {
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
@@ -210,30 +212,46 @@ static double servo_frequency(int joint)
     return PD_STIFFER * (is_arm ? arm[k] : 5);
 }
 
-void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
-                          const himc_body_state *posture)
+himc_controller_config himc_controller_config_default(void)
 {
-    *c = (himc_controller){
+    return (himc_controller_config){
+        .mode = HIMC_PIPELINE_HIMC,
         .law = HIMC_LAW_COMPUTED_TORQUE,
-        .damping = 0.01,
+        .solver = HIMC_SOLVER_DLS,
+        .damping = 0.01, // chosen: keeps a stretched arm calm, costs the tip 0.1 % elsewhere
         .weight = {1, 1, 1, 1},
-        .bandwidth = 20,
-        .step = 1e-4,
+        .bandwidth = 20, // chosen: above the 10 Hz of a stroke, far below the physics rate
     };
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_vec3 i = hanging_inertia(skeleton, posture, j);
-        double w = 2 * HIMC_PI * servo_frequency(j);
-        c->inertia[j] = i;
-        c->gain[j].stiffness = himc_vec3_scale(i, w * w);
-        c->gain[j].damping = himc_vec3_scale(i, 2 * w);
-    }
 }
 
-void himc_controller_set_gain(himc_controller *c, int joint, double stiffness, double damping)
+himc_gain himc_controller_usual_gain(const himc_controller *c, int joint)
+{
+    himc_vec3 i = c->inertia[joint];
+    double w = 2 * HIMC_PI * servo_frequency(joint);
+    return (himc_gain){himc_vec3_scale(i, w * w), himc_vec3_scale(i, 2 * w)};
+}
+
+void himc_controller_configure(himc_controller *c, const himc_controller_config *config)
+{
+    c->config = *config;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        c->gain[j] = config->gain_set[j] ? config->gain[j] : himc_controller_usual_gain(c, j);
+}
+
+void himc_controller_init(himc_controller *c, const himc_controller_config *config,
+                          const himc_skeleton *skeleton, const himc_body_state *posture)
+{
+    *c = (himc_controller){.step = 1 / USUAL_PHYSICS_RATE};
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        c->inertia[j] = hanging_inertia(skeleton, posture, j);
+    himc_controller_configure(c, config);
+}
+
+himc_gain himc_controller_gain(const himc_controller *c, int joint, double stiffness,
+                               double damping)
 {
     himc_vec3 i = c->inertia[joint];
     double flexion = i.y;
-    c->gain[joint].stiffness = himc_vec3_scale(i, stiffness / flexion);
-    c->gain[joint].damping = himc_vec3_scale(i, damping / flexion);
-    c->gain_set[joint] = true;
+    return (himc_gain){himc_vec3_scale(i, stiffness / flexion),
+                       himc_vec3_scale(i, damping / flexion)};
 }

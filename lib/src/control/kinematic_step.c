@@ -32,7 +32,7 @@ void himc_controller_kinematic_step(const himc_controller *c, const himc_skeleto
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian jacobian;
-        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian);
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian);
         himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian,
                                 &e);
     }

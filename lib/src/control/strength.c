@@ -18,8 +18,9 @@ static double measured(int joint)
     return joint < 3 ? spine[joint] : limb[(joint - 3) / 2];
 }
 
-void himc_controller_set_human_strength(himc_controller *c, double mass)
+void himc_controller_set_human_strength(himc_controller_config *c, double mass)
 {
+    c->human_strength = true;
     for (int j = 0; j < HIMC_JOINTS; j++)
         c->strength[j] = measured(j) * mass / MEASURED_MASS;
 }
@@ -27,7 +28,7 @@ void himc_controller_set_human_strength(himc_controller *c, double mass)
 void himc_strength_apply(const himc_controller *c, himc_vec3 torque[HIMC_JOINTS])
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        double asked = himc_vec3_length(torque[j]), most = c->strength[j];
+        double asked = himc_vec3_length(torque[j]), most = c->config.strength[j];
         bool weak = most > 0 && asked > most;
         if (weak)
             torque[j] = himc_vec3_scale(torque[j], most / asked);

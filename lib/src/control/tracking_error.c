@@ -48,7 +48,7 @@ typedef struct arm_tasks {
 
 static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
 {
-    const himc_controller *c = tasks->controller;
+    const himc_controller_config *c = &tasks->controller->config;
     int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
     himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
     tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
@@ -60,7 +60,7 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
 // for the elbow's place comes first; `demand` is linear in all of it
 static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
 {
-    const himc_controller *c = tasks->controller;
+    const himc_controller_config *c = &tasks->controller->config;
     himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     himc_arm_gather(all, tasks->hand, posture);

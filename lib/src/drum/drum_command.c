@@ -10,6 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
+// chosen: a room; larger numbers are mistakes of unit
+#define FARTHEST_PLACE 10.0 // on each axis (m)
+
 // Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
 // softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
 // g.
@@ -158,18 +161,24 @@ static bool set_mallet(himc_drum *drum, const himc_command *c, himc_error *error
     return true;
 }
 
+bool himc_drum_check_place(himc_vec3 center, himc_error *error)
+{
+    return himc_check_range("place X", center.x, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error) &&
+           himc_check_range("place Y", center.y, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error) &&
+           himc_check_range("place Z", center.z, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error);
+}
+
 static bool set_place(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    static const char *const axes[] = {"place X", "place Y", "place Z"};
     if (!numbers(c, "place", c->count == 4 ? 4 : 3, error))
         return false;
-    for (int i = 0; i < 3; i++)
-        if (!himc_check_range(axes[i], number(c, i), -10, 10, "m", error))
-            return false;
+    himc_vec3 center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
+    if (!himc_drum_check_place(center, error))
+        return false;
     double tilt = c->count == 4 ? number(c, 3) : drum->place.tilt;
     if (!himc_check_range("place tilt", tilt, -1.2, 1.2, "rad", error))
         return false;
-    drum->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
+    drum->place.center = center;
     drum->place.tilt = tilt;
     drum->placed = true;
     drum->revision++;

@@ -70,6 +70,11 @@ HIMC_RT void himc_drum_keep_touch(himc_drum *drum, const himc_stick *stick);
 /// Level of the head's own sound in the coming sample.
 HIMC_RT double himc_drum_loudness(himc_drum *drum);
 
+/// Whether a drum may stand there: within 10 m of the origin on each axis.
+bool himc_drum_check_place(himc_vec3 center, himc_error *error);
+/// Brings the head to rest, without a click, and drops the drum's own mallets and waiting strikes.
+HIMC_RT void himc_drum_rest(himc_drum *drum);
+
 /// The preset's numbers; false if there is none of that name.
 bool himc_drum_mallet_preset(const char *name, himc_mallet_head *head);
 
