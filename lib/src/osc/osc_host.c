@@ -42,7 +42,8 @@ static void put(float out[3], himc_vec3 v)
 // whether one of `hz` a second is due, and then when the next will be
 static bool due(double *next, int hz, double t)
 {
-    if (hz <= 0 || (t < *next && *next - t < 2))
+    // after a `reset` time begins again: what is due far ahead is due now
+    if (hz <= 0 || (t < *next && *next - t < 2.0 / hz))
         return false;
     *next = fmax(*next + 1.0 / hz, t + 0.5 / hz);
     return true;

@@ -41,9 +41,17 @@ static bool is_clear(const performance_drums *d, int index, himc_vec3 center)
     return true;
 }
 
+// false once its owner has moved a drum
+static bool is_where_put(const drum_slot *slot)
+{
+    himc_vec3 now = himc_drum_head_frame(slot->drum)->center;
+    return slot->moved && slot->placed == himc_drum_is_placed(slot->drum) && now.x == slot->at.x &&
+           now.y == slot->at.y && now.z == slot->at.z;
+}
+
 static void stand(drum_slot *slot, himc_vec3 center)
 {
-    if (!slot->moved) {
+    if (!is_where_put(slot)) {
         slot->found = himc_drum_head_frame(slot->drum)->center;
         slot->placed = himc_drum_is_placed(slot->drum);
         slot->moved = true;
@@ -118,15 +126,6 @@ bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_err
     return true;
 }
 
-// to where its owner has put it; one that the owner has moved since stays
-static void put_back(drum_slot *slot)
-{
-    himc_vec3 now = himc_drum_head_frame(slot->drum)->center;
-    bool same = now.x == slot->at.x && now.y == slot->at.y && now.z == slot->at.z;
-    if (slot->moved && same && slot->placed == himc_drum_is_placed(slot->drum))
-        himc_drum_stand(slot->drum, slot->found);
-}
-
 void himc_drums_put_back(performance_drums *d)
 {
     performance_drums old = *d;
@@ -137,7 +136,8 @@ void himc_drums_put_back(performance_drums *d)
             himc_drum_release(drum);
             continue;
         }
-        put_back(&old.slot[i]);
+        if (is_where_put(&old.slot[i]))
+            himc_drum_stand(drum, old.slot[i].found);
         himc_drum_rest(drum);
         fill_slot(d, d->count++, drum, DRUM_GIVEN);
     }

@@ -21,8 +21,8 @@ typedef struct drum_slot {
     unsigned revision;   ///< that the planner knows
     bool untold;         ///< auto-placed; the user has not been notified
     bool moved;          ///< the performer has put it somewhere else, see himc_drums_put_back
-    bool placed;         ///< himc_drum_is_placed when it was first moved ...
-    himc_vec3 found, at; ///< ... where it stood then, and where it was put last (m)
+    bool placed;         ///< himc_drum_is_placed before that ...
+    himc_vec3 found, at; ///< ... where it stood then, and where it was put (m)
 } drum_slot;
 
 /// Strokes name their drum by its slot. Slots are given up by himc_drums_put_back alone.
