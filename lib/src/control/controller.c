@@ -1,10 +1,10 @@
-/// controller.c: two stages. Errors (errors.c): for each joint what is missing in angle and rate,
-/// and the acceleration fed forward. Law: what torque that makes.
+/// controller.c: two stages. Tracking errors (tracking_error.c): for each joint the missing angle
+/// and rate, and the acceleration fed forward. Law: the torque for them.
 ///
 /// `printed` is tau = ks dq - kd q', `feedforward` tau = g(q) + ks dq + kd (q'_t - q'),
 /// `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse dynamics. While a
-/// stick touches the head all three let go of the normal: the rebound is the physics'. Joint limits
-/// win over all of it (limit_torque.c).
+/// stick touches the head all three let go of the normal: the physics makes the rebound. Joint
+/// limits win over all of it (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
 /// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
@@ -17,8 +17,7 @@
 #include "control/limit_torque.h"
 #include "control/strength.h"
 
-// chosen: the published law without gravity lags by a third of a stroke at the table's frequencies
-#define PD_STIFFER 3.0             // usual gains' frequencies over the table below
+#define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over servo_frequency's table
 #define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
@@ -44,8 +43,8 @@ static void release_acceleration(const himc_skeleton *skeleton, const himc_body_
 }
 
 // Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
-// place of the one it begins in: what is known of it. The rest, -(h kd + h^2 ks) q'', is the
-// joint's resistance.
+// place of the one it begins in: the known part. The rest, -(h kd + h^2 ks) q'', is the joint's
+// resistance.
 static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
                              const tracking_error *e, himc_vec3 spin, int j)
 {
@@ -61,8 +60,8 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
                          himc_mat3_scale_along(r, c->gain[j].damping, rate));
 }
 
-// the forces at released tips that stop their acceleration along the normal, m a, where the mass is
-// that of joints with servos
+// the forces at released tips that stop their acceleration along the normal: m a, with the mass of
+// an arm whose joints have servos
 static void release_forces(const himc_skeleton *skeleton, const himc_body_state *s,
                            const himc_reference *reference, const himc_articulation *art,
                            const himc_vec3 *known, himc_vec3 force[HIMC_HANDS])
@@ -129,7 +128,7 @@ static void implicit_rates(double ks, double kd, double step, double rate[2])
 }
 
 // w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
-// the inertia; the bandwidth is always slow beside the step, gains need not be
+// the inertia; the bandwidth is always slow compared with the step, gains need not be
 static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
                           const tracking_error *e)
 {
@@ -145,7 +144,7 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
                          himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
 }
 
-// what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
+// the accelerations of computed torque: q''_t + 2 w (q'_t - q') + w^2 dq
 static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
                                  const tracking_error *e, himc_vec3 wanted[HIMC_JOINTS])
 {
@@ -178,7 +177,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_strength_apply(c, torque);
 }
 
-// inertia about a joint of everything that hangs on it, about the child's axes
+// inertia of all segments that hang on a joint, about the child's axes
 static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_state *s, int joint)
 {
     double sum[3] = {0, 0, 0};
@@ -204,12 +203,13 @@ static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_
     return himc_vec3_make(sum[0], sum[1], sum[2]);
 }
 
+// natural frequency of a joint's servo (Hz); chosen: the lighter the part, the faster
 static double servo_frequency(int joint)
 {
-    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18};
+    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18}, others = 5;
     int k = (joint - (HIMC_LEFT_UPPER_ARM - 1)) / 2;
     bool is_arm = joint >= HIMC_LEFT_UPPER_ARM - 1 && k < HIMC_ARM_JOINTS;
-    return PD_STIFFER * (is_arm ? arm[k] : 5);
+    return PD_STIFFNESS * (is_arm ? arm[k] : others);
 }
 
 himc_controller_config himc_controller_config_default(void)
@@ -218,9 +218,10 @@ himc_controller_config himc_controller_config_default(void)
         .mode = HIMC_PIPELINE_HIMC,
         .law = HIMC_LAW_COMPUTED_TORQUE,
         .solver = HIMC_SOLVER_DLS,
-        .damping = 0.01, // chosen: keeps a stretched arm calm, costs the tip 0.1 % elsewhere
+        .damping =
+            0.01, // chosen: far below an arm's levers of 0.3 m, so it acts near singularities
         .weight = {1, 1, 1, 1},
-        .bandwidth = 20, // chosen: above the 10 Hz of a stroke, far below the physics rate
+        .bandwidth = 20, // chosen: above the fastest strokes, far below the physics rate
     };
 }
 

@@ -1,6 +1,6 @@
-/// controller.h: the control of a physical body: joint errors by mode (`himc`, `id`), torques by
-/// law; HIMC is the cascade of the two inside every physics step (2012 paper, section 3.2,
-/// algorithm 2).
+/// controller.h: the control of a physical body: tracking errors of the joints by mode (`himc`,
+/// `id`), torques by law; HIMC is the cascade of the two inside every physics step (2012 paper,
+/// section 3.2, algorithm 2).
 #ifndef HIMC_CONTROLLER_H
 #define HIMC_CONTROLLER_H
 
@@ -10,13 +10,13 @@
 typedef enum himc_pipeline {
     HIMC_PIPELINE_HIMC, ///< tips -> inverse kinematics -> inverse dynamics (2012, pipeline 2)
     HIMC_PIPELINE_ID,   ///< joint targets -> inverse dynamics (pipeline 3)
-    HIMC_PIPELINE_IK    ///< joint targets shown as they are, no dynamics (pipeline 1)
+    HIMC_PIPELINE_IK    ///< inverse kinematics alone, no dynamics (pipeline 1)
 } himc_pipeline;
 
 typedef enum himc_law {
     HIMC_LAW_PRINTED,        ///< tau = ks (qt - q) - kd q' (2012 paper, equation 2)
     HIMC_LAW_FEEDFORWARD,    ///< gravity added, and kd (qt' - q') in place of -kd q'
-    HIMC_LAW_COMPUTED_TORQUE ///< accelerations asked for, torques by inverse dynamics; the default
+    HIMC_LAW_COMPUTED_TORQUE ///< desired accelerations, torques by inverse dynamics; the default
 } himc_law;
 
 /// Stiffness and damping of a joint's servo about the child's axes x, y, z.
@@ -66,7 +66,7 @@ typedef struct himc_controller {
 /// What the body should do now.
 typedef struct himc_reference {
     himc_target tip[HIMC_HANDS];
-    himc_posture_motion posture;  ///< joint targets of `id`; in `himc` what the null space is for
+    himc_posture_motion posture;  ///< joint targets of `id`; in `himc` the null-space target
     bool released[HIMC_HANDS];    ///< the tip is in contact: control lets go of the normal
     himc_vec3 normal[HIMC_HANDS]; ///< of the head it touches
 } himc_reference;
@@ -106,8 +106,8 @@ HIMC_RT void himc_controller_torques(const himc_controller *controller,
                                      himc_vec3 torque[HIMC_JOINTS]);
 
 /// Inverse kinematics without dynamics (2012, pipeline 1): from the state at the last step to the
-/// posture and its rates (in the parents' frames, rad/s) that are to be shown `controller->step`
-/// later, for a reference of then; `state` is left somewhere between.
+/// pose and its rates (in the parents' frames, rad/s) `controller->step` later, for the reference
+/// of that time. `state` is changed on the way and of no further use.
 HIMC_RT void himc_controller_kinematic_step(const himc_controller *controller,
                                             const himc_skeleton *skeleton,
                                             const himc_reference *reference, himc_body_state *state,
