@@ -17,7 +17,7 @@ typedef struct stick_contact {
     bool released;      ///< control lets go of the normal
     int drum;           ///< slot
     himc_stick stick;   ///< in micro-contact
-    double offset;      ///< of the micro height from the body's own tip (m)
+    double offset;      ///< of the micro height from the body's own tip (m); decays after contact
     double last_force;  ///< when there was force last (s)
     double peak_row;    ///< largest force since the last motion row (N)
     himc_strike strike; ///< being made
