@@ -1,13 +1,9 @@
 /// performance_motion.c: what the body should do now.
 ///
 /// A hand follows the take while that plays, else the planner. It is handed over where it is: the
-/// planner goes on from the tip's state, C2, and joint targets cross-fade from the old source to
-/// the new: exp(d) q, with d a quintic from their difference (angle, rate, acceleration) to zero.
-///
-/// The null space of `himc` follows a natural posture N or a player's posture regression H. Between
-/// them lies exp(s d) N, d = log(H N^-1), with a share s that goes from 0 to 1 along a quintic: so
-/// the null-space target never jumps. Its rates are taken as if d turned about one axis, which it
-/// does but for the arms' motion in that second.
+/// planner goes on from the tip's state, C2. Joint targets come from the take's postures, the
+/// natural posture or, as null-space target of `himc`, a player's posture regression; from one
+/// source to another they cross-fade (posture_crossfade.h).
 #include "performance/performance_motion.h"
 #include "base/head_frame.h"
 
@@ -18,7 +14,6 @@
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
 #define TRUNK_FORESIGHT 1.2 // chosen: a stroke further ahead does not turn the trunk yet (s)
 #define TRUNK_STEP 0.02     // longest that himc_trunk_posture_approach goes on (s)
-#define CROSSFADE 0.6       // chosen: from one source of joint targets to another (s)
 #define REPLANNED 0.02      // chosen: a stroke given up may be planned again so much later (s)
 #define LIMIT_HEIGHT 0.35   // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8     // postures in that mean
@@ -104,7 +99,7 @@ void himc_motion_take_hands_back(performance_motion *m, double t)
             tracked = true;
         }
     m->track_start = INFINITY;
-    m->crossfade.due = m->crossfade.due || tracked;
+    m->crossfade_due = m->crossfade_due || tracked;
     m->replan = true;
 }
 
@@ -220,47 +215,19 @@ static void find_posture(const performance_motion *m, const performance_settings
                            s->unbent ? NULL : tip, motion);
 }
 
-// share of the regression: 0 before it was set, 1 when it has taken over; with its derivatives
-static himc_target share_at(const performance_motion *m, double t)
-{
-    himc_target from = {.x = {m->has_regression ? 0 : 1, 0, 0}},
-                to = {.x = {m->has_regression, 0, 0}};
-    if (t >= m->regression_since + CROSSFADE)
-        return to;
-    himc_quintic q = himc_quintic_make(&from, &to, CROSSFADE);
-    return himc_quintic_at(&q, fmax(t - m->regression_since, 0));
-}
-
-static void blend(const himc_posture_motion *natural, himc_target share, int j,
-                  himc_posture_motion *m)
-{
-    double s = share.x.x, ds = share.v.x, dds = share.a.x;
-    himc_vec3 d = himc_quat_log(himc_quat_mul(m->joint[j], himc_quat_conj(natural->joint[j])));
-    himc_vec3 faster = himc_vec3_sub(m->rate[j], natural->rate[j]);
-    himc_vec3 harder = himc_vec3_sub(m->acceleration[j], natural->acceleration[j]);
-    m->joint[j] = himc_quat_mul(himc_quat_exp(himc_vec3_scale(d, s)), natural->joint[j]);
-    m->rate[j] = himc_vec3_madd(himc_vec3_madd(natural->rate[j], s, faster), ds, d);
-    m->acceleration[j] =
-        himc_vec3_madd(himc_vec3_madd(natural->acceleration[j], s, harder), 2 * ds, faster);
-    m->acceleration[j] = himc_vec3_madd(m->acceleration[j], dds, d);
-}
-
+// the posture regression in place of the natural posture
 static void follow_regression(const performance_motion *m, const performance_settings *s,
                               himc_setpoint *tick)
 {
-    himc_target tip[HIMC_REGRESSION_TAPS][HIMC_HANDS], share = share_at(m, tick->time);
-    if (s->control.mode != HIMC_PIPELINE_HIMC || share.x.x <= 0)
+    himc_target tip[HIMC_REGRESSION_TAPS][HIMC_HANDS];
+    if (s->control.mode != HIMC_PIPELINE_HIMC || !m->has_regression)
         return;
     for (int tap = 0; tap < HIMC_REGRESSION_TAPS; tap++)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             tip[tap][hand] =
                 himc_motion_planned(m, (himc_hand)hand, tick->time + tap * HIMC_REGRESSION_STEP);
-    himc_posture_motion natural = tick->posture;
     himc_posture_regression_moving(&m->regression, (const himc_target(*)[HIMC_HANDS])tip,
                                    &tick->posture);
-    if (share.x.x < 1)
-        for (int j = 0; j < HIMC_JOINTS; j++)
-            blend(&natural, share, j, &tick->posture);
 }
 
 // The player of a take holds the trunk as the take has it, not as the strokes ask: the regression's
@@ -278,49 +245,29 @@ static void fit_regression(performance_motion *m, const performance_settings *s)
 }
 
 void himc_motion_set_regression(performance_motion *m, const performance_settings *s,
-                                const himc_posture_regression *regression, bool of_take, double t)
+                                const himc_posture_regression *regression, bool of_take)
 {
     m->regression_of_take = of_take;
     if (regression)
         m->regression = *regression;
     if (m->has_regression != (regression != NULL)) {
         m->has_regression = regression != NULL;
-        m->regression_since = t;
+        m->crossfade_due = true;
         m->replan = true;
     }
     fit_regression(m, s);
 }
 
-// difference of the joint targets so far from the new ones at `t`
-static void begin_crossfade(performance_motion *m, double t, const himc_posture_motion *now)
-{
-    const himc_posture_motion *before = &m->reference.posture;
-    const himc_target rest = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    m->crossfade.due = false;
-    m->crossfade.since = t;
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_target d = {
-            himc_quat_log(himc_quat_mul(before->joint[j], himc_quat_conj(now->joint[j]))),
-            himc_vec3_sub(before->rate[j], now->rate[j]),
-            himc_vec3_sub(before->acceleration[j], now->acceleration[j])};
-        m->crossfade.offset[j] = himc_quintic_make(&d, &rest, CROSSFADE);
-    }
-}
-
 // cross-fades a tick's joint targets from the source before to this one, while that is due
 static void crossfade(performance_motion *m, himc_setpoint *tick)
 {
-    himc_posture_motion *to = &tick->posture;
-    if (m->crossfade.due && tick == &m->from)
-        begin_crossfade(m, tick->time, to);
-    if (m->crossfade.due || tick->time >= m->crossfade.since + CROSSFADE)
-        return;
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_target d = himc_quintic_at(&m->crossfade.offset[j], tick->time - m->crossfade.since);
-        to->joint[j] = himc_quat_mul(himc_quat_exp(d.x), to->joint[j]);
-        to->rate[j] = himc_vec3_add(to->rate[j], d.v);
-        to->acceleration[j] = himc_vec3_add(to->acceleration[j], d.a);
+    if (m->crossfade_due && tick == &m->from) {
+        himc_posture_crossfade_begin(&m->crossfade, tick->time, &m->reference.posture,
+                                     &tick->posture);
+        m->crossfade_due = false;
     }
+    if (!m->crossfade_due)
+        himc_posture_crossfade_apply(&m->crossfade, tick->time, &tick->posture);
 }
 
 // setpoints
@@ -359,9 +306,8 @@ void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {
     // the body begins in the posture: no cross-fade
-    m->regression_since = m->has_regression ? t : -INFINITY;
-    m->crossfade.due = false;
-    m->crossfade.since = -INFINITY;
+    m->crossfade_due = false;
+    himc_posture_crossfade_cancel(&m->crossfade);
     himc_posture_init(&m->posture, skeleton, m->posture.level);
     for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
         if (s->captured.known[j])

@@ -3,6 +3,7 @@
 #ifndef HIMC_PERFORMANCE_MOTION_H
 #define HIMC_PERFORMANCE_MOTION_H
 
+#include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
 #include "performance/performance_drums.h"
@@ -14,13 +15,6 @@ typedef struct trunk_course {
     himc_trunk_posture from, goal;
     double time; ///< of `from` (s)
 } trunk_course;
-
-/// From the joint targets of one source to those of another.
-typedef struct source_crossfade {
-    bool due;     ///< begins at the next tick
-    double since; ///< (s)
-    himc_quintic offset[HIMC_JOINTS];
-} source_crossfade;
 
 /// The stroke a hand is on or comes to.
 typedef struct planned_stroke {
@@ -41,10 +35,10 @@ typedef struct performance_motion {
     bool has_regression;
     bool regression_of_take; ///< dropped with the take
     himc_posture_regression
-        regression;          ///< null-space target; replaces the natural posture in `himc`
-    double regression_since; ///< when it was set or dropped (s)
+        regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
-    source_crossfade crossfade;
+    bool crossfade_due; ///< joint targets have another source from the next tick on
+    himc_posture_crossfade crossfade;
     himc_setpoint from, to;        ///< of the ticks before and after
     himc_reference reference;      ///< now
     bool replan;                   ///< `from` is read anew, too
@@ -104,11 +98,10 @@ HIMC_RT bool himc_motion_free_hand(performance_motion *motion, himc_hand hand, d
 /// A take in place of the one before (NULL: none), with the limits of its player (NULL: none).
 void himc_motion_set_track(performance_motion *motion, himc_track *track,
                            const himc_limits *learned, double t);
-/// The null-space target from `t` on; NULL: the natural posture. `of_take`: dropped with the take.
+/// The null-space target from now on; NULL: the natural posture. `of_take`: dropped with the take.
 HIMC_RT void himc_motion_set_regression(performance_motion *motion,
                                         const performance_settings *settings,
-                                        const himc_posture_regression *regression, bool of_take,
-                                        double t);
+                                        const himc_posture_regression *regression, bool of_take);
 
 /// `play` and `stop`.
 HIMC_RT void himc_motion_play(performance_motion *motion, double t);

@@ -278,7 +278,7 @@ void himc_performance_take_options(himc_performance *p, const himc_take_options 
 void himc_performance_set_posture_regression(himc_performance *p,
                                              const himc_posture_regression *regression)
 {
-    himc_motion_set_regression(p->motion, &p->settings, regression, false, step_time(p));
+    himc_motion_set_regression(p->motion, &p->settings, regression, false);
 }
 
 void himc_performance_drop_track(himc_performance *p)

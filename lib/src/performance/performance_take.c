@@ -236,8 +236,7 @@ static void adopt_regression(himc_performance *p, const himc_player *player, con
         .hides = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
         .hides_trunk = !player->known[HIMC_TRUNK - 1]};
     if (p->motion->has_regression && !p->motion->regression_of_take) {
-        himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false,
-                                   step_time(p));
+        himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
         return;
     }
     himc_posture_regression_usual(&regression);
@@ -246,8 +245,7 @@ static void adopt_regression(himc_performance *p, const himc_player *player, con
     if (shown && !fitted)
         himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", path,
                          error.text);
-    himc_motion_set_regression(p->motion, &p->settings, fitted ? &regression : NULL, fitted,
-                               step_time(p));
+    himc_motion_set_regression(p->motion, &p->settings, fitted ? &regression : NULL, fitted);
 }
 
 // a capture in which left and right are exchanged has its drum behind the player
