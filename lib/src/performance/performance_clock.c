@@ -7,6 +7,11 @@
 
 #include <math.h>
 
+void himc_clock_init(performance_clock *c, double sample_rate)
+{
+    *c = (performance_clock){.sample_rate = sample_rate};
+}
+
 void himc_clock_set_rates(performance_clock *c, double physics, double task)
 {
     c->physics_rate = fmin(physics, c->sample_rate);

@@ -30,6 +30,8 @@ static inline int himc_clock_ahead(const performance_clock *clock)
     return (int)(clock->made - clock->played);
 }
 
+/// Time 0 at that sample rate; himc_clock_set_rates next.
+void himc_clock_init(performance_clock *clock, double sample_rate);
 /// Other rates of physics and tasks; step 0 begins now.
 HIMC_RT void himc_clock_set_rates(performance_clock *clock, double physics, double task);
 /// Another sample rate. Time in seconds goes on; so do the samples played since the last realign.

@@ -1,8 +1,7 @@
-/// performance_command.c: the commands, one small function each, and the queue of those that wait.
+/// performance_command.c: the commands, one small function each.
 ///
-/// Commands act between physics steps: one that comes with a delay waits in a short queue until the
-/// step at its sample. A command that cannot be carried out changes nothing and says why in one
-/// line.
+/// Commands act between physics steps: one that comes with a delay waits in a queue until the step
+/// at its sample. A command that cannot be carried out changes nothing and says why in one line.
 #include "performance/performance_state.h"
 
 #include <stdio.h>
@@ -444,43 +443,20 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
-    if (p->queue.count == WAITING_COMMANDS) // one line for a storm: the rest is counted
-        return p->queue.dropped++ > 0 ||
-               himc_error_set(error, "more than %d commands at once: this one is dropped",
-                              WAITING_COMMANDS);
+    if (!himc_queue_has_room(&p->queue))
+        return himc_queue_drop(&p->queue, error);
     if (!prepare(p, command, error))
         return false;
-    waiting_command *w = &p->queue.waiting[p->queue.count++];
-    w->due = p->clock.played + delay;
-    himc_command_copy(&w->command, command);
+    himc_queue_add(&p->queue, command, p->clock.played + delay);
     return true;
 }
 
-// commands that are not due move up
-static void keep_waiting(performance_queue *q, int from, int to)
+static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
 {
-    if (from == to)
-        return;
-    q->waiting[to].due = q->waiting[from].due;
-    himc_command_copy(&q->waiting[to].command, &q->waiting[from].command);
+    return actions[command->id](p, command, error);
 }
 
 void himc_performance_run_due_commands(himc_performance *p)
 {
-    performance_queue *q = &p->queue;
-    int kept = 0;
-    for (int i = 0; i < q->count; i++) {
-        himc_error error;
-        const himc_command *command = &q->waiting[i].command;
-        if (q->waiting[i].due > p->clock.made)
-            keep_waiting(q, i, kept++);
-        else if (!actions[command->id](p, command, &error))
-            himc_events_note(&p->events, "%s", error.text);
-    }
-    q->count = kept;
-    if (q->dropped > 0 && kept < WAITING_COMMANDS / 2) {
-        himc_events_note(&p->events, "%ld commands dropped: more than %d waited", q->dropped,
-                         WAITING_COMMANDS);
-        q->dropped = 0;
-    }
+    himc_queue_run(&p->queue, p->clock.made, run_waiting, p, &p->events);
 }

@@ -89,9 +89,8 @@ static void begin(himc_performance *p, const performance_settings *s, const made
     p->settings = *s;
     p->motion = parts->motion;
     p->body = parts->body;
-    p->statistics = (performance_statistics){.strokes = 0};
-    p->queue.count = 0;
-    p->queue.dropped = 0;
+    himc_statistics_clear(&p->statistics);
+    himc_queue_clear(&p->queue);
     himc_contacts_clear(&p->contacts);
     himc_clock_restart(&p->clock);
     himc_performance_restart_steps(p);
@@ -113,7 +112,7 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
         return NULL;
     }
     p->host = (performance_host){.config = *config, .take_options = himc_take_default()};
-    p->clock.sample_rate = config->sample_rate;
+    himc_clock_init(&p->clock, config->sample_rate);
     begin(p, &s, &parts);
     return p;
 }

@@ -4,12 +4,12 @@
 /// Each part has its own type and one file that writes it; other files read it or call that file's
 /// functions. In the order of the calls:
 ///
-///     performance_clock, _events, _statistics, _drums, _body, _motion   parts that know no others
+///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
 ///     performance_contacts        sticks on heads: acts on motion, statistics and events
 ///     performance_report.c        what is told: figures, rows of motion, `info`; the recording
 ///     performance_setup.c         new, rebuild, reset: puts the parts together; the settings
 ///     performance_play.c, _take.c, _score.c     what to play
-///     performance_command.c       the commands, and the queue of those that wait
+///     performance_command.c       the commands
 ///     performance.c               the step
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
@@ -21,10 +21,9 @@
 #include "performance/performance_drums.h"
 #include "performance/performance_events.h"
 #include "performance/performance_motion.h"
+#include "performance/performance_queue.h"
 #include "performance/performance_settings.h"
 #include "performance/performance_statistics.h"
-
-#define WAITING_COMMANDS 256 // chosen: 8192 samples of commands, one every 32
 
 /// What the host has decided; `reset` leaves it.
 typedef struct performance_host {
@@ -32,18 +31,6 @@ typedef struct performance_host {
     himc_take_options take_options;
     bool make_drums; ///< `drum` makes one
 } performance_host;
-
-typedef struct waiting_command {
-    int64_t due; ///< sample
-    himc_command command;
-} waiting_command;
-
-/// Commands that wait for their sample.
-typedef struct performance_queue {
-    waiting_command waiting[WAITING_COMMANDS];
-    int count;
-    long dropped; ///< because too many waited
-} performance_queue;
 
 typedef struct performance_recording {
     himc_recording *file; ///< owned; NULL when nothing is recorded
@@ -115,9 +102,6 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
                                    himc_error *error);
 
 // performance_score.c
-/// Carries out a command now; false, and nothing changed, with the reason.
-typedef bool performance_action(himc_performance *p, const himc_command *command,
-                                himc_error *error);
 /// Loads a score: all of it, or nothing. `run` carries out its lines for the performer.
 bool himc_performance_load_score(himc_performance *p, const char *path, performance_action *run,
                                  himc_error *error);

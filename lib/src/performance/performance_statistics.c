@@ -1,6 +1,11 @@
 /// performance_statistics.c: sums and counts since the performance was made or reset.
 #include "performance/performance_statistics.h"
 
+void himc_statistics_clear(performance_statistics *s)
+{
+    *s = (performance_statistics){.strokes = 0};
+}
+
 // the target's largest height between two strikes is the stroke's height
 void himc_statistics_height(performance_statistics *s, himc_hand hand, double height, bool touching)
 {

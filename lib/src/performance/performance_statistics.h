@@ -17,6 +17,7 @@ typedef struct performance_statistics {
     long recoveries;
 } performance_statistics;
 
+HIMC_RT void himc_statistics_clear(performance_statistics *statistics);
 /// The target of that hand is `height` over the head (m).
 HIMC_RT void himc_statistics_height(performance_statistics *statistics, himc_hand hand,
                                     double height, bool touching);
