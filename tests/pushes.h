@@ -81,7 +81,8 @@ static inline void push_gains(himc_performance *p, double factor)
     himc_posture_init(&posture, &body, 0.8675);
     himc_posture_at(&posture, tip, &pose);
     himc_pose_to_state(&body, &pose, NULL, &state);
-    himc_controller_init(&c, &body, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&c, &control, &body, &state);
     for (int j = 0; j < HIMC_JOINTS; j++)
         session_do(p, "gain %s %.6f %.6f", himc_joint_name(j), factor * c.gain[j].stiffness.y,
                    factor * c.gain[j].damping.y);

@@ -253,7 +253,8 @@ static void test_joints_hold_within_a_micrometre_over_a_second_of_strokes(void)
     double worst = 0;
     himc_posture_init(&posture, &skeleton, 0.8675);
     moderate_state(&s, 0);
-    himc_controller_init(&controller, &skeleton, &s);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&controller, &control, &skeleton, &s);
     for (int n = 0; n < 10000; n++) {
         double w = 2 * HIMC_PI * 2, phase = w * n * 1e-4, r = 0.375 / 2;
         for (int hand = 0; hand < HIMC_HANDS; hand++, phase += HIMC_PI)

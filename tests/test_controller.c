@@ -19,6 +19,14 @@
 static himc_skeleton skeleton;
 static himc_posture posture;
 static himc_controller controller;
+
+static void set_gain(int joint, double stiffness, double damping)
+{
+    himc_controller_config config = controller.config;
+    config.gain[joint] = himc_controller_gain(&controller, joint, stiffness, damping);
+    config.gain_set[joint] = true;
+    himc_controller_configure(&controller, &config);
+}
 static himc_character *character;
 static himc_reference reference;
 static himc_body_state state;
@@ -53,7 +61,8 @@ void setUp(void)
     stroke(0, 2, reference.tip);
     himc_posture_moving(&posture, reference.tip, &reference.posture);
     place_on(&reference.posture);
-    himc_controller_init(&controller, &skeleton, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&controller, &control, &skeleton, &state);
     srand(10);
 }
 
@@ -119,8 +128,8 @@ static result play(double rate, double settle, double end)
 
 static void tracks(himc_pipeline mode, himc_law law, double rms)
 {
-    controller.mode = mode;
-    controller.law = law;
+    controller.config.mode = mode;
+    controller.config.law = law;
     result r = play(2, 0.25, 1.25);
     TEST_ASSERT_TRUE(r.finite);
     TEST_ASSERT_TRUE(r.rms < rms);
@@ -161,7 +170,7 @@ static void test_tips_alone_steer_himc_and_not_id(void)
 {
     himc_vec3 a[HIMC_JOINTS], b[HIMC_JOINTS];
     for (int mode = HIMC_PIPELINE_HIMC; mode <= HIMC_PIPELINE_ID; mode++) {
-        controller.mode = (himc_pipeline)mode;
+        controller.config.mode = (himc_pipeline)mode;
         himc_controller_torques(&controller, &skeleton, &state, &reference, a);
         reference.tip[HIMC_LEFT].x.z += 0.01;
         himc_controller_torques(&controller, &skeleton, &state, &reference, b);
@@ -216,7 +225,7 @@ static void released_lets_go(const char *what)
 static void test_released_tip_is_not_accelerated_along_the_normal(void)
 {
     released_lets_go("himc");
-    controller.mode = HIMC_PIPELINE_ID;
+    controller.config.mode = HIMC_PIPELINE_ID;
     released_lets_go("id");
 }
 
@@ -224,8 +233,7 @@ static void test_released_tip_is_not_accelerated_along_the_normal_with_gains_of_
 {
     himc_gain own = controller.gain[himc_arm_joint(HIMC_LEFT, 2)];
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        himc_controller_set_gain(&controller, himc_arm_joint((himc_hand)hand, 2),
-                                 0.5 * own.stiffness.y, own.damping.y);
+        set_gain(himc_arm_joint((himc_hand)hand, 2), 0.5 * own.stiffness.y, own.damping.y);
     released_lets_go("himc with a softer wrist");
 }
 
@@ -236,8 +244,8 @@ static void test_released_tip_is_not_pushed_by_a_target_below_the_head(void)
         for (int mode = HIMC_PIPELINE_HIMC; mode <= HIMC_PIPELINE_ID; mode++) {
             double push[2];
             char what[32];
-            controller.law = (himc_law)law;
-            controller.mode = (himc_pipeline)mode;
+            controller.config.law = (himc_law)law;
+            controller.config.mode = (himc_pipeline)mode;
             for (int below = 0; below < 2; below++) {
                 for (int hand = 0; hand < HIMC_HANDS; hand++) {
                     reference.tip[hand] = (himc_target){.x = state.tip[hand]};
@@ -256,7 +264,7 @@ static void test_released_tip_is_not_pushed_by_a_target_below_the_head(void)
 
 static void test_released_tip_is_still_steered_across_the_normal(void)
 {
-    double w = 2 * HIMC_PI * controller.bandwidth;
+    double w = 2 * HIMC_PI * controller.config.bandwidth;
     stroke(0, 2, reference.tip);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         reference.tip[hand].v = reference.tip[hand].a = himc_vec3_make(0, 0, 0);
@@ -278,8 +286,7 @@ static void test_released_tip_is_still_steered_across_the_normal(void)
 static void scale_gains(double factor)
 {
     for (int j = 0; j < HIMC_JOINTS; j++)
-        himc_controller_set_gain(&controller, j, factor * controller.gain[j].stiffness.y,
-                                 factor * controller.gain[j].damping.y);
+        set_gain(j, factor * controller.gain[j].stiffness.y, factor * controller.gain[j].damping.y);
 }
 
 // Half a second of strokes at 2 Hz, the first half of it with scaled gains; `away` is how far tips
@@ -289,8 +296,8 @@ static bool stands(himc_pipeline mode, himc_law law, double factor, double *away
     himc_vec3 torque[HIMC_JOINTS];
     double h = controller.step;
     bool on = true;
-    controller.mode = mode;
-    controller.law = law;
+    controller.config.mode = mode;
+    controller.config.law = law;
     himc_controller usual = controller;
     scale_gains(factor);
     long steps = lround(0.5 / h);
@@ -347,8 +354,8 @@ static void test_all_laws_stand_those_gains_at_one_kilohertz_of_physics(void)
 static void test_printed_law_over_no_time_is_equation_2(void)
 {
     himc_vec3 torque[HIMC_JOINTS];
-    controller.mode = HIMC_PIPELINE_ID;
-    controller.law = HIMC_LAW_PRINTED;
+    controller.config.mode = HIMC_PIPELINE_ID;
+    controller.config.law = HIMC_LAW_PRINTED;
     controller.step = 0;
     stroke(0.07, 2, reference.tip);
     himc_posture_moving(&posture, reference.tip, &reference.posture);
@@ -376,8 +383,8 @@ static void test_printed_law_over_no_time_is_equation_2(void)
 static void test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm(void)
 {
     himc_vec3 near[HIMC_JOINTS], far[HIMC_JOINTS], rest = reference.tip[HIMC_LEFT].x;
-    controller.law = HIMC_LAW_PRINTED;
-    controller.null_space_off = true;
+    controller.config.law = HIMC_LAW_PRINTED;
+    controller.config.null_space_off = true;
     controller.step = 0;
     memset(state.spin, 0, sizeof state.spin);
     himc_body_state_complete(&skeleton, &state);
@@ -412,8 +419,7 @@ static void test_default_gains_are_critically_damped_at_the_frequencies_of_the_t
 static void test_set_gain_sets_flexion_and_spares_the_length_axis(void)
 {
     int j = himc_arm_joint(HIMC_RIGHT, 3);
-    himc_controller_set_gain(&controller, j, 20, 0.36);
-    TEST_ASSERT_TRUE(controller.gain_set[j]);
+    set_gain(j, 20, 0.36);
     TEST_ASSERT_EQUAL_DOUBLE(20, controller.gain[j].stiffness.y);
     TEST_ASSERT_EQUAL_DOUBLE(0.36, controller.gain[j].damping.y);
     himc_vec3 i = controller.inertia[j];

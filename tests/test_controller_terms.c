@@ -25,7 +25,8 @@ void setUp(void)
     himc_posture_init(&posture, &skeleton, LEVEL);
     himc_posture_at(&posture, tip, &pose);
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_controller_init(&controller, &skeleton, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&controller, &control, &skeleton, &state);
     memset(&reference, 0, sizeof reference);
     memcpy(reference.posture.joint, pose.joint, sizeof pose.joint);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -70,9 +71,9 @@ static void test_transpose_has_a_step_length_for_each_demand(void)
     himc_vec3 place = {0.01, -0.02, 0.015}, speed = {0.2, -0.1, 0.4}, without[HIMC_JOINTS];
     himc_vec3 turn[HIMC_ARM_JOINTS], faster[HIMC_ARM_JOINTS];
     himc_arm_jacobian jacobian;
-    controller.law = HIMC_LAW_FEEDFORWARD;
-    controller.solver = HIMC_SOLVER_TRANSPOSE;
-    controller.null_space_off = true;
+    controller.config.law = HIMC_LAW_FEEDFORWARD;
+    controller.config.solver = HIMC_SOLVER_TRANSPOSE;
+    controller.config.null_space_off = true;
     controller.step = 0;
     find_torques();
     memcpy(without, torque, sizeof torque);
@@ -106,13 +107,13 @@ static void test_computed_torque_uses_each_axis_own_gains_of_the_user(void)
 {
     himc_vec3 ks = {10, 20, 40}, kd = {0.3, 0.1, 0.2}, want[HIMC_JOINTS];
     himc_vec3 e = {0.02, -0.03, 0.04}, rate = {0.5, 0.7, -0.6}; // about the child's axes
-    controller.mode = HIMC_PIPELINE_ID;
-    controller.law = HIMC_LAW_COMPUTED_TORQUE;
+    controller.config.mode = HIMC_PIPELINE_ID;
+    controller.config.law = HIMC_LAW_COMPUTED_TORQUE;
     for (int j = HIMC_LEFT_UPPER_ARM - 1; j <= HIMC_RIGHT_STICK - 1; j++) {
         himc_vec3 wanted[HIMC_JOINTS] = {{0, 0, 0}}, i = controller.inertia[j];
         const himc_mat3 *child = &state.rotation[j + 1];
         controller.gain[j] = (himc_gain){ks, kd};
-        controller.gain_set[j] = true;
+        controller.config.gain_set[j] = true;
         reference.posture.joint[j] = himc_quat_mul(pose.joint[j], himc_quat_exp(e));
         reference.posture.rate[j] =
             himc_mat3_apply_transposed(parent(j), himc_mat3_apply(child, rate));
@@ -137,8 +138,8 @@ static void test_servos_fed_forward_are_equation_2_where_the_step_ends(void)
     himc_vec3 e[HIMC_JOINTS], rate[HIMC_JOINTS], asked[HIMC_JOINTS];
     himc_articulation articulation;
     double h = 1e-3;
-    controller.mode = HIMC_PIPELINE_ID;
-    controller.law = HIMC_LAW_FEEDFORWARD;
+    controller.config.mode = HIMC_PIPELINE_ID;
+    controller.config.law = HIMC_LAW_FEEDFORWARD;
     controller.step = h;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_posture_motion *m = &reference.posture;

@@ -28,8 +28,9 @@ void setUp(void)
     himc_posture_moving(&posture, reference.tip, &reference.posture);
     memcpy(pose.joint, reference.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_controller_init(&c, &skeleton, &state);
-    c.mode = HIMC_PIPELINE_IK;
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&c, &control, &skeleton, &state);
+    c.config.mode = HIMC_PIPELINE_IK;
     c.step = STEP;
 }
 
@@ -67,7 +68,7 @@ static void test_tips_go_where_the_joint_targets_do_not_have_them(void)
                                             [HIMC_SOLVER_SDLS] = 8};
     for (int solver = 0; solver < HIMC_SOLVERS; solver++) {
         setUp();
-        c.solver = (himc_solver)solver;
+        c.config.solver = (himc_solver)solver;
         reference.tip[HIMC_RIGHT].x = himc_vec3_make(0.52, -0.16, 1.02);
         show(steps[solver]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, off(HIMC_RIGHT));
@@ -80,7 +81,7 @@ static void test_damping_slows_a_step_as_the_solver_says(void)
     double left[2];
     for (int i = 0; i < 2; i++) {
         setUp();
-        c.damping = i == 0 ? 0.05 : 0.5;
+        c.config.damping = i == 0 ? 0.05 : 0.5;
         reference.tip[HIMC_RIGHT].x.z += 0.001;
         show(1);
         left[i] = off(HIMC_RIGHT);
@@ -94,7 +95,7 @@ static void test_the_null_space_is_for_the_joint_targets_or_for_nothing(void)
     himc_vec3 place[2];
     for (int null_space_off = 0; null_space_off < 2; null_space_off++) {
         setUp();
-        c.null_space_off = null_space_off;
+        c.config.null_space_off = null_space_off;
         int j = himc_arm_joint(HIMC_RIGHT, 0); // the shoulder's turn lifts the elbow
         himc_quat turn = himc_quat_exp(himc_vec3_make(0.3, 0, 0));
         reference.posture.joint[j] = himc_quat_mul(turn, reference.posture.joint[j]);

@@ -81,7 +81,8 @@ void setUp(void)
     aim(0);
     himc_pose pose = pose_of(&reference.posture);
     place(&pose, reference.posture.rate);
-    himc_controller_init(&controller, &skeleton, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&controller, &control, &skeleton, &state);
     controller.saturation = &saturation;
     srand(12);
 }
@@ -180,7 +181,7 @@ static void test_limits_switched_off_change_no_bit_of_the_torques(void)
     limits.kind = HIMC_LIMITS_OFF;
     aim(0.1);
     for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++) {
-        controller.law = (himc_law)law;
+        controller.config.law = (himc_law)law;
         controller.limits = NULL;
         himc_controller_torques(&controller, &skeleton, &state, &reference, without);
         controller.limits = &limits;
@@ -206,7 +207,7 @@ static void test_limits_learned_from_a_motion_leave_that_motion_alone(void)
 // the printed law has nothing for the null space: only limits keep the arm from folding up
 static void test_limits_hold_the_arm_that_the_printed_law_lets_fold_up(void)
 {
-    controller.law = HIMC_LAW_PRINTED;
+    controller.config.law = HIMC_LAW_PRINTED;
     gains(1 / 3.0);
     result without = play(false);
     learn(0);
@@ -220,8 +221,8 @@ static void test_limits_hold_the_arm_that_the_printed_law_lets_fold_up(void)
 static void comes_back(himc_law law, himc_pipeline mode, himc_limits_kind kind)
 {
     int elbow = himc_arm_joint(HIMC_LEFT, 1), wrist = himc_arm_joint(HIMC_LEFT, 2);
-    controller.law = law;
-    controller.mode = mode;
+    controller.config.law = law;
+    controller.config.mode = mode;
     learn(0.1);
     limits.kind = kind;
     controller.limits = &limits;
@@ -260,7 +261,7 @@ static void test_joint_beyond_its_bounds_comes_back_under_every_law_and_mode(voi
 static void test_target_out_of_the_bounds_is_not_followed_beyond_them(void)
 {
     for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++) {
-        controller.law = (himc_law)law;
+        controller.config.law = (himc_law)law;
         learn(0);
         controller.limits = &limits;
         memset(&saturation, 0, sizeof saturation);
@@ -281,7 +282,7 @@ static void test_target_out_of_the_bounds_is_not_followed_beyond_them(void)
 static void test_bounds_of_no_width_hold_every_joint_and_nothing_flies_apart(void)
 {
     for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++) {
-        controller.law = (himc_law)law;
+        controller.config.law = (himc_law)law;
         learn(0);
         aim(0.125);
         himc_pose pose = pose_of(&reference.posture);
@@ -324,7 +325,7 @@ static double energy(void)
 // a body without servos falls into its limits: its energy only falls
 static void test_limits_pump_no_energy_into_a_body_that_falls_into_them(void)
 {
-    controller.law = HIMC_LAW_PRINTED;
+    controller.config.law = HIMC_LAW_PRINTED;
     gains(0);
     learn(0.1);
     controller.limits = &limits;
@@ -353,7 +354,7 @@ static void test_strength_shortens_a_torque_keeps_its_direction_and_counts(void)
     himc_controller_torques(&controller, &skeleton, &state, &reference, free);
     double asked = himc_vec3_length(free[elbow]);
     memset(&saturation, 0, sizeof saturation);
-    controller.strength[elbow] = 0.25 * asked;
+    controller.config.strength[elbow] = 0.25 * asked;
     himc_controller_torques(&controller, &skeleton, &state, &reference, weak);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * asked, 0.25 * asked, himc_vec3_length(weak[elbow]));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * asked * asked, 0.25 * asked * asked,
@@ -366,18 +367,18 @@ static void test_strength_shortens_a_torque_keeps_its_direction_and_counts(void)
 
 static void test_human_strength_grows_with_the_body_and_from_fingers_to_waist(void)
 {
-    himc_controller_set_human_strength(&controller, 75);
+    himc_controller_set_human_strength(&controller.config, 75);
     for (int k = 1; k < HIMC_ARM_JOINTS; k++)
-        TEST_ASSERT_TRUE(controller.strength[himc_arm_joint(HIMC_LEFT, k)] <
-                         controller.strength[himc_arm_joint(HIMC_LEFT, k - 1)]);
-    double waist = controller.strength[HIMC_TRUNK - 1];
-    himc_controller_set_human_strength(&controller, 60);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.8 * waist, controller.strength[HIMC_TRUNK - 1]);
+        TEST_ASSERT_TRUE(controller.config.strength[himc_arm_joint(HIMC_LEFT, k)] <
+                         controller.config.strength[himc_arm_joint(HIMC_LEFT, k - 1)]);
+    double waist = controller.config.strength[HIMC_TRUNK - 1];
+    himc_controller_set_human_strength(&controller.config, 60);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.8 * waist, controller.config.strength[HIMC_TRUNK - 1]);
 }
 
 static void test_strokes_of_375_mm_are_within_human_strength(void)
 {
-    himc_controller_set_human_strength(&controller, 75);
+    himc_controller_set_human_strength(&controller.config, 75);
     result r = play(true);
     TEST_ASSERT_TRUE(r.rms < 0.0001);
     for (int j = 0; j < HIMC_JOINTS; j++)

@@ -39,7 +39,8 @@ void setUp(void)
     memset(&saturation, 0, sizeof saturation);
     limits.kind = HIMC_LIMITS_ELLIPSOID;
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_controller_init(&controller, &skeleton, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&controller, &control, &skeleton, &state);
     controller.limits = &limits;
     controller.saturation = &saturation;
 }
@@ -235,11 +236,11 @@ static void test_strength_of_75_kg_is_that_of_the_table(void)
         {"right-hip", 200},     {"left-knee", 200}, {"right-knee", 200}, {"left-ankle", 130},
         {"right-ankle", 130},   {"left-toes", 15},  {"right-toes", 15}};
     TEST_ASSERT_EQUAL_INT(HIMC_JOINTS, sizeof table / sizeof table[0]);
-    himc_controller_set_human_strength(&controller, 75);
+    himc_controller_set_human_strength(&controller.config, 75);
     for (int i = 0; i < HIMC_JOINTS; i++) {
         int j = himc_joint_find(table[i].joint);
         TEST_ASSERT_TRUE_MESSAGE(j >= 0, table[i].joint);
-        TEST_ASSERT_EQUAL_DOUBLE(table[i].strength, controller.strength[j]);
+        TEST_ASSERT_EQUAL_DOUBLE(table[i].strength, controller.config.strength[j]);
     }
 }
 

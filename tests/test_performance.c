@@ -17,6 +17,7 @@
     "stroke 5 left vertical-accent mf rim; stroke 6 right staccato mp center; "   \
     "stroke 7 left legato pp;"
 
+#define RATE 48000  // (Hz)
 #define PARTED 1e-3 // of the stick in micro-contact from the body (m)
 
 static himc_error error;
@@ -362,9 +363,10 @@ static void test_stick_and_body_stay_together_and_the_plan_joins_the_tip(void)
     for (int i = 0; i < 4 * 48000; i += 4) {
         himc_performance_process(p, 4, NULL);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            const touch *c = &p->touch[hand];
-            himc_vec3 d = himc_vec3_sub(p->state.tip[hand], p->reference.tip[hand].x);
-            himc_vec3 v = himc_vec3_sub(p->state.tip_velocity[hand], p->reference.tip[hand].v);
+            const stick_contact *c = &p->contacts.hand[hand];
+            himc_vec3 d = himc_vec3_sub(p->body->state.tip[hand], p->motion->reference.tip[hand].x);
+            himc_vec3 v =
+                himc_vec3_sub(p->body->state.tip_velocity[hand], p->motion->reference.tip[hand].v);
             if (c->touching)
                 parted = fmax(parted, fabs(c->offset));
             if (c->touching || c->released)
@@ -396,6 +398,63 @@ static void test_a_late_stroke_is_not_counted_as_played(void)
     himc_performance_free(p);
 }
 
+static void sound_of(himc_performance *p, double *sound)
+{
+    himc_performance_process(p, 2 * RATE, NULL);
+    himc_drum_read(himc_performance_drum(p, 0), RATE, RATE, sound, NULL);
+    himc_performance_free(p);
+}
+
+static void test_calls_for_C_programs_do_as_the_commands_of_the_same_name(void)
+{
+    static double typed[RATE], told[RATE];
+    const himc_stroke stroke = {
+        .beat = 1, .hand = HIMC_LEFT, .nuance = HIMC_ACCENT, .dynamic = 1, .spot = HIMC_SPOT_RIM};
+    himc_stroke hit = {.hand = HIMC_RIGHT, .dynamic = 0.5, .spot = HIMC_SPOT_XY, .x = 0.125};
+    himc_performance *a = new_performance(), *b = new_performance();
+    TEST_ASSERT_TRUE(himc_performance_set_tempo(a, 90, &error));
+    TEST_ASSERT_TRUE(himc_performance_add_stroke(a, &stroke, &error));
+    TEST_ASSERT_TRUE(himc_performance_play(a, &error));
+    TEST_ASSERT_TRUE(himc_performance_hit(a, &hit, &error));
+    himc_performance_process(a, RATE, NULL);
+    himc_performance_stop(a);
+    command(b, "tempo 90");
+    command(b, "stroke 1 left accent fff rim");
+    command(b, "play");
+    command(b, "hit right legato 0.5 0.125 0");
+    himc_performance_process(b, RATE, NULL);
+    command(b, "stop");
+    sound_of(a, typed);
+    sound_of(b, told);
+    TEST_ASSERT_EQUAL_MEMORY(told, typed, sizeof told);
+}
+
+static void test_calls_for_C_programs_refuse_what_is_out_of_range(void)
+{
+    himc_performance *p = new_performance();
+    const himc_stroke good = {.beat = 1, .dynamic = 0.5, .spot = HIMC_SPOT_NORMAL};
+    himc_stroke bad[] = {good, good, good, good, good, good, good};
+    bad[0].hand = (himc_hand)2;
+    bad[1].nuance = HIMC_NUANCES;
+    bad[2].dynamic = NAN;
+    bad[3].dynamic = 1.01;
+    bad[4].spot = HIMC_SPOT_XY;
+    bad[4].y = INFINITY;
+    memset(bad[5].drum, 'a', sizeof bad[5].drum);
+    bad[6].spot = (himc_spot)-1;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        TEST_ASSERT_FALSE(himc_performance_add_stroke(p, &bad[i], &error));
+        TEST_ASSERT_FALSE(himc_performance_hit(p, &bad[i], &error));
+        TEST_ASSERT_EQUAL_INT(0, strncmp(error.text, "stroke: ", 8));
+    }
+    himc_stroke early = good;
+    early.beat = -1;
+    TEST_ASSERT_FALSE(himc_performance_add_stroke(p, &early, &error));
+    TEST_ASSERT_FALSE(himc_performance_set_tempo(p, 0, &error));
+    TEST_ASSERT_NULL(himc_performance_drum(p, 0));
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -415,6 +474,8 @@ int main(void)
     RUN_TEST(test_realign_does_not_disturb_the_sound);
     RUN_TEST(test_stick_and_body_stay_together_and_the_plan_joins_the_tip);
     RUN_TEST(test_a_late_stroke_is_not_counted_as_played);
+    RUN_TEST(test_calls_for_C_programs_do_as_the_commands_of_the_same_name);
+    RUN_TEST(test_calls_for_C_programs_refuse_what_is_out_of_range);
     RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
     return UNITY_END();
 }

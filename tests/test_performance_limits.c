@@ -146,14 +146,15 @@ static void test_a_joint_shown_at_its_bounds_does_not_move_on(void)
     int elbow = himc_arm_joint(HIMC_LEFT, 1);
     himc_pose mean, pose;
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        mean.joint[j] = p->limits.joint[j].bound ? p->limits.joint[j].mean : himc_quat_identity();
+        mean.joint[j] =
+            p->body->limits.joint[j].bound ? p->body->limits.joint[j].mean : himc_quat_identity();
         rate[j] = moves;
     }
     pose = mean;
     pose.joint[elbow] =
         himc_quat_mul(mean.joint[elbow], himc_quat_exp(himc_vec3_make(0.5, 0.6, 0.7)));
-    himc_quat near = himc_limit_closest(&p->limits, elbow, pose.joint[elbow]);
-    himc_performance_clamp_kinematic_pose(p, &pose, rate);
+    himc_quat near = himc_limit_closest(&p->body->limits, elbow, pose.joint[elbow]);
+    himc_body_clamp(p->body, &pose, rate);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const himc_quat *want = j == elbow ? &near : &mean.joint[j];
         TEST_ASSERT_EQUAL_MEMORY(want, &pose.joint[j], sizeof near);

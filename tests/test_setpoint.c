@@ -206,7 +206,8 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
     himc_posture_init(&posture, &skeleton, LEVEL);
     himc_posture_at(&posture, (himc_vec3[]){tick[0].tip[0].x, tick[0].tip[1].x}, &pose);
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_controller_init(&controller, &skeleton, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&controller, &control, &skeleton, &state);
     himc_posture_reachable(&posture, HIMC_LEFT, himc_vec3_make(3, 0, 1));
     himc_setpoint_complete(&tick[0], &posture);
     himc_setpoint_interpolate(&tick[0], &tick[1], 0.001, &reference);
@@ -214,8 +215,8 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
     for (int solver = HIMC_SOLVER_DLS; solver < HIMC_SOLVERS; solver++)
         for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++)
             for (int n = 0; n < 20; n++) {
-                controller.solver = (himc_solver)solver;
-                controller.law = (himc_law)law;
+                controller.config.solver = (himc_solver)solver;
+                controller.config.law = (himc_law)law;
                 reference.released[HIMC_LEFT] = n % 2;
                 reference.normal[HIMC_LEFT] = himc_vec3_make(0, 0, 1);
                 himc_character_observe(character, &state);
@@ -229,7 +230,8 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
     himc_forward_dynamics(&skeleton, &copy, &art, torque, NULL, relative);
     himc_tip_acceleration(&skeleton, &copy, HIMC_LEFT, relative);
     himc_effective_mass(&skeleton, &copy, &art, HIMC_LEFT, himc_vec3_make(0, 0, 1));
-    himc_controller_set_gain(&controller, 0, 1000, 10);
+    himc_controller_gain(&controller, 0, 1000, 10);
+    himc_controller_configure(&controller, &control);
 }
 
 static void test_nothing_is_allocated_from_task_to_character(void)

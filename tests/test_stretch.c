@@ -106,7 +106,8 @@ static void test_torques_for_a_tip_out_of_reach_are_those_for_the_nearest_point(
     himc_reference reference;
     memset(&reference, 0, sizeof reference);
     at_rest(&posture, &state, &reference);
-    himc_controller_init(&c, &skeleton, &state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&c, &control, &skeleton, &state);
     reference.tip[HIMC_RIGHT].x = himc_vec3_make(1.6, -0.5, 1.4);
     himc_controller_torques(&c, &skeleton, &state, &reference, far);
     reference.tip[HIMC_RIGHT] =

@@ -59,28 +59,28 @@ void tearDown(void)
 // one physics step; returns its seconds
 static double step(void)
 {
-    uint64_t from = performance->made;
-    himc_performance_process(performance, (int)(from - performance->sample) + 1, NULL);
-    return (double)(performance->made - from) / 48000;
+    int64_t from = performance->clock.made;
+    himc_performance_process(performance, (int)(from - performance->clock.played) + 1, NULL);
+    return (double)(performance->clock.made - from) / 48000;
 }
 
-static double along_normal(himc_vec3 v, const touch *c)
+static double along_normal(himc_vec3 v, const stick_contact *c)
 {
-    himc_drum *drum = performance->drum[c->drum].drum;
+    himc_drum *drum = performance->drums.slot[c->drum].drum;
     return himc_vec3_dot(himc_head_frame_normal(himc_drum_head_frame(drum)), v);
 }
 
 static void test_touch_point_moves_as_the_bodys_tip_does(void)
 {
     double apart = 0, largest = 0;
-    touch before[HIMC_HANDS] = {{0}};
-    while (performance->made < SAMPLES) {
+    stick_contact before[HIMC_HANDS] = {{0}};
+    while (performance->clock.made < SAMPLES) {
         double h = step();
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            const touch *c = &performance->touch[hand];
+            const stick_contact *c = &performance->contacts.hand[hand];
             // the state is from the beginning of this step, the stick before from the end of the
             // last
-            double tip = along_normal(performance->state.tip_velocity[hand], c);
+            double tip = along_normal(performance->body->state.tip_velocity[hand], c);
             if (before[hand].stick.force > 1) {
                 apart = fmax(apart, fabs(before[hand].stick.velocity - tip));
                 largest = fmax(largest, before[hand].stick.force * h / before[hand].stick.mass);
@@ -97,14 +97,14 @@ static void test_touch_point_moves_as_the_bodys_tip_does(void)
 static void test_touch_point_goes_on_from_where_the_last_step_left_it(void)
 {
     double jump = 0, offset = 0;
-    touch before[HIMC_HANDS] = {{0}};
-    while (performance->made < SAMPLES) {
+    stick_contact before[HIMC_HANDS] = {{0}};
+    while (performance->clock.made < SAMPLES) {
         double h = step();
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            const touch *c = &performance->touch[hand];
+            const stick_contact *c = &performance->contacts.hand[hand];
             const himc_stick *s = &c->stick;
             if (before[hand].touching && c->touching) {
-                double start = along_normal(performance->state.tip_velocity[hand], c);
+                double start = along_normal(performance->body->state.tip_velocity[hand], c);
                 double way = 0.5 * (start + s->velocity) * h;
                 jump = fmax(jump, fabs(s->height - before[hand].stick.height - way));
                 offset = fmax(offset, fabs(c->offset));
@@ -121,10 +121,10 @@ static void test_touch_keeps_its_mallet_to_its_end(void)
 {
     himc_command wood;
     himc_drum *drum = himc_performance_drum(performance, 0);
-    const touch *c = &performance->touch[HIMC_RIGHT];
+    const stick_contact *c = &performance->contacts.hand[HIMC_RIGHT];
     const double medium = himc_drum_mallet(drum)->stiffness;
     TEST_ASSERT_TRUE(himc_command_parse_text(&wood, HIMC_DRUM, "mallet wood", &error));
-    while (c->stick.force < 20 && performance->made < SAMPLES)
+    while (c->stick.force < 20 && performance->clock.made < SAMPLES)
         step();
     TEST_ASSERT_TRUE(himc_drum_command(drum, &wood, &error));
     for (double before = c->stick.force; c->stick.touching; before = c->stick.force) {
@@ -132,7 +132,7 @@ static void test_touch_keeps_its_mallet_to_its_end(void)
         TEST_ASSERT_EQUAL_DOUBLE(medium, c->stick.head.stiffness);
         TEST_ASSERT_DOUBLE_WITHIN(5, before, c->stick.force);
     }
-    while (!c->stick.touching && performance->made < SAMPLES)
+    while (!c->stick.touching && performance->clock.made < SAMPLES)
         step();
     TEST_ASSERT_EQUAL_DOUBLE(1e10, c->stick.head.stiffness);
 }

@@ -124,7 +124,8 @@ static bool make_body(bench_body *b, himc_error *error)
     himc_setpoint_complete(&b->to, &b->posture);
     memcpy(pose.joint, b->from.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
-    himc_controller_init(&b->controller, &b->skeleton, &b->state);
+    himc_controller_config control = himc_controller_config_default();
+    himc_controller_init(&b->controller, &control, &b->skeleton, &b->state);
     b->character = himc_character_new(&b->skeleton, error);
     if (b->character)
         himc_character_place(b->character, &b->state);

@@ -45,6 +45,27 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 #define HIMC_APPROACH \
     1.0 ///< from wherever the sticks are to the beginning of a take, at `play` (s)
 
+// The commands `stroke`, `hit`, `tempo`, `play` and `stop` for C programs: they act now.
+
+/// Adds a stroke to the score: beat 0 .. 1e9, dynamic 0 .. 1, x and y -1 .. 1 m. May allocate. False
+/// if a field is out of its range, the hand has another stroke within 40 ms, there are too many
+/// strokes or drums, or there is no memory.
+bool himc_performance_add_stroke(himc_performance *performance, const himc_stroke *stroke,
+                                 himc_error *error);
+/// Plays a stroke (its beat is ignored) as soon as it can be prepared. Allocates only for a drum
+/// that there is not yet. False if a field is out of its range, while a take plays, or without
+/// memory for that drum. A hit for which there is no time is given up, and a note says so.
+bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
+                          himc_error *error);
+/// This tempo (1 .. 1000 beats per minute, else false) from now to the next change in the score.
+HIMC_RT bool himc_performance_set_tempo(himc_performance *performance, double bpm,
+                                        himc_error *error);
+/// Plays the score from the current beat, or the take from its beginning. Allocates only if there is
+/// no drum yet; false if there is no memory for one.
+bool himc_performance_play(himc_performance *performance, himc_error *error);
+/// Stops; the sticks come to rest.
+HIMC_RT void himc_performance_stop(himc_performance *performance);
+
 /// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a
 /// block, with the block's last sample of each coordinate: a stream of blocks of 64 samples comes
 /// at 750 Hz, which is more often than tasks do.

@@ -1,10 +1,10 @@
-/// controller.c: two stages. Errors (errors.c): for each joint what is missing in angle and rate,
-/// and the acceleration fed forward. Law: what torque that makes.
+/// controller.c: two stages. Tracking errors (tracking_error.c): for each joint the missing angle
+/// and rate, and the acceleration fed forward. Law: the torque for them.
 ///
 /// `printed` is tau = ks dq - kd q', `feedforward` tau = g(q) + ks dq + kd (q'_t - q'),
 /// `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse dynamics. While a
-/// stick touches the head all three let go of the normal: the rebound is the physics'. Joint limits
-/// win over all of it (limit_torque.c).
+/// stick touches the head all three let go of the normal: the physics makes the rebound. Joint
+/// limits win over all of it (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
 /// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
@@ -19,7 +19,8 @@
 #include "control/strength.h"
 #include "control/tracking_error.h"
 
-#define PD_STIFFER 3.0 // the default gains' frequencies above the table's
+#define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over servo_frequency's table
+#define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
                     himc_vec3 normal, double remain)
@@ -44,15 +45,15 @@ static void release_acceleration(const himc_skeleton *skeleton, const himc_body_
 }
 
 // Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
-// place of the one it begins in: what is known of it. The rest, -(h kd + h^2 ks) q'', is the
-// joint's resistance.
+// place of the one it begins in: the known part. The rest, -(h kd + h^2 ks) q'', is the joint's
+// resistance.
 static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
                              const tracking_error *e, himc_vec3 spin, int j)
 {
     double h = c->step;
     himc_vec3 angle = himc_vec3_madd(e->angle[j], h, e->rate[j]);
     himc_vec3 rate = himc_vec3_scale(spin, -1);
-    if (c->law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
+    if (c->config.law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
         rate = himc_vec3_madd(e->rate[j], h, e->acceleration[j]);
         angle = himc_vec3_madd(angle, h * h, e->acceleration[j]);
     }
@@ -61,8 +62,8 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
                          himc_mat3_scale_along(r, c->gain[j].damping, rate));
 }
 
-// the forces at released tips that stop their acceleration along the normal, m a, where the mass is
-// that of joints with servos
+// the forces at released tips that stop their acceleration along the normal: m a, with the mass of
+// an arm whose joints have servos
 static void release_forces(const himc_skeleton *skeleton, const himc_body_state *s,
                            const himc_reference *reference, const himc_articulation *art,
                            const himc_vec3 *known, himc_vec3 force[HIMC_HANDS])
@@ -100,7 +101,7 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
     himc_vec3 resistance[HIMC_JOINTS], relative[HIMC_JOINTS], force[HIMC_HANDS] = {{0, 0, 0}};
     for (int j = 0; j < HIMC_JOINTS; j++)
         torque[j] = himc_vec3_make(0, 0, 0);
-    if (c->law == HIMC_LAW_FEEDFORWARD)
+    if (c->config.law == HIMC_LAW_FEEDFORWARD)
         himc_inverse_dynamics(skeleton, s, NULL, true, torque);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 known = servo_known(c, s, e, himc_relative_spin(skeleton, s, j), j);
@@ -129,12 +130,12 @@ static void implicit_rates(double ks, double kd, double step, double rate[2])
 }
 
 // w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
-// the inertia; the bandwidth is always slow beside the step, gains need not be
+// the inertia; the bandwidth is always slow compared with the step, gains need not be
 static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
                           const tracking_error *e)
 {
-    double w = 2 * HIMC_PI * c->bandwidth, x[2], y[2], z[2];
-    if (!c->gain_set[j])
+    double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
+    if (!c->config.gain_set[j])
         return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
     himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
     const himc_mat3 *r = &s->rotation[j + 1];
@@ -145,7 +146,7 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
                          himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
 }
 
-// what computed torque asks of each joint: q''_t + 2 w (q'_t - q') + w^2 dq
+// the accelerations of computed torque: q''_t + 2 w (q'_t - q') + w^2 dq
 static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
                                  const tracking_error *e, himc_vec3 wanted[HIMC_JOINTS])
 {
@@ -161,12 +162,12 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_arm_jacobian jacobian[HIMC_HANDS];
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian[hand]);
-        if (c->mode == HIMC_PIPELINE_HIMC)
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
+        if (c->config.mode == HIMC_PIPELINE_HIMC)
             himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand,
                                     &jacobian[hand], &e);
     }
-    if (c->law == HIMC_LAW_COMPUTED_TORQUE) {
+    if (c->config.law == HIMC_LAW_COMPUTED_TORQUE) {
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
@@ -178,7 +179,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_strength_apply(c, torque);
 }
 
-// inertia about a joint of everything that hangs on it, about the child's axes
+// inertia of all segments that hang on a joint, about the child's axes
 static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_state *s, int joint)
 {
     double sum[3] = {0, 0, 0};
@@ -204,38 +205,56 @@ static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_
     return himc_vec3_make(sum[0], sum[1], sum[2]);
 }
 
+// natural frequency of a joint's servo (Hz); chosen: the lighter the part, the faster
 static double servo_frequency(int joint)
 {
-    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18};
+    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18}, others = 5;
     int k = (joint - (HIMC_LEFT_UPPER_ARM - 1)) / 2;
     bool is_arm = joint >= HIMC_LEFT_UPPER_ARM - 1 && k < HIMC_ARM_JOINTS;
-    return PD_STIFFER * (is_arm ? arm[k] : 5);
+    return PD_STIFFNESS * (is_arm ? arm[k] : others);
 }
 
-void himc_controller_init(himc_controller *c, const himc_skeleton *skeleton,
-                          const himc_body_state *posture)
+himc_controller_config himc_controller_config_default(void)
 {
-    *c = (himc_controller){
+    return (himc_controller_config){
+        .mode = HIMC_PIPELINE_HIMC,
         .law = HIMC_LAW_COMPUTED_TORQUE,
-        .damping = 0.01,
+        .solver = HIMC_SOLVER_DLS,
+        .damping =
+            0.01, // chosen: far below an arm's levers of 0.3 m, so it acts near singularities
         .weight = {1, 1, 1, 1},
-        .bandwidth = 20,
-        .step = 1e-4,
+        .bandwidth = 20, // chosen: above the fastest strokes, far below the physics rate
     };
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_vec3 i = hanging_inertia(skeleton, posture, j);
-        double w = 2 * HIMC_PI * servo_frequency(j);
-        c->inertia[j] = i;
-        c->gain[j].stiffness = himc_vec3_scale(i, w * w);
-        c->gain[j].damping = himc_vec3_scale(i, 2 * w);
-    }
 }
 
-void himc_controller_set_gain(himc_controller *c, int joint, double stiffness, double damping)
+himc_gain himc_controller_usual_gain(const himc_controller *c, int joint)
+{
+    himc_vec3 i = c->inertia[joint];
+    double w = 2 * HIMC_PI * servo_frequency(joint);
+    return (himc_gain){himc_vec3_scale(i, w * w), himc_vec3_scale(i, 2 * w)};
+}
+
+void himc_controller_configure(himc_controller *c, const himc_controller_config *config)
+{
+    c->config = *config;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        c->gain[j] = config->gain_set[j] ? config->gain[j] : himc_controller_usual_gain(c, j);
+}
+
+void himc_controller_init(himc_controller *c, const himc_controller_config *config,
+                          const himc_skeleton *skeleton, const himc_body_state *posture)
+{
+    *c = (himc_controller){.step = 1 / USUAL_PHYSICS_RATE};
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        c->inertia[j] = hanging_inertia(skeleton, posture, j);
+    himc_controller_configure(c, config);
+}
+
+himc_gain himc_controller_gain(const himc_controller *c, int joint, double stiffness,
+                               double damping)
 {
     himc_vec3 i = c->inertia[joint];
     double flexion = i.y;
-    c->gain[joint].stiffness = himc_vec3_scale(i, stiffness / flexion);
-    c->gain[joint].damping = himc_vec3_scale(i, damping / flexion);
-    c->gain_set[joint] = true;
+    return (himc_gain){himc_vec3_scale(i, stiffness / flexion),
+                       himc_vec3_scale(i, damping / flexion)};
 }

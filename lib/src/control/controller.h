@@ -1,6 +1,6 @@
-/// controller.h: the control of a physical body: joint errors by mode (`himc`, `id`), torques by
-/// law; HIMC is the cascade of the two inside every physics step (2012 paper, section 3.2,
-/// algorithm 2).
+/// controller.h: the control of a physical body: tracking errors of the joints by mode (`himc`,
+/// `id`), torques by law; HIMC is the cascade of the two inside every physics step (2012 paper,
+/// section 3.2, algorithm 2).
 #ifndef HIMC_CONTROLLER_H
 #define HIMC_CONTROLLER_H
 
@@ -11,14 +11,14 @@
 typedef enum himc_pipeline {
     HIMC_PIPELINE_HIMC, ///< tips -> inverse kinematics -> inverse dynamics (2012, pipeline 2)
     HIMC_PIPELINE_ID,   ///< joint targets -> inverse dynamics (pipeline 3)
-    HIMC_PIPELINE_IK    ///< joint targets shown as they are, no dynamics (pipeline 1)
+    HIMC_PIPELINE_IK    ///< inverse kinematics alone, no dynamics (pipeline 1)
 } himc_pipeline;
 
 /// In the order of the words of `law`.
 typedef enum himc_law {
     HIMC_LAW_PRINTED,        ///< tau = ks (qt - q) - kd q' (2012 paper, equation 2)
     HIMC_LAW_FEEDFORWARD,    ///< gravity added, and kd (qt' - q') in place of -kd q'
-    HIMC_LAW_COMPUTED_TORQUE ///< accelerations asked for, torques by inverse dynamics; the default
+    HIMC_LAW_COMPUTED_TORQUE ///< desired accelerations, torques by inverse dynamics; the default
 } himc_law;
 
 /// Stiffness and damping of a joint's servo about the child's axes x, y, z.
@@ -27,7 +27,7 @@ typedef struct himc_gain {
     himc_vec3 damping;   ///< (N m s/rad)
 } himc_gain;
 
-/// What limits and strength had to do since this was cleared, joint by joint.
+/// How often and how far limits and strength acted since this was cleared, joint by joint.
 typedef struct himc_saturation_counts {
     double measure[HIMC_JOINTS];  ///< himc_limit_measure at the last step
     bool held[HIMC_JOINTS];       ///< at its bounds and not well within since
@@ -38,50 +38,67 @@ typedef struct himc_saturation_counts {
     long steps;
 } himc_saturation_counts;
 
-/// Plain: change any field between steps.
-typedef struct himc_controller {
+/// What the user decides about control. Plain: change a copy and himc_controller_configure.
+typedef struct himc_controller_config {
     himc_pipeline mode;
     himc_law law;
     himc_solver solver;
-    double damping;                 ///< lambda of the inverse kinematics (m), default 0.01
-    double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in it, default 1 each
-    bool null_space_off; ///< the null space of the tips is for nothing, as published; default false
-    bool elbow; ///< the elbow's place comes second, before the rest of the posture; default false
-    double bandwidth; ///< of computed torque, critically damped (Hz), default 20
-    double step;      ///< of the physics (s), over which servos are implicit; 0: explicit
-    himc_gain gain[HIMC_JOINTS]; ///< of the PD laws
-    bool gain_set
-        [HIMC_JOINTS]; ///< by the user: computed torque uses it too, over the joint's inertia
-    himc_vec3
-        inertia[HIMC_JOINTS];     ///< of what hangs on each joint, about the child's axes (kg m^2)
-    const himc_limits *limits;    ///< borrowed; NULL (default) for none
-    double strength[HIMC_JOINTS]; ///< most that a joint's torque may be (N m); 0 (default): any
-    himc_saturation_counts *saturation; ///< borrowed, counted in at each step; may be NULL
+    double damping;                 ///< lambda of the inverse kinematics (m)
+    double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in the inverse kinematics
+    bool null_space_off;            ///< no posture in the null space of the tips, as published
+    bool elbow;                 ///< the elbow's place comes second, before the rest of the posture
+    double bandwidth;           ///< of computed torque, critically damped (Hz)
+    bool gain_set[HIMC_JOINTS]; ///< the joint has the gain below; computed torque uses it, too
+    himc_gain gain[HIMC_JOINTS];
+    bool human_strength;          ///< himc_controller_set_human_strength has set `strength`
+    double strength[HIMC_JOINTS]; ///< largest torque of each joint (N m); 0: no maximum
+} himc_controller_config;
+
+/// A configuration in force for one body; made by himc_controller_init.
+typedef struct himc_controller {
+    himc_controller_config config;
+    double step; ///< of the physics (s), over which servos are implicit; 0: explicit
+    himc_vec3 inertia[HIMC_JOINTS];     ///< of all that hangs on each joint, about the child's axes
+                                        ///< (kg m^2)
+    himc_gain gain[HIMC_JOINTS];        ///< in force: the user's, else the usual ones
+    const himc_limits *limits;          ///< borrowed; NULL (default) for none
+    himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
 } himc_controller;
 
 /// What the body should do now.
 typedef struct himc_reference {
     himc_target tip[HIMC_HANDS];
-    himc_posture_motion posture;  ///< joint targets of `id`; in `himc` what the null space is for
+    himc_posture_motion posture;  ///< joint targets of `id`; in `himc` the null-space target
     bool released[HIMC_HANDS];    ///< the tip is in contact: control lets go of the normal
     himc_vec3 normal[HIMC_HANDS]; ///< of the head it touches
 } himc_reference;
 
-/// Default gains: stiffness I w^2 and damping 2 I w, critically damped, I the inertia of all that
-/// hangs on the joint in the given posture about each axis, w three times 2 pi 8 Hz at the
-/// shoulder, 10 elbow, 14 wrist, 18 grip, 5 elsewhere.
-HIMC_RT void himc_controller_init(himc_controller *controller, const himc_skeleton *skeleton,
-                                  const himc_body_state *posture);
+/// himc, computed torque at 20 Hz, damped least squares with 0.01 m, all weights 1, no gain set, no
+/// maximum of strength.
+HIMC_RT himc_controller_config himc_controller_config_default(void);
 
-/// Sets a joint's stiffness and damping about its axes of flexion; about its length they shrink
-/// with the inertia.
-HIMC_RT void himc_controller_set_gain(himc_controller *controller, int joint, double stiffness,
-                                      double damping);
+/// A controller for a body, its inertia as in the given state; no limits, no counts.
+HIMC_RT void himc_controller_init(himc_controller *controller, const himc_controller_config *config,
+                                  const himc_skeleton *skeleton, const himc_body_state *posture);
+
+/// Another configuration for the same body.
+HIMC_RT void himc_controller_configure(himc_controller *controller,
+                                       const himc_controller_config *config);
+
+/// Usual gain of a joint: stiffness I w^2 and damping 2 I w, critically damped, I the joint's
+/// inertia about each axis, w three times 2 pi 8 Hz at the shoulder, 10 elbow, 14 wrist, 18 grip,
+/// 5 elsewhere.
+HIMC_RT himc_gain himc_controller_usual_gain(const himc_controller *controller, int joint);
+
+/// Gain with this stiffness (N m/rad) and damping (N m s/rad) about the joint's axes of flexion;
+/// about its length both shrink with the inertia.
+HIMC_RT himc_gain himc_controller_gain(const himc_controller *controller, int joint,
+                                       double stiffness, double damping);
 
 /// The strength of a healthy man's joints, in proportion to the body's mass (kg): isometric maxima
 /// of shoulder, elbow and wrist after Holzbaur et al. 2007 and Delp, Grierson & Buchanan 1996, of
 /// the neck after Fice, Siegmund & Blouin 2014.
-HIMC_RT void himc_controller_set_human_strength(himc_controller *controller, double mass);
+HIMC_RT void himc_controller_set_human_strength(himc_controller_config *config, double mass);
 
 /// InverseKinematics and InverseDynamics of algorithm 2: the torques (world frame, N m) for this
 /// state and reference.
@@ -91,8 +108,8 @@ HIMC_RT void himc_controller_torques(const himc_controller *controller,
                                      himc_vec3 torque[HIMC_JOINTS]);
 
 /// Inverse kinematics without dynamics (2012, pipeline 1): from the state at the last step to the
-/// posture and its rates (in the parents' frames, rad/s) that are to be shown `controller->step`
-/// later, for a reference of then; `state` is left somewhere between.
+/// pose and its rates (in the parents' frames, rad/s) `controller->step` later, for the reference
+/// of that time. `state` is changed on the way and of no further use.
 HIMC_RT void himc_controller_kinematic_step(const himc_controller *controller,
                                             const himc_skeleton *skeleton,
                                             const himc_reference *reference, himc_body_state *state,

@@ -1,8 +1,9 @@
-/// show.c: inverse kinematics alone, pipeline 1 of the 2012 paper: a body that is shown, not moved.
+/// kinematic_step.c: inverse kinematics alone, pipeline 1 of the 2012 paper: a pose without
+/// dynamics.
 ///
-/// It goes on for a step as it moved, and is then corrected by what is missing at its joints
-/// (errors.h): the tips by the solver, the rest by the joint targets in their null space. So each
-/// physics step is one Newton step of the solver, from 1e-5 m off or so.
+/// The body goes on for a step at its present rates, and is then corrected by its tracking errors
+/// (tracking_error.h): the tips by the solver, the rest by the joint targets in their null space.
+/// So each physics step is one Newton step of the solver, from about 1e-5 m off.
 #include "control/tracking_error.h"
 
 static himc_vec3 in_parent(const himc_skeleton *skeleton, const himc_body_state *s, int j,
@@ -11,8 +12,9 @@ static himc_vec3 in_parent(const himc_skeleton *skeleton, const himc_body_state 
     return himc_mat3_apply_transposed(&s->rotation[skeleton->segment[j + 1].parent], v);
 }
 
-// the state `h` seconds on
-static void go_on(const himc_skeleton *skeleton, double h, himc_body_state *s, himc_pose *pose)
+// the state `h` (s) later at constant rates
+static void extrapolate(const himc_skeleton *skeleton, double h, himc_body_state *s,
+                        himc_pose *pose)
 {
     himc_vec3 rate[HIMC_JOINTS];
     *pose = himc_pose_from_state(skeleton, s);
@@ -28,18 +30,18 @@ void himc_controller_kinematic_step(const himc_controller *c, const himc_skeleto
                                     himc_pose *pose, himc_vec3 rate[HIMC_JOINTS])
 {
     tracking_error e;
-    go_on(skeleton, c->step, s, pose);
+    extrapolate(skeleton, c->step, s, pose);
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian jacobian;
-        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->weight, &jacobian);
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian);
         himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand, &jacobian,
                                 &e);
     }
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 spin = himc_vec3_add(himc_relative_spin(skeleton, s, j), e.rate[j]);
-        himc_quat turn = himc_quat_exp(in_parent(skeleton, s, j, e.angle[j]));
+        himc_quat rotate = himc_quat_exp(in_parent(skeleton, s, j, e.angle[j]));
         rate[j] = in_parent(skeleton, s, j, spin);
-        pose->joint[j] = himc_quat_unit(himc_quat_mul(turn, pose->joint[j]));
+        pose->joint[j] = himc_quat_unit(himc_quat_mul(rotate, pose->joint[j]));
     }
 }

@@ -1,12 +1,12 @@
 /// limit_torque.c: joints beyond their bounds are brought back towards the nearest orientation
-/// within (2012 paper, section 3.1), by accelerations where the law asks for those, by torques
-/// where it makes those. Limits win over tips, tips over posture.
+/// within (2012 paper, section 3.1): by accelerations in computed torque, by torques in the PD
+/// laws. Limits win over tips, tips over posture.
 ///
-/// Computed torque: where a joint would be in a moment T is kept within its bounds,
+/// Computed torque: the orientation that a joint would have after a time T is kept within bounds,
 ///     q_T = exp(omega T + alpha T^2 / 2) q,     alpha += 2 / T^2 log(q_T^-1 q_lim(q_T)),
 /// from outside e'' = -2 / T^2 e - 2 / T e', a spring damped by .71 of critical. A motion that
-/// turns back by itself is left alone, one along the limit slides freely. What that takes from the
-/// tips the arm's other freedoms give back: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
+/// turns back by itself is left alone, one along the limit slides freely. The arm's other degrees of
+/// freedom give back what the tips lose: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
 /// directions of the corrections.
 ///
 /// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion
@@ -17,32 +17,35 @@
 
 #include "body/dynamics.h"
 
-#define MOMENT 0.0056   // T: a spring of 40 Hz (s)
-#define RETURN 3.0      // speed of the way back from far beyond (rad/s)
-#define SPRING 60.0     // beside a servo (Hz)
-#define FARTHEST 0.02   // what is beyond by more is pulled no harder (rad)
-#define NEGLIGIBLE 1e-9 // what is beyond by less is within (rad)
-#define SOON 1e-4       // over which motion along a limit is seen (s)
-#define ENOUGH 0.01     // corrections smaller than that are none (rad/s^2)
-#define DAMPING 0.05    // lambda, of what the tips get back (m)
-#define PASSES 3        // of giving back: it may send out another joint
-#define INSIDE 0.95     // a joint held so near its bounds has hit them ...
-#define FREE 0.85       // ... and has to come back this far before it can hit them again
+// chosen: firm beside strokes of up to 10 Hz and soft beside the physics rate
+#define HORIZON 0.0056      // T: a spring of 40 Hz (s)
+#define LIMIT_SPRING 60.0   // beside a servo (Hz)
+#define RETURN_SPEED 3.0    // of the way back from far beyond (rad/s)
+#define LARGEST_BEYOND 0.02 // a joint further beyond is pulled no harder (rad)
+#define LOST_DAMPING 0.05   // lambda, of the motion that tips get back (m)
+#define GIVE_BACK_PASSES 3  // each may send another joint out of its bounds
+// chosen: of bounds, for the count of hits
+#define HIT_MEASURE 0.95  // a joint held so near its bounds has hit them ...
+#define FREE_MEASURE 0.85 // ... and has to come back this far before it can hit them again
+// chosen: above rounding, below anything that is seen
+#define LEAST_BEYOND 1e-9     // a joint beyond by less is within (rad)
+#define LEAST_CORRECTION 0.01 // (rad/s^2)
+#define SLIDE_STEP 1e-4       // over which motion along a limit is measured (s)
 
 /// A joint in its parent's frame.
-typedef struct place {
+typedef struct joint_place {
     himc_quat q;
     himc_vec3 spin; // (rad/s)
     double beyond;  // its bounds (rad)
-} place;
+} joint_place;
 
 /// Corrections of joints, each along one direction.
-typedef struct stops {
+typedef struct limit_stops {
     int count;
     int joint[HIMC_JOINTS];
     himc_vec3 inward[HIMC_JOINTS]; // unit vectors of the world
     double more[HIMC_JOINTS];      // acceleration along them (rad/s^2)
-} stops;
+} limit_stops;
 
 // how far a rotation is from another (rad)
 static double angle_between(himc_quat a, himc_quat b)
@@ -51,7 +54,7 @@ static double angle_between(himc_quat a, himc_quat b)
 }
 
 static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
-                        const himc_body_state *s, place at[HIMC_JOINTS])
+                        const himc_body_state *s, joint_place at[HIMC_JOINTS])
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
         int p = skeleton->segment[j + 1].parent;
@@ -66,28 +69,29 @@ static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
             continue;
         c->saturation->measure[j] = measure;
         c->saturation->farthest[j] = fmax(c->saturation->farthest[j], at[j].beyond);
-        c->saturation->held[j] = c->saturation->held[j] && measure > FREE;
+        c->saturation->held[j] = c->saturation->held[j] && measure > FREE_MEASURE;
     }
 }
 
-// what a joint's acceleration lacks, in its parent's frame (rad/s^2)
-static himc_vec3 correction(const himc_limits *limits, int j, const place *at, himc_vec3 alpha)
+// missing acceleration of a joint, in its parent's frame (rad/s^2)
+static himc_vec3 correction(const himc_limits *limits, int j, const joint_place *at,
+                            himc_vec3 alpha)
 {
-    himc_vec3 turn =
-        himc_vec3_madd(himc_vec3_scale(at->spin, MOMENT), 0.5 * MOMENT * MOMENT, alpha);
-    himc_quat then = himc_quat_mul(himc_quat_exp(turn), at->q);
+    himc_vec3 rotate =
+        himc_vec3_madd(himc_vec3_scale(at->spin, HORIZON), 0.5 * HORIZON * HORIZON, alpha);
+    himc_quat then = himc_quat_mul(himc_quat_exp(rotate), at->q);
     himc_quat near = himc_limit_closest(limits, j, then);
     himc_vec3 back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(then)));
-    double angle = himc_vec3_length(back), late = fmax(at->beyond - RETURN * MOMENT, 0);
+    double angle = himc_vec3_length(back), late = fmax(at->beyond - RETURN_SPEED * HORIZON, 0);
     if (angle <= late)
         return himc_vec3_make(0, 0, 0);
-    return himc_vec3_scale(back, (1 - late / angle) * 2 / (MOMENT * MOMENT));
+    return himc_vec3_scale(back, (1 - late / angle) * 2 / (HORIZON * HORIZON));
 }
 
 // the joints that these accelerations would take out of their bounds
 static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
-                       const himc_body_state *s, const place at[HIMC_JOINTS],
-                       const himc_vec3 *relative, stops *found)
+                       const himc_body_state *s, const joint_place at[HIMC_JOINTS],
+                       const himc_vec3 *relative, limit_stops *found)
 {
     found->count = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -100,7 +104,7 @@ static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
         alpha = himc_mat3_apply_transposed(&s->rotation[p], alpha);
         himc_vec3 more = himc_mat3_apply(&s->rotation[p], correction(c->limits, j, &at[j], alpha));
         double size = himc_vec3_length(more);
-        if (size < ENOUGH)
+        if (size < LEAST_CORRECTION)
             continue;
         found->joint[found->count] = j;
         found->inward[found->count] = himc_vec3_scale(more, 1 / size);
@@ -110,14 +114,14 @@ static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
 
 static void count_hit(himc_saturation_counts *saturation, int j)
 {
-    if (!saturation || saturation->measure[j] < INSIDE)
+    if (!saturation || saturation->measure[j] < HIT_MEASURE)
         return;
     saturation->hits[j] += !saturation->held[j];
     saturation->held[j] = true;
 }
 
 // accelerations of the arm that move its tip so and turn no stopped joint along its way back
-static void give_back(const stops *stop, const himc_arm_jacobian *jacobian, himc_hand hand,
+static void give_back(const limit_stops *stop, const himc_arm_jacobian *jacobian, himc_hand hand,
                       himc_vec3 lost, himc_vec3 wanted[HIMC_JOINTS])
 {
     himc_vec3 way[HIMC_ARM_JOINTS] = {{0, 0, 0}};
@@ -133,7 +137,7 @@ static void give_back(const stops *stop, const himc_arm_jacobian *jacobian, himc
             gram.m[i / 3][i % 3] -= jacobian->weight[k] * b[i / 3] * b[i % 3];
     }
     for (int i = 0; i < 3; i++)
-        gram.m[i][i] += DAMPING * DAMPING;
+        gram.m[i][i] += LOST_DAMPING * LOST_DAMPING;
     himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);
     himc_vec3 f = himc_mat3_apply(&inverse, lost);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
@@ -147,15 +151,15 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
                             const himc_body_state *s, const himc_arm_jacobian jacobian[HIMC_HANDS],
                             himc_vec3 wanted[HIMC_JOINTS])
 {
-    place at[HIMC_JOINTS];
-    stops stop = {.count = 0};
+    joint_place at[HIMC_JOINTS];
+    limit_stops stop = {.count = 0};
     himc_vec3 before[HIMC_HANDS];
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
     find_places(c, skeleton, s, at);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         before[hand] = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
-    for (int pass = 0; pass <= PASSES; pass++) {
+    for (int pass = 0; pass <= GIVE_BACK_PASSES; pass++) {
         find_stops(c, skeleton, s, at, wanted, &stop);
         if (stop.count == 0)
             break;
@@ -164,7 +168,7 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
             himc_vec3 *a = &wanted[stop.joint[h]];
             *a = himc_vec3_madd(*a, stop.more[h], stop.inward[h]);
         }
-        for (int hand = 0; pass < PASSES && hand < HIMC_HANDS; hand++) {
+        for (int hand = 0; pass < GIVE_BACK_PASSES && hand < HIMC_HANDS; hand++) {
             himc_vec3 now = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
             himc_vec3 lost = himc_vec3_sub(before[hand], now);
             give_back(&stop, &jacobian[hand], (himc_hand)hand, lost, wanted);
@@ -172,24 +176,24 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
     }
 }
 
-// twice the energy of a turn in the parent's frame
-static double energy(const place *at, himc_vec3 inertia, himc_vec3 spin)
+// twice the energy of a rotation in the parent's frame
+static double energy(const joint_place *at, himc_vec3 inertia, himc_vec3 spin)
 {
     himc_vec3 v = himc_quat_rotate(himc_quat_conj(at->q), spin);
     return inertia.x * v.x * v.x + inertia.y * v.y * v.y + inertia.z * v.z * v.z;
 }
 
 // the way to the nearest orientation within, and how fast that is left, in the parent's frame
-static void find_way(const himc_limits *limits, int j, const place *at, himc_vec3 inertia,
+static void find_way(const himc_limits *limits, int j, const joint_place *at, himc_vec3 inertia,
                      himc_vec3 *way, himc_vec3 *rate)
 {
     himc_quat near = himc_limit_closest(limits, j, at->q);
-    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(at->spin, SOON)), at->q);
+    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(at->spin, SLIDE_STEP)), at->q);
     himc_quat moved = himc_quat_mul(himc_limit_closest(limits, j, next), himc_quat_conj(near));
     *way = himc_quat_log(himc_quat_mul(near, himc_quat_conj(at->q)));
-    *way = himc_vec3_scale(*way, fmin(1, FARTHEST / himc_vec3_length(*way)));
+    *way = himc_vec3_scale(*way, fmin(1, LARGEST_BEYOND / himc_vec3_length(*way)));
     // far outside, the nearest orientation may run away or jump to the other side
-    himc_vec3 along = himc_vec3_scale(himc_quat_log(moved), 1 / SOON);
+    himc_vec3 along = himc_vec3_scale(himc_quat_log(moved), 1 / SLIDE_STEP);
     double most = energy(at, inertia, at->spin), has = energy(at, inertia, along);
     *rate = himc_vec3_madd(at->spin, has > most ? -sqrt(most / has) : -1, along);
 }
@@ -198,14 +202,14 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
                         const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS],
                         himc_vec3 resistance[HIMC_JOINTS])
 {
-    const double w = 2 * HIMC_PI * SPRING, h = c->step;
-    place at[HIMC_JOINTS];
+    const double w = 2 * HIMC_PI * LIMIT_SPRING, h = c->step;
+    joint_place at[HIMC_JOINTS];
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
     find_places(c, skeleton, s, at);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 way, rate;
-        if (at[j].beyond < NEGLIGIBLE)
+        if (at[j].beyond < LEAST_BEYOND)
             continue;
         count_hit(c->saturation, j);
         find_way(c->limits, j, &at[j], c->inertia[j], &way, &rate);

@@ -1,5 +1,5 @@
-/// task.c: every channel of the targets moves on a quintic from tick to tick, with one set of basis
-/// values for all (interpolate.c). Legs are held as they are: only what is above the waist moves.
+/// setpoint.c: every channel of the targets moves on a quintic from tick to tick, with one set of basis
+/// values for all (interpolate.c). Legs keep their posture: only joints above the waist move.
 #include "control/setpoint.h"
 
 #include "base/interpolate.h"

@@ -1,4 +1,4 @@
-/// task.h: between two task ticks (250 Hz) and at every physics step (10 kHz): targets move on
+/// setpoint.h: between two task ticks (250 Hz) and at every physics step (10 kHz): targets move on
 /// quintics, so that position, velocity and acceleration agree at the ticks (the two loops of the
 /// 2012 paper's algorithm 2).
 #ifndef HIMC_SETPOINT_H
@@ -6,7 +6,7 @@
 
 #include "control/controller.h"
 
-/// Where tips and joints are to be at a tick, and how they are to move.
+/// Targets of tips and joints at a tick, and their motion.
 typedef struct himc_setpoint {
     double time; ///< (s)
     himc_target tip[HIMC_HANDS];

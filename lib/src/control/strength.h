@@ -1,10 +1,10 @@
-/// strength.h: the most that the joints' torques may be.
+/// strength.h: the largest torques of the joints.
 #ifndef HIMC_STRENGTH_H
 #define HIMC_STRENGTH_H
 
 #include "control/controller.h"
 
-/// Shortens torques to the controller's maxima, and counts in its strain.
+/// Shortens torques to the controller's maxima, and counts in its saturation counts.
 HIMC_RT void himc_strength_apply(const himc_controller *controller, himc_vec3 torque[HIMC_JOINTS]);
 
 #endif

@@ -1,23 +1,24 @@
-/// errors.c: what is missing at the joints. To the joint targets of `id`, as they are. For the tips
-/// of `himc` (and of `ik`, show.c) an arm's come from its tip alone,
+/// tracking_error.c: missing angles and rates of the joints. For `id` to the joint targets. For the
+/// tips of `himc` (and of `ik`, kinematic_step.c) those of an arm come from its tip alone,
 ///     dq = J+ (X_t - X),  q'_t = J+ X'_t,  q''_t = J+ (X''_t - J' q') (equation 3, differentiated)
-/// plus what the posture asks, in the null space of J.
+/// plus those of the posture, in the null space of J.
 #include "control/tracking_error.h"
 
 #include "body/dynamics.h"
 #include "body/stretch.h"
 #include "control/ik.h"
 
-#define LARGEST_STEP 0.20 // of the tip, one step of inverse kinematics (m)
-#define LEAVES 0.20       // a tip so far from its target begins to leave it to the joints ...
-#define LEFT 0.40         // ... and so far does so wholly (m)
+// chosen: the Jacobian is true within a fraction of the arm's length
+#define LARGEST_TIP_STEP 0.20 // of the tip, one step of inverse kinematics (m)
+#define JOINTS_BEGIN 0.20     // a tip this far from its target begins to follow the joints ...
+#define JOINTS_ALONE 0.40     // ... and this far follows them alone (m)
 
 static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
 {
     return himc_vec3_madd(a, share, himc_vec3_sub(b, a));
 }
 
-// errors to the joint targets, turned from the parent's frame into the world
+// errors to the joint targets, from the parent's frame into the world
 void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
                                 const himc_posture_motion *target, tracking_error *e)
 {
@@ -50,7 +51,7 @@ typedef struct arm_tasks {
 
 static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
 {
-    const himc_controller *c = tasks->controller;
+    const himc_controller_config *c = &tasks->controller->config;
     int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
     himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
     tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
@@ -58,11 +59,11 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
         himc_elbow_task_init(&tasks->elbow, tasks->jacobian, upper_arm, c->damping);
 }
 
-// the tip's demand through the Jacobian, the posture's in its null space, where the shoulder's wish
-// for the elbow's place comes first; `demand` is linear in all of it
+// the tip's demand through the Jacobian, the posture's in its null space, there the elbow's place
+// first; the solution is linear in all of them
 static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
 {
-    const himc_controller *c = tasks->controller;
+    const himc_controller_config *c = &tasks->controller->config;
     himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     himc_arm_gather(all, tasks->hand, posture);
@@ -89,11 +90,12 @@ himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_
     return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
 }
 
-// The Jacobian is the truth near the target only: pushed far away, an arm that follows it turns in
-// circles. So it goes home by its joints, to the posture whose tip is the target.
-static void go_home(const tracking_error *joints, double away, himc_hand hand, tracking_error *e)
+// The Jacobian is true near the target only: an arm pushed far away that follows it turns in
+// circles. So it returns by its joint targets, whose posture has the tip at the target.
+static void return_by_joints(const tracking_error *joints, double away, himc_hand hand,
+                             tracking_error *e)
 {
-    double share = fmin((away - LEAVES) / (LEFT - LEAVES), 1);
+    double share = fmin((away - JOINTS_BEGIN) / (JOINTS_ALONE - JOINTS_BEGIN), 1);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
         e->angle[j] = mix(e->angle[j], joints->angle[j], share);
@@ -102,8 +104,7 @@ static void go_home(const tracking_error *joints, double away, himc_hand hand, t
     }
 }
 
-// equation 3: replaces the arm's joint errors by those that its tip asks for, or the nearest place
-// in reach
+// equation 3
 void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_target *asked, himc_hand hand,
                              const himc_arm_jacobian *jacobian, tracking_error *e)
@@ -112,7 +113,7 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     himc_vec3 shoulder = s->origin[himc_arm_joint(hand, 0) + 1];
     himc_target target = himc_stretch_towards(asked, shoulder, himc_stretch(skeleton, hand));
     himc_vec3 way = himc_vec3_sub(target.x, s->tip[hand]);
-    himc_vec3 missing = clamp_length(way, LARGEST_STEP);
+    himc_vec3 missing = clamp_length(way, LARGEST_TIP_STEP);
     himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
     himc_vec3 a = himc_acceleration_left(skeleton, s, hand, e->acceleration, target.a);
     arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
@@ -121,6 +122,6 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     solve_demand(&tasks, slower, e->rate);
     solve_demand(&tasks, a, e->acceleration);
     double away = himc_vec3_length(way);
-    if (away > LEAVES)
-        go_home(&joints, away, hand, e);
+    if (away > JOINTS_BEGIN)
+        return_by_joints(&joints, away, hand, e);
 }

@@ -1,4 +1,5 @@
-/// errors.h: what is missing at the joints: to their targets, or for the tips' sake; private.
+/// tracking_error.h: missing angles and rates of the joints: to their own targets, or to bring the
+/// tips to theirs.
 #ifndef HIMC_TRACKING_ERROR_H
 #define HIMC_TRACKING_ERROR_H
 
@@ -15,15 +16,15 @@ typedef struct tracking_error {
 HIMC_RT void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
                                         const himc_posture_motion *target, tracking_error *e);
 
-/// Replaces the errors of an arm's joints by those that its tip asks for, or the nearest place to
-/// `asked` that is in reach; the old ones are what the null space is for.
+/// Replaces the errors of an arm's joints by those that bring its tip to `asked`, or to the nearest
+/// place in reach; the old ones go into the null space.
 HIMC_RT void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skeleton,
                                      const himc_body_state *s, const himc_target *asked,
                                      himc_hand hand, const himc_arm_jacobian *jacobian,
                                      tracking_error *e);
 
-/// Tip acceleration (m/s^2) that the arm's joints must make: what is wanted less what the state's
-/// spins and the trunk, accelerating as in `relative`, make already.
+/// Tip acceleration (m/s^2) that the arm's joints must make: the wanted one less that of the state's
+/// spins and of the trunk, which accelerates as in `relative`.
 HIMC_RT himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
                                          himc_hand hand, const himc_vec3 *relative,
                                          himc_vec3 wanted);

@@ -79,6 +79,14 @@ const char *himc_drum_name(const himc_drum *drum)
     return drum->name;
 }
 
+void himc_drum_rest(himc_drum *drum)
+{
+    himc_membrane_rest(drum->membrane);
+    drum->waiting_count = 0;
+    for (int i = 0; i < HIMC_STICKS; i++)
+        drum->mallets[i] = (drum_mallet){.used = false};
+}
+
 bool himc_drum_is_placed(const himc_drum *drum)
 {
     return drum->placed;

@@ -10,6 +10,8 @@
 #include <string.h>
 
 #define PICKUP_STEP (HIMC_PI / 3) // (rad) of azimuth; chosen: six pickups surround the drum
+// chosen: a room; larger numbers are mistakes of unit
+#define FARTHEST_PLACE 10.0 // on each axis (m)
 
 // Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
 // softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
@@ -122,6 +124,13 @@ static bool do_mallet(himc_drum *drum, const himc_command *c, himc_error *error)
     }
     drum->revision++;
     return true;
+}
+
+bool himc_drum_check_place(himc_vec3 center, himc_error *error)
+{
+    return himc_check_range("place X", center.x, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error) &&
+           himc_check_range("place Y", center.y, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error) &&
+           himc_check_range("place Z", center.z, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error);
 }
 
 static bool do_place(himc_drum *drum, const himc_command *c, himc_error *error)

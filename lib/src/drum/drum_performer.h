@@ -21,6 +21,10 @@ HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
+/// Whether a drum may stand there: within 10 m of the origin on each axis.
+bool himc_drum_check_place(himc_vec3 center, himc_error *error);
+/// Brings the head to rest, without a click, and drops the drum's own mallets and waiting strikes.
+HIMC_RT void himc_drum_rest(himc_drum *drum);
 /// Moves the head's centre (m), until the command `place` does.
 HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
 /// The mallet that strikes it, set by the command `mallet`. Borrowed.

@@ -1,242 +1,366 @@
 /// performance_command.c: the performer's commands, one function for each row of command_rows.h
 /// that is for the performer.
 ///
-/// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a short queue
-/// until the step at its sample; the others may allocate or read files, and act at once. A command
-/// that cannot be carried out changes nothing and gives the reason in one line.
+/// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a queue until
+/// the step at its sample; the others may allocate or read files, and act at once. A command that
+/// cannot be carried out changes nothing and gives the reason in one line.
 #include "performance/performance_state.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define LONGEST_DELAY 8192       // samples
-#define LONGEST_RECORDING 1200.0 // (s)
+#define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
 
-// the action of each row for the performer is himc_performance_do_ and its word
-#define ACTION_DRUM(ID, word, when)
-#define ACTION_PERFORMER(ID, word, when) performance_action himc_performance_do_##word;
-#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) \
-    ACTION_##receiver(ID, word, when)
-#include "himc/command_rows.h"
+// what to play
 
-bool himc_performance_do_mode(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_hit(p, &c->stroke, error);
+}
+
+static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    if (c->count > 1)
+        return himc_error_set(error,
+                              "tempo: BEAT: only in a score file; here a tempo holds from now on");
+    return himc_performance_set_tempo(p, c->atom[0].number, error);
+}
+
+static bool do_clear(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)c, (void)error;
+    himc_planner_clear(p->motion->planner);
+    himc_motion_replan(p->motion);
+    return true;
+}
+
+static bool do_loop(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_planner_loop(p->motion->planner, step_time(p), c->atom[0].number != 0);
+    himc_motion_replan(p->motion);
+    return true;
+}
+
+static bool do_play(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)c;
+    return himc_performance_play(p, error);
+}
+
+static bool do_stop(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)c, (void)error;
+    himc_performance_stop(p);
+    return true;
+}
+
+static bool do_seek(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_planner_seek(p->motion->planner, step_time(p), c->atom[0].number);
+    himc_motion_replan(p->motion);
+    return true;
+}
+
+static bool run_now(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_command(p, c, 0, error);
+}
+
+static bool do_score(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_load_score(p, c->atom[0].symbol, run_now, error);
+}
+
+static bool do_take(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_load_take(p, c->atom[0].symbol, error);
+}
+
+static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    enum { CLEAR };
+    himc_motion_replan(p->motion);
+    if (c->form == CLEAR) {
+        himc_planner_clear_units(p->motion->planner);
+        return true;
+    }
+    bool has_spot = c->count > 2 && c->choice[2] >= 0;
+    himc_spot spot = has_spot ? (himc_spot)c->choice[2] : HIMC_SPOT_NORMAL;
+    return himc_performance_add_units(p, c->atom[0].symbol, (himc_nuance)c->choice[1],
+                                      has_spot ? &spot : NULL, error);
+}
+
+static bool do_target(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_performance_target(
+        p, (himc_hand)c->choice[0],
+        himc_vec3_make(c->atom[1].number, c->atom[2].number, c->atom[3].number));
+    return true;
+}
+
+static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    const char *name = c->atom[0].symbol;
+    if (!p->host.make_drums || himc_drums_find(&p->drums, name) >= 0)
+        return true; // in Pd each [membrane~ NAME] is a drum
+    return himc_performance_make_drum(p, name, c->count > 1 ? c->atom[1].number : USUAL_INCHES,
+                                      error);
+}
+
+// control
+
+static bool do_mode(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_pipeline mode = (himc_pipeline)c->choice[0];
+    performance_settings s = p->settings;
     (void)error;
-    // leaving `ik` the body takes up where the picture was
-    if (p->controller.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
-        himc_character_place(p->character, &p->state);
-    p->controller.mode = mode;
-    p->replan = p->replan || p->has_regression;
+    if (s.control.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
+        himc_body_take_up(p->body);
+    s.control.mode = mode;
+    himc_performance_adopt(p, &s);
+    if (p->motion->has_regression)
+        himc_motion_replan(p->motion);
     return true;
 }
 
-bool himc_performance_do_solver(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_solver(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->controller.solver = (himc_solver)c->choice[0];
+    s.control.solver = (himc_solver)c->choice[0];
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_damping(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_damping(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->controller.damping = c->atom[0].number;
+    s.control.damping = c->atom[0].number;
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_posture(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_posture(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->controller.null_space_off = c->atom[0].number == 0;
+    s.control.null_space_off = c->atom[0].number == 0;
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_bend(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_bend(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->unbent = c->atom[0].number == 0;
-    p->replan = true;
+    s.unbent = c->atom[0].number == 0;
+    himc_performance_adopt(p, &s);
+    himc_motion_replan(p->motion);
     return true;
 }
 
-bool himc_performance_do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->controller.elbow = c->atom[0].number != 0;
+    s.control.elbow = c->atom[0].number != 0;
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_weights(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_weights(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        p->controller.weight[k] = c->atom[k].number;
+        s.control.weight[k] = c->atom[k].number;
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_law(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_law(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->controller.law = (himc_law)c->choice[0];
+    s.control.law = (himc_law)c->choice[0];
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-static bool reset_gains(himc_performance *p)
+// all joints: k_s goes with the square of the natural frequency, k_d with the frequency itself
+static void scale_frequencies(const himc_controller *controller, himc_controller_config *config,
+                              double factor)
 {
-    himc_controller fresh;
-    himc_performance_fresh_controller(p, &fresh);
-    memcpy(p->controller.inertia, fresh.inertia, sizeof fresh.inertia);
-    memcpy(p->controller.gain, fresh.gain, sizeof fresh.gain);
-    memcpy(p->controller.gain_set, fresh.gain_set, sizeof fresh.gain_set);
-    return true;
-}
-
-// k_s goes with the square of the natural frequency, k_d with the frequency itself
-static bool scale_frequencies(himc_performance *p, double factor)
-{
-    reset_gains(p);
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_gain *gain = &p->controller.gain[j];
-        gain->stiffness = himc_vec3_scale(gain->stiffness, factor * factor);
-        gain->damping = himc_vec3_scale(gain->damping, factor);
-        p->controller.gain_set[j] = true;
+        himc_gain usual = himc_controller_usual_gain(controller, j);
+        config->gain[j].stiffness = himc_vec3_scale(usual.stiffness, factor * factor);
+        config->gain[j].damping = himc_vec3_scale(usual.damping, factor);
+        config->gain_set[j] = true;
     }
-    return true;
 }
 
-bool himc_performance_do_gain(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
+    himc_controller_config *config = &s.control;
     enum { RESET, FREQUENCY };
-    if (c->form == RESET)
-        return reset_gains(p);
-    if (c->form == FREQUENCY)
-        return scale_frequencies(p, c->atom[1].number);
     int joint;
-    if (!himc_performance_find_joint(c, "gain", &joint, error))
-        return false;
-    himc_controller_set_gain(&p->controller, joint, c->atom[1].number, c->atom[2].number);
-    return true;
-}
-
-bool himc_performance_do_rate(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    enum { PHYSICS, TASK };
-    double hz = c->atom[1].number;
-    if (c->form == PHYSICS) {
-        p->config.physics_rate = hz;
+    if (c->form == RESET) {
+        memset(config->gain_set, 0, sizeof config->gain_set);
+    } else if (c->form == FREQUENCY) {
+        scale_frequencies(&p->body->controller, config, c->atom[1].number);
     } else {
-        if (p->recording)
-            return himc_error_set(error, "rate task: %g: not while recording %s", hz,
-                                  himc_recording_path(p->recording));
-        p->config.task_rate = hz;
+        if (!himc_body_find_joint(c->atom[0].symbol, "gain", &joint, error))
+            return false;
+        config->gain[joint] =
+            himc_controller_gain(&p->body->controller, joint, c->atom[1].number, c->atom[2].number);
+        config->gain_set[joint] = true;
     }
-    himc_performance_reset_clock(p);
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_coupling(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_limits(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
     (void)error;
-    p->one_way = c->choice[0] == HIMC_COUPLING_ONE_WAY;
+    s.limits = (himc_limits_kind)c->choice[0];
+    himc_performance_adopt(p, &s);
+    himc_performance_renew_limits(p);
+    himc_body_clear_limit_counts(p->body); // they were of other limits
     return true;
 }
 
-bool himc_performance_do_grip(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_strength(himc_performance *p, const himc_command *c, himc_error *error)
 {
+    performance_settings s = p->settings;
+    enum { HUMAN, OFF };
+    enum { ALL, JOINT };
+    int joint;
+    if (c->form == JOINT) {
+        if (!himc_body_find_joint(c->atom[0].symbol, "strength", &joint, error))
+            return false;
+        s.control.strength[joint] = c->atom[1].number;
+    } else if (c->choice[0] == HUMAN) {
+        himc_controller_set_human_strength(&s.control, s.skeleton.mass);
+    } else {
+        memset(s.control.strength, 0, sizeof s.control.strength);
+        s.control.human_strength = false;
+    }
+    himc_performance_adopt(p, &s);
+    return true;
+}
+
+static bool do_rate(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    enum { PHYSICS, TASK };
+    bool physics = c->form == PHYSICS;
+    double hz = c->atom[1].number;
+    if (!physics && p->recording.file)
+        return himc_error_set(error, "rate task: %g: not while recording %s", hz,
+                              himc_recording_path(p->recording.file));
+    *(physics ? &s.physics_rate : &s.task_rate) = hz;
+    himc_performance_adopt(p, &s);
+    himc_performance_restart_steps(p);
+    return true;
+}
+
+static bool do_coupling(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
     (void)error;
-    p->grip = (himc_grip)c->choice[0];
-    himc_planner_set_grip(p->planner, p->grip);
+    s.one_way = c->choice[0] == HIMC_COUPLING_ONE_WAY;
+    himc_performance_adopt(p, &s);
     return true;
 }
 
-bool himc_performance_do_player(himc_performance *p, const himc_command *c, himc_error *error)
+// body and instrument
+
+static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    himc_skeleton_config old = p->body;
-    p->body.height = c->atom[0].number;
-    p->body.mass = c->atom[1].number;
-    p->body.seat = p->body.shoulders = 0; // whatever a take has measured
-    memset(p->body.length, 0, sizeof p->body.length);
-    if (himc_performance_build_body(p, error))
-        return true;
-    p->body = old;
+    performance_settings s = p->settings;
+    (void)error;
+    s.grip = (himc_grip)c->choice[0];
+    himc_performance_adopt(p, &s);
+    himc_planner_set_grip(p->motion->planner, s.grip);
+    return true;
+}
+
+static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    s.skeleton.height = c->atom[0].number;
+    s.skeleton.mass = c->atom[1].number;
+    s.skeleton.seat = s.skeleton.shoulders = 0; // not those that a take has measured
+    memset(s.skeleton.length, 0, sizeof s.skeleton.length);
+    return himc_performance_rebuild(p, &s, error);
+}
+
+static int find_segment(const char *name)
+{
+    for (int i = HIMC_PELVIS + 1; i < HIMC_SEGMENTS; i++)
+        if (strcmp(name, himc_segment_name(i)) == 0)
+            return i;
+    return -1;
+}
+
+static bool unknown_segment(const char *name, himc_error *error)
+{
+    himc_error_set(error, "push: SEGMENT: %s, allowed", name);
+    size_t used = error ? strlen(error->text) : 0;
+    for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
+        used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
+                                 himc_segment_name(i));
     return false;
 }
 
-// writes what has been recorded; a recording that cannot be written is lost, and that is said
-static bool finish_recording(himc_performance *p, himc_error *error)
+static bool do_push(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    bool written = himc_recording_write(p->recording, error);
-    if (written)
-        himc_performance_note(p, "recorded %.2f s in %s",
-                              himc_recording_frames(p->recording) / p->config.task_rate,
-                              himc_recording_path(p->recording));
-    himc_recording_free(p->recording);
-    p->recording = NULL;
-    return written || himc_error_prefix(error, "record");
+    int i = find_segment(c->atom[0].symbol);
+    if (i < 0)
+        return unknown_segment(c->atom[0].symbol, error);
+    himc_vec3 force = {c->atom[1].number, c->atom[2].number, c->atom[3].number};
+    himc_body_push(p->body, i, force, step_time(p) + c->atom[4].number);
+    return true;
 }
 
-bool himc_performance_do_record(himc_performance *p, const himc_command *c, himc_error *error)
+// a recording that cannot be written is lost, and the error says so
+static bool finish_recording(himc_performance *p, himc_error *error)
 {
-    enum { STOP };
+    bool written = himc_performance_write_recording(p, error);
+    himc_performance_drop_recording(p);
+    return written;
+}
+
+static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
+{
     const char *path = c->atom[0].symbol;
+    enum { STOP };
     bool stop = c->form == STOP;
-    if (stop && !p->recording)
+    if (stop && !p->recording.file)
         return himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
     if (stop)
         return finish_recording(p, error);
-    if (p->recording)
+    if (p->recording.file)
         return himc_error_set(error, "record: %s: already recording %s, allowed stop", path,
-                              himc_recording_path(p->recording));
-    p->recording =
-        himc_recording_new(path, &p->skeleton, p->config.task_rate, LONGEST_RECORDING, error);
-    p->recording_full = false;
-    return p->recording || himc_error_prefix(error, "record");
+                              himc_recording_path(p->recording.file));
+    return himc_performance_begin_recording(p, path, error);
 }
 
-bool himc_performance_do_reset(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    himc_skeleton_config old = p->body;
     (void)c;
-    if (p->recording && !finish_recording(p, error))
-        return false;
-    p->body = himc_skeleton_default();
-    p->controller = (himc_controller){.law = HIMC_LAW_COMPUTED_TORQUE}; // not the gains set since
-    p->limits.kind = HIMC_LIMITS_OFF;
-    p->human = p->has_regression = false;
-    p->saturation = (himc_saturation_counts){.steps = 0};
-    p->grip = HIMC_GRIP_GERMAN;
-    p->course.time = 0; // trunk and grip as in the beginning
-    memset(p->captured_rest_known, 0, sizeof p->captured_rest_known);
-    for (int i = 0; i < HIMC_SEGMENTS; i++)
-        p->weight[i] = 1;
-    himc_performance_drop_track(p);
-    if (!himc_performance_build_body(p, error)) {
-        p->body = old;
-        return false;
-    }
-    himc_planner_stop(p->planner, step_time(p));
-    himc_planner_clear(p->planner);
-    himc_planner_set_tempi(p->planner, &(himc_tempo_change){0, HIMC_TEMPO}, 1, NULL);
-    himc_planner_loop(p->planner, step_time(p), false);
-    himc_planner_set_grip(p->planner, p->grip);
-    himc_planner_clear_units(p->planner);
-    p->controller.mode = HIMC_PIPELINE_HIMC;
-    p->controller.law = HIMC_LAW_COMPUTED_TORQUE;
-    p->controller.solver = HIMC_SOLVER_DLS;
-    p->config.physics_rate = himc_performance_default().physics_rate;
-    p->config.task_rate = himc_performance_default().task_rate;
-    p->one_way = p->playing = p->unbent = false;
-    memset(p->push, 0, sizeof p->push);
-    memset(p->beyond, 0, sizeof p->beyond);
-    p->waiting_count = 0;
-    p->commands_dropped = 0;
-    p->square_sum = p->height_sum = p->peak_force = 0;
-    p->square_count = p->height_count = p->recoveries = 0;
-    p->strokes = p->played = p->hits = 0;
-    p->hit_latency = p->longest_latency = 0;
-    himc_performance_reset_clock(p);
-    return true;
+    return himc_performance_reset(p, error);
 }
 
 // carried out by the program around the library, with himc_performance_describe
@@ -253,12 +377,13 @@ static bool refuse_network(himc_performance *p, const himc_command *c, himc_erro
                           himc_command_table((int)c->id)->name);
 }
 
+// the action of a row for the performer is do_ and its word
 static performance_action *const actions[HIMC_COMMANDS] = {
-#define ACTION_NOW(word) himc_performance_do_##word
-#define ACTION_AT_SAMPLE(word) himc_performance_do_##word
+#define ACTION_NOW(word) do_##word
+#define ACTION_AT_SAMPLE(word) do_##word
 #define ACTION_HOST(word) leave_to_host
 #define ACTION_NETWORK(word) refuse_network
-#undef ACTION_PERFORMER
+#define ACTION_DRUM(ID, word, when)
 #define ACTION_PERFORMER(ID, word, when) [HIMC_COMMAND_##ID] = ACTION_##when(word),
 #define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) \
     ACTION_##receiver(ID, word, when)
@@ -284,47 +409,20 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
-    if (p->waiting_count == WAITING_COMMANDS) // one line for a storm: the rest is counted
-        return p->commands_dropped++ > 0 ||
-               himc_error_set(error, "more than %d commands at once: this one is dropped",
-                              WAITING_COMMANDS);
+    if (!himc_queue_has_room(&p->queue))
+        return himc_queue_drop(&p->queue, error);
     if (!prepare(p, command, error))
         return false;
-    waiting_command *w = &p->waiting[p->waiting_count++];
-    w->due = p->sample + (uint64_t)delay;
-    himc_command_copy(&w->command, command);
+    himc_queue_add(&p->queue, command, p->clock.played + delay);
     return true;
+}
+
+static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
+{
+    return actions[command->id](p, command, error);
 }
 
 void himc_performance_run_due_commands(himc_performance *p)
 {
-    int kept = 0;
-    for (int i = 0; i < p->waiting_count; i++) {
-        himc_error error;
-        if (p->waiting[i].due > p->made) {
-            if (kept != i) {
-                p->waiting[kept].due = p->waiting[i].due;
-                himc_command_copy(&p->waiting[kept].command, &p->waiting[i].command);
-            }
-            kept++;
-        } else if (!actions[p->waiting[i].command.id](p, &p->waiting[i].command, &error)) {
-            himc_performance_note(p, "%s", error.text);
-        }
-    }
-    p->waiting_count = kept;
-    if (p->commands_dropped > 0 && kept < WAITING_COMMANDS / 2) {
-        himc_performance_note(p, "%ld commands dropped: more than %d waited", p->commands_dropped,
-                              WAITING_COMMANDS);
-        p->commands_dropped = 0;
-    }
-}
-
-void himc_performance_make_drums(himc_performance *p, bool make_drums)
-{
-    p->make_drums = make_drums;
-}
-
-void himc_performance_take_options(himc_performance *p, const himc_take_options *options)
-{
-    p->take_options = *options;
+    himc_queue_run(&p->queue, p->clock.made, run_waiting, p, &p->events);
 }

@@ -1,130 +1,169 @@
-/// performance_drums.c: the drums of a performance: found by name, made, replaced, and where they
-/// stand.
+/// performance_drums.c: the drums of a performance.
 ///
-/// Strokes name their drum by its slot, so a slot is never given up. A drum that nobody has placed
-/// stands on the arc around the player on which the first one stands, at the angle nearest to
-/// straight ahead at which its rim is clear of the others', to the right before to the left: not
-/// where another drum is, which no stick could tell apart.
-#include "performance/performance_state.h"
+/// A drum that nobody has placed stands on the arc around the player on which the first one stands,
+/// at the angle nearest to straight ahead at which its rim is clear of the others', to the right
+/// before to the left. So no two drums are at one place, where no stick could tell them apart.
+#include "performance/performance_drums.h"
+#include "base/head_frame.h"
+#include "drum/drum_state.h"
 
 #include <string.h>
 
-#define CLEAR 0.02      // between two rims (m)
-#define STEP 0.02       // in which the arc is tried (rad)
-#define FARTHEST 1.9    // a player turns no further (rad)
-#define OUTWARDS 0.1    // to the next arc (m)
-#define LARGEST_ARC 2.0 // (m)
+// chosen: as timpani are set up, rims a finger apart and all within a turn of the trunk
+#define RIM_GAP 0.02        // least, between two rims (m)
+#define ARC_ANGLE_STEP 0.02 // from one angle tried to the next (rad)
+#define ARC_END 1.9         // a player turns no further (rad)
+#define ARC_STEP 0.1        // from one arc to the next (m)
+#define LARGEST_ARC 2.0     // (m)
 
-static int find_drum(const himc_performance *p, const char *name)
+int himc_drums_find(const performance_drums *d, const char *name)
 {
-    for (int i = 0; i < p->drums; i++)
-        if (strcmp(himc_drum_name(p->drum[i].drum), name) == 0)
+    for (int i = 0; i < d->count; i++)
+        if (strcmp(himc_drum_name(d->slot[i].drum), name) == 0)
             return i;
     return -1;
 }
 
-static bool is_clear(const himc_performance *p, int index, himc_vec3 center)
+const himc_head_frame *himc_drums_frame(const performance_drums *d, int index)
 {
-    double radius = himc_drum_head_frame(p->drum[index].drum)->radius;
-    for (int i = 0; i < p->drums; i++) {
-        const himc_head_frame *other = himc_drum_head_frame(p->drum[i].drum);
+    return himc_drum_head_frame(d->slot[index].drum);
+}
+
+static bool is_clear(const performance_drums *d, int index, himc_vec3 center)
+{
+    double radius = himc_drums_frame(d, index)->radius;
+    for (int i = 0; i < d->count; i++) {
+        const himc_head_frame *other = himc_drums_frame(d, i);
         double apart = hypot(center.x - other->center.x, center.y - other->center.y);
-        if (i != index && apart < radius + other->radius + CLEAR)
+        if (i != index && apart < radius + other->radius + RIM_GAP)
             return false;
     }
     return true;
 }
 
-// a drum that nobody has placed goes where none is yet
-static void find_room(himc_performance *p, int index)
+// false once its owner has moved a drum
+static bool is_where_put(const drum_slot *slot)
 {
-    himc_drum *drum = p->drum[index].drum;
-    himc_vec3 first = himc_drum_head_frame(drum)->center;
-    for (double arc = first.x; !himc_drum_is_placed(drum) && arc < LARGEST_ARC; arc += OUTWARDS)
-        for (double angle = 0; angle < FARTHEST; angle += STEP)
+    himc_vec3 now = himc_drum_head_frame(slot->drum)->center;
+    return slot->moved && slot->placed == himc_drum_is_placed(slot->drum) && now.x == slot->at.x &&
+           now.y == slot->at.y && now.z == slot->at.z;
+}
+
+static void stand(drum_slot *slot, himc_vec3 center)
+{
+    if (!is_where_put(slot)) {
+        slot->found = himc_drum_head_frame(slot->drum)->center;
+        slot->placed = himc_drum_is_placed(slot->drum);
+        slot->moved = true;
+    }
+    slot->at = center;
+    himc_drum_stand(slot->drum, center);
+}
+
+// puts a drum that nobody has placed where there is room
+static void find_room(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    himc_vec3 first = himc_drums_frame(d, index)->center;
+    if (himc_drum_is_placed(slot->drum))
+        return;
+    for (double arc = first.x; arc < LARGEST_ARC; arc += ARC_STEP)
+        for (double angle = 0; angle < ARC_END; angle += ARC_ANGLE_STEP)
             for (int side = -1; side <= 1; side += 2) {
                 himc_vec3 center = {arc * cos(angle), side * arc * sin(angle), first.z};
-                if (!is_clear(p, index, center))
+                if (!is_clear(d, index, center))
                     continue;
-                himc_drum_stand(drum, center);
-                p->drum[index].beside = angle > 0;
+                stand(slot, center);
+                slot->untold = angle > 0;
                 return;
             }
 }
 
-void himc_performance_tell_places(himc_performance *p)
+static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_source source)
 {
-    for (int i = 0; i < p->drums; i++) {
-        himc_vec3 at = himc_drum_head_frame(p->drum[i].drum)->center;
-        if (p->drum[i].beside && !himc_drum_is_placed(p->drum[i].drum))
-            himc_performance_note(p, "drum %s stands at %.2f %.2f %.2f: `place` says where",
-                                  himc_drum_name(p->drum[i].drum), at.x, at.y, at.z);
-        p->drum[i].beside = false;
-    }
+    d->slot[index] =
+        (drum_slot){.drum = drum, .source = source, .revision = himc_drum_revision(drum) - 1};
+    find_room(d, index);
 }
 
-static bool put_drum(himc_performance *p, himc_drum *drum, bool silent, int *index,
-                     himc_error *error)
+bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, int *index,
+                    himc_error *error)
 {
-    int i = find_drum(p, himc_drum_name(drum));
-    if (i < 0 && p->drums == HIMC_DRUMS)
+    int i = himc_drums_find(d, himc_drum_name(drum));
+    if (i < 0 && d->count == HIMC_DRUMS)
         return himc_error_set(error, "drum %s: a performer plays on %d drums at most",
                               himc_drum_name(drum), HIMC_DRUMS);
     if (i < 0)
-        i = p->drums++;
+        i = d->count++;
     else
-        himc_drum_release(p->drum[i].drum);
-    p->drum[i] = (slot){.drum = drum, .silent = silent, .revision = himc_drum_revision(drum) - 1};
-    find_room(p, i);
-    himc_performance_notice_drums(p);
+        himc_drum_release(d->slot[i].drum);
     *index = i;
+    if (d->slot[i].drum == drum) // the same drum again stays where it is
+        d->slot[i].revision = himc_drum_revision(drum) - 1;
+    else
+        fill_slot(d, i, drum, source);
     return true;
 }
 
-static bool make_drum(himc_performance *p, const char *name, double inches, bool silent, int *index,
-                      himc_error *error)
+bool himc_drums_make(performance_drums *d, const char *name, double inches, double sample_rate,
+                     drum_source source, int *index, himc_error *error)
 {
-    himc_drum *drum = himc_drum_new(name, inches, p->config.sample_rate, error);
+    himc_drum *drum = himc_drum_new(name, inches, sample_rate, error);
     if (!drum)
         return false;
-    if (put_drum(p, drum, silent, index, error))
+    if (himc_drums_add(d, drum, source, index, error))
         return true;
     himc_drum_release(drum);
     return false;
 }
 
-bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
-                                  himc_error *error)
+bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_error *error)
 {
-    *index = name[0] ? find_drum(p, name) : 0;
-    if (*index >= 0 && *index < p->drums)
-        return true;
-    if (!make_drum(p, name[0] ? name : "drum", 23, true, index, error))
+    if (!himc_drum_check_place(center, error))
         return false;
-    himc_performance_note(p, "no drum %s: playing on a silent one",
-                          himc_drum_name(p->drum[*index].drum));
+    stand(&d->slot[index], center);
+    d->slot[index].untold = false;
     return true;
 }
 
-bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error *error)
+void himc_drums_put_back(performance_drums *d)
 {
-    int index;
-    if (put_drum(p, himc_drum_retain(drum), false, &index, error))
-        return true;
-    himc_drum_release(drum);
-    return false;
+    performance_drums old = *d;
+    *d = (performance_drums){.count = 0};
+    for (int i = 0; i < old.count; i++) {
+        himc_drum *drum = old.slot[i].drum;
+        if (old.slot[i].source != DRUM_GIVEN) {
+            himc_drum_release(drum);
+            continue;
+        }
+        if (is_where_put(&old.slot[i]))
+            himc_drum_stand(drum, old.slot[i].found);
+        himc_drum_rest(drum);
+        fill_slot(d, d->count++, drum, DRUM_GIVEN);
+    }
 }
 
-himc_drum *himc_performance_drum(himc_performance *p, int index)
+void himc_drums_release(performance_drums *d)
 {
-    return index >= 0 && index < p->drums ? p->drum[index].drum : NULL;
+    while (d->count > 0)
+        himc_drum_release(d->slot[--d->count].drum);
 }
 
-bool himc_performance_do_drum(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_drums_noticed(performance_drums *d, int index)
 {
-    int index;
-    if (!p->make_drums || find_drum(p, c->atom[0].symbol) >= 0)
-        return true; // in Pd each [membrane~ NAME] is one
-    return make_drum(p, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : 23, false, &index,
-                     error);
+    unsigned revision = himc_drum_revision(d->slot[index].drum);
+    bool changed = revision != d->slot[index].revision;
+    d->slot[index].revision = revision;
+    return changed;
+}
+
+void himc_drums_tell_places(performance_drums *d, performance_events *events)
+{
+    for (int i = 0; i < d->count; i++) {
+        himc_vec3 at = himc_drums_frame(d, i)->center;
+        if (d->slot[i].untold && !himc_drum_is_placed(d->slot[i].drum))
+            himc_events_note(events, "drum %s stands at %.2f %.2f %.2f: `place` says where",
+                             himc_drum_name(d->slot[i].drum), at.x, at.y, at.z);
+        d->slot[i].untold = false;
+    }
 }

@@ -1,17 +1,20 @@
 /// performance_score.c: `score FILE`: all of a score is taken, or nothing.
 ///
-/// The file is parsed as a whole (score.c); then it is rehearsed: its lines for drums are given to
-/// trial drums made like the real ones as they are now, its lines for the performer are looked at,
-/// its drums are counted. Only then is anything done. While a score plays, the next one's beats are
-/// put behind its own. Invariant: a score that is refused has changed nothing.
+/// The file is parsed as a whole (score.c); then it is rehearsed: its lines for drums go to trial
+/// drums like the real ones, its lines for the performer are checked, its drums are counted. Only
+/// then is anything done. While a score plays, the next one's beats follow its own. Invariant: a
+/// score that is refused has changed nothing.
 #include "performance/performance_state.h"
 
 #include <stdio.h>
 #include <string.h>
 
+#define TRIAL_RECORDING 0.1 // a file that can be made is not filled (s)
+
 /// Drums as a score would leave them; owned.
 typedef struct rehearsal {
     himc_performance *performance;
+    performance_action *run; ///< of a command
     himc_drum *drum[HIMC_DRUMS];
     int drums;
 } rehearsal;
@@ -26,18 +29,16 @@ static himc_drum *find(himc_drum *const *drum, int drums, const char *name)
 
 static himc_drum *real_drum(const himc_performance *p, const char *name)
 {
-    for (int i = 0; i < p->drums; i++)
-        if (strcmp(himc_drum_name(p->drum[i].drum), name) == 0)
-            return p->drum[i].drum;
-    return NULL;
+    int index = himc_drums_find(&p->drums, name);
+    return index < 0 ? NULL : p->drums.slot[index].drum;
 }
 
 /// The trial drum of that name; "" is the performer's first.
 static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc_error *error)
 {
     himc_performance *p = r->performance;
-    if (!name[0] && p->drums > 0)
-        name = himc_drum_name(p->drum[0].drum);
+    if (!name[0] && p->drums.count > 0)
+        name = himc_drum_name(p->drums.slot[0].drum);
     himc_drum *drum = find(r->drum, r->drums, name), *real = real_drum(p, name);
     if (drum)
         return drum;
@@ -45,7 +46,7 @@ static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc
         himc_error_set(error, "drum %s: a performer plays on %d drums at most", name, HIMC_DRUMS);
         return NULL;
     }
-    drum = himc_drum_new(name, inches, p->config.sample_rate, error);
+    drum = himc_drum_new(name, inches, p->clock.sample_rate, error);
     if (drum && real &&
         !himc_membrane_follow(himc_drum_membrane(drum), himc_drum_membrane(real), error)) {
         himc_drum_release(drum);
@@ -67,27 +68,28 @@ static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *er
     int joint, file;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
-        return !p->make_drums || trial_drum(r, word, c->count > 1 ? c->atom[1].number : 23, error);
+        return !p->host.make_drums ||
+               trial_drum(r, word, c->count > 1 ? c->atom[1].number : USUAL_INCHES, error);
     case HIMC_COMMAND_GAIN:
-        return c->count < 3 || himc_performance_find_joint(c, "gain", &joint, error);
+        return c->count < 3 || himc_body_find_joint(word, "gain", &joint, error);
     case HIMC_COMMAND_STRENGTH:
-        return c->count < 2 || himc_performance_find_joint(c, "strength", &joint, error);
+        return c->count < 2 || himc_body_find_joint(word, "strength", &joint, error);
     case HIMC_COMMAND_TAKE:
     case HIMC_COMMAND_UNITS:
         if (himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true; // `units clear`
-        take = himc_take_load(word, &p->take_options, error);
+        take = himc_take_load(word, &p->host.take_options, error);
         himc_take_free(take);
         return take;
     case HIMC_COMMAND_RECORD:
-        if (p->recording || himc_command_file(c, &file) == HIMC_FILE_NONE)
+        if (p->recording.file || himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true;
-        recording = himc_recording_new(word, &p->skeleton, p->config.task_rate, 0.1, error);
+        recording = himc_recording_new(word, &p->body->skeleton, p->clock.task_rate,
+                                       TRIAL_RECORDING, error);
         himc_recording_free(recording);
         return recording || himc_error_prefix(error, "record");
     default: // the network's are always refused
-        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
-               himc_performance_command(p, c, 0, error);
+        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK || r->run(p, c, error);
     }
 }
 
@@ -95,7 +97,7 @@ static bool rehearse_line(rehearsal *r, const himc_score_line *line, himc_error 
 {
     if (!line->drum[0])
         return rehearse_command(r, &line->command, error);
-    himc_drum *drum = trial_drum(r, line->drum, 23, error);
+    himc_drum *drum = trial_drum(r, line->drum, USUAL_INCHES, error);
     return drum && (himc_drum_command(drum, &line->command, error) ||
                     himc_error_prefix(error, "%s", line->drum));
 }
@@ -106,8 +108,8 @@ static bool count_drums(const rehearsal *r, const himc_score *score, himc_error 
     const char *name[HIMC_DRUMS];
     const himc_performance *p = r->performance;
     int count = 0;
-    for (int i = 0; i < p->drums; i++)
-        name[count++] = himc_drum_name(p->drum[i].drum);
+    for (int i = 0; i < p->drums.count; i++)
+        name[count++] = himc_drum_name(p->drums.slot[i].drum);
     for (int i = -r->drums; i < score->stroke_count; i++) {
         const char *wanted = i < 0 ? himc_drum_name(r->drum[-1 - i]) : score->strokes[i].drum;
         int k = 0;
@@ -124,9 +126,9 @@ static bool count_drums(const rehearsal *r, const himc_score *score, himc_error 
 }
 
 static bool rehearse(himc_performance *p, const himc_score *score, const char *path,
-                     himc_error *error)
+                     performance_action *run, himc_error *error)
 {
-    rehearsal r = {.performance = p};
+    rehearsal r = {.performance = p, .run = run};
     bool good = true;
     for (int i = 0; i < score->line_count && good; i++) {
         good = rehearse_line(&r, &score->lines[i], error);
@@ -140,45 +142,48 @@ static bool rehearse(himc_performance *p, const himc_score *score, const char *p
     return good;
 }
 
-// a line of a score that is not a stroke: for the performer or one of its drums
-static bool run_line(himc_performance *p, const himc_score_line *line, himc_error *error)
+// a line that is not a stroke: for the performer or one of its drums
+static bool run_line(himc_performance *p, const himc_score_line *line, performance_action *run,
+                     himc_error *error)
 {
     int index;
     if (!line->drum[0])
-        return himc_performance_command(p, &line->command, 0, error);
+        return run(p, &line->command, error);
     return himc_performance_ensure_drum(p, line->drum, &index, error) &&
-           (himc_drum_command(p->drum[index].drum, &line->command, error) ||
+           (himc_drum_command(p->drums.slot[index].drum, &line->command, error) ||
             himc_error_prefix(error, "%s", line->drum));
 }
 
-// what acts on the strokes or on what plays has its turn when they are there
+// commands that act on strokes or on the transport are carried out when the strokes are there
 static bool comes_after_strokes(const himc_score_line *line)
 {
     return himc_command_table((int)line->command.id)->marks & HIMC_AFTER_STROKES;
 }
 
 static bool run_lines(himc_performance *p, const himc_score *score, bool after, const char *path,
-                      himc_error *error)
+                      performance_action *run, himc_error *error)
 {
     for (int i = 0; i < score->line_count; i++)
-        if (comes_after_strokes(&score->lines[i]) == after && !run_line(p, &score->lines[i], error))
+        if (comes_after_strokes(&score->lines[i]) == after &&
+            !run_line(p, &score->lines[i], run, error))
             return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
     return true;
 }
 
 static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
-                            himc_error *error)
+                            performance_action *run, himc_error *error)
 {
-    // while one is played the next one waits for its end
-    bool queued = p->playing && !p->track;
+    // while a score is played the next one waits for its end
+    bool queued = p->motion->playing && !p->motion->track;
     himc_performance_drop_track(p);
-    if (!run_lines(p, score, false, path, error))
+    if (!run_lines(p, score, false, path, run, error))
         return false;
     himc_performance_notice_drums(p);
     if (!queued)
-        himc_planner_clear(p->planner);
-    double from = queued ? himc_planner_next_start(p->planner, step_time(p)) : 0;
-    if (!himc_planner_append_tempi(p->planner, score->tempi, score->tempo_count, from, error))
+        himc_planner_clear(p->motion->planner);
+    double from = queued ? himc_planner_next_start(p->motion->planner, step_time(p)) : 0;
+    if (!himc_planner_append_tempi(p->motion->planner, score->tempi, score->tempo_count, from,
+                                   error))
         return himc_error_prefix(error, "%s", path);
     for (int i = 0; i < score->stroke_count; i++) {
         himc_stroke stroke = score->strokes[i];
@@ -186,17 +191,17 @@ static bool fill_from_score(himc_performance *p, const himc_score *score, const 
         if (!himc_performance_add_stroke(p, &stroke, error))
             return himc_error_prefix(error, "%s", path);
     }
-    return run_lines(p, score, true, path, error);
+    return run_lines(p, score, true, path, run, error);
 }
 
-bool himc_performance_do_score(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_load_score(himc_performance *p, const char *path, performance_action *run,
+                                 himc_error *error)
 {
-    const char *path = c->atom[0].symbol;
     himc_score *score = himc_score_load(path, error);
     if (!score)
         return false;
-    bool ok = rehearse(p, score, path, error) && fill_from_score(p, score, path, error);
+    bool ok = rehearse(p, score, path, run, error) && fill_from_score(p, score, path, run, error);
     himc_score_free(score);
-    p->replan = true;
+    himc_motion_replan(p->motion);
     return ok;
 }

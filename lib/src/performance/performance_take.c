@@ -1,31 +1,42 @@
 /// performance_take.c: the command `take`: a capture's player becomes the performer, and sits where
 /// the capture has it, before a drum that stands under the strikes.
 ///
-/// In `id` and `ik` the joints follow the capture's postures, but for arms that hold no stick; in
-/// `himc` only the tips are known, and the null space has the natural posture, with neck, head,
-/// legs and the trunk's mean as this player holds them. Of an arm that the take shows it has the
-/// player's own way instead: the mean and the habit, the usual one corrected by this take's
-/// postures.
+/// In `id` and `ik` the joints follow the captured postures, but for arms that hold no stick; in
+/// `himc` only the tips are known, and the null space follows the natural posture, with neck, head,
+/// legs and the trunk's mean of this player. An arm that the take shows whole follows a posture
+/// regression instead: the default one, corrected by this take's postures.
+///
+/// Joint limits are learned from the captured postures. An arm shown without a stick was held
+/// otherwise than one with a stick: its limits come from the postures that its tips ask for, in
+/// `himc` and, bent from the captured ones, in `id`.
 #include "performance/performance_state.h"
-#include "capture/take.h"
 #include "base/head_frame.h"
-#include "performance/research.h"
+#include "body/limits.h"
+#include "capture/take.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+// chosen: a player goes a little further than one take shows
+#define LIMIT_MARGIN 0.05     // beyond the captured range, as a share of it ...
+#define LEAST_LIMIT 0.05      // ... and this far whatever the range (rad)
+#define POSTURES_SEEN 1000    // frames of a take from which bent arms' limits are learned
+#define REACH_CHECK_STEP 0.01 // from one check of a take's reach to the next (s)
+#define OUT_OF_REACH 1e-3     // a tip further from its place is out of reach (m)
+#define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
 
 // says what was repaired in reading it
 static void note_repairs(himc_performance *p, himc_take *take, const char *path)
 {
     himc_take_tip tips[HIMC_HANDS];
     for (int i = 0; i < take->note_count; i++)
-        himc_performance_note(p, "%s: %s", path, take->notes[i]);
-    if (!himc_take_tips(take, &p->take_options, tips, NULL))
+        himc_events_note(&p->events, "%s: %s", path, take->notes[i]);
+    if (!himc_take_tips(take, &p->host.take_options, tips, NULL))
         return;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (tips[hand].present && tips[hand].filled > 0)
-            himc_performance_note(p, "%s: %s is missing in %d frames, which are filled", path,
-                                  tips[hand].name, tips[hand].filled);
+            himc_events_note(&p->events, "%s: %s is missing in %d frames, which are filled", path,
+                             tips[hand].name, tips[hand].filled);
 }
 
 // says how much of a take the player cannot follow; the arm then stretches towards it
@@ -33,55 +44,40 @@ static void note_reach(himc_performance *p, const himc_track *track, const char 
 {
     double length = himc_track_length(track), farthest = 0;
     int far = 0, count = 0;
-    for (double t = 0; t < length; t += 0.01)
+    for (double t = 0; t < length; t += REACH_CHECK_STEP)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             if (!himc_track_present(track, (himc_hand)hand))
                 continue;
             himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
-            himc_vec3 near = himc_posture_reachable(&p->posture, (himc_hand)hand, x);
+            himc_vec3 near = himc_posture_reachable(&p->motion->posture, (himc_hand)hand, x);
             double missing = himc_vec3_length(himc_vec3_sub(x, near));
             count++;
-            far += missing > 1e-3;
+            far += missing > OUT_OF_REACH;
             farthest = fmax(farthest, missing);
         }
     if (far > 0)
-        himc_performance_note(p, "%s: tips out of reach in %.0f %% of the take, by up to %.2f m",
-                              path, 100.0 * far / count, farthest);
+        himc_events_note(&p->events,
+                         "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", path,
+                         100.0 * far / count, farthest);
 }
 
-void himc_performance_posture(const himc_performance *p, double t,
-                              const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
-{
-    himc_posture_moving(&p->posture, tip, motion);
-    bool captured = p->controller.mode != HIMC_PIPELINE_HIMC && p->track &&
-                    isfinite(p->track_start) && himc_track_has_posture(p->track);
-    if (captured)
-        himc_track_posture(p->track, &p->skeleton, t - p->track_start, p->unbent ? NULL : tip,
-                           motion);
-}
-
-// a drum that the take's strikes would miss is put under them, one that is in its way is lowered
-static bool move_drum(himc_performance *p, int index, const himc_head_frame *place,
-                      const himc_track *track, const char *path, himc_error *error)
+// puts the drum under the take's strikes, or lowers one that is in its way
+static bool move_drum(himc_performance *p, int index, himc_vec3 to, const himc_track *track,
+                      const char *path, himc_error *error)
 {
     bool strikes = himc_track_strikes(track, HIMC_LEFT) + himc_track_strikes(track, HIMC_RIGHT) > 0;
-    himc_drum *drum = p->drum[index].drum;
-    himc_vec3 to = place->center, from = himc_drum_head_frame(drum)->center;
-    if (himc_vec3_length(himc_vec3_sub(to, from)) < 1e-6)
+    himc_vec3 from = himc_drums_frame(&p->drums, index)->center;
+    if (himc_vec3_length(himc_vec3_sub(to, from)) < SAME_PLACE)
         return true;
-    himc_command move = {.id = HIMC_COMMAND_PLACE, .count = 3};
-    double x[3] = {to.x, to.y, to.z};
-    for (int i = 0; i < 3; i++)
-        move.atom[i] = (himc_atom){.kind = HIMC_ATOM_NUMBER, .number = x[i]};
-    if (!himc_drum_command(drum, &move, error))
+    if (!himc_drums_move(&p->drums, index, to, error))
         return false;
-    himc_performance_note(p, "%s: the %s is moved to %.3f %.3f %.3f, %s", path,
-                          himc_drum_name(drum), to.x, to.y, to.z,
-                          strikes ? "where the take strikes" : "out of the take's way");
+    himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", path,
+                     himc_drum_name(p->drums.slot[index].drum), to.x, to.y, to.z,
+                     strikes ? "where the take strikes" : "out of the take's way");
     return true;
 }
 
-static himc_trunk_posture trunk_bearing(const himc_player *player)
+static himc_trunk_posture mean_trunk(const himc_player *player)
 {
     himc_trunk_posture b = {.value = {0}};
     himc_quat q = player->mean.joint[HIMC_TRUNK - 1];
@@ -93,7 +89,67 @@ static himc_trunk_posture trunk_bearing(const himc_player *player)
     return b;
 }
 
-// the limits of the take's player, whose sticks strike a head at that place
+bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+                                   himc_error *error)
+{
+    if (!himc_limits_learn(learned, player->pose, player->frames, LIMIT_MARGIN, error))
+        return false;
+    himc_limits_loosen(learned, LEAST_LIMIT);
+    return true;
+}
+
+static bool lacks_stick(const himc_player *player, const himc_track *track, himc_hand hand)
+{
+    int known = himc_player_known_arm(player, hand);
+    return himc_track_present(track, hand) && known > 0 && known < HIMC_ARM_JOINTS;
+}
+
+// the natural posture of the take's tips at `t`, and the captured one bent to them
+static void postures_at(const himc_posture *posture, const himc_track *track, double t,
+                        himc_pose pose[2])
+{
+    himc_posture_motion motion;
+    himc_target tip[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int seen = himc_track_present(track, (himc_hand)hand) ? hand : !hand;
+        tip[hand] = himc_track_target(track, (himc_hand)seen, t);
+    }
+    himc_posture_moving(posture, tip, &motion);
+    memcpy(pose[0].joint, motion.joint, sizeof motion.joint);
+    himc_track_posture(track, &posture->skeleton, t, tip, &motion);
+    memcpy(pose[1].joint, motion.joint, sizeof motion.joint);
+}
+
+// limits of arms without sticks anew, from the postures that the tips ask for
+static bool learn_bent(const himc_player *player, const himc_track *track,
+                       const himc_posture *posture, himc_limits *learned, himc_error *error)
+{
+    bool lacks[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        lacks[hand] = lacks_stick(player, track, (himc_hand)hand);
+    if (!lacks[HIMC_LEFT] && !lacks[HIMC_RIGHT])
+        return true;
+    himc_limits bent;
+    himc_pose *pose = malloc(2 * POSTURES_SEEN * sizeof *pose);
+    for (int i = 0; pose && i < POSTURES_SEEN; i++)
+        postures_at(posture, track, himc_track_length(track) * i / POSTURES_SEEN, &pose[2 * i]);
+    if (!pose)
+        himc_error_set(error, "limits: out of memory");
+    bool fitted = pose && himc_limits_learn(&bent, pose, 2 * POSTURES_SEEN, LIMIT_MARGIN, error);
+    free(pose);
+    if (!fitted)
+        return false;
+    himc_limits_loosen(&bent, LEAST_LIMIT);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; lacks[hand] && k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            if (player->known[j])
+                learned->joint[j] = bent.joint[j];
+        }
+    return true;
+}
+
+// the limits of the take's player, the sticks striking a head at that place
 static bool learn_limits(const himc_player *player, const himc_track *track,
                          const himc_head_frame *place, himc_limits *learned, himc_error *error)
 {
@@ -105,38 +161,36 @@ static bool learn_limits(const himc_player *player, const himc_track *track,
         !himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     himc_posture_init(&posture, &skeleton, place->center.z + skeleton.mallet_radius);
-    posture.trunk_posture = trunk_bearing(player);
-    return himc_performance_learn_bent(player, track, &posture, learned, error);
+    posture.trunk_posture = mean_trunk(player);
+    return learn_bent(player, track, &posture, learned, error);
 }
 
-// trunk, neck, head and legs as this player holds them
-static void adopt_manner(himc_performance *p, const himc_player *player)
+// trunk, neck, head and legs of this player
+static captured_player captured_of(const himc_player *player)
 {
-    memcpy(p->captured_rest_known, player->known, sizeof p->captured_rest_known);
-    p->captured_rest_pose = player->mean;
-    // one seated by the shoulders has them where they were seen with this trunk only
-    p->captured_rest_known[HIMC_TRUNK - 1] = player->known[HIMC_TRUNK - 1] || player->placed;
-    p->trunk_posture = trunk_bearing(player);
+    captured_player c = {.rest = player->mean, .trunk = mean_trunk(player)};
+    memcpy(c.known, player->known, sizeof c.known);
+    // seated by the shoulders, a player has them where they were seen with this trunk only
+    c.known[HIMC_TRUNK - 1] = player->known[HIMC_TRUNK - 1] || player->placed;
+    return c;
 }
 
-// the body of the take's player, if it shows one
+// the body of the take's player, if the take shows one
 static bool adopt_player(himc_performance *p, const himc_player *player, const char *path,
                          himc_error *error)
 {
+    performance_settings s = p->settings;
     if (player->lengths == 0) {
-        memset(p->captured_rest_known, 0, sizeof p->captured_rest_known);
+        memset(s.captured.known, 0, sizeof s.captured.known);
+        himc_performance_adopt(p, &s);
         return true;
     }
-    himc_skeleton_config old = p->body;
-    p->body = player->config;
-    adopt_manner(p, player);
-    if (!himc_performance_build_body(p, error)) {
-        p->body = old;
-        memset(p->captured_rest_known, 0, sizeof p->captured_rest_known);
+    s.skeleton = player->config;
+    s.captured = captured_of(player);
+    if (!himc_performance_rebuild(p, &s, error))
         return false;
-    }
-    himc_performance_note(p, "%s: the player's body has %d lengths from it, %.2f m, %.0f kg", path,
-                          player->lengths, p->body.height, p->body.mass);
+    himc_events_note(&p->events, "%s: the player's body has %d lengths from it, %.2f m, %.0f kg",
+                     path, player->lengths, s.skeleton.height, s.skeleton.mass);
     return true;
 }
 
@@ -147,7 +201,7 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
     himc_take_tip tips[HIMC_HANDS];
     himc_error ignored;
     const himc_head_frame *place = himc_drum_head_frame(drum);
-    if (!himc_take_tips(take, &p->take_options, tips, &ignored))
+    if (!himc_take_tips(take, &p->host.take_options, tips, &ignored))
         return;
     int count, outside = 0;
     himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
@@ -158,8 +212,9 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
     }
     free(strikes);
     if (outside > 0)
-        himc_performance_note(p, "%s: %d of %d strikes are beside drum %s: a take is played on one",
-                              path, outside, count, himc_drum_name(drum));
+        himc_events_note(&p->events,
+                         "%s: %d of %d strikes are beside drum %s: a take is played on one", path,
+                         outside, count, himc_drum_name(drum));
 }
 
 // an arm, its hand and stick included
@@ -168,28 +223,41 @@ static bool shows_arm(const himc_player *player, himc_hand hand)
     return player->pose && !player->walks && himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
 }
 
-// the usual habit, corrected by what the take shows of this player's, unless another has been set
-static void adopt_habit(himc_performance *p, const himc_player *player, const himc_take *take,
-                        const char *path)
+// the default regression, corrected by this take, unless another has been set
+static void adopt_regression(himc_performance *p, const himc_player *player, const himc_take *take,
+                             const char *path)
 {
     himc_posture_regression regression;
     himc_error error = {""};
     himc_posture_regression_take seen = {
-        .skeleton = &p->skeleton,
+        .skeleton = &p->body->skeleton,
         .pose = player->pose,
         .frames = player->frames,
         .rate = himc_take_rate(take),
         .unseen_arm = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
         .unseen_trunk = !player->known[HIMC_TRUNK - 1]};
-    if (p->has_regression && !p->regression_of_take)
+    if (p->motion->has_regression && !p->motion->regression_of_take) {
+        himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
         return;
+    }
     himc_posture_regression_default(&regression);
     bool shown = !seen.unseen_arm[HIMC_LEFT] || !seen.unseen_arm[HIMC_RIGHT];
-    bool met = shown && himc_posture_regression_correct(&regression, &seen, &error);
-    if (shown && !met)
-        himc_performance_note(p, "%s: %s: the arms go as is natural", path, error.text);
-    himc_performance_set_posture_regression(p, met ? &regression : NULL);
-    p->regression_of_take = met;
+    bool fitted = shown && himc_posture_regression_correct(&regression, &seen, &error);
+    if (shown && !fitted)
+        himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", path,
+                         error.text);
+    himc_motion_set_regression(p->motion, &p->settings, fitted ? &regression : NULL, fitted);
+}
+
+// a capture in which left and right are exchanged has its drum behind the player
+static bool check_side(const himc_player *player, const himc_head_frame *frame, himc_error *error)
+{
+    if (!player->placed || player->walks || frame->center.x >= 0)
+        return true;
+    return himc_error_set(error,
+                          "the sticks strike %.2f m behind the player, allowed before: are left "
+                          "and right exchanged?",
+                          -frame->center.x);
 }
 
 static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
@@ -199,35 +267,27 @@ static bool play_take(himc_performance *p, himc_take *take, himc_player *player,
     if (!himc_performance_ensure_drum(p, "", &drum, error))
         return false;
     himc_limits learned;
-    himc_head_frame place = *himc_drum_head_frame(p->drum[drum].drum);
-    himc_player_sit(player, take, &p->take_options, &place);
-    if (player->placed && !player->walks && place.center.x < 0)
-        return himc_error_set(
-            error,
-            "the sticks strike %.2f m behind the player, allowed before: are left "
-            "and right exchanged?",
-            -place.center.x);
-    himc_track *track = himc_track_new_played(take, &p->take_options, &place, player, error);
+    himc_head_frame frame = *himc_drums_frame(&p->drums, drum);
+    himc_player_sit(player, take, &p->host.take_options, &frame);
+    if (!check_side(player, &frame, error))
+        return false;
+    himc_track *track = himc_track_new_played(take, &p->host.take_options, &frame, player, error);
     if (!track)
         return false;
-    if (!learn_limits(player, track, &place, &learned, error) ||
-        !move_drum(p, drum, &place, track, path, error) || !adopt_player(p, player, path, error)) {
+    if (!learn_limits(player, track, &frame, &learned, error) ||
+        !move_drum(p, drum, frame.center, track, path, error) ||
+        !adopt_player(p, player, path, error)) {
         himc_track_free(track);
         return false;
     }
     himc_performance_notice_drums(p);
     note_repairs(p, take, path);
     note_reach(p, track, path);
-    note_outside(p, take, track, p->drum[drum].drum, path);
+    note_outside(p, take, track, p->drums.slot[drum].drum, path);
     himc_performance_drop_track(p);
-    p->track = track;
-    p->has_learned = player->pose != NULL;
-    if (p->has_learned)
-        p->learned = learned;
+    himc_motion_set_track(p->motion, track, player->pose ? &learned : NULL, step_time(p));
     himc_performance_renew_limits(p);
-    adopt_habit(p, player, take, path);
-    himc_performance_fit_posture_regression(p);
-    p->replan = true;
+    adopt_regression(p, player, take, path);
     return true;
 }
 
@@ -244,21 +304,22 @@ bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_pla
 static bool play_own_player(himc_performance *p, himc_take *take, const char *name,
                             himc_error *error)
 {
-    himc_player *player = himc_player_new(take, &p->take_options, &p->body, error);
+    himc_player *player =
+        himc_player_new(take, &p->host.take_options, &p->settings.skeleton, error);
     bool played = himc_performance_play_player(p, take, player, name, error);
     himc_player_free(player);
     return played;
 }
 
-bool himc_performance_do_take(himc_performance *p, const himc_command *c, himc_error *error)
+bool himc_performance_load_take(himc_performance *p, const char *path, himc_error *error)
 {
-    himc_take *take = himc_take_load(c->atom[0].symbol, &p->take_options, error);
-    bool played = take && play_own_player(p, take, c->atom[0].symbol, error);
+    himc_take *take = himc_take_load(path, &p->host.take_options, error);
+    bool played = take && play_own_player(p, take, path, error);
     himc_take_free(take);
     return played;
 }
 
 himc_vec3 himc_performance_take_offset(const himc_performance *p)
 {
-    return p->track ? himc_track_offset(p->track) : himc_vec3_make(0, 0, 0);
+    return p->motion->track ? himc_track_offset(p->motion->track) : himc_vec3_make(0, 0, 0);
 }

@@ -1,0 +1,191 @@
+/// performance_body.c: the body, its control and what acts on it.
+///
+/// Skeleton and plant are two: control believes in the first, the engine simulates the second, so
+/// a body can be heavier than control knows. A push is a constant force on a segment's centre of
+/// mass, of which control knows nothing: its effect on the motion is what one pushes for. The
+/// pelvis is held, and in `ik` there is no body to push.
+#include "performance/performance_body.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// chosen: the engine keeps joints together to a micrometre
+#define JOINT_GAP 0.01 // a joint further apart holds nothing (m)
+
+performance_body *himc_body_new(himc_error *error)
+{
+    performance_body *b = calloc(1, sizeof *b);
+    if (!b)
+        himc_error_set(error, "performance: out of memory");
+    return b;
+}
+
+void himc_body_free(performance_body *b)
+{
+    if (!b)
+        return;
+    himc_character_free(b->character);
+    free(b);
+}
+
+static himc_skeleton make_plant(const himc_skeleton *skeleton, const double *weight)
+{
+    himc_skeleton plant = *skeleton;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        plant.segment[i].mass *= weight[i];
+        plant.segment[i].inertia = himc_vec3_scale(plant.segment[i].inertia, weight[i]);
+    }
+    return plant;
+}
+
+bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
+{
+    himc_skeleton skeleton;
+    if (!himc_skeleton_init(&skeleton, &s->skeleton, error))
+        return false;
+    himc_skeleton plant = make_plant(&skeleton, s->weight);
+    himc_character *character = himc_character_new(&plant, error);
+    if (!character)
+        return false;
+    himc_character_free(b->character);
+    b->character = character;
+    b->skeleton = skeleton;
+    b->plant = plant;
+    return true;
+}
+
+void himc_body_place(performance_body *b, const himc_setpoint *at)
+{
+    himc_pose pose;
+    memcpy(pose.joint, at->posture.joint, sizeof pose.joint);
+    himc_pose_to_state(&b->skeleton, &pose, at->posture.rate, &b->state);
+    himc_character_place(b->character, &b->state);
+}
+
+void himc_body_take_up(performance_body *b)
+{
+    himc_character_place(b->character, &b->state);
+}
+
+void himc_body_init_controller(performance_body *b, const himc_controller_config *config,
+                               const himc_pose *rest)
+{
+    himc_body_state state;
+    himc_pose_to_state(&b->skeleton, rest, NULL, &state);
+    himc_controller_init(&b->controller, config, &b->skeleton, &state);
+    b->controller.saturation = &b->saturation;
+}
+
+void himc_body_configure(performance_body *b, const himc_controller_config *config)
+{
+    himc_controller_configure(&b->controller, config);
+}
+
+void himc_body_set_limits(performance_body *b, const himc_limits *limits)
+{
+    if (limits)
+        b->limits = *limits;
+    b->controller.limits = limits ? &b->limits : NULL;
+}
+
+void himc_body_clear_limit_counts(performance_body *b)
+{
+    himc_saturation_counts *s = &b->saturation;
+    memset(s->held, 0, sizeof s->held);
+    memset(s->hits, 0, sizeof s->hits);
+    memset(s->farthest, 0, sizeof s->farthest);
+}
+
+void himc_body_push(performance_body *b, int segment, himc_vec3 force, double until)
+{
+    b->push[segment] = (body_push){force, until};
+    b->push_end = fmax(b->push_end, until);
+}
+
+// numbers may be finite when there is no body any more
+static bool is_whole(const performance_body *b)
+{
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *segment = &b->skeleton.segment[i];
+        himc_vec3 r = himc_mat3_apply(&b->state.rotation[segment->parent], segment->origin);
+        himc_vec3 gap =
+            himc_vec3_sub(himc_vec3_add(b->state.origin[segment->parent], r), b->state.origin[i]);
+        if (!(himc_vec3_dot(gap, gap) < JOINT_GAP * JOINT_GAP))
+            return false;
+    }
+    return true;
+}
+
+bool himc_body_observe(performance_body *b, bool check)
+{
+    himc_character_observe(b->character, &b->state);
+    return !check || is_whole(b);
+}
+
+void himc_body_control(performance_body *b, const himc_reference *reference, double h)
+{
+    b->controller.step = h;
+    himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
+}
+
+bool himc_body_simulate(performance_body *b, const himc_vec3 tip_force[HIMC_HANDS], double t,
+                        double h)
+{
+    for (int i = 0; t < b->push_end && i < HIMC_SEGMENTS; i++)
+        if (t < b->push[i].until)
+            himc_character_push(b->character, i, b->push[i].force);
+    return himc_character_step(b->character, b->torque, tip_force, h);
+}
+
+bool himc_body_follow(performance_body *b, const himc_reference *reference, double h)
+{
+    himc_pose pose;
+    himc_vec3 rate[HIMC_JOINTS];
+    b->controller.step = h;
+    himc_controller_kinematic_step(&b->controller, &b->skeleton, reference, &b->state, &pose, rate);
+    himc_body_clamp(b, &pose, rate);
+    himc_pose_to_state(&b->skeleton, &pose, rate, &b->state);
+    return himc_body_state_finite(&b->state);
+}
+
+void himc_body_clamp(performance_body *b, himc_pose *pose, himc_vec3 rate[HIMC_JOINTS])
+{
+    himc_saturation_counts *s = &b->saturation;
+    for (int j = 0; b->controller.limits && j < HIMC_JOINTS; j++) {
+        himc_quat near = himc_limit_closest(&b->limits, j, pose->joint[j]);
+        double measure = himc_limit_measure(&b->limits, j, pose->joint[j]);
+        himc_quat beyond = himc_quat_mul(himc_quat_conj(near), pose->joint[j]);
+        s->measure[j] = measure;
+        if (measure <= 1) {
+            s->held[j] = false;
+            continue;
+        }
+        s->hits[j] += !s->held[j];
+        s->held[j] = true;
+        s->farthest[j] = fmax(s->farthest[j], himc_vec3_length(himc_quat_log(beyond)));
+        pose->joint[j] = near;
+        rate[j] = himc_vec3_make(0, 0, 0);
+    }
+}
+
+long himc_body_limit_hits(const performance_body *b)
+{
+    long hits = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        hits += b->saturation.hits[j];
+    return hits;
+}
+
+bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error)
+{
+    *joint = himc_joint_find(name);
+    if (*joint >= 0)
+        return true;
+    himc_error_set(error, "%s: JOINT: %s, allowed", command, name);
+    size_t used = error ? strlen(error->text) : 0;
+    for (int j = 0; error && j < HIMC_JOINTS; j++)
+        used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
+                                 himc_joint_name(j));
+    return false;
+}

@@ -1,0 +1,68 @@
+/// performance_body.h: the part of a performance that moves: the body as control believes it to be
+/// and as it is simulated, its control, joint limits and pushes.
+#ifndef HIMC_PERFORMANCE_BODY_H
+#define HIMC_PERFORMANCE_BODY_H
+
+#include "body/character.h"
+#include "control/setpoint.h"
+#include "performance/performance_settings.h"
+
+/// A constant force on a segment's centre of mass.
+typedef struct body_push {
+    himc_vec3 force; ///< (N)
+    double until;    ///< (s)
+} body_push;
+
+typedef struct performance_body {
+    himc_skeleton skeleton;        ///< as control believes it to be
+    himc_skeleton plant;           ///< as it is simulated: masses may differ
+    himc_character *character;     ///< owned
+    himc_body_state state;         ///< at the beginning of the last step
+    himc_vec3 torque[HIMC_JOINTS]; ///< of the last step (N m)
+    himc_controller controller;    ///< borrows `limits` and `saturation`
+    himc_limits limits;            ///< in force
+    himc_saturation_counts saturation;
+    body_push push[HIMC_SEGMENTS];
+    double push_end; ///< of all pushes (s)
+} performance_body;
+
+/// Memory for a body; himc_body_build fills it.
+performance_body *himc_body_new(himc_error *error);
+void himc_body_free(performance_body *body);
+
+/// Makes the segments anew for these settings. False, and nothing changed, if it cannot be.
+bool himc_body_build(performance_body *body, const performance_settings *settings,
+                     himc_error *error);
+/// Puts the body into the posture of a tick: at rest, or back from a state that was not finite.
+HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
+/// Puts the simulated body where the kinematic one was shown.
+HIMC_RT void himc_body_take_up(performance_body *body);
+/// A new controller for this body, made for the resting posture.
+void himc_body_init_controller(performance_body *body, const himc_controller_config *config,
+                               const himc_pose *rest);
+HIMC_RT void himc_body_configure(performance_body *body, const himc_controller_config *config);
+/// Joint limits from now on; NULL for none.
+HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
+/// Counts of limits begin again.
+HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
+HIMC_RT void himc_body_push(performance_body *body, int segment, himc_vec3 force, double until);
+
+/// Reads the simulated body's state. With `check`, false if joints have come apart.
+HIMC_RT bool himc_body_observe(performance_body *body, bool check);
+/// The torques for this state, in a step of `h` (s).
+HIMC_RT void himc_body_control(performance_body *body, const himc_reference *reference, double h);
+/// Moves the simulated body by `h` (s) from time `t` (s). False if the engine cannot.
+HIMC_RT bool himc_body_simulate(performance_body *body, const himc_vec3 tip_force[HIMC_HANDS],
+                                double t, double h);
+/// Moves the body as inverse kinematics has it, by `h` (s). False if the state is not finite.
+HIMC_RT bool himc_body_follow(performance_body *body, const himc_reference *reference, double h);
+/// Clamps a kinematic pose to the joint limits and stops the joints that this moves.
+HIMC_RT void himc_body_clamp(performance_body *body, himc_pose *pose, himc_vec3 rate[HIMC_JOINTS]);
+
+/// Times that a joint came to its bounds.
+HIMC_RT long himc_body_limit_hits(const performance_body *body);
+
+/// The joint of that name; false if there is none, `command` begins the error.
+bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error);
+
+#endif

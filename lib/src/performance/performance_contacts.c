@@ -1,0 +1,319 @@
+/// performance_contacts.c: when a contact begins and ends, and its effect on body and plan.
+///
+/// Near a head a stick becomes a point of its effective mass 1 / (n J M^-1 J' n), with the free
+/// acceleration of forward dynamics, and is solved with the head's modes sample by sample
+/// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
+/// ends of the contact see the same force, and the body's tip and the point differ only by the
+/// change of M in a step; that offset is kept while they touch and decays afterwards. From the
+/// planned time of contact, or the first force, to separation control lets go of the head's normal;
+/// then the plan goes on from the stick's measured state.
+#include "performance/performance_contacts.h"
+
+#include "body/dynamics.h"
+#include "base/head_frame.h"
+
+#include <string.h>
+
+// chosen: about what a listener hears and a spectator sees of a misplaced stroke
+#define PLAYED_TIME 0.005 // a stroke has landed if it touches within this of its time (s) ...
+#define PLAYED_PLACE 0.02 // ... and within this of its place (m)
+// chosen: a step at 30 m/s is 3 mm, and sticks hang over the rim without meaning to strike
+#define NEAR_HEAD 0.02       // above the head at rest: from here on a stick is looked after (m)
+#define DEEPEST_CONTACT 0.10 // a stick deeper than this is not on the head but under it (m) ...
+#define DEEPEST_ARRIVAL 0.03 // ... and so is a deeper one that has not come from above (m)
+// chosen: longer than the gaps inside one contact of a mallet and a swinging head
+#define RISING_GAP 0.0015 // without force that ends a contact of a rising stick (s) ...
+#define ANY_GAP 0.005     // ... and of any (s)
+// chosen: a few times the 5 .. 15 ms of a contact
+#define LONGEST_RELEASE 0.060 // control lets go at most so long (s)
+#define LATEST_CONTACT 0.015  // after the planned time, for a contact still to come (s)
+#define SAME_STROKE 0.100     // between planned and real contact of one stroke (s)
+// chosen: 1e-4 s / ln(1 / 0.9), soon gone and without a jump; as 0.9 a step at 10 kHz
+#define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
+
+void himc_contacts_clear(performance_contacts *c)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        c->hand[hand] = (stick_contact){.touching = false};
+}
+
+double himc_contacts_take_peak(performance_contacts *c, himc_hand hand)
+{
+    double peak = c->hand[hand].peak_row;
+    c->hand[hand].peak_row = 0;
+    return peak;
+}
+
+static bool is_kinematic(const contact_scene *s)
+{
+    return s->settings->control.mode == HIMC_PIPELINE_IK;
+}
+
+static const himc_head_frame *frame_of(const contact_scene *s, int drum)
+{
+    return himc_drums_frame(s->drums, drum);
+}
+
+// place of a tip on a head, z the mallet's height over it (m)
+static himc_vec3 over_head(const contact_scene *s, int drum, himc_vec3 tip)
+{
+    himc_vec3 at = himc_head_frame_from_world(frame_of(s, drum), tip);
+    at.z -= s->body->skeleton.mallet_radius;
+    return at;
+}
+
+static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc_hand hand,
+                            double t)
+{
+    const himc_reference *r = &s->motion->reference;
+    himc_vec3 n = r->normal[hand], a = r->tip[hand].a;
+    himc_target m = {s->body->state.tip[hand], s->body->state.tip_velocity[hand],
+                     himc_vec3_madd(a, -himc_vec3_dot(a, n), n)};
+    if (is_kinematic(s) && c->touching) {
+        m.x = r->tip[hand].x;
+        m.v = r->tip[hand].v;
+    }
+    himc_motion_go_on_from(s->motion, hand, t, &m);
+}
+
+// a planned contact that has not come: the plan goes on without it
+static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
+                    const planned_stroke *next)
+{
+    bool known = next->drum < s->drums->count;
+    himc_motion_answer(s->motion, hand, next->time);
+    himc_statistics_strokes(s->statistics, 1, 0);
+    himc_events_note(s->events, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
+                     known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum", next->time);
+    go_on_from_here(c, s, hand, t);
+}
+
+// in `ik` the stick's end in contact is the micro-contact's, and the arm follows it
+static void follow_stick(const stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+{
+    himc_target tip = s->motion->reference.tip[hand];
+    himc_vec3 n = s->motion->reference.normal[hand];
+    double height = over_head(s, c->drum, tip.x).z;
+    tip.x = himc_vec3_madd(tip.x, c->stick.height - height, n);
+    tip.v = himc_vec3_madd(tip.v, c->stick.velocity - himc_vec3_dot(n, tip.v), n);
+    tip.a = himc_vec3_madd(tip.a, -himc_vec3_dot(n, tip.a), n);
+    himc_motion_move_tip(s->motion, s->settings, hand, &tip, t);
+}
+
+static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+{
+    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
+    bool due = next.any && t >= next.time && !c->touching;
+    if (due && t >= next.time + LATEST_CONTACT) {
+        give_up(c, s, hand, t, &next);
+        due = false;
+    }
+    int drum = c->touching ? c->drum : next.drum;
+    c->released = due || (c->touching && t < c->strike.time + LONGEST_RELEASE);
+    himc_motion_release(s->motion, hand, c->released);
+    if (drum < s->drums->count)
+        himc_motion_set_normal(s->motion, hand, himc_head_frame_normal(frame_of(s, drum)));
+    if (c->touching && is_kinematic(s))
+        follow_stick(c, s, hand, t);
+}
+
+void himc_contacts_release(performance_contacts *c, const contact_scene *s, double t)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        release_hand(&c->hand[hand], s, (himc_hand)hand, t);
+}
+
+// whether a tip is on that head or near enough to matter; `local` is its place and height over it
+static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand hand, int drum,
+                    himc_vec3 *local)
+{
+    double radius = frame_of(s, drum)->radius;
+    himc_vec3 at = over_head(s, drum, s->body->state.tip[hand]);
+    double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
+    *local = at;
+    return at.x * at.x + at.y * at.y < radius * radius && at.z < NEAR_HEAD && at.z > lowest;
+}
+
+// the drum a tip is over, or -1; of two at one place the one it means to strike
+static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand hand,
+                      himc_vec3 *local)
+{
+    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, himc_clock_time(s->clock));
+    int meant = c->touching ? c->drum : next.any ? next.drum : -1;
+    if (meant >= 0 && meant < s->drums->count && is_over(c, s, hand, meant, local))
+        return meant;
+    for (int i = 0; i < s->drums->count; i++)
+        if (is_over(c, s, hand, i, local))
+            return i;
+    return -1;
+}
+
+// the stick as a point on the head's normal, at the beginning of the step
+static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
+                       const himc_articulation *art, const himc_vec3 *relative)
+{
+    const performance_body *b = s->body;
+    himc_vec3 n = himc_head_frame_normal(frame_of(s, c->drum));
+    if (!c->stick.touching) // mallets are changed in the air
+        c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum);
+    c->stick.mass = himc_effective_mass(&b->plant, &b->state, art, hand, n);
+    c->stick.one_way = s->settings->one_way;
+    c->stick.x = local.x;
+    c->stick.y = local.y;
+    c->stick.acceleration = 0;
+    if (!is_kinematic(s))
+        c->stick.acceleration =
+            himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative));
+    if (is_kinematic(s) && c->touching)
+        return;
+    c->stick.height = local.z + c->offset;
+    c->stick.velocity = himc_vec3_dot(n, b->state.tip_velocity[hand]);
+}
+
+static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,
+                         double velocity)
+{
+    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, time);
+    bool planned = next.any && fabs(next.time - time) < SAME_STROKE;
+    c->touching = true;
+    c->strike = (himc_strike){.time = time,
+                              .hand = hand,
+                              .x = c->stick.x,
+                              .y = c->stick.y,
+                              .velocity = -velocity,
+                              .planned_time = planned ? next.time : NAN,
+                              .planned_x = next.x,
+                              .planned_y = next.y};
+    strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
+    strcpy(c->strike.nuance, planned ? next.nuance : "none");
+    if (!planned)
+        return;
+    double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
+    bool played =
+        fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
+    himc_motion_answer(s->motion, hand, next.time);
+    himc_statistics_strokes(s->statistics, 1, played);
+}
+
+// enters the forces of a step's `n` samples into the strike; returns the impulse (N s)
+static double note_forces(stick_contact *c, const contact_scene *s, himc_hand hand,
+                          const double *forces, int n, double velocity)
+{
+    double dt = 1 / s->clock->sample_rate, impulse = 0;
+    for (int i = 0; i < n; i++) {
+        double force = forces[i];
+        if (force <= 0)
+            continue;
+        double time = (double)(s->clock->made + i) * dt;
+        if (!c->touching)
+            begin_strike(c, s, hand, time, velocity);
+        c->last_force = time;
+        c->strike.force = fmax(c->strike.force, force);
+        c->peak_row = fmax(c->peak_row, force);
+        impulse += force * dt;
+    }
+    // within a sample a stiff contact's force is higher than its mean
+    if (c->touching)
+        c->strike.force = fmax(c->strike.force, c->stick.peak);
+    c->strike.impulse += impulse;
+    c->strike.duration = c->last_force + dt - c->strike.time;
+    himc_statistics_force(s->statistics, c->strike.force);
+    return impulse;
+}
+
+/// The sticks near heads in this step.
+typedef struct near_sticks {
+    int below[HIMC_HANDS]; // drum, or -1
+    himc_vec3 local[HIMC_HANDS];
+    double velocity[HIMC_HANDS]; // at the beginning of the step (m/s)
+    himc_articulation art;
+    himc_vec3 relative[HIMC_JOINTS];
+} near_sticks;
+
+static void find_near(const performance_contacts *c, const contact_scene *s, near_sticks *near)
+{
+    const performance_body *b = s->body;
+    bool any = false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        near->below[hand] = drum_below(&c->hand[hand], s, (himc_hand)hand, &near->local[hand]);
+        any = any || near->below[hand] >= 0;
+    }
+    if (!any)
+        return;
+    himc_articulate(&b->plant, &b->state, &near->art);
+    if (!is_kinematic(s))
+        himc_forward_dynamics(&b->plant, &b->state, &near->art, b->torque, NULL, near->relative);
+}
+
+static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int n,
+                         near_sticks *near)
+{
+    himc_stick *sticks[HIMC_HANDS];
+    double *forces[HIMC_HANDS];
+    int count = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (near->below[hand] == drum) {
+            stick_contact *contact = &c->hand[hand];
+            contact->drum = drum;
+            load_stick(contact, s, (himc_hand)hand, near->local[hand], &near->art, near->relative);
+            near->velocity[hand] = contact->stick.velocity;
+            sticks[count] = &contact->stick;
+            forces[count++] = c->force[hand];
+        }
+    himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
+}
+
+void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int n,
+                           himc_vec3 tip_force[HIMC_HANDS])
+{
+    near_sticks near;
+    find_near(c, s, &near);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        memset(c->force[hand], 0, (size_t)n * sizeof(double));
+    c->force_count = n;
+    for (int i = 0; i < s->drums->count; i++)
+        advance_drum(c, s, i, n, &near);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        tip_force[hand] = himc_vec3_make(0, 0, 0);
+        if (near.below[hand] < 0)
+            continue;
+        double impulse =
+            note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
+        himc_vec3 normal = himc_head_frame_normal(frame_of(s, near.below[hand]));
+        tip_force[hand] = himc_vec3_scale(normal, impulse * s->clock->sample_rate / n);
+    }
+}
+
+static void end_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+{
+    himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
+    if (c->strike.velocity > 0) // a head raised into a resting stick is no blow
+        himc_events_add(s->events, &event);
+    if (c->released)
+        go_on_from_here(c, s, hand, t);
+    c->touching = false;
+}
+
+static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t,
+                        double kept)
+{
+    if (!c->touching) {
+        c->offset *= kept;
+        return;
+    }
+    double height = over_head(s, c->drum, s->body->state.tip[hand]).z;
+    if (!is_kinematic(s))
+        c->offset = c->stick.height - height;
+    double quiet = t - c->last_force;
+    if ((quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP)
+        end_strike(c, s, hand, t);
+    else if (c->released && t >= c->strike.time + LONGEST_RELEASE)
+        go_on_from_here(c, s, hand, t);
+}
+
+void himc_contacts_finish(performance_contacts *c, const contact_scene *s, double t)
+{
+    double h = c->force_count / s->clock->sample_rate, kept = exp(-h / OFFSET_TIME);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        finish_hand(&c->hand[hand], s, (himc_hand)hand, t, kept);
+}

@@ -1,0 +1,64 @@
+/// performance_contacts.h: the part of a performance in which sticks meet heads.
+#ifndef HIMC_PERFORMANCE_CONTACTS_H
+#define HIMC_PERFORMANCE_CONTACTS_H
+
+#include "himc/membrane.h"
+#include "performance/performance_body.h"
+#include "performance/performance_clock.h"
+#include "performance/performance_drums.h"
+#include "performance/performance_motion.h"
+#include "performance/performance_statistics.h"
+
+#define LONGEST_STEP 512 // samples of one physics step: 192 kHz at 500 Hz has 384
+
+/// A hand's stick on a head.
+typedef struct stick_contact {
+    bool touching;      ///< from the first force to separation
+    bool released;      ///< control lets go of the normal
+    int drum;           ///< slot
+    himc_stick stick;   ///< in micro-contact
+    double offset;      ///< of the micro height from the body's own tip (m); decays after contact
+    double last_force;  ///< when there was force last (s)
+    double peak_row;    ///< largest force since the last motion row (N)
+    himc_strike strike; ///< being made
+} stick_contact;
+
+typedef struct performance_contacts {
+    stick_contact hand[HIMC_HANDS];
+    double force[HIMC_HANDS][LONGEST_STEP]; ///< of the last step (N)
+    int force_count;                        ///< its samples
+} performance_contacts;
+
+/// What a contact acts on: the stroke is over, the plan goes on, the user is told.
+typedef struct contact_scene {
+    const performance_clock *clock;
+    const performance_settings *settings;
+    const performance_body *body;
+    const performance_drums *drums;
+    performance_motion *motion;
+    performance_statistics *statistics;
+    performance_events *events;
+} contact_scene;
+
+/// Sticks in the air, without a history; forces not yet played stay.
+HIMC_RT void himc_contacts_clear(performance_contacts *contacts);
+/// Decides for each hand at `t` whether control lets go of the head's normal; strokes whose contact
+/// has not come are given up.
+HIMC_RT void himc_contacts_release(performance_contacts *contacts, const contact_scene *scene,
+                                   double t);
+/// Advances all drums by `n` samples with the sticks on them; the forces on the tips (N).
+HIMC_RT void himc_contacts_advance(performance_contacts *contacts, const contact_scene *scene,
+                                   int n, himc_vec3 tip_force[HIMC_HANDS]);
+/// Ends contacts whose sticks have left, at `t`.
+HIMC_RT void himc_contacts_finish(performance_contacts *contacts, const contact_scene *scene,
+                                  double t);
+
+static inline bool himc_contacts_any(const performance_contacts *contacts)
+{
+    return contacts->hand[HIMC_LEFT].touching || contacts->hand[HIMC_RIGHT].touching;
+}
+
+/// Largest force of a hand since the last call (N).
+HIMC_RT double himc_contacts_take_peak(performance_contacts *contacts, himc_hand hand);
+
+#endif

@@ -1,0 +1,48 @@
+/// performance_events.c: events in a ring. It is the host's mailbox: `reset` leaves it as it is.
+#include "performance/performance_events.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+void himc_events_add(performance_events *e, const himc_event *event)
+{
+    if (e->count == EVENTS_WAITING) {
+        e->first = (e->first + 1) % EVENTS_WAITING;
+        e->count--;
+        e->lost++;
+    }
+    e->event[(e->first + e->count++) % EVENTS_WAITING] = *event;
+}
+
+void himc_events_note(performance_events *e, const char *format, ...)
+{
+    himc_event event = {.kind = HIMC_EVENT_NOTE};
+    va_list args;
+    va_start(args, format);
+    vsnprintf(event.text, sizeof event.text, format, args);
+    va_end(args);
+    himc_events_add(e, &event);
+}
+
+bool himc_events_take(performance_events *e, himc_event *event)
+{
+    if (e->count == 0)
+        return false;
+    *event = e->event[e->first];
+    e->first = (e->first + 1) % EVENTS_WAITING;
+    e->count--;
+    return true;
+}
+
+void himc_events_on_motion(performance_events *e, void (*row)(void *, const himc_motion_row *),
+                           void *user)
+{
+    e->on_motion = row;
+    e->motion_user = user;
+}
+
+void himc_events_on_tick(performance_events *e, void (*tick)(void *, const himc_tick *), void *user)
+{
+    e->on_tick = tick;
+    e->tick_user = user;
+}

@@ -1,0 +1,434 @@
+/// performance_motion.c: what the body should do now.
+///
+/// A hand follows the take while that plays, else the planner. It is handed over where it is: the
+/// planner goes on from the tip's state, C2. Joint targets come from the take's postures, the
+/// natural posture or, as null-space target of `himc`, a player's posture regression; from one
+/// source to another they cross-fade (posture_crossfade.h).
+#include "performance/performance_motion.h"
+
+#include "body/limits.h"
+#include "base/head_frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
+#define TRUNK_FORESIGHT 1.2 // chosen: a stroke further ahead does not turn the trunk yet (s)
+#define TRUNK_STEP 0.02     // longest that himc_trunk_posture_approach goes on (s)
+#define REPLANNED 0.02      // chosen: a stroke given up may be planned again so much later (s)
+#define LIMIT_HEIGHT 0.35   // chosen: a large stroke; the mean posture's tips go up to here (m)
+#define LIMIT_HEIGHTS 8     // postures in that mean
+#define OUT_OF_REACH 1e-3   // chosen: a target missed by more is told of (m)
+#define BEAT_ROUNDING 1e-9  // of a time in seconds, in beats
+
+// distance of a place from the nearest one that the tip reaches
+static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
+{
+    return himc_vec3_length(himc_vec3_sub(place, himc_posture_reachable(posture, hand, place)));
+}
+
+performance_motion *himc_motion_new(himc_error *error)
+{
+    performance_motion *m = calloc(1, sizeof *m);
+    himc_planner_config planning = himc_planner_default();
+    if (!m) {
+        himc_error_set(error, "performance: out of memory");
+        return NULL;
+    }
+    planning.mallet_radius = himc_skeleton_default().mallet_radius;
+    planning.beyond = beyond_reach;
+    planning.body = &m->posture;
+    m->planner = himc_planner_new(&planning, error);
+    if (!m->planner) {
+        free(m);
+        return NULL;
+    }
+    m->posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
+    m->track_start = INFINITY;
+    m->last_beat = -1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        m->answered[hand] = -INFINITY;
+    return m;
+}
+
+void himc_motion_free(performance_motion *m)
+{
+    if (!m)
+        return;
+    himc_planner_free(m->planner);
+    himc_track_free(m->track);
+    free(m);
+}
+
+void himc_motion_replan(performance_motion *m)
+{
+    m->replan = true;
+}
+
+void himc_motion_set_drum(performance_motion *m, int index, const himc_head_frame *frame)
+{
+    himc_planner_set_drum(m->planner, index, frame);
+    if (index == 0)
+        m->posture.level = frame->center.z + m->posture.skeleton.mallet_radius;
+    m->replan = true;
+}
+
+// whose hands they are
+
+bool himc_motion_tracks(const performance_motion *m, himc_hand hand)
+{
+    return m->track && isfinite(m->track_start) && himc_track_present(m->track, hand);
+}
+
+bool himc_motion_is_idle(const performance_motion *m, himc_hand hand, double t)
+{
+    return (m->track && !himc_track_present(m->track, hand)) ||
+           (himc_motion_tracks(m, hand) && t < m->track_start);
+}
+
+static double take_end(const performance_motion *m)
+{
+    return m->track_start + himc_track_length(m->track);
+}
+
+void himc_motion_take_hands_back(performance_motion *m, double t)
+{
+    bool tracked = false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (himc_motion_tracks(m, (himc_hand)hand)) {
+            himc_planner_resume(m->planner, t, (himc_hand)hand, &m->reference.tip[hand]);
+            tracked = true;
+        }
+    m->track_start = INFINITY;
+    m->crossfade_due = m->crossfade_due || tracked;
+    m->replan = true;
+}
+
+bool himc_motion_free_hand(performance_motion *m, himc_hand hand, double t)
+{
+    if (himc_motion_tracks(m, hand) && t >= take_end(m))
+        himc_motion_take_hands_back(m, t);
+    return !himc_motion_tracks(m, hand);
+}
+
+void himc_motion_set_track(performance_motion *m, himc_track *track, const himc_limits *learned,
+                           double t)
+{
+    himc_motion_take_hands_back(m, t);
+    himc_track_free(m->track);
+    m->track = track;
+    m->has_learned = learned != NULL;
+    if (learned)
+        m->learned = *learned;
+}
+
+// what is planned
+
+himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, double t)
+{
+    if (himc_motion_tracks(m, hand))
+        return himc_track_target(m->track, hand, t - m->track_start);
+    return himc_planner_target(m->planner, hand, t);
+}
+
+planned_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
+                                  himc_hand hand, double t)
+{
+    planned_stroke next = {.any = false, .drum = 0};
+    himc_stroke stroke;
+    if (himc_motion_tracks(m, hand)) {
+        next.any =
+            himc_track_current(m->track, hand, t - m->track_start, &next.time, &next.x, &next.y);
+        next.time += m->track_start;
+        strcpy(next.nuance, "none");
+    } else if (himc_planner_current(m->planner, hand, t, &stroke, &next.drum, &next.time)) {
+        next.any = next.drum < drums->count;
+        if (next.any)
+            himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
+        strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+    }
+    next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
+    return next;
+}
+
+void himc_motion_answer(performance_motion *m, himc_hand hand, double planned_time)
+{
+    m->answered[hand] = planned_time;
+}
+
+void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
+                            const himc_target *measured)
+{
+    if (himc_motion_tracks(m, hand))
+        himc_track_separated(m->track, hand, t - m->track_start, measured);
+    else
+        himc_planner_separated(m->planner, hand, t, measured);
+    m->replan = true;
+}
+
+// trunk and grip
+
+// where a hand strikes next, or where it is
+static himc_vec3 attention(const performance_motion *m, const performance_drums *drums,
+                           himc_hand hand, double t)
+{
+    planned_stroke next = himc_motion_stroke(m, drums, hand, t);
+    if (!next.any || next.time > t + TRUNK_FORESIGHT)
+        return himc_motion_planned(m, hand, t).x;
+    return himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y);
+}
+
+// at a time not before the course was set
+static himc_trunk_posture trunk_at(const performance_motion *m, double t)
+{
+    return himc_trunk_posture_approach(&m->course.from, &m->course.goal,
+                                       fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
+}
+
+// sets the course anew, from trunk and grip at `t` to those the next strokes want
+static void set_course(performance_motion *m, const performance_settings *s,
+                       const performance_drums *drums, double t)
+{
+    himc_vec3 place[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        place[hand] = attention(m, drums, (himc_hand)hand, t);
+    m->course.from = trunk_at(m, t);
+    m->course.goal = himc_posture_trunk(place, s->grip);
+    if (m->track && himc_settings_trunk_known(s)) {
+        const double *captured = s->captured.trunk.value;
+        m->course.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
+        m->course.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
+    }
+    m->course.time = t;
+}
+
+// the joints
+
+// the take's posture for the tips, else the natural one
+static void find_posture(const performance_motion *m, const performance_settings *s, double t,
+                         const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
+{
+    himc_posture_moving(&m->posture, tip, motion);
+    bool captured = s->control.mode != HIMC_PIPELINE_HIMC && m->track && isfinite(m->track_start) &&
+                    himc_track_has_posture(m->track);
+    if (captured)
+        himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start,
+                           s->unbent ? NULL : tip, motion);
+}
+
+// the posture regression in place of the natural posture
+static void follow_regression(const performance_motion *m, const performance_settings *s,
+                              himc_setpoint *tick)
+{
+    himc_target tip[HIMC_REGRESSION_OFFSETS][HIMC_HANDS];
+    if (s->control.mode != HIMC_PIPELINE_HIMC || !m->has_regression)
+        return;
+    for (int k = 0; k < HIMC_REGRESSION_OFFSETS; k++)
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            tip[k][hand] = himc_motion_planned(m, (himc_hand)hand,
+                                               tick->time + k * HIMC_REGRESSION_OFFSET_STEP);
+    himc_posture_regression_moving(&m->regression, (const himc_target(*)[HIMC_HANDS])tip,
+                                   &tick->posture);
+}
+
+// The player of a take holds the trunk as the take has it, not as the strokes ask: the regression's
+// sway departs from there.
+static void fit_regression(performance_motion *m, const performance_settings *s)
+{
+    himc_pose pose;
+    himc_posture held = m->posture;
+    const himc_vec3 tip[HIMC_HANDS] = {m->from.tip[HIMC_LEFT].x, m->from.tip[HIMC_RIGHT].x};
+    if (!m->has_regression || !m->track || !himc_settings_trunk_known(s))
+        return;
+    held.trunk_posture = s->captured.trunk;
+    himc_posture_at(&held, tip, &pose);
+    m->regression.player.natural_trunk = pose.joint[HIMC_TRUNK - 1];
+}
+
+void himc_motion_set_regression(performance_motion *m, const performance_settings *s,
+                                const himc_posture_regression *regression, bool of_take)
+{
+    m->regression_of_take = of_take;
+    if (regression)
+        m->regression = *regression;
+    if (m->has_regression != (regression != NULL)) {
+        m->has_regression = regression != NULL;
+        m->crossfade_due = true;
+        m->replan = true;
+    }
+    fit_regression(m, s);
+}
+
+// cross-fades a tick's joint targets from the source before to this one, while that is due
+static void crossfade(performance_motion *m, himc_setpoint *tick)
+{
+    if (m->crossfade_due && tick == &m->from) {
+        himc_posture_crossfade_begin(&m->crossfade, tick->time, &m->reference.posture,
+                                     &tick->posture);
+        m->crossfade_due = false;
+    }
+    if (!m->crossfade_due)
+        himc_posture_crossfade_apply(&m->crossfade, tick->time, &tick->posture);
+}
+
+// setpoints
+
+static void fill_tick(performance_motion *m, const performance_settings *s, himc_setpoint *tick,
+                      double t)
+{
+    m->posture.trunk_posture = trunk_at(m, t);
+    tick->time = t;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        tick->tip[hand] = himc_motion_planned(m, (himc_hand)hand, t);
+    find_posture(m, s, t, tick->tip, &tick->posture);
+    follow_regression(m, s, tick);
+    crossfade(m, tick);
+}
+
+void himc_motion_read_task(performance_motion *m, const performance_settings *s,
+                           const performance_drums *drums, double t, double next)
+{
+    himc_planner_advance(m->planner, t);
+    set_course(m, s, drums, t);
+    if (m->replan)
+        fill_tick(m, s, &m->from, t);
+    else
+        m->from = m->to;
+    fill_tick(m, s, &m->to, next);
+    m->replan = false;
+}
+
+void himc_motion_interpolate(performance_motion *m, double t)
+{
+    himc_setpoint_interpolate(&m->from, &m->to, t, &m->reference);
+}
+
+void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
+                       const performance_settings *s, double t)
+{
+    // the body begins in the posture: no cross-fade
+    m->crossfade_due = false;
+    himc_posture_crossfade_cancel(&m->crossfade);
+    himc_posture_init(&m->posture, skeleton, m->posture.level);
+    for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
+        if (s->captured.known[j])
+            m->posture.rest.joint[j] = s->captured.rest.joint[j];
+    if (m->course.time == 0)
+        m->course.from = m->course.goal = m->posture.trunk_posture;
+    fill_tick(m, s, &m->from, t);
+    memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
+    m->reference.posture = m->from.posture;
+    m->replan = true;
+}
+
+void himc_motion_resting_pose(const performance_motion *m, himc_pose *pose)
+{
+    himc_planner_config resting = himc_planner_default();
+    himc_posture posture;
+    himc_posture_init(&posture, &m->posture.skeleton, resting.rest[HIMC_RIGHT].z - REST_HEIGHT);
+    posture.rest = m->posture.rest;
+    himc_posture_at(&posture, resting.rest, pose);
+}
+
+himc_pose himc_motion_mean_pose(const performance_motion *m, double t)
+{
+    himc_pose pose[LIMIT_HEIGHTS];
+    for (int i = 0; i < LIMIT_HEIGHTS; i++) {
+        himc_vec3 tip[HIMC_HANDS];
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
+            tip[hand].z = m->posture.level + LIMIT_HEIGHT * i / (LIMIT_HEIGHTS - 1);
+        }
+        himc_posture_at(&m->posture, tip, &pose[i]);
+    }
+    return himc_limits_mean(pose, LIMIT_HEIGHTS);
+}
+
+// contact
+
+void himc_motion_release(performance_motion *m, himc_hand hand, bool released)
+{
+    m->reference.released[hand] = released;
+}
+
+void himc_motion_set_normal(performance_motion *m, himc_hand hand, himc_vec3 normal)
+{
+    m->reference.normal[hand] = normal;
+}
+
+void himc_motion_move_tip(performance_motion *m, const performance_settings *s, himc_hand hand,
+                          const himc_target *tip, double t)
+{
+    m->reference.tip[hand] = *tip;
+    find_posture(m, s, t, m->reference.tip, &m->reference.posture);
+}
+
+// transport
+
+static void start_track(performance_motion *m, double t)
+{
+    himc_track_rewind(m->track);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (himc_track_present(m->track, (himc_hand)hand)) {
+            himc_target now = m->reference.tip[hand];
+            himc_track_approach(m->track, (himc_hand)hand, &now, HIMC_APPROACH);
+        }
+    himc_track_approach_posture(m->track, &m->reference.posture);
+    m->track_start = t + HIMC_APPROACH;
+}
+
+void himc_motion_play(performance_motion *m, double t)
+{
+    if (m->track)
+        start_track(m, t);
+    else
+        himc_planner_play(m->planner, t);
+    m->playing = true;
+    m->replan = true;
+}
+
+void himc_motion_stop(performance_motion *m, double t)
+{
+    if (m->track)
+        himc_track_stop(m->track, t - m->track_start, m->reference.tip);
+    himc_planner_stop(m->planner, t);
+    m->playing = false;
+    m->replan = true;
+}
+
+himc_vec3 himc_motion_reachable(performance_motion *m, himc_hand hand, himc_vec3 asked,
+                                bool *reachable, bool *first)
+{
+    himc_vec3 x = himc_posture_reachable(&m->posture, hand, asked);
+    *reachable = himc_vec3_length(himc_vec3_sub(x, asked)) <= OUT_OF_REACH;
+    *first = !m->out_of_reach[hand];
+    m->out_of_reach[hand] = !*reachable;
+    return x;
+}
+
+bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
+{
+    bool first = !m->out_of_reach[hand];
+    m->out_of_reach[hand] = true;
+    return first;
+}
+
+long himc_motion_beat(performance_motion *m, double t)
+{
+    double beat = himc_planner_beat(m->planner, t);
+    long whole = m->track || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    bool begun = whole != m->last_beat;
+    m->last_beat = whole;
+    return begun ? whole : -1;
+}
+
+bool himc_motion_done(performance_motion *m, double t)
+{
+    double end = m->track ? take_end(m) : himc_planner_end(m->planner);
+    if (!m->playing || !(t >= end))
+        return false;
+    m->playing = false;
+    himc_planner_sum_up(m->planner);
+    return true;
+}

@@ -1,0 +1,122 @@
+/// performance_motion.h: the part of a performance that says what the body should do: planner and
+/// take, the postures that go with the tips, and the setpoints of the task ticks.
+#ifndef HIMC_PERFORMANCE_MOTION_H
+#define HIMC_PERFORMANCE_MOTION_H
+
+#include "plan/planner.h"
+#include "control/posture_crossfade.h"
+#include "control/posture_regression.h"
+#include "control/setpoint.h"
+#include "performance/performance_drums.h"
+#include "performance/performance_settings.h"
+#include "plan/track.h"
+
+/// Trunk and grip on their way to where the next strokes want them.
+typedef struct trunk_course {
+    himc_trunk_posture from, goal;
+    double time; ///< of `from` (s)
+} trunk_course;
+
+/// The stroke a hand is on or comes to.
+typedef struct planned_stroke {
+    bool any;
+    double time; ///< of contact (s)
+    int drum;    ///< slot
+    double x, y; ///< on the head (m)
+    char nuance[HIMC_NAME_SIZE];
+} planned_stroke;
+
+typedef struct performance_motion {
+    himc_planner *planner; ///< owned
+    himc_track *track;     ///< owned; instead of the planner when a take is loaded
+    double track_start;    ///< (s); infinite while the planner has the hands
+    bool has_learned;
+    himc_limits learned;  ///< joint limits of the take's player
+    himc_posture posture; ///< makes natural postures for the tips
+    bool has_regression;
+    bool regression_of_take; ///< dropped with the take
+    himc_posture_regression
+        regression; ///< null-space target; replaces the natural posture in `himc`
+    trunk_course course;
+    bool crossfade_due; ///< joint targets have another source from the next tick on
+    himc_posture_crossfade crossfade;
+    himc_setpoint from, to;        ///< of the ticks before and after
+    himc_reference reference;      ///< now
+    bool replan;                   ///< `from` is read anew, too
+    bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
+    double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
+    bool playing;
+    long last_beat;
+} performance_motion;
+
+/// Motion from time 0 without a body: himc_motion_build gives it one. NULL without memory.
+performance_motion *himc_motion_new(himc_error *error);
+void himc_motion_free(performance_motion *motion);
+
+/// Another body: its resting posture, and the targets at `t` (s) for it to begin in.
+void himc_motion_build(performance_motion *motion, const himc_skeleton *skeleton,
+                       const performance_settings *settings, double t);
+/// The pose in which controllers are made: sticks at rest.
+void himc_motion_resting_pose(const performance_motion *motion, himc_pose *pose);
+/// Mean of a stroke's postures at the planned places, from the first head up.
+HIMC_RT himc_pose himc_motion_mean_pose(const performance_motion *motion, double t);
+
+/// The setpoints are read anew at the next step.
+HIMC_RT void himc_motion_replan(performance_motion *motion);
+/// Drum `index` stands there.
+HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
+                                  const himc_head_frame *frame);
+/// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
+HIMC_RT void himc_motion_read_task(performance_motion *motion, const performance_settings *settings,
+                                   const performance_drums *drums, double t, double next);
+/// The reference at `t` between the ticks.
+HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
+
+/// Planned state of a tip.
+HIMC_RT himc_target himc_motion_planned(const performance_motion *motion, himc_hand hand, double t);
+HIMC_RT planned_stroke himc_motion_stroke(const performance_motion *motion,
+                                          const performance_drums *drums, himc_hand hand, double t);
+/// The stroke planned for that time is over: struck or given up.
+HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, double planned_time);
+/// The plan goes on from that state of the tip, which has left the head.
+HIMC_RT void himc_motion_go_on_from(performance_motion *motion, himc_hand hand, double t,
+                                    const himc_target *measured);
+/// Control lets go of the normal of a head, or not.
+HIMC_RT void himc_motion_release(performance_motion *motion, himc_hand hand, bool released);
+HIMC_RT void himc_motion_set_normal(performance_motion *motion, himc_hand hand, himc_vec3 normal);
+/// In `ik`: the tip is there, and the posture goes with it.
+HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_settings *settings,
+                                  himc_hand hand, const himc_target *tip, double t);
+
+/// True while the take moves that hand.
+HIMC_RT bool himc_motion_tracks(const performance_motion *motion, himc_hand hand);
+/// True for a hand without a task: not in the take, or on its way to the take's first frame.
+HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand hand, double t);
+/// The planner goes on with the hands that the take has.
+HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
+/// Gives the hand to the planner if its take is over; false while the take plays.
+HIMC_RT bool himc_motion_free_hand(performance_motion *motion, himc_hand hand, double t);
+/// A take in place of the one before (NULL: none), with the limits of its player (NULL: none).
+void himc_motion_set_track(performance_motion *motion, himc_track *track,
+                           const himc_limits *learned, double t);
+/// The null-space target from now on; NULL: the natural posture. `of_take`: dropped with the take.
+HIMC_RT void himc_motion_set_regression(performance_motion *motion,
+                                        const performance_settings *settings,
+                                        const himc_posture_regression *regression, bool of_take);
+
+/// `play` and `stop`.
+HIMC_RT void himc_motion_play(performance_motion *motion, double t);
+HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
+/// A live target. Returns where the tip goes; `reachable` is false if that is not the place asked
+/// for, `first` true if the target before was reachable.
+HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand hand, himc_vec3 asked,
+                                        bool *reachable, bool *first);
+/// A live target is refused: the take has the hand. True for the first one.
+HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
+
+/// The whole beat that has begun at `t` since the last call, or -1.
+HIMC_RT long himc_motion_beat(performance_motion *motion, double t);
+/// True once everything has been played at `t`.
+HIMC_RT bool himc_motion_done(performance_motion *motion, double t);
+
+#endif

@@ -1,0 +1,36 @@
+/// performance_queue.h: the part of a performance that keeps commands until their sample.
+#ifndef HIMC_PERFORMANCE_QUEUE_H
+#define HIMC_PERFORMANCE_QUEUE_H
+
+#include "himc/performance.h"
+#include "performance/performance_events.h"
+
+#include <stdint.h>
+
+#define WAITING_COMMANDS 256 // chosen: one every 32 samples of the longest delay
+
+typedef struct waiting_command {
+    int64_t due; ///< sample
+    himc_command command;
+} waiting_command;
+
+typedef struct performance_queue {
+    waiting_command waiting[WAITING_COMMANDS]; ///< in the order in which they came
+    int count;
+    long dropped; ///< because too many waited
+} performance_queue;
+
+/// Carries out a command now; false, and nothing changed, with the reason.
+typedef bool performance_action(himc_performance *performance, const himc_command *command,
+                                himc_error *error);
+
+HIMC_RT void himc_queue_clear(performance_queue *queue);
+/// True if one more command may wait. The first one dropped is an error, the rest are counted.
+HIMC_RT bool himc_queue_has_room(const performance_queue *queue);
+HIMC_RT bool himc_queue_drop(performance_queue *queue, himc_error *error);
+HIMC_RT void himc_queue_add(performance_queue *queue, const himc_command *command, int64_t due);
+/// Carries out the commands that are due at that sample; refusals become notes.
+void himc_queue_run(performance_queue *queue, int64_t sample, performance_action *act,
+                    himc_performance *performance, performance_events *events);
+
+#endif

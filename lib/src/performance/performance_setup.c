@@ -1,0 +1,286 @@
+/// performance_setup.c: a performance made, rebuilt and reset.
+///
+/// A performance is its settings and the parts that follow from them. Whatever may fail, a new body
+/// or a new plan, is made aside first and then put in the place of the old one: a refusal changes
+/// nothing. `reset` is the default settings and new parts; time begins at 0 at the first sample not
+/// yet simulated, so that every sum in floating point is that of a performance just made.
+#include "performance/performance_state.h"
+#include "performance/research.h"
+#include "performance/research.h"
+
+#include <stdlib.h>
+
+#define LIGHTEST 0.2 // chosen: an uncertain body, not another one; of a segment's mass over belief
+#define HEAVIEST 5.0
+
+himc_performance_config himc_performance_default(void)
+{
+    return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
+}
+
+static bool check_sample_rate(double hz, himc_error *error)
+{
+    return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
+}
+
+static bool config_valid(const himc_performance_config *c, himc_error *error)
+{
+    return check_sample_rate(c->sample_rate, error) &&
+           himc_check_range("physics rate", c->physics_rate, HIMC_PHYSICS_RATE_MIN,
+                            HIMC_PHYSICS_RATE_MAX, "Hz", error) &&
+           himc_check_range("task rate", c->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz",
+                            error);
+}
+
+performance_settings himc_settings_default(const himc_performance_config *config)
+{
+    performance_settings s = {.physics_rate = config->physics_rate,
+                              .task_rate = config->task_rate,
+                              .skeleton = himc_skeleton_default(),
+                              .control = himc_controller_config_default(),
+                              .limits = HIMC_LIMITS_OFF,
+                              .grip = HIMC_GRIP_GERMAN};
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        s.weight[i] = 1;
+    return s;
+}
+
+// body and motion begin together, at the targets of `t`
+static void put_together(performance_motion *motion, performance_body *body,
+                         const performance_settings *s, double t)
+{
+    himc_pose rest;
+    himc_motion_build(motion, &body->skeleton, s, t);
+    himc_body_place(body, &motion->from);
+    himc_motion_resting_pose(motion, &rest);
+    himc_body_init_controller(body, &s->control, &rest);
+}
+
+/// The parts that take memory.
+typedef struct made_parts {
+    performance_motion *motion;
+    performance_body *body;
+} made_parts;
+
+static void free_parts(made_parts *parts)
+{
+    himc_motion_free(parts->motion);
+    himc_body_free(parts->body);
+}
+
+static bool make_parts(made_parts *parts, const performance_settings *s, himc_error *error)
+{
+    parts->motion = himc_motion_new(error);
+    parts->body = parts->motion ? himc_body_new(error) : NULL;
+    if (!parts->body || !himc_body_build(parts->body, s, error)) {
+        free_parts(parts);
+        return false;
+    }
+    put_together(parts->motion, parts->body, s, 0);
+    return true;
+}
+
+// everything but drums, events and recording begins anew with these settings and parts
+static void begin(himc_performance *p, const performance_settings *s, const made_parts *parts)
+{
+    p->settings = *s;
+    p->motion = parts->motion;
+    p->body = parts->body;
+    himc_statistics_clear(&p->statistics);
+    himc_queue_clear(&p->queue);
+    himc_contacts_clear(&p->contacts);
+    himc_clock_restart(&p->clock);
+    himc_performance_restart_steps(p);
+}
+
+himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)
+{
+    made_parts parts;
+    if (!config_valid(config, error))
+        return NULL;
+    himc_performance *p = calloc(1, sizeof *p);
+    if (!p) {
+        himc_error_set(error, "performance: out of memory");
+        return NULL;
+    }
+    performance_settings s = himc_settings_default(config);
+    if (!make_parts(&parts, &s, error)) {
+        free(p);
+        return NULL;
+    }
+    p->host = (performance_host){.config = *config, .take_options = himc_take_default()};
+    himc_clock_init(&p->clock, config->sample_rate);
+    begin(p, &s, &parts);
+    return p;
+}
+
+void himc_performance_free(himc_performance *p)
+{
+    if (!p)
+        return;
+    himc_drums_release(&p->drums);
+    if (p->recording.file)
+        himc_performance_write_recording(p, NULL);
+    himc_performance_drop_recording(p);
+    free_parts(&(made_parts){p->motion, p->body});
+    free(p);
+}
+
+bool himc_performance_reset(himc_performance *p, himc_error *error)
+{
+    performance_settings s = himc_settings_default(&p->host.config);
+    made_parts fresh, old = {p->motion, p->body};
+    if (!make_parts(&fresh, &s, error))
+        return himc_error_prefix(error, "reset");
+    if (p->recording.file && !himc_performance_write_recording(p, error)) {
+        free_parts(&fresh);
+        return himc_error_prefix(error, "reset");
+    }
+    begin(p, &s, &fresh);
+    free_parts(&old);
+    himc_drums_put_back(&p->drums);
+    himc_performance_notice_drums(p);
+    return true;
+}
+
+void himc_performance_restart_steps(himc_performance *p)
+{
+    himc_clock_set_rates(&p->clock, p->settings.physics_rate, p->settings.task_rate);
+    himc_motion_replan(p->motion);
+}
+
+void himc_performance_adopt(himc_performance *p, const performance_settings *s)
+{
+    p->settings = *s;
+    himc_body_configure(p->body, &s->control);
+}
+
+bool himc_performance_rebuild(himc_performance *p, const performance_settings *wanted,
+                              himc_error *error)
+{
+    performance_settings s = *wanted;
+    if (!himc_body_build(p->body, &s, error))
+        return false;
+    if (s.control.human_strength)
+        himc_controller_set_human_strength(&s.control, s.skeleton.mass);
+    p->settings = s;
+    put_together(p->motion, p->body, &s, step_time(p));
+    himc_performance_renew_limits(p);
+    return true;
+}
+
+bool himc_performance_set_weights(himc_performance *p, const double *factor, himc_error *error)
+{
+    performance_settings s = p->settings;
+    for (int i = 0; factor && i < HIMC_SEGMENTS; i++)
+        if (!himc_check_range("weight", factor[i], LIGHTEST, HEAVIEST, "", error))
+            return himc_error_prefix(error, "%s", himc_segment_name(i));
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        s.weight[i] = factor ? factor[i] : 1;
+    return himc_performance_rebuild(p, &s, error);
+}
+
+bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_error *error)
+{
+    if (!check_sample_rate(sample_rate, error))
+        return false;
+    if (sample_rate == p->clock.sample_rate)
+        return true;
+    for (int i = 0; i < p->drums.count; i++)
+        if (!himc_drum_set_rate(p->drums.slot[i].drum, sample_rate, error))
+            return false;
+    himc_clock_set_sample_rate(&p->clock, sample_rate);
+    himc_performance_restart_steps(p);
+    return true;
+}
+
+void himc_performance_renew_limits(himc_performance *p)
+{
+    const performance_motion *m = p->motion;
+    if (p->settings.limits == HIMC_LIMITS_OFF) {
+        himc_body_set_limits(p->body, NULL);
+        return;
+    }
+    himc_pose mean = himc_motion_mean_pose(m, step_time(p));
+    himc_limits limits = m->has_learned ? m->learned : himc_limits_table_1(&mean);
+    limits.kind = p->settings.limits;
+    himc_body_set_limits(p->body, &limits);
+}
+
+void himc_performance_notice_drums(himc_performance *p)
+{
+    bool changed = false;
+    for (int i = 0; i < p->drums.count; i++) {
+        if (!himc_drums_noticed(&p->drums, i))
+            continue;
+        himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
+        changed = true;
+    }
+    if (changed)
+        himc_performance_renew_limits(p);
+}
+
+bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error *error)
+{
+    int index;
+    if (!himc_drums_add(&p->drums, himc_drum_retain(drum), DRUM_GIVEN, &index, error)) {
+        himc_drum_release(drum);
+        return false;
+    }
+    himc_performance_notice_drums(p);
+    return true;
+}
+
+bool himc_performance_make_drum(himc_performance *p, const char *name, double inches,
+                                himc_error *error)
+{
+    int index;
+    if (!himc_drums_make(&p->drums, name, inches, p->clock.sample_rate, DRUM_MADE, &index, error))
+        return false;
+    himc_performance_notice_drums(p);
+    return true;
+}
+
+bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
+                                  himc_error *error)
+{
+    *index = name[0] ? himc_drums_find(&p->drums, name) : 0;
+    if (*index >= 0 && *index < p->drums.count)
+        return true;
+    if (!himc_drums_make(&p->drums, name[0] ? name : "drum", USUAL_INCHES, p->clock.sample_rate,
+                         DRUM_SILENT, index, error))
+        return false;
+    himc_performance_notice_drums(p);
+    himc_events_note(&p->events, "no drum %s: playing on a silent one",
+                     himc_drum_name(p->drums.slot[*index].drum));
+    return true;
+}
+
+himc_drum *himc_performance_drum(himc_performance *p, int index)
+{
+    return index >= 0 && index < p->drums.count ? p->drums.slot[index].drum : NULL;
+}
+
+void himc_performance_make_drums(himc_performance *p, bool make_drums)
+{
+    p->host.make_drums = make_drums;
+}
+
+void himc_performance_take_options(himc_performance *p, const himc_take_options *options)
+{
+    p->host.take_options = *options;
+}
+
+void himc_performance_set_posture_regression(himc_performance *p,
+                                             const himc_posture_regression *regression)
+{
+    himc_motion_set_regression(p->motion, &p->settings, regression, false);
+}
+
+void himc_performance_drop_track(himc_performance *p)
+{
+    himc_motion_set_track(p->motion, NULL, NULL, step_time(p));
+    himc_performance_renew_limits(p);
+    if (p->motion->regression_of_take)
+        himc_performance_set_posture_regression(p, NULL);
+}
