@@ -1,9 +1,10 @@
 /* drum-link.h: how [himc~ NAME] finds [membrane~ NAME], and the code that both share.
 
 A [membrane~] binds itself to the symbol "himc:NAME". [himc~] looks there, checks class name, magic
-word, size and version, and takes the drum behind it. The
-two are separate binaries, each with its own hidden copy of libhimc: they share data through
-pointers, and no statics.
+word and build, and takes the drum behind it. The two are separate binaries, each with its own
+hidden copy of libhimc: they share data through pointers, and no statics. So both must come from one
+build: HIMC_BUILD_ID, made by the Makefile, is a checksum of all sources of the library and of this
+file. Partners of different builds refuse each other.
 
 Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The
 engine, a drum or a performance, counts in the same way; the first object in a tick advances it, the
@@ -20,19 +21,19 @@ other reads its ring. */
 
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
 #define DRUM_LINK_CLASS "membrane~"
+#define DRUM_LINK_ID_SIZE 32 /* chosen: room for two numbers of ten digits */
 
 /* Follows the t_object of a [membrane~]. */
 typedef struct t_drum_link {
     uint32_t l_magic;
-    uint32_t l_size;                /* of this struct */
-    char l_version[HIMC_NAME_SIZE]; /* of the library that made the drum */
+    char l_build[DRUM_LINK_ID_SIZE]; /* HIMC_BUILD_ID of the binary that made the drum */
     himc_drum *l_drum;
     double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
 } t_drum_link;
 
 static inline t_drum_link drum_link(himc_drum *drum, double rate)
 {
-    t_drum_link link = {DRUM_LINK_MAGIC, sizeof link, HIMC_VERSION, drum, rate};
+    t_drum_link link = {DRUM_LINK_MAGIC, HIMC_BUILD_ID, drum, rate};
     return link;
 }
 
@@ -43,16 +44,26 @@ static inline t_symbol *drum_link_symbol(const char *name)
     return gensym(text);
 }
 
-/* The link of [membrane~ NAME]; NULL if there is none, or one of another version of himc. */
-static inline t_drum_link *drum_link_find(const char *name)
+/* The link of [membrane~ NAME]; NULL with the reason if there is none, or one of another build. */
+static inline t_drum_link *drum_link_find(const char *name, himc_error *error)
 {
     t_pd *thing = drum_link_symbol(name)->s_thing;
-    if (!thing || strcmp(class_getname(*thing), DRUM_LINK_CLASS) != 0)
+    t_drum_link *link = NULL;
+    if (thing && strcmp(class_getname(*thing), DRUM_LINK_CLASS) == 0)
+        link = (t_drum_link *)((char *)thing + sizeof(t_object));
+    if (!link) {
+        himc_error_set(error, "no [membrane~ %s]", name);
         return NULL;
-    t_drum_link *link = (t_drum_link *)((char *)thing + sizeof(t_object));
-    bool same = link->l_magic == DRUM_LINK_MAGIC && link->l_size == sizeof *link &&
-                strncmp(link->l_version, HIMC_VERSION, sizeof link->l_version) == 0;
-    return same ? link : NULL;
+    }
+    bool known = link->l_magic == DRUM_LINK_MAGIC;
+    if (known && strncmp(link->l_build, HIMC_BUILD_ID, DRUM_LINK_ID_SIZE) == 0)
+        return link;
+    himc_error_set(error,
+                   "[membrane~ %s] is of another build (%.*s, [himc~] is %s), allowed: both from "
+                   "one build",
+                   name, DRUM_LINK_ID_SIZE - 1, known ? link->l_build : "an old one",
+                   HIMC_BUILD_ID);
+    return NULL;
 }
 
 /* The performer in a drum that a [himc~] plays; [membrane~] reads its time. */

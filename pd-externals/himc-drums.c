@@ -51,11 +51,9 @@ static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_err
 /* The drum of [membrane~ NAME] at the performance's rate, or NULL and why not. */
 static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error)
 {
-    t_drum_link *link = drum_link_find(name);
-    if (!link) {
-        himc_error_set(error, "no [membrane~ %s]", name);
+    t_drum_link *link = drum_link_find(name, error);
+    if (!link)
         return NULL;
-    }
     void *performer = himc_drum_get_driver(link->l_drum).performer;
     if (performer && performer != &x->x_player) {
         himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);

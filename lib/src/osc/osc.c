@@ -49,7 +49,6 @@
 #define OFFSET_JUMP 0.1   // (s) chosen: sound was off, not late
 #define BLOCK_WORK 2e-4   // no further command in a block once they took so long (s); chosen
 #define STATUS_PERIOD 1.0 // (s) chosen: as often as a user reads it
-#define SET_BACK 2.0      // (s) a next time so far ahead: the clock was set back; chosen
 
 typedef struct osc_bucket {
     double level, rate, size, last;
@@ -156,10 +155,11 @@ static void put_name(char out[HIMC_NAME_SIZE], himc_drum *drum)
     memcpy(out, name, strnlen(name, HIMC_NAME_SIZE - 1) + 1);
 }
 
-// true if one of `hz` a second is due; then sets the time of the next
+// true if one of `hz` a second is due; then sets the time of the next. More than two periods ahead
+// means that time has begun again, with `reset`
 static bool due(double *next, int hz, double t)
 {
-    if (hz <= 0 || (t < *next && *next - t < SET_BACK))
+    if (hz <= 0 || (t < *next && *next - t < 2.0 / hz))
         return false;
     *next = fmax(*next + 1.0 / hz, t + 0.5 / hz);
     return true;

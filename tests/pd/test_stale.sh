@@ -1,0 +1,49 @@
+#!/bin/sh
+# [himc~] and [membrane~] are two binaries that share structs of the library. One of them built from sources with a changed struct:
+# they refuse each other in one line, the strokes are silent, nothing crashes.
+root=$(pwd)
+build=$root/${HIMC_BUILD:-build}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+tests=0
+failures=0
+
+# check NAME CONDITION... ; prints the line that Unity would
+check() {
+    name=$1
+    shift
+    tests=$((tests + 1))
+    if "$@"; then
+        echo "tests/pd/test_stale.sh:0:$name:PASS"
+    else
+        failures=$((failures + 1))
+        echo "tests/pd/test_stale.sh:0:$name:FAIL: not so: $*"
+        tail -n 5 "$work/log"
+    fi
+}
+play() { # play FOLDER: with the externals there
+    timeout "${TEST_TIMEOUT:-600}" pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$1" -open tests/pd/stale.pd \
+        >"$work/log" 2>&1 </dev/null
+}
+
+# the same library but for one more field in front of a drum's others
+mkdir "$work/sources" "$work/mixed"
+cp -r Makefile lib pd-externals tools mocap patches "$work/sources"
+sed -i 's/^struct himc_drum {$/&\n    long changed;/' "$work/sources/lib/src/drum/drum_state.h"
+check test_the_struct_is_changed grep -q '    long changed;' "$work/sources/lib/src/drum/drum_state.h"
+MAKEFLAGS='' make -C "$work/sources" -j2 BUILD=build build/externals/himc/membrane~.pd_linux >"$work/log" 2>&1
+check test_the_other_build_succeeds [ -f "$work/sources/build/externals/himc/membrane~.pd_linux" ]
+cp "$build/externals/himc/himc~.pd_linux" "$work/sources/build/externals/himc/membrane~.pd_linux" "$work/mixed"
+
+play "$build/externals/himc"
+check test_one_build_plays [ $? = 0 ]
+check test_one_build_strikes_the_drum grep -q '^himc: strike' "$work/log"
+check test_one_build_has_no_error [ "$(grep -c 'another build' "$work/log")" = 0 ]
+play "$work/mixed"
+check test_two_builds_end_without_a_crash [ $? = 0 ]
+check test_two_builds_refuse_each_other_in_one_line [ "$(grep -c 'himc~: \[membrane~ kettle\] is of another build (.*), allowed: both from one build: its strokes are silent' "$work/log")" = 1 ]
+check test_two_builds_play_on_a_silent_drum grep -q '^himc: strike' "$work/log"
+
+echo "-----------------------"
+echo "$tests Tests $failures Failures 0 Ignored"
+[ $failures = 0 ]
