@@ -1,5 +1,5 @@
-# Holds the library to its plan, from its object files: calls between the rooms go one way, no file calls in a circle.
-#   nm -A -g build/lib/*/*.o | awk -f tools/rooms.awk
+# Holds the library to its plan: includes and calls between the rooms go one way, no files call each other in a circle.
+#   nm -A -g build/lib/*/*.o | awk -f tools/rooms.awk - lib/src/*/*.[ch]
 # The rooms are the folders of lib/src, in the order of the data flow. Prints one line per fault.
 
 function fault(text)
@@ -12,6 +12,10 @@ BEGIN {
     rooms = split("base body capture plan control drum performance osc", order, " ")
     for (i = 1; i <= rooms; i++)
         rank[order[i]] = i
+    # the room of a public header
+    split("vec base body body mocap capture score plan membrane drum drum drum performance performance osc osc", header, " ")
+    for (i = 1; i in header; i += 2)
+        room_of[header[i]] = header[i + 1]
     # which outside library is known to which files
     only["^d(World|Body|Joint|Mass|Geom|Init|Close|AllocateODE|SetAlloc|SetFree|SetRealloc)"] = "^body/character$"
     only["^lo_"] = "^osc/"
@@ -21,6 +25,19 @@ BEGIN {
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
     # these may be embedded anywhere: they and all that they call need libm and the C library alone
     alone = "^drum/(membrane|contact|modes|bank)"
+}
+
+FILENAME != "-" {
+    if (match($0, /^#include "[a-z]+\/[a-z0-9_]+\.h"/)) {
+        split(substr($0, 11, RLENGTH - 13), include, "/")
+        file = FILENAME
+        sub(/.*\/src\//, "", file)
+        split(file, part, "/")
+        to_room = include[1] == "himc" ? room_of[include[2]] : include[1]
+        if (rank[to_room] > rank[part[1]])
+            fault(FILENAME ":" FNR ": includes " include[1] "/" include[2] ".h of a later room, " to_room)
+    }
+    next
 }
 
 {

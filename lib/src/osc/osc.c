@@ -265,7 +265,7 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
     h->busy += busy;
     int hz = atomic_load_explicit(&osc->subscriptions.head_hz, memory_order_relaxed);
     bool heads = due(&h->next_head, hz, t);
-    bool status = now >= h->next_status || h->next_status > now + SET_BACK;
+    bool status = now >= h->next_status || h->next_status > now + 2 * STATUS_PERIOD;
     himc_drum *drum;
     for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
         if (heads)
