@@ -17,7 +17,7 @@ prefixed_symbols() {
     nm -g --defined-only "$build/libhimc.a" | awk 'NF == 3 && $3 !~ /^himc_/ { print "no himc_ prefix: " $3; bad = 1 } END { exit bad }'
 }
 rooms() {
-    nm -A -g "$build"/lib/*/*.o | awk -f tools/rooms.awk - lib/src/*/*.[ch]
+    nm -A -g $(ls lib/src/*/*.c | sed "s|^lib/src/\(.*\)c$|$build/lib/\1o|") | awk -f tools/rooms.awk - lib/src/*/*.[ch]
 }
 door() {
     awk -f tools/door.awk lib/himc/*.h lib/src/*/*.[ch] tools/*.[ch] tools/*/*.[ch] mocap/*.[ch] viewer/*.[ch] \
