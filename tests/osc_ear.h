@@ -1,5 +1,5 @@
-/// osc_ear.h: shared by the tests of OSC: a performance with its himc_osc, and an ear: a socket that
-/// receives what is sent to it, bundles taken apart, and sends to the himc_osc as a stranger.
+/// osc_ear.h: shared by the tests of OSC: a performance with its himc_osc, and an ear: a socket
+/// that receives what is sent to it, bundles taken apart, and sends to the himc_osc as a stranger.
 ///
 /// Time is simulated: one block of 4 ms moves the clock of the himc_osc by 4 ms, and its network is
 /// served by the test itself, so that each test gives the same on any machine. Only the system's

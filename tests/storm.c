@@ -8,9 +8,10 @@
 ///
 /// A third socket subscribes, so that it gets /himc/status. The storm begins when the first status
 /// has come, and the program ends when the counters in it know every packet: those of this storm
-/// and the BEFORE ones sent to the port earlier, be they taken, lost at the socket (overrun) or lost
-/// in the system's queue of packets. Prints one line, NAME VALUE ...: `sent`, `pace` (packets/s),
-/// `dropped` (in the system's queue), and the counters. Status 1 if that takes a minute or more.
+/// and the BEFORE ones sent to the port earlier, be they taken, lost at the socket (overrun) or
+/// lost in the system's queue of packets. Prints one line, NAME VALUE ...: `sent`, `pace`
+/// (packets/s), `dropped` (in the system's queue), and the counters. Status 1 if that takes a
+/// minute or more.
 #define _GNU_SOURCE // sendmmsg
 #include <arpa/inet.h>
 #include <lo/lo.h>

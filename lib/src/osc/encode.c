@@ -9,8 +9,8 @@
 /// reflection, so the axis of a rotation is reversed: (x, y, z, w) becomes (y, -z, -x, w).
 /// Rest: a humanoid rests in the T, arms straight out, palms down; in our zero pose they hang. A
 /// quarter turn A about x takes the arm of a T to a hanging arm, so the rotation of a bone in the
-/// world is R A, and in the frame of its parent (R_p A_p)^-1 R A. Invariant: adding up the positions
-/// and rotations sent, from the root along the bones, gives our joints, mirrored.
+/// world is R A, and in the frame of its parent (R_p A_p)^-1 R A. Invariant: adding up the
+/// positions and rotations sent, from the root along the bones, gives our joints, mirrored.
 #include "osc/encode.h"
 #include "himc/body.h"
 

@@ -73,7 +73,8 @@ static bool is_allowed(const osc_subscriptions *s, const osc_change *change, con
     return good;
 }
 
-// after a change of the table: the rates that the host has to send at, and the first of each address
+// after a change of the table: the rates that the host has to send at, and the first of each
+// address
 static void update(osc_subscriptions *s)
 {
     double pose = 0, head = 0;
