@@ -33,9 +33,12 @@ HIMC_BEGIN
 /// Marks a function that is safe in an audio callback; a test with its own malloc checks this.
 #define HIMC_RT
 
-#define HIMC_VERSION_MAJOR 0 ///< rises when a program must be changed (docs/api.md)
-#define HIMC_VERSION_MINOR 1 ///< rises with additions; while MAJOR is 0, with any change
-#define HIMC_VERSION_PATCH 0 ///< rises with repairs
+/// Rises when programs must be changed (docs/api.md).
+#define HIMC_VERSION_MAJOR 0
+/// Rises with additions; while MAJOR is 0, with any change.
+#define HIMC_VERSION_MINOR 1
+/// Rises with repairs.
+#define HIMC_VERSION_PATCH 0
 /// \cond
 #define HIMC_VERSION_TEXT_(major, minor, patch) #major "." #minor "." #patch
 #define HIMC_VERSION_JOIN_(major, minor, patch) HIMC_VERSION_TEXT_(major, minor, patch)

@@ -2,6 +2,7 @@
 #include "../session.h"
 #include "drum/air.h"
 #include "drum/modes.h"
+#include "plan/score.h"
 
 #include <time.h>
 

@@ -172,10 +172,10 @@ static bool choose_points(c3d *r, int *count)
             r->take, "points: %d of them are values of a model (angles, forces, ...) and left out",
             r->points - *count);
     return *count > 0 ||
-           himc_error_set(
-               r->error,
-               "%s: all points are values of a model (angles, forces, ...), allowed: at least one position",
-               r->take->file);
+           himc_error_set(r->error,
+                          "%s: all points are values of a model (angles, forces, ...), allowed: at "
+                          "least one position",
+                          r->take->file);
 }
 
 static void name_points(const c3d *r)

@@ -190,8 +190,8 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
     if (*unit == 0)
         return himc_error_set(
             error,
-            "%s: skeleton: the longest path along its bones is %.4g units, in m, cm, mm, CMU units, "
-            "inches or feet no player's size, allowed %g .. %g m",
+            "%s: skeleton: the longest path along its bones is %.4g units, in m, cm, mm, "
+            "CMU units, inches or feet no player's size, allowed %g .. %g m",
             take->file, size, legs ? LEAST_SKELETON : LEAST_ARMS, MOST_SKELETON);
     snprintf(take->units_text, sizeof take->units_text,
              "%s, guessed from the skeleton: %.4g units along its bones", unit_name(*unit, text),

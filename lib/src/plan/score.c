@@ -5,7 +5,7 @@
 /// constant: seconds are the sum of 60/bpm times beats, and the inverse takes the same sum
 /// backwards. Limits of size refuse a wrong file in one line before memory runs out. Invariant: the
 /// whole score is good, or nothing of it is kept.
-#include "himc/score.h"
+#include "plan/score.h"
 
 #include "base/argument.h"
 #include "base/text.h"
