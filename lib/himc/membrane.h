@@ -85,7 +85,7 @@ typedef enum himc_pickup_kind {
 /// Where the sound is read. Azimuth 0 is beyond the drum as the performer sees it, positive to
 /// the left.
 typedef struct himc_pickup {
-    himc_pickup_kind kind; ///< AIR: the three angles and distances count; POINT: x and y
+    himc_pickup_kind kind; ///< AIR: azimuth, elevation, distance count; POINT: x, y
     double x;              ///< of the point of the head (m)
     double y;              ///< of the point of the head (m)
     double azimuth;        ///< of the listener (rad)
