@@ -61,7 +61,7 @@ LIST
 play_pd target-signals.pd
 report signals_lead_a_stick_that_strikes "$(grep -q '^himc: strike [^ ]* left kettle' "$work/log" || echo "no strike")"
 report a_signal_that_is_not_a_number_is_said_once \
-    "$([ "$(grep -c 'a target signal that is not a finite number' "$work/log")" = 1 ] || echo "$(grep -c 'finite' "$work/log") times")"
+    "$([ "$(grep -c 'a target signal is not a finite number' "$work/log")" = 1 ] || echo "$(grep -c 'finite' "$work/log") times")"
 report stick_without_signals_is_left_where_it_is "$(grep -m1 -e 'out of reach' -e 'strike [^ ]* right' "$work/log")"
 
 echo "-----------------------"
