@@ -44,7 +44,6 @@ TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-BENCH     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench/*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
@@ -149,9 +148,8 @@ check-realtime: all $(REALTIME)
 bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
-check-bench: all $(BENCH)
+check-bench: all
 	@$(PROGRAM) bench
-	@for b in $(BENCH); do HIMC_BUILD=$(BUILD) $$b || exit 1; done
 
 ##@ Documentation
 figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
@@ -291,10 +289,6 @@ $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(L
 	$(call say,link)
 	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
-$(BENCH): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIBRARY)
-	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
-
 # Debian has no package of Unity's own; the source package cjson carries it
 build/unity/src/unity.c:
 	@echo "get  $@"
@@ -313,4 +307,4 @@ include tools/figures/figures.mk
 check-figures: $(FIGURES)
 
 -include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
-         $(addsuffix .d,$(UNIT) $(LONG) $(REALTIME) $(BENCH))
+         $(addsuffix .d,$(UNIT) $(LONG) $(REALTIME))

@@ -2,10 +2,10 @@
 ///
 /// The stick points from the grip to the tip at the given elevation, in the vertical plane through
 /// the tip and a place a little outside and behind the shoulder; the hand is in the same plane at
-/// its own elevation. With wrist and shoulder fixed the elbow can be on a circle; it is at the angle
-/// `out` from the lowest place. A french grip rolls forearm, hand and stick about their lengths so that the
-/// thumbs are up. Frames are those of body.h: z points back to the joint, y is the axis of
-/// flexion.
+/// its own elevation. With wrist and shoulder fixed the elbow can be on a circle; it is at the
+/// angle `out` from the lowest place. A french grip rolls forearm, hand and stick about their
+/// lengths so that the thumbs are up. Frames are those of body.h: z points back to the joint, y is
+/// the axis of flexion.
 #include "parts.h"
 #include "base/limb_frame.h"
 #include "himc/body.h"

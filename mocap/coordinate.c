@@ -3,11 +3,11 @@
 /// With s_k the share of joint k, 0 at impact and 1 at the apex, the tip's height changes by
 /// dz/dt = sum_k dz/ds_k s_k'. Shoulder and elbow arrive with one rate, the grip with another, the
 /// wrist with their mean; these two follow from two speeds that are measured, the mallet's and
-/// that of a point behind it on the stick. The same holds for the rebound. The mallet comes straight
-/// to the head; felt and head give way, and it leaves them CONTACT later, having been some 0.3 v
-/// CONTACT deeper. Meanwhile the rest of the arm goes on, and the grip's rates compensate for that.
-/// Invariant: at the touch the mallet is where it was aimed: each stroke's grip is shifted by the
-/// error that the arm's motion leaves (a degree at most).
+/// that of a point behind it on the stick. The same holds for the rebound. The mallet comes
+/// straight to the head; felt and head give way, and it leaves them CONTACT later, having been some
+/// 0.3 v CONTACT deeper. Meanwhile the rest of the arm goes on, and the grip's rates compensate for
+/// that. Invariant: at the touch the mallet is where it was aimed: each stroke's grip is shifted by
+/// the error that the arm's motion leaves (a degree at most).
 #include "motion.h"
 #include "himc/body.h"
 

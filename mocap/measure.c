@@ -3,8 +3,8 @@
 /// All figures come from the frames at 250 Hz, as a laboratory would have them: the point 0.15 m
 /// behind the mallet, speeds by differences of neighbouring frames. A stroke's height is that of
 /// the highest frame since the hand's last impact over that of the impact, its fall is the time
-/// between them, its rebound the 0.15 s after it. The mallet's speed at impact is the fastest of its
-/// last 20 ms.
+/// between them, its rebound the 0.15 s after it. The mallet's speed at impact is the fastest of
+/// its last 20 ms.
 #include "parts.h"
 
 #include "himc/body.h"

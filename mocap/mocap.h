@@ -1,9 +1,9 @@
 /// mocap.h: synthetic motion captures of three timpanists, made in joint space.
 ///
 /// Each sequence is one player, nuance and spot: both hands in turn, the whole body and the
-/// sticks; defined at any time and so at any rate. Tips follow from the joints by forward kinematics. The
-/// same config gives the same motion, bit by bit; another seed gives another trial by the same
-/// player.
+/// sticks; defined at any time and so at any rate. Tips follow from the joints by forward
+/// kinematics. The same config gives the same motion, bit by bit; another seed gives another trial
+/// by the same player.
 #ifndef HIMC_DATABASE_H
 #define HIMC_DATABASE_H
 

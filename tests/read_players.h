@@ -1,5 +1,5 @@
-/// read_players.h: shared by the tests of players: a take made by a known body, the player read from
-/// it, and the differences between the two.
+/// read_players.h: shared by the tests of players: a take made by a known body, the player read
+/// from it, and the differences between the two.
 #ifndef HIMC_TESTS_READ_PLAYERS_H
 #define HIMC_TESTS_READ_PLAYERS_H
 

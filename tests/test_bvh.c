@@ -155,8 +155,8 @@ static void test_cmu_capture_equals_matrices_computed_elsewhere(void)
     TEST_ASSERT_EQUAL_INT(1102, himc_take_frames(take));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 120, himc_take_rate(take));
     TEST_ASSERT_EQUAL_INT(38, himc_take_points(take));
-    // the heading is rotated by some angle about the vertical: found from the first position, it must
-    // fit all of them
+    // the heading is rotated by some angle about the vertical: found from the first position, it
+    // must fit all of them
     himc_vec3 p = himc_take_point(take, 0, himc_take_find(take, known[0].name));
     double turn = atan2(p.y, p.x) - atan2(-known[0].x.z, known[0].x.x);
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {

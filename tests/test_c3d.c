@@ -366,7 +366,8 @@ static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
     int frames = himc_take_frames(take), points = himc_take_points(take), compared = 0;
     himc_vec3 *known = calloc((size_t)(frames * points), sizeof *known);
     read_export(known, frames, points);
-    // the take is rotated to the body's heading: the best rotation about the vertical, by least squares
+    // the take is rotated to the body's heading: the best rotation about the vertical, by least
+    // squares
     double cosine = 0, sine = 0, worst = 0, worst_far = 0;
     for (int i = 0; i < frames * points; i++) {
         himc_vec3 p = himc_take_point(take, i / points, i % points), q = known[i];

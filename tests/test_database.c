@@ -1,9 +1,11 @@
-/// test_database.c: the motion database, performed: each sequence becomes a take, its player is read
-/// from the take, and plays from the tips alone; the null-space posture comes from the regression
-/// over the other two players in that nuance. The joints are then compared with the captured ones.
+/// test_database.c: the motion database, performed: each sequence becomes a take, its player is
+/// read from the take, and plays from the tips alone; the null-space posture comes from the
+/// regression over the other two players in that nuance. The joints are then compared with the
+/// captured ones.
 ///
 /// One sequence of each nuance, or all 45 with HIMC_LONG (make test-long): 3 players, 5 nuances, 3
-/// spots. Without noise and with exact limbs and masses, so that the errors are those of the control.
+/// spots. Without noise and with exact limbs and masses, so that the errors are those of the
+/// control.
 #include "../tools/trial.h"
 
 #include "unity.h"

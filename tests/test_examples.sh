@@ -38,13 +38,13 @@ sed -i "s|$prefix|$dir/static|" "$dir/static/lib/pkgconfig/himc.pc"
 flags() {
     PKG_CONFIG_PATH=$dir/$1/lib/pkgconfig pkg-config $2 --cflags --libs himc
 }
-build() { # PROGRAM COMPILER... : from hello.c, target.c or drum.c
+build() { # PROGRAM COMPILER... : from docs/examples, its name up to a dash
     program=$1
     shift
     quiet "$@" -Wall -Wextra -Wpedantic -Werror "docs/examples/${program%%-*}.c" -o "$dir/$program" $link
 }
 link="$(flags usr) -lm -Wl,-rpath,$prefix/lib"
-for program in hello target drum; do
+for program in hello target drum take; do
     check test_${program}_builds_with_the_shared_library build $program "$CC" -std=c17
 done
 check test_hello_builds_as_cxx build hello-cxx "$CXX" -x c++ -std=c++17
@@ -52,7 +52,6 @@ link="$(flags static --static) -lm"
 check test_hello_builds_with_the_static_library build hello-static "$CC" -std=c17
 check test_hello_builds_as_cxx_with_the_static_library build hello-cxx-static "$CXX" -x c++ -std=c++17
 
-strokes=$(grep -c '"stroke [^"]*"' docs/examples/hello.c)
 strokes=$(grep -o '"stroke [^"]*"' docs/examples/hello.c | wc -l)
 for program in hello hello-cxx hello-static hello-cxx-static; do
     "$dir/$program" >"$dir/$program.raw" 2>"$dir/$program.strikes"
@@ -65,17 +64,37 @@ check test_hello_static_needs_no_shared_himc [ "$needs" = 0 ]
 check test_hello_needs_the_major_version [ "$(ldd "$dir/hello" | grep -c 'libhimc\.so\.0 ')" = 1 ]
 
 off=$("$dir/target" | sed -n 's/^tip within \([0-9.]*\) mm.*/\1/p')
-check test_target_is_followed_within_20_mm [ "$(echo "$off" | awk '{print $1 > 0 && $1 < 20}')" = 1 ]
+check test_target_is_followed_within_20_mm [ "$(echo "$off" | awk '{print ($1 > 0 && $1 < 20)}')" = 1 ]
 "$dir/drum" >"$dir/drum.raw" 2>"$dir/drum.blow"
 check test_drum_reports_its_blow grep -qE '^[0-9]+ N for [0-9.]+ ms$' "$dir/drum.blow"
 check test_drum_sounds sounds "$dir/drum.raw"
 
-# each public header alone, as C and as C++
+# a capture of two tips that fall 0.4 m in 0.2 s and rise again: 4 m/s, the right one at 0.4 s and every 0.4 s, the left one between
+awk 'BEGIN {
+    print "PathFileType\t4\t(X/Y/Z)\ttips.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate"
+    print "250\t250\t500\t2\tmm\t250\nFrame#\tTime\tLTIP\t\t\tRTIP\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n"
+    for (i = 0; i < 500; i++) {
+        r = i % 100 - 50
+        l = (i + 50) % 100 - 50
+        printf "%d\t%.3f\t500\t%.3f\t-100\t550\t%.3f\t100\n", i + 1, i / 250, 1200 - 0.16 * l * l, 1200 - 0.16 * r * r
+    }
+}' >"$dir/tips.trc"
+"$dir/take" "$dir/tips.trc" >"$dir/take.out"
+check test_take_succeeds [ $? = 0 ]
+check test_take_lists_the_highest_place_of_each_point [ "$(grep : "$dir/take.out" | tr '\n' ' ')" = \
+    "LTIP: 0.500 0.100 1.200 m RTIP: 0.550 -0.100 1.200 m " ]
+strikes=$(sed -n 's/^\([0-9.]*\) s \([a-z]*\) .*/\1 \2/p' "$dir/take.out" | tr '\n' ' ')
+check test_take_lists_the_strikes_of_both_tips [ "$strikes" = \
+    "0.200 left 0.400 right 0.600 left 0.800 right 1.000 left 1.200 right 1.400 left 1.600 right 1.800 left " ]
+check test_take_tells_their_speed_and_place [ "$(grep -c ' 4\.00 m/s at 0\.5[05]0 -\{0,1\}0\.100 0\.800 m$' "$dir/take.out")" = 9 ]
+check test_take_refuses_a_file_that_is_not_there [ "$("$dir/take" "$dir/none.trc" 2>&1 | wc -l)" = 1 ]
+
+# each public header alone, as C and as C++; the declaration is for headers that have macros alone
 for header in lib/himc/*.h; do
-    name=$(basename "$header" .h)
-    echo "#include <himc/$name.h>" >"$dir/$name.c"
-    check "test_${name}_h_is_c_by_itself" quiet "$CC" -std=c17 -Wall -Wextra -Wpedantic -Werror $(flags usr) -fsyntax-only "$dir/$name.c"
-    check "test_${name}_h_is_cxx_by_itself" quiet "$CXX" -x c++ -std=c++17 -Wall -Wextra -Wpedantic -Werror $(flags usr) -fsyntax-only "$dir/$name.c"
+    base=$(basename "$header" .h)
+    printf '#include <himc/%s.h>\nint himc_test(void);\n' "$base" >"$dir/$base.c"
+    check "test_${base}_h_is_c_by_itself" quiet "$CC" -std=c17 -Wall -Wextra -Wpedantic -Werror $(flags usr) -fsyntax-only "$dir/$base.c"
+    check "test_${base}_h_is_cxx_by_itself" quiet "$CXX" -x c++ -std=c++17 -Wall -Wextra -Wpedantic -Werror $(flags usr) -fsyntax-only "$dir/$base.c"
 done
 
 echo "-----------------------"

@@ -1,5 +1,6 @@
 /// test_glide.c: the film's stretching: the rise of pitch, and that energy never grows.
-#include "himc/membrane.h"
+#include "drum/contact.h"
+#include "drum/membrane_probe.h"
 
 #include "unity.h"
 

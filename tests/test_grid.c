@@ -5,6 +5,8 @@
 
 #include "disc_mesh.h"
 #include "drum/bessel.h"
+#include "drum/contact.h"
+#include "drum/membrane_probe.h"
 #include "drum/modes.h"
 
 #define RADIUS 0.3

@@ -1,6 +1,6 @@
-/// test_limits_compliance.c: accelerations under joint limits: the future position of a stopped joint,
-/// the compensation at the tips, the speed of return, the count of limit hits; and the strength
-/// table.
+/// test_limits_compliance.c: accelerations under joint limits: the future position of a stopped
+/// joint, the compensation at the tips, the speed of return, the count of limit hits; and the
+/// strength table.
 #include "control/controller.h"
 #include "body/dynamics.h"
 

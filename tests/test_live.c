@@ -278,9 +278,9 @@ static void test_french_grip_plays_with_the_fingers_german_with_the_wrist(void)
            fingers = span(&french, 3) / span(&german, 3);
     int elbow = himc_arm_joint(HIMC_RIGHT, 1);
     double roll = fabs(french.high[elbow].z - german.high[elbow].z);
-    printf(
-        "wrist %.2f times as much in german, fingers %.2f times in french, forearm turned %.0f degrees\n",
-        wrist, fingers, roll * 180 / HIMC_PI);
+    printf("wrist %.2f times as much in german, fingers %.2f times in french, forearm turned "
+           "%.0f degrees\n",
+           wrist, fingers, roll * 180 / HIMC_PI);
     TEST_ASSERT_TRUE(fingers > 1.2);
     TEST_ASSERT_TRUE(fingers * wrist > 1.3);
     TEST_ASSERT_TRUE(roll > 0.4);

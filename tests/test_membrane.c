@@ -1,4 +1,5 @@
 /// test_membrane.c: pitch, decay, energy and pickups of a bare head, and changes while it sounds.
+#include "drum/membrane_probe.h"
 #include "drum/modes.h"
 
 #include "unity.h"

@@ -104,8 +104,8 @@ static void test_a_millimetre_of_noise_makes_no_strikes_and_no_spikes(void)
     TEST_ASSERT_TRUE(much < clean + 180);
 }
 
-// RMS of the target accelerations from a stream of that rate (m/s^2), and of the distance of the tip
-// from the path, one period late (m)
+// RMS of the target accelerations from a stream of that rate (m/s^2), and of the distance of the
+// tip from the path, one period late (m)
 static double live(double rate, double size, double *off)
 {
     himc_planner_config config = himc_planner_default();

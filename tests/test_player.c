@@ -1,5 +1,5 @@
-/// test_player.c: from a take's skeleton back to the body that made it, for any names of joints, zero
-/// pose and unit; impossible bodies are refused.
+/// test_player.c: from a take's skeleton back to the body that made it, for any names of joints,
+/// zero pose and unit; impossible bodies are refused.
 #include "read_players.h"
 
 static void test_measures_of_a_skeleton_take_are_the_bodys_own(void)

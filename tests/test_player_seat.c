@@ -1,5 +1,5 @@
-/// test_player_seat.c: places of a take's player and drum, for any origin of the take, and the lines
-/// about both.
+/// test_player_seat.c: places of a take's player and drum, for any origin of the take, and the
+/// lines about both.
 #include "read_players.h"
 #include "base/head_frame.h"
 

@@ -1,6 +1,6 @@
-/// test_retarget.c: a take played by a body with longer limbs than its player's: the tips of `himc`,
-/// and of `id` with bent arms, are where they were captured; captured joints alone miss by the sum
-/// of the differences in length.
+/// test_retarget.c: a take played by a body with longer limbs than its player's: the tips of
+/// `himc`, and of `id` with bent arms, are where they were captured; captured joints alone miss by
+/// the sum of the differences in length.
 #include "take_players.h"
 
 #include "himc/performance.h"

@@ -1,7 +1,7 @@
 /// Score files.
 #include "unity.h"
 
-#include "himc/score.h"
+#include "plan/score.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/// test_strange_takes.c: captures that are not of drummers, played: a person who does not strike, one
-/// who walks, and gestures that no arm can follow.
+/// test_strange_takes.c: captures that are not of drummers, played: a person who does not strike,
+/// one who walks, and gestures that no arm can follow.
 #include "take_players.h"
 
 #include "session.h"

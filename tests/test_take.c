@@ -222,7 +222,8 @@ static void test_describe_lists_contents_units_and_axes(void)
         "gaps: 0 frames in 0 points\n",
         "tip: right is Anna:R_Stick_Tip, 0 frames in gaps are filled\n",
         "strikes: 15\n",
-        "drum: centre of the strikes at 0.650 0.050 m, tips touch the head at a height of 0.811 m\n"};
+        "drum: centre of the strikes at 0.650 0.050 m, tips touch the head at a height of 0.811 "
+        "m\n"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, lines[i]), lines[i]);
     himc_take_free(take);

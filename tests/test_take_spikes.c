@@ -1,5 +1,5 @@
-/// test_take_spikes.c: spikes, which are positions that a marker cannot have had, and the notes about
-/// names and rates.
+/// test_take_spikes.c: spikes, which are positions that a marker cannot have had, and the notes
+/// about names and rates.
 #include "take_motions.h"
 
 #include "capture/take.h"

@@ -165,7 +165,8 @@ static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
     TEST_ASSERT_TRUE(himc_take_strike_place(s, count, &place));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.65, place.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.05, place.y);
-    // falls of 4 m/s and rebounds of 2.5 m/s intersect at 0.8 m: a contact of 7 ms joins them higher
+    // falls of 4 m/s and rebounds of 2.5 m/s intersect at 0.8 m: a contact of 7 ms joins them
+    // higher
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.8 + 0.007 * 4 * 2.5 / 6.5, place.z);
     TEST_ASSERT_FALSE(himc_take_strike_place(s, 0, &place));
     // less capacity than strikes: the first ones, and the number of all

@@ -1,6 +1,7 @@
 /// bench.c: `himc bench`: the speed of one core. It measures a step of the whole performance
-/// (control, contact, one drum) and one of the physics engine alone on the same body; the modes of
-/// a drumhead and the performers with their drums that one core plays in real time.
+/// (control, contact, one drum) and one of the physics engine alone on the same body; the solvers
+/// of inverse kinematics; the modes of a drumhead and the performers with their drums that one core
+/// plays in real time.
 ///
 /// It measures processor time, not elapsed time, and each figure is the median of five runs, so
 /// other programs on the machine have little effect.
@@ -25,6 +26,8 @@
 #define MODES 1024         // chosen: of the drumhead that is measured alone
 #define MODE_SAMPLES 24000 // chosen: half a second of it
 #define PARTS 6
+#define ROWS (PARTS + HIMC_SOLVERS) // the parts of a step, then the solvers
+#define DAMPING 0.01                // chosen: of DLS and Nakamura, in the range of use (m)
 
 enum { JSON };
 
@@ -36,7 +39,7 @@ static const cli_option options[] = {
 /// Median of the runs.
 typedef struct figures {
     double step, engine;      ///< (us)
-    double part[PARTS];       ///< (us)
+    double row[ROWS];         ///< (us)
     double performers, modes; ///< that one core plays in real time
 } figures;
 
@@ -132,7 +135,16 @@ static bool make_body(bench_body *b, himc_error *error)
     return b->character != NULL;
 }
 
-static void do_part(bench_body *b, int part, int i)
+/// One tip's displacement as rotations of the arm's joints.
+static void solve(const bench_body *b, himc_solver solver, int i)
+{
+    himc_arm_jacobian jacobian;
+    himc_vec3 rotation[HIMC_ARM_JOINTS], error = {1e-3, 2e-3, -1e-6 * i};
+    himc_arm_jacobian_at(&b->state, HIMC_RIGHT, &jacobian);
+    himc_ik_solve(&jacobian, solver, DAMPING, error, rotation);
+}
+
+static void do_row(bench_body *b, int part, int i)
 {
     static const himc_vec3 none[HIMC_HANDS];
     himc_articulation articulation;
@@ -148,20 +160,22 @@ static void do_part(bench_body *b, int part, int i)
         himc_forward_dynamics(&b->skeleton, &b->state, &articulation, torque, NULL, relative);
     } else if (part == 4)
         himc_character_observe(b->character, &b->state);
+    else if (part >= PARTS)
+        solve(b, (himc_solver)(part - PARTS), i);
     else
         himc_character_step(b->character, torque, none, 1.0 / PHYSICS);
 }
 
-static bool time_parts(double part[PARTS], himc_error *error)
+static bool time_rows(double row[ROWS], himc_error *error)
 {
     bench_body b;
     if (!make_body(&b, error))
         return false;
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < ROWS; k++) {
         double start = cpu_seconds();
         for (int i = 0; i < PHYSICS; i++)
-            do_part(&b, k, i);
-        part[k] = 1e6 * (cpu_seconds() - start) / PHYSICS;
+            do_row(&b, k, i);
+        row[k] = 1e6 * (cpu_seconds() - start) / PHYSICS;
     }
     himc_character_free(b.character);
     return true;
@@ -190,22 +204,22 @@ static double time_modes(himc_error *error)
 
 static bool measure(figures *out, himc_error *error)
 {
-    double performers[RUNS], modes[RUNS], part[PARTS][RUNS], now[PARTS];
+    double performers[RUNS], modes[RUNS], row[ROWS][RUNS], now[ROWS];
     for (int i = 0; i < RUNS; i++) {
         double taken = time_performance(error);
         modes[i] = time_modes(error);
-        if (taken < 0 || modes[i] < 0 || !time_parts(now, error))
+        if (taken < 0 || modes[i] < 0 || !time_rows(now, error))
             return false;
         performers[i] = SECONDS / taken;
-        for (int k = 0; k < PARTS; k++)
-            part[k][i] = now[k];
+        for (int k = 0; k < ROWS; k++)
+            row[k][i] = now[k];
     }
     out->performers = median(performers);
     out->modes = median(modes);
     out->step = 1e6 / (out->performers * PHYSICS);
-    for (int k = 0; k < PARTS; k++)
-        out->part[k] = median(part[k]);
-    out->engine = out->part[PARTS - 1];
+    for (int k = 0; k < ROWS; k++)
+        out->row[k] = median(row[k]);
+    out->engine = out->row[PARTS - 1];
     return true;
 }
 
@@ -214,8 +228,12 @@ static void print_table(const figures *f)
     printf("one step in all                    %8.2f us at %d Hz, with one drum at %d Hz\n",
            f->step, PHYSICS, RATE);
     for (int k = 0; k < PARTS; k++)
-        printf("  %-32s %8.2f us\n", part_name[k], f->part[k]);
+        printf("  %-32s %8.2f us\n", part_name[k], f->row[k]);
     printf("step / engine alone                %8.2f\n", f->step / f->engine);
+    puts("inverse kinematics of one arm, by solver");
+    for (int k = 0; k < HIMC_SOLVERS; k++)
+        printf("  %-32s %9.3f us\n", himc_command_word(HIMC_COMMAND_SOLVER, 0, k).text,
+               f->row[PARTS + k]);
     printf("modes per core                     %8.0f\n", f->modes);
     printf("performers per core                %8.2f (times real time)\n", f->performers);
 }

@@ -40,7 +40,7 @@ check "names the library shows its host" prefixed_symbols
 check "cppcheck" cppcheck -q -j2 --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
     --suppress=uninitvar --suppress=legacyUninitvar --suppress=missingInclude --suppress=checkersReport -Ilib -Ilib/src \
     lib/src tools pd-externals
-check "sizes" awk -f tools/sizes.awk "$@"
+check "sizes" env LC_ALL=C awk -f tools/sizes.awk "$@"
 
 [ $faults = 0 ] && echo "lint: clean"
 [ $faults = 0 ]

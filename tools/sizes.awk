@@ -20,7 +20,8 @@ FNR == 1 {
 
 {
     lines = FNR
-    # tables that a program wrote may be wide
+    # characters, not bytes (the locale is C); tables that a program wrote may be wide
+    gsub(/[\200-\277]/, "")
     wide += length($0) > 100 && FILENAME !~ /_table\.c$/
 }
 

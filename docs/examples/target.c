@@ -42,7 +42,7 @@ int main(void)
         himc_performance_target(performer, HIMC_RIGHT, place);
         himc_performance_process(performer, 64, NULL);
     }
-    printf("tip within %.2f mm of its target, elbow down to %.3f m\n", 1e3 * seen.farthest,
+    printf("tip within %.4f mm of its target, elbow down to %.3f m\n", 1e3 * seen.farthest,
            seen.lowest);
     himc_performance_free(performer);
     return 0;

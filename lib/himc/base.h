@@ -25,7 +25,7 @@
     _Pragma("GCC visibility pop")
 #else
 #define HIMC_BEGIN _Pragma("GCC visibility push(default)")
-#define HIMC_END _Pragma("GCC visibility pop")
+#define HIMC_END _Pragma("GCC visibility pop") ///< closes HIMC_BEGIN
 #endif
 
 HIMC_BEGIN
@@ -33,22 +33,27 @@ HIMC_BEGIN
 /// Marks a function that is safe in an audio callback; a test with its own malloc checks this.
 #define HIMC_RT
 
+/// Rises when programs must be changed (docs/api.md).
 #define HIMC_VERSION_MAJOR 0
+/// Rises with additions; while MAJOR is 0, with any change.
 #define HIMC_VERSION_MINOR 1
+/// Rises with repairs.
 #define HIMC_VERSION_PATCH 0
+/// \cond
 #define HIMC_VERSION_TEXT_(major, minor, patch) #major "." #minor "." #patch
 #define HIMC_VERSION_JOIN_(major, minor, patch) HIMC_VERSION_TEXT_(major, minor, patch)
+/// \endcond
 /// Version of the headers: "MAJOR.MINOR.PATCH".
 #define HIMC_VERSION HIMC_VERSION_JOIN_(HIMC_VERSION_MAJOR, HIMC_VERSION_MINOR, HIMC_VERSION_PATCH)
 
-/// Version of the library that is linked, "MAJOR.MINOR.PATCH".
+/// Version of the library that is linked, "MAJOR.MINOR.PATCH". Borrowed, static.
 HIMC_RT const char *himc_version(void);
 
-#define HIMC_PI 3.14159265358979323846
+#define HIMC_PI 3.14159265358979323846 ///< M_PI, which C17 does not have
 
 /// One line with the fault, the value, the allowed values, and in a file `file:line`.
 typedef struct himc_error {
-    char text[512];
+    char text[512]; ///< without line end; only written if a function fails
 } himc_error;
 
 /// Writes one line into `error` (printf format); `error` may be NULL. Returns false, so that a
@@ -60,22 +65,30 @@ bool himc_error_set(himc_error *error, const char *format, ...)
 bool himc_error_prefix(himc_error *error, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/// Refuses a number outside [low, high] or not finite, naming it: "radius: 0 m, allowed 0.05 .. 1
-/// m".
+/// False, with an error like "radius: 0 m, allowed 0.05 .. 1 m", if `value` is outside [low, high]
+/// or not finite.
 bool himc_check_range(const char *name, double value, double low, double high, const char *unit,
                       himc_error *error);
 
-/// In the order of the argument HAND.
-typedef enum himc_hand { HIMC_LEFT, HIMC_RIGHT, HIMC_HANDS } himc_hand;
+/// A hand of the performer, with its arm and stick. In the order of the argument HAND.
+typedef enum himc_hand {
+    HIMC_LEFT,  ///< "left"
+    HIMC_RIGHT, ///< "right"
+    HIMC_HANDS  ///< number of hands, the length of arrays indexed by a hand
+} himc_hand;
 
-/// "left" or "right".
+/// "left" or "right", the words of commands. Borrowed, static.
 const char *himc_hand_name(himc_hand hand);
 
+/// A vector or a point; the unit is that of its use.
 typedef struct himc_vec3 {
-    double x, y, z;
+    double x; ///< forward
+    double y; ///< left
+    double z; ///< up
 } himc_vec3;
 
-/// Where a drumhead stands.
+/// Place of a drumhead in the world frame. The head's x axis points away from the performer, its y
+/// axis to the left.
 typedef struct himc_head_frame {
     himc_vec3 center; ///< centre of the head at rest (m)
     double tilt;      ///< positive lifts the side away from the performer (rad)
@@ -84,9 +97,8 @@ typedef struct himc_head_frame {
 
 #define HIMC_DRUMS 16 ///< most that one performer plays on
 
-/// The body's rigid segments and the ball joints between them (body.h names them).
-#define HIMC_SEGMENTS 20
-#define HIMC_JOINTS (HIMC_SEGMENTS - 1)
+#define HIMC_SEGMENTS 20                ///< rigid segments of the body; body.h names them
+#define HIMC_JOINTS (HIMC_SEGMENTS - 1) ///< ball joints: joint j is between j + 1 and its parent
 
 HIMC_END
 

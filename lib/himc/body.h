@@ -30,26 +30,26 @@ HIMC_BEGIN
 
 /// The segments; of a pair the left one is even, the right one follows.
 typedef enum himc_segment_id {
-    HIMC_PELVIS,
-    HIMC_TRUNK,
-    HIMC_NECK,
-    HIMC_HEAD,
-    HIMC_LEFT_UPPER_ARM,
-    HIMC_RIGHT_UPPER_ARM,
-    HIMC_LEFT_FOREARM,
-    HIMC_RIGHT_FOREARM,
-    HIMC_LEFT_HAND,
-    HIMC_RIGHT_HAND,
-    HIMC_LEFT_STICK,
-    HIMC_RIGHT_STICK,
-    HIMC_LEFT_UPPER_LEG,
-    HIMC_RIGHT_UPPER_LEG,
-    HIMC_LEFT_LOWER_LEG,
-    HIMC_RIGHT_LOWER_LEG,
-    HIMC_LEFT_FOOT,
-    HIMC_RIGHT_FOOT,
-    HIMC_LEFT_TOES,
-    HIMC_RIGHT_TOES
+    HIMC_PELVIS,          ///< fixed to the world, the root of the tree
+    HIMC_TRUNK,           ///< abdomen and chest, from the joint waist
+    HIMC_NECK,            ///< from the joint neck
+    HIMC_HEAD,            ///< from the joint head
+    HIMC_LEFT_UPPER_ARM,  ///< from the left shoulder
+    HIMC_RIGHT_UPPER_ARM, ///< from the right shoulder
+    HIMC_LEFT_FOREARM,    ///< from the left elbow
+    HIMC_RIGHT_FOREARM,   ///< from the right elbow
+    HIMC_LEFT_HAND,       ///< from the left wrist
+    HIMC_RIGHT_HAND,      ///< from the right wrist
+    HIMC_LEFT_STICK,      ///< from the left grip
+    HIMC_RIGHT_STICK,     ///< from the right grip
+    HIMC_LEFT_UPPER_LEG,  ///< from the left hip
+    HIMC_RIGHT_UPPER_LEG, ///< from the right hip
+    HIMC_LEFT_LOWER_LEG,  ///< from the left knee
+    HIMC_RIGHT_LOWER_LEG, ///< from the right knee
+    HIMC_LEFT_FOOT,       ///< from the left ankle
+    HIMC_RIGHT_FOOT,      ///< from the right ankle
+    HIMC_LEFT_TOES,       ///< from the joint left-toes
+    HIMC_RIGHT_TOES       ///< from the joint right-toes
 } himc_segment_id;
 
 /// Degrees of freedom: three for each ball joint.
@@ -66,16 +66,16 @@ typedef enum himc_anthropometry {
 
 /// The measures of a body and its sticks.
 typedef struct himc_skeleton_config {
-    double height; ///< 1.19 .. 2.21 (m), default 1.75
-    double mass;   ///< 30 .. 200 (kg), default 75, without the sticks
-    himc_anthropometry anthropometry;
-    double stick_length;  ///< 0.2 .. 0.6 (m), default 0.36
-    double shaft_mass;    ///< 0.005 .. 0.2 (kg), default 0.025
-    double mallet_mass;   ///< 0.005 .. 0.2 (kg), default 0.020
-    double mallet_radius; ///< 0.005 .. 0.05 (m), default 0.0175
-    double grip;          ///< from the stick's butt to the grip, 0.02 .. half the stick (m)
-    double seat;          ///< height of the hip joints, 0.3 .. 1.3 (m); 0: 0.42 of the height
-    double shoulders;     ///< between the shoulder joints, 0.2 .. 0.6 (m); 0: from the height
+    double height;                    ///< 1.19 .. 2.21 (m), default 1.75
+    double mass;                      ///< 30 .. 200 (kg), default 75, without the sticks
+    himc_anthropometry anthropometry; ///< default HIMC_DE_LEVA
+    double stick_length;              ///< 0.2 .. 0.6 (m), default 0.36
+    double shaft_mass;                ///< 0.005 .. 0.2 (kg), default 0.025
+    double mallet_mass;               ///< 0.005 .. 0.2 (kg), default 0.020
+    double mallet_radius;             ///< 0.005 .. 0.05 (m), default 0.0175
+    double grip;      ///< from the stick's butt, 0.02 .. half the stick (m), default 0.10
+    double seat;      ///< height of the hip joints, 0.3 .. 1.3 (m); 0: 0.42 of the height
+    double shoulders; ///< between the shoulder joints, 0.2 .. 0.6 (m); 0: from the height
     double length[HIMC_SEGMENTS]; ///< measured segment lengths, 0.02 .. 1 (m); 0: from the height
 } himc_skeleton_config;
 
@@ -100,8 +100,8 @@ typedef struct himc_segment {
 
 /// The body: constant after himc_skeleton_init.
 typedef struct himc_skeleton {
-    himc_segment segment[HIMC_SEGMENTS];
-    himc_vec3 root;       ///< midpoint of the hip joints, fixed in the world (m)
+    himc_segment segment[HIMC_SEGMENTS]; ///< by himc_segment_id
+    himc_vec3 root;                      ///< midpoint of the hip joints, fixed in the world (m)
     himc_vec3 tip;        ///< tip of the stick (centre of the mallet) in the stick's frame (m)
     double mallet_radius; ///< (m)
     double height;        ///< (m)
@@ -138,17 +138,17 @@ static inline int himc_stick_segment(himc_hand hand)
 /// The rotation of each joint: its child segment in the parent's frame. The zero pose is all
 /// identity.
 typedef struct himc_pose {
-    himc_quat joint[HIMC_JOINTS];
+    himc_quat joint[HIMC_JOINTS]; ///< unit quaternions
 } himc_pose;
 
 /// The moving body in the world frame. Entry 0 is the pelvis, fixed at the skeleton's root.
 typedef struct himc_body_state {
-    himc_quat orientation[HIMC_SEGMENTS];
-    himc_mat3 rotation[HIMC_SEGMENTS];  ///< the orientations as matrices
-    himc_vec3 origin[HIMC_SEGMENTS];    ///< joint to the parent (m)
-    himc_vec3 spin[HIMC_SEGMENTS];      ///< angular velocity (rad/s)
-    himc_vec3 tip[HIMC_HANDS];          ///< drumstick tips (m)
-    himc_vec3 tip_velocity[HIMC_HANDS]; ///< (m/s)
+    himc_quat orientation[HIMC_SEGMENTS]; ///< of the segment's frame, unit quaternions
+    himc_mat3 rotation[HIMC_SEGMENTS];    ///< the orientations as matrices
+    himc_vec3 origin[HIMC_SEGMENTS];      ///< joint to the parent (m)
+    himc_vec3 spin[HIMC_SEGMENTS];        ///< angular velocity (rad/s)
+    himc_vec3 tip[HIMC_HANDS];            ///< drumstick tips (m)
+    himc_vec3 tip_velocity[HIMC_HANDS];   ///< of the drumstick tips (m/s)
 } himc_body_state;
 
 /// The zero pose.
@@ -172,10 +172,9 @@ HIMC_RT bool himc_body_state_finite(const himc_body_state *state);
 // Joint limits: bounds learned from captured motion, and the nearest rotation within them (2012
 // paper, section 3.1, algorithm 1 and table 1)
 
-/// Shape of the bounds.
-/// In the order of the words of `limits`.
+/// Shape of the bounds. In the order of the words of `limits`.
 typedef enum himc_limits_kind {
-    HIMC_LIMITS_OFF,
+    HIMC_LIMITS_OFF,       ///< all joints turn freely
     HIMC_LIMITS_ELLIPSOID, ///< around the mean, in its tangent space (algorithm 1)
     HIMC_LIMITS_EULER      ///< lower and upper Euler angles about x, y, z
 } himc_limits_kind;
@@ -192,8 +191,8 @@ typedef struct himc_limit {
 
 /// Bounds of all joints.
 typedef struct himc_limits {
-    himc_limits_kind kind;
-    himc_limit joint[HIMC_JOINTS];
+    himc_limits_kind kind;         ///< decides which fields of himc_limit count
+    himc_limit joint[HIMC_JOINTS]; ///< by joint
 } himc_limits;
 
 /// Table 1 of the 2012 paper (neck, shoulders, elbows, wrists) around a mean pose; the other
@@ -223,15 +222,14 @@ HIMC_RT himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_
 // the transposed Jacobian is J' f = r_j x f, and J J' = sum of |r_j|^2 1 - r_j r_j' is a 3 x 3
 // matrix, independent of the number of joints.
 
-/// How the inverse of the Jacobian J is approximated.
-/// In the order of the words of `solver`.
+/// How the inverse of the Jacobian J is approximated. In the order of the words of `solver`.
 typedef enum himc_solver {
     HIMC_SOLVER_DLS,       ///< damped least squares (Wampler 1986): J' (J J' + lambda^2)^-1 e
     HIMC_SOLVER_PINV,      ///< pseudo-inverse, small singular values truncated
     HIMC_SOLVER_TRANSPOSE, ///< J' e times <e, JJ'e> / <JJ'e, JJ'e> (Buss 2004)
     HIMC_SOLVER_NAKAMURA,  ///< damped near singular poses only (Nakamura & Hanafusa 1986)
     HIMC_SOLVER_SDLS,      ///< each singular direction damped separately (Buss & Kim 2005)
-    HIMC_SOLVERS
+    HIMC_SOLVERS           ///< number of solvers
 } himc_solver;
 
 /// Jacobian of a drumstick tip (2012 paper, algorithm 2, ComputeJacobian) with weighted joints: all
@@ -257,11 +255,6 @@ HIMC_RT void himc_arm_jacobian_weighted(const himc_body_state *state, himc_hand 
 /// solvers ignore it. Linear in `error` except for TRANSPOSE and SDLS.
 HIMC_RT void himc_ik_solve(const himc_arm_jacobian *jacobian, himc_solver solver, double damping,
                            himc_vec3 error, himc_vec3 rotation[HIMC_ARM_JOINTS]);
-
-/// J x: the displacement of the tip (m) by these joint rotations (rad), or its velocity (m/s) by
-/// their rates (rad/s).
-HIMC_RT himc_vec3 himc_ik_forward(const himc_arm_jacobian *jacobian,
-                                  const himc_vec3 rotation[HIMC_ARM_JOINTS]);
 
 /// Adds to `rotation` the part of `desired` in the null space of the tip, N desired, which does not
 /// move the tip: N = 1 - J# J, J# = W J' (J W J')^-1.

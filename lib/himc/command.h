@@ -9,49 +9,55 @@
 
 HIMC_BEGIN
 
-typedef enum himc_atom_kind { HIMC_ATOM_NUMBER, HIMC_ATOM_SYMBOL } himc_atom_kind;
+/// Kind of an atom.
+typedef enum himc_atom_kind {
+    HIMC_ATOM_NUMBER, ///< Pd's float, OSC's numbers
+    HIMC_ATOM_SYMBOL  ///< Pd's symbol, OSC's strings
+} himc_atom_kind;
 
-/// A number or a word, as Pd and OSC send them. `symbol` is borrowed.
+/// A number or a word, as Pd and OSC send them.
 typedef struct himc_atom {
-    himc_atom_kind kind;
-    double number;
-    const char *symbol;
+    himc_atom_kind kind; ///< which of the two below counts
+    double number;       ///< in the unit of the command's argument
+    const char *symbol;  ///< borrowed
 } himc_atom;
 
-/// How a stroke is played (2012 paper, section 3). In the order of the argument NUANCE.
+/// How a stroke is played (2012 paper, section 3), with the mallet's speed at f. In the order of
+/// the argument NUANCE.
 typedef enum himc_nuance {
-    HIMC_LEGATO,
-    HIMC_TENUTO,
-    HIMC_ACCENT,
-    HIMC_VERTICAL_ACCENT,
-    HIMC_STACCATO,
-    HIMC_NUANCES
+    HIMC_LEGATO,          ///< 4.3 m/s, free rebound
+    HIMC_TENUTO,          ///< 4.2 m/s, weak rebound
+    HIMC_ACCENT,          ///< 4.5 m/s, from the largest height
+    HIMC_VERTICAL_ACCENT, ///< 7.5 m/s
+    HIMC_STACCATO,        ///< 2.8 m/s, pulled off the head
+    HIMC_NUANCES          ///< number of nuances
 } himc_nuance;
 
-/// The nuance's word in commands; "none" if there is no such nuance.
+/// The nuance's word in commands; "none" for another number. Borrowed, static.
 const char *himc_nuance_name(himc_nuance nuance);
 
 /// Where on the head a stroke lands. In the order of the argument SPOT.
 typedef enum himc_spot {
-    HIMC_SPOT_CENTER,
-    HIMC_SPOT_NORMAL,
-    HIMC_SPOT_RIM,
-    HIMC_SPOT_XY ///< given by two numbers
+    HIMC_SPOT_CENTER, ///< the centre
+    HIMC_SPOT_NORMAL, ///< 0.75 of the radius towards the performer
+    HIMC_SPOT_RIM,    ///< 0.92 of the radius towards the performer
+    HIMC_SPOT_XY      ///< given by two numbers
 } himc_spot;
 
-/// The spot's word in commands; "" for HIMC_SPOT_XY.
+/// The spot's word in commands; "" for HIMC_SPOT_XY. Borrowed, static.
 const char *himc_spot_name(himc_spot spot);
 
-#define HIMC_NAME_SIZE 32
+#define HIMC_NAME_SIZE 32 ///< of a drum's or a nuance's name, with its final 0 (bytes)
 
 /// One stroke, as written in a score.
 typedef struct himc_stroke {
-    double beat; ///< (beats); ignored by `hit`
-    himc_hand hand;
-    himc_nuance nuance;
+    double beat;               ///< (beats), 0 or more; ignored by `hit`
+    himc_hand hand;            ///< the hand that strikes
+    himc_nuance nuance;        ///< way of playing
     double dynamic;            ///< 0 (ppp) .. 1 (fff); the eight names are k/7
     himc_spot spot;            ///< default HIMC_SPOT_NORMAL
-    double x, y;               ///< place on the head when spot is HIMC_SPOT_XY (m, from its centre)
+    double x;                  ///< of HIMC_SPOT_XY: from the centre away from the performer (m)
+    double y;                  ///< and to the left (m)
     char drum[HIMC_NAME_SIZE]; ///< "" is the performer's first drum
 } himc_stroke;
 
@@ -60,14 +66,18 @@ typedef struct himc_stroke {
 /// own x, y.
 HIMC_RT void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y);
 
-typedef enum himc_receiver { HIMC_PERFORMER, HIMC_DRUM } himc_receiver;
+/// The object that a command is for. Names of commands are unique for each receiver.
+typedef enum himc_receiver {
+    HIMC_PERFORMER, ///< himc_performance_command
+    HIMC_DRUM       ///< himc_drum_command
+} himc_receiver;
 
-/// When a command acts; command_rows.h explains each.
+/// When a command acts, and who carries it out.
 typedef enum himc_command_when {
-    HIMC_WHEN_NOW,
-    HIMC_WHEN_AT_SAMPLE,
-    HIMC_WHEN_HOST,
-    HIMC_WHEN_NETWORK
+    HIMC_WHEN_NOW,       ///< when it arrives; may allocate, read files, or be refused
+    HIMC_WHEN_AT_SAMPLE, ///< on its sample, in the audio callback
+    HIMC_WHEN_HOST,      ///< the program around the library answers it
+    HIMC_WHEN_NETWORK    ///< the OSC server carries it out (osc.h)
 } himc_command_when;
 
 /// What else holds for a command.
@@ -79,36 +89,38 @@ typedef enum himc_command_marks {
 
 /// One id for each row of command_rows.h: HIMC_COMMAND_STROKE, HIMC_COMMAND_HIT, ...
 typedef enum himc_command_id {
+/// \cond
 #define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) HIMC_COMMAND_##ID,
 #include "himc/command_rows.h"
-    HIMC_COMMANDS
+    /// \endcond
+    HIMC_COMMANDS ///< number of commands
 } himc_command_id;
 
-#define HIMC_COMMAND_ATOMS 8
-#define HIMC_PATH_SIZE 1024
+#define HIMC_COMMAND_ATOMS 8 ///< most atoms of a command
+#define HIMC_PATH_SIZE 1024  ///< of a file's name, with its final 0 (bytes)
 
 /// A checked command: right name, right number and kind of atoms, all finite and in range. Made by
 /// the parser and copied by himc_command_copy only.
 typedef struct himc_command {
-    himc_command_id id;
-    int form;                           ///< of the row's forms, separated by ` | `, the one given
+    himc_command_id id;                 ///< its row
+    int form;                           ///< of the row's forms, separated by ` | `, from 0
     himc_stroke stroke;                 ///< of `stroke` and `hit`
     int count;                          ///< atoms after the name
     himc_atom atom[HIMC_COMMAND_ATOMS]; ///< symbols point into `storage`
     int choice[HIMC_COMMAND_ATOMS]; ///< index of the atom among its allowed words; -1 for a number
                                     ///< and a free word
-    char storage[HIMC_PATH_SIZE + 256];
+    char storage[HIMC_PATH_SIZE + 256]; ///< the text of all symbols
 } himc_command;
 
 /// One row of command_rows.h.
 typedef struct himc_command_row {
-    himc_command_id id;
-    himc_receiver receiver;
-    himc_command_when when;
-    unsigned marks;    ///< of himc_command_marks, joined by |
-    const char *name;  ///< "stroke"
-    const char *atoms; ///< the grammar
-    const char *does;  ///< one sentence
+    himc_command_id id;     ///< the row's index
+    himc_receiver receiver; ///< performer or drum
+    himc_command_when when; ///< when it acts
+    unsigned marks;         ///< of himc_command_marks, joined by |
+    const char *name;       ///< "stroke"
+    const char *atoms;      ///< the grammar, explained in command_rows.h
+    const char *does;       ///< one sentence for the manual
 } himc_command_row;
 
 /// Row `index` of the table, or NULL past its end. Row i is the command with id i. Borrowed,
@@ -140,16 +152,22 @@ HIMC_RT void himc_command_copy(himc_command *out, const himc_command *in);
 
 /// A word, by value.
 typedef struct himc_word {
-    char text[HIMC_NAME_SIZE];
+    char text[HIMC_NAME_SIZE]; ///< "": none
 } himc_word;
 
 /// Word `choice` of atom `atom` (from 0) in the first form of a command: (HIMC_COMMAND_LAW, 0, 1)
 /// is "feedforward". "" if there is none, and for arguments. Keep the struct, not its `text` alone.
 HIMC_RT himc_word himc_command_word(himc_command_id id, int atom, int choice);
 
-typedef enum himc_file_use { HIMC_FILE_NONE, HIMC_FILE_READ, HIMC_FILE_WRITE } himc_file_use;
+/// Use of a command's FILE.
+typedef enum himc_file_use {
+    HIMC_FILE_NONE, ///< the command, or this form of it, names no file
+    HIMC_FILE_READ, ///< the file must exist
+    HIMC_FILE_WRITE ///< the file is made or replaced
+} himc_file_use;
 
-/// What a command does with the file it names; `*atom` is the index of the file's name.
+/// Use of the file that a checked command names; `*atom` becomes the index of the file's name, and
+/// has no meaning for HIMC_FILE_NONE.
 HIMC_RT himc_file_use himc_command_file(const himc_command *command, int *atom);
 
 HIMC_END

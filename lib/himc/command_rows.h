@@ -4,7 +4,8 @@
 /// (lib/src/base/command.c), the actions of performer and drum, the manual, Pure Data and OSC.
 ///
 /// This file has no include guard. Define HIMC_COMMAND_ROW, then include it; it undefines the macro
-/// at its end. The columns of HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does):
+/// at its end. Without a definition the rows are empty. The columns of HIMC_COMMAND_ROW(ID, word,
+/// receiver, when, marks, atoms, does):
 ///
 ///   ID        the command is HIMC_COMMAND_ID
 ///   word      the command's name; its action is the function do_word of the receiver's room
@@ -20,6 +21,10 @@
 ///             optional, ` | ` separates the forms. SPOT is a word or two numbers. Where words are
 ///             the names of an enum's values, they stand in the order of that enum.
 ///   does      one sentence for the manual
+
+#ifndef HIMC_COMMAND_ROW
+#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does)
+#endif
 
 #define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc"

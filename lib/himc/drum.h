@@ -13,6 +13,7 @@
 
 HIMC_BEGIN
 
+/// A drum. Opaque; freed with its last reference.
 typedef struct himc_drum himc_drum;
 typedef struct himc_membrane himc_membrane; ///< membrane.h
 
@@ -25,7 +26,7 @@ himc_drum *himc_drum_retain(himc_drum *drum);
 /// Gives a reference back; the last one frees the drum. NULL is allowed.
 void himc_drum_release(himc_drum *drum);
 
-/// Borrowed.
+/// Its name, borrowed.
 const char *himc_drum_name(const himc_drum *drum);
 /// Where the head stands. Borrowed.
 HIMC_RT const himc_head_frame *himc_drum_head_frame(const himc_drum *drum);
@@ -48,10 +49,10 @@ HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y,
                                  himc_error *error);
 
 /// Advances a drum that no performer drives by `n` samples, with its own strikes and an outside
-/// force. Fills the ring that himc_drum_read reads.
-/// @param force  (N, down positive) of each sample; NULL for none. Not finite counts as 0.
-/// @param x, y   where that force acts in each sample (m), which is also the watched point; NULL:
-///               the point stays where it is, at first 0.75 of the radius towards the performer
+/// force. Fills the ring that himc_drum_read reads. `force` (N, down positive) (n) may be NULL for
+/// none; a value that is not finite counts as 0. It acts at `x`, `y` (m) (n), which is also the
+/// watched point; NULL: the point stays where it is, at first 0.75 of the radius towards the
+/// performer.
 HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,
                                const double *y);
 
@@ -75,11 +76,12 @@ HIMC_RT void himc_drum_realign(himc_drum *drum, int ahead);
 /// A finished contact.
 typedef struct himc_contact_report {
     double time;     ///< of the first force (s since the drum's realign)
-    double x, y;     ///< position on the head (m)
+    double x;        ///< on the head, away from the performer (m)
+    double y;        ///< on the head, to the left (m)
     double velocity; ///< of impact, downward positive (m/s)
     double force;    ///< peak (N)
-    double impulse;  ///< (N s)
-    double duration; ///< (s)
+    double impulse;  ///< integral of the force (N s)
+    double duration; ///< from first to last force (s)
 } himc_contact_report;
 
 /// Takes the oldest report of a finished strike (himc_drum_strike_at); false if none waits. Of more
@@ -89,7 +91,8 @@ HIMC_RT bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
 /// A contact as it begins, of any stick or mallet.
 typedef struct himc_contact_onset {
     int64_t at;      ///< its first sample, counted as himc_drum_time does
-    double x, y;     ///< position on the head (m)
+    double x;        ///< on the head, away from the performer (m)
+    double y;        ///< on the head, to the left (m)
     double velocity; ///< of impact, downward positive (m/s)
     double distance; ///< from the centre, per radius, 0 .. 1
     double pitch;    ///< of the head's principal mode (Hz)
@@ -102,9 +105,9 @@ HIMC_RT bool himc_drum_contact_next(himc_drum *drum, himc_contact_onset *onset);
 /// signals, or by clips of recorded sound). The head vibrates and pushes back in any case.
 /// In the order of the words of `technique`.
 typedef enum himc_technique {
-    HIMC_TECHNIQUE_MODAL,
-    HIMC_TECHNIQUE_SIGNAL,
-    HIMC_TECHNIQUE_CLIP
+    HIMC_TECHNIQUE_MODAL,  ///< by the head's modes
+    HIMC_TECHNIQUE_SIGNAL, ///< by signals outside the library
+    HIMC_TECHNIQUE_CLIP    ///< by clips of recorded sound outside the library
 } himc_technique;
 
 /// The technique that the command `technique` has set. While it is not modal, the head's own sound
@@ -117,12 +120,13 @@ void himc_drum_set_external_sound(himc_drum *drum, bool external);
 /// The performer that has taken a drum and advances it; with performer NULL the drum's own object
 /// advances it (himc_drum_advance).
 typedef struct himc_drum_driver {
-    void (*advance_to)(void *performer,
-                       uint64_t time); ///< brings performer and drum to that sample
-    void *performer;                   ///< borrowed
+    /// brings performer and drum to sample `time`, counted as himc_drum_time does
+    void (*advance_to)(void *performer, uint64_t time);
+    void *performer; ///< borrowed; NULL: nobody drives the drum
 } himc_drum_driver;
 /// False if another performer drives the drum already. A driver with performer NULL gives it back.
 bool himc_drum_set_driver(himc_drum *drum, himc_drum_driver driver);
+/// The driver that was set last; its performer is NULL if there is none.
 HIMC_RT himc_drum_driver himc_drum_get_driver(const himc_drum *drum);
 
 HIMC_END

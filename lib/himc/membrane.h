@@ -13,7 +13,7 @@
 
 HIMC_BEGIN
 
-/// A head of masses and springs, read from a file.
+/// A head of masses and springs, read from a file. Opaque, counts references.
 typedef struct himc_grid himc_grid;
 
 /// The material of a head, with its modes and air.
@@ -34,9 +34,10 @@ typedef struct himc_head {
 /// the list ends within a pair, it has the cosine, which is the one that a blow on the x axis
 /// excites.
 typedef struct himc_mode {
-    int m, n;
-    bool sine;
-    double zero;      ///< j_mn
+    int m;            ///< nodal diameters; of a rectangle half waves along x; of a grid 0
+    int n;            ///< nodal circles with the rim; half waves along y; of a grid index + 1
+    bool sine;        ///< the second one of a pair: sin(m azimuth) in place of cos(m azimuth)
+    double zero;      ///< j_mn; of other outlines its counterpart, wave number times radius
     double norm;      ///< integral of phi^2 over the head, per pi a^2
     double frequency; ///< undamped (Hz)
     double decay;     ///< (1/s): S0 + S1 omega^2 and the hand's, at most 0.9 omega
@@ -44,7 +45,7 @@ typedef struct himc_mode {
     double stiffness; ///< mass omega^2 (N/m)
 } himc_mode;
 
-#define HIMC_MODES_MAX 4000
+#define HIMC_MODES_MAX 4000 ///< chosen: bounds time and memory
 
 /// Added to the decay of a bare head by `damp` 1 (1/s); chosen: T60 = 0.1 s.
 #define HIMC_DAMP 69.0
@@ -56,15 +57,22 @@ himc_head himc_head_default(void);
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
 double himc_head_tension_for(const himc_head *head, double frequency);
 
-typedef enum himc_outline { HIMC_CIRCLE, HIMC_RECTANGLE, HIMC_GRID } himc_outline;
+/// Kind of a head's outline.
+typedef enum himc_outline {
+    HIMC_CIRCLE,    ///< modes by Bessel functions; the only one with air
+    HIMC_RECTANGLE, ///< modes by sines
+    HIMC_GRID       ///< any outline: masses and springs from a file, modes by their eigenvectors
+} himc_outline;
 
 /// A head's outline. Its size is the head's radius, that of the circle around it.
 typedef struct himc_shape {
-    himc_outline kind;
-    double length, width; ///< of a rectangle along x and y (m); only their ratio counts
-    himc_grid *grid;      ///< of HIMC_GRID
+    himc_outline kind; ///< decides which fields below count
+    double length;     ///< of a rectangle along x (m); only the ratio to `width` counts
+    double width;      ///< of a rectangle along y (m)
+    himc_grid *grid;   ///< of HIMC_GRID, borrowed
 } himc_shape;
 
+/// Kind of a pickup.
 typedef enum himc_pickup_kind {
     HIMC_PICKUP_AIR,  ///< pressure far away; a sound of 1.0 is HIMC_PICKUP_PRESSURE
     HIMC_PICKUP_POINT ///< velocity of a point of the head; a sound of 1.0 is HIMC_PICKUP_VELOCITY
@@ -77,20 +85,24 @@ typedef enum himc_pickup_kind {
 /// Where the sound is read. Azimuth 0 is beyond the drum as the performer sees it, positive to
 /// the left.
 typedef struct himc_pickup {
-    himc_pickup_kind kind;
-    double x, y;      ///< of a point of the head (m)
-    double azimuth;   ///< of the listener (rad)
-    double elevation; ///< above the plane of the head (rad), 0 .. 1.5708
-    double distance;  ///< from the centre (m), 0.3 .. 100
+    himc_pickup_kind kind; ///< AIR: azimuth, elevation, distance count; POINT: x, y
+    double x;              ///< of the point of the head (m)
+    double y;              ///< of the point of the head (m)
+    double azimuth;        ///< of the listener (rad)
+    double elevation;      ///< above the plane of the head (rad), 0 .. 1.5708
+    double distance;       ///< from the centre (m), 0.3 .. 100
 } himc_pickup;
 
 /// Listening beyond the drum, 10 degrees up, from 1 m.
 himc_pickup himc_pickup_default(void);
 
+/// A drumhead with its state, and its pickups. Opaque.
 typedef struct himc_membrane himc_membrane;
 
-/// A round head at rest at `rate` (Hz, 4000 .. 480000), with the default pickup. Owned by the caller.
+/// A round head at rest at `rate` (Hz, 4000 .. 480000), with the default pickup. Owned by the
+/// caller.
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error);
+/// Frees it. NULL is allowed.
 void himc_membrane_free(himc_membrane *membrane);
 
 /// Changes the head while it sounds: modes keep energy and phase, the sound of those that no longer
@@ -100,12 +112,12 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
 /// known for round heads alone.
 bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
                              const himc_head *head, himc_error *error);
-/// Borrowed.
+/// Its outline, borrowed.
 HIMC_RT const himc_shape *himc_membrane_shape(const himc_membrane *membrane);
 /// Replaces the pickups by these `count` (1 .. HIMC_PICKUPS); their sound changes over in 5 ms.
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
                                himc_error *error);
-/// Sets another sample rate; the sound goes on.
+/// Sets another sample rate (Hz, 4000 .. 480000); the sound goes on.
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error);
 
 /// True if outline, head and pickups of both are equal.
@@ -113,10 +125,11 @@ HIMC_RT bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b)
 /// Copies outline, head and pickups of `other`; where they are equal the sound goes on.
 bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error);
 
-/// Borrowed.
+/// Its head, borrowed.
 HIMC_RT const himc_head *himc_membrane_head(const himc_membrane *membrane);
-/// All `count` of them. Borrowed.
+/// All pickups (*count), borrowed.
 HIMC_RT const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count);
+/// Sample rate (Hz).
 HIMC_RT double himc_membrane_rate(const himc_membrane *membrane);
 /// Mode `index` (0 .. head.modes - 1) as it sounds, with its air.
 HIMC_RT himc_mode himc_membrane_mode(const himc_membrane *membrane, int index);
@@ -140,7 +153,7 @@ HIMC_RT void himc_membrane_push(himc_membrane *membrane, double x, double y, dou
 /// watched point. Pushed forces act in the first sample.
 HIMC_RT void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound,
                                double *watched);
-/// The last sample's sound of a pickup.
+/// The last sample's sound of pickup 0 .. count - 1 (1.0 as its kind says).
 HIMC_RT double himc_membrane_sound(const himc_membrane *membrane, int pickup);
 /// The last sample's displacement of the watched point (m).
 HIMC_RT double himc_membrane_watched(const himc_membrane *membrane);
@@ -149,12 +162,8 @@ HIMC_RT double himc_membrane_watched(const himc_membrane *membrane);
 HIMC_RT double himc_membrane_displacement(const himc_membrane *membrane, double x, double y);
 /// Kinetic and potential energy, the film's stretching included (J).
 HIMC_RT double himc_membrane_energy(const himc_membrane *membrane);
-/// Rise of the tension as the head bows out (N/m).
-HIMC_RT double himc_membrane_rise(const himc_membrane *membrane);
-/// Displacement and velocity of mode `index` (m, m/s).
+/// Displacement q and velocity v of mode `index` (0 .. head.modes - 1) (m, m/s).
 HIMC_RT void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v);
-/// Sets them; no effect on a silent mode.
-HIMC_RT void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v);
 /// Brings the head to rest; the sound ends in 5 ms.
 HIMC_RT void himc_membrane_rest(himc_membrane *membrane);
 
@@ -167,7 +176,7 @@ HIMC_RT void himc_membrane_rest(himc_membrane *membrane);
 /// The head of a stick.
 typedef struct himc_mallet_head {
     double stiffness; ///< k (N/m^alpha)
-    double exponent;  ///< alpha
+    double exponent;  ///< alpha, without unit
     double loss;      ///< mu (s/m)
     double mass;      ///< of a free mallet (kg)
     double radius;    ///< (m)
@@ -181,21 +190,24 @@ typedef struct himc_mallet_head {
 /// point would do work. The caller sets the first group of fields, himc_contact_step the second,
 /// which begins as 0.
 typedef struct himc_stick {
-    himc_mallet_head head;
-    double mass;             ///< effective mass along the normal (kg)
-    double acceleration;     ///< without contact (m/s^2, up positive)
-    double x, y;             ///< position on the head (m)
-    double height, velocity; ///< up positive (m, m/s); the step moves them
+    himc_mallet_head head; ///< the felt at its end
+    double mass;           ///< effective mass along the normal (kg)
+    double acceleration;   ///< without contact (m/s^2, up positive)
+    double x;              ///< on the head, away from the performer (m)
+    double y;              ///< on the head, to the left (m)
+    double height;         ///< up positive (m); the step moves it
+    double velocity;       ///< up positive (m/s); the step changes it
     bool one_way; ///< the stick meets a head at rest; the head's vibration does not push back
 
-    double force;                ///< mean of the last sample (N, >= 0, on the stick upwards)
-    bool touching;               ///< c > 0 after the last sample
-    double contact_x, contact_y; ///< the point of first contact, while touching (m)
-    double dent;                 ///< displacement of the head there after the last sample (m)
-    double peak;                 ///< largest force of this contact (N)
-    unsigned contacts;           ///< begun so far, chatter counted once
-    double chatter;              ///< a force within this time (s) belongs to the same contact
-    double impact;               ///< downward velocity at the beginning of the contact (m/s)
+    double force;      ///< mean of the last sample (N, >= 0, on the stick upwards)
+    bool touching;     ///< c > 0 after the last sample
+    double contact_x;  ///< x of the point of first contact, while touching (m)
+    double contact_y;  ///< y of it (m)
+    double dent;       ///< displacement of the head there after the last sample (m)
+    double peak;       ///< largest force of this contact (N)
+    unsigned contacts; ///< begun so far, chatter counted once
+    double chatter;    ///< a force within this time (s) belongs to the same contact
+    double impact;     ///< downward velocity at the beginning of the contact (m/s)
 } himc_stick;
 
 #define HIMC_STICKS 8 ///< of a performer at one head; its own mallets are as many; chosen
@@ -203,19 +215,16 @@ typedef struct himc_stick {
 /// (m) A stick above this height is out of reach; chosen: no blow raises a head so far.
 #define HIMC_CONTACT_REACH 0.02
 
-/// One-way, the head is driven by F_s = k_s c^alpha with k_s = k F_m / HIMC_ONE_WAY_FORCE and F_m
-/// the largest force of the stick's motion in this contact (2012 paper, table 2 and equation 6: k
-/// proportional to F_m). At 100 N the head meets the mallet's own stiffness; softer blows meet
+/// (N) One-way, the head is driven by F_s = k_s c^alpha with k_s = k F_m / HIMC_ONE_WAY_FORCE and
+/// F_m the largest force of the stick's motion in this contact (2012 paper, table 2 and equation 6:
+/// k proportional to F_m). At 100 N the head meets the mallet's own stiffness; softer blows meet
 /// softer felt. F_s is never more than the motion's own force: the path is rigid, and a head that
 /// swings back into it would be pushed without bound.
-#define HIMC_ONE_WAY_FORCE 100.0 // (N)
+#define HIMC_ONE_WAY_FORCE 100.0
 
 /// Advances the head and all its sticks (at most 2 HIMC_STICKS) by one sample of its rate; several
 /// are solved together.
 HIMC_RT void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count);
-
-/// Energy in a stick and its contact: m v^2/2 + k c^(alpha+1)/(alpha+1) (J); gravity not counted.
-HIMC_RT double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick);
 
 HIMC_END
 

@@ -4,8 +4,8 @@
 /// is the person in a take: measures, poses, seat. A recording keeps the motion of the simulated
 /// body and writes it as a take. Last come the functions that play a take by a performance.
 ///
-/// All functions are setup except those marked HIMC_RT. Objects made by a _new or _load function are
-/// freed by their _free function, which accepts NULL. A take may be read from any thread.
+/// All functions are setup except those marked HIMC_RT. Objects made by a _new or _load function
+/// are freed by their _free function, which accepts NULL. A take may be read from any thread.
 #ifndef HIMC_MOCAP_H
 #define HIMC_MOCAP_H
 
@@ -17,32 +17,41 @@ HIMC_BEGIN
 //
 // The points are in metres, z up, and rotated so that the performer faces along x; the origin stays
 // where the file has it. Up axis: HIMC_UP_* if given, else as the file states (C3D X_SCREEN,
-// Y_SCREEN), else heads above hips in the data, else as usual in the format (BVH and TRC y up, C3D z
-// up). Up y becomes (x, -z, y). Heading: the body's left side to +y if hips, else shoulders, are
-// named in pairs; else, by quarter turns, the left tip left of the right one, or the tip in front of
-// the shoulder; else as in the file. himc_take_describe says which.
+// Y_SCREEN), else heads above hips in the data, else as usual in the format (BVH and TRC y up, C3D
+// z up). Up y becomes (x, -z, y). Heading: the body's left side to +y if hips, else shoulders, are
+// named in pairs; else, by quarter turns, the left tip left of the right one, or the tip in front
+// of the shoulder; else as in the file. himc_take_describe says which.
 //
 // A BVH's joints and end sites ("NAME_end") are points too, by forward kinematics; the skeleton can
 // be read beside them. Gaps are NaN; only the tips are filled.
 
-typedef enum himc_up { HIMC_UP_AUTO, HIMC_UP_Y, HIMC_UP_Z } himc_up;
+/// Up axis of a file.
+typedef enum himc_up {
+    HIMC_UP_AUTO, ///< as the file states, else found in the data, else as usual in the format
+    HIMC_UP_Y,    ///< y up: (x, y, z) of the file becomes (x, -z, y)
+    HIMC_UP_Z     ///< z up
+} himc_up;
 
+/// How a file is read.
 typedef struct himc_take_options {
-    himc_up up;           ///< up axis of the file; AUTO: as the file states, else found in the data
-    const char *left_tip; ///< name of the point at the left stick's tip, or NULL to look for it
+    himc_up up;            ///< default HIMC_UP_AUTO
+    const char *left_tip;  ///< name of the point at the left stick's tip, or NULL to look for it
     const char *right_tip; ///< the same, right
     double longest_gap;    ///< longer gaps of the tips are errors (s) 0 .. 10, default 0.2
     double unit; ///< length unit of the file (m) 1e-6 .. 10; 0 (default): as stated, or guessed
 } himc_take_options;
 
+/// Up axis and unit as the file states, tips by their usual names, gaps of the tips up to 0.2 s.
 himc_take_options himc_take_default(void);
 
+/// A capture: points over time, and of a BVH a skeleton. Opaque.
 typedef struct himc_take himc_take;
 
 /// Reads a file by its suffix (.bvh .c3d .trc). `options` may be NULL. NULL with the error "file:
 /// what, value, what is allowed". Limits: rates of 20 .. 10000 Hz, 1000000 frames, 30000000 frames
 /// x points.
 himc_take *himc_take_load(const char *path, const himc_take_options *options, himc_error *error);
+/// Frees the take and all that it owns.
 void himc_take_free(himc_take *take);
 /// Writes a file by its suffix: .bvh needs a skeleton with fixed offsets; .c3d and .trc get the
 /// points. False with the reason, and no file, if it cannot be written completely.
@@ -97,15 +106,15 @@ typedef struct himc_take_tip {
 
 /// Finds the stick tips by the names in the options (may be NULL), else by usual names (RTIP,
 /// STICK_L, RightStick_end, bead, ...). One hand is enough, and a tip without a side is the right
-/// one. Gaps inside the take are bridged by cubics that keep the velocity at both edges; at the ends
-/// the position is held. False with the reason: no tip, no point of that name, or a gap longer than
-/// `longest_gap` with its frames and length (s).
+/// one. Gaps inside the take are bridged by cubics that keep the velocity at both edges; at the
+/// ends the position is held. False with the reason: no tip, no point of that name, or a gap longer
+/// than `longest_gap` with its frames and length (s).
 bool himc_take_tips(himc_take *take, const himc_take_options *options,
                     himc_take_tip tips[HIMC_HANDS], himc_error *error);
 
 /// A strike seen in a tip's trajectory: a fast fall that ends abruptly.
 typedef struct himc_take_strike {
-    himc_hand hand;
+    himc_hand hand;  ///< the hand that struck
     int frame;       ///< of the lowest position, counted from 0
     double time;     ///< of the touch, between frames, from the first frame (s)
     himc_vec3 x;     ///< position of the tip at the touch (m)
@@ -118,17 +127,18 @@ typedef struct himc_take_strike {
 himc_take_strike *himc_take_find_strikes(const himc_take *take,
                                          const himc_take_tip tips[HIMC_HANDS], int *count);
 
-// The player of a take: size, mass, pose in every frame, and seat, from any full-body take, skeleton
-// or markers, as far as the take shows them.
+// The player of a take: size, mass, pose in every frame, and seat, from any full-body take,
+// skeleton or markers, as far as the take shows them.
 //
 // Joint centres are found by the names that motion capture software and laboratories use; a centre
 // between two markers is their mean. A segment lies along the line between its joint centres; its
-// rotation about that line comes from the skeleton's frames, else from a marker beside it, else from
-// the plane of the bent elbow or knee, and for forearm, hand and stick from the vertical plane of
-// the stroke. An arm that is shown up to the tip is then adjusted, so that its tip is where it was
-// captured and its joints are as near as possible, because captured limbs stretch. The simulated
-// pelvis is held, so the rotations of trunk and thighs are those in the world.
+// rotation about that line comes from the skeleton's frames, else from a marker beside it, else
+// from the plane of the bent elbow or knee, and for forearm, hand and stick from the vertical plane
+// of the stroke. An arm that is shown up to the tip is then adjusted, so that its tip is where it
+// was captured and its joints are as near as possible, because captured limbs stretch. The
+// simulated pelvis is held, so the rotations of trunk and thighs are those in the world.
 
+/// The person in a take, as far as the take shows it.
 typedef struct himc_player {
     himc_skeleton_config config; ///< the measures; given ones where the take shows none
     int lengths;                 ///< number of measured segments
@@ -146,7 +156,7 @@ typedef struct himc_player {
     bool seated;        ///< himc_player_sit has set config.seat and offset
     himc_vec3 offset;   ///< from the take's coordinates to the world's (m)
     char notes[8][192]; ///< missing parts and repairs
-    int note_count;
+    int note_count;     ///< 0 .. 8
 } himc_player;
 
 /// Reads the player from a take that was read with these options (NULL: default). `given`, with its
@@ -155,9 +165,11 @@ typedef struct himc_player {
 /// no memory, or a player not of human size.
 himc_player *himc_player_new(himc_take *take, const himc_take_options *options,
                              const himc_skeleton_config *given, himc_error *error);
+/// Frees the player and its arrays.
 void himc_player_free(himc_player *player);
 
-/// Number of an arm's joints that the take shows: HIMC_ARM_JOINTS with its stick, 0 without the arm.
+/// Number of an arm's joints that the take shows: HIMC_ARM_JOINTS with its stick, 0 without the
+/// arm.
 HIMC_RT static inline int himc_player_known_arm(const himc_player *player, himc_hand hand)
 {
     int known = 0;
@@ -183,15 +195,17 @@ void himc_player_describe(const himc_player *player, const himc_head_frame *drum
 
 // Recordings: the motion of the simulated body, kept in memory and written as a take.
 //
-// A recording has the body's joints, the tips of both sticks ("LeftStick_end", "RightStick_end") and
-// the ends of head and toes, under the names that motion capture software uses, so that it plays
-// here and can be read elsewhere. In a file of markers (.c3d, .trc) each segment also has a marker
-// 0.05 m beside its joint, along the segment's y ("LeftArm_side"), which determines its rotation.
+// A recording has the body's joints, the tips of both sticks ("LeftStick_end", "RightStick_end")
+// and the ends of head and toes, under the names that motion capture software uses, so that it
+// plays here and can be read elsewhere. In a file of markers (.c3d, .trc) each segment also has a
+// marker 0.05 m beside its joint, along the segment's y ("LeftArm_side"), which determines its
+// rotation.
 
+/// Frames of the simulated body and the path of their file. Opaque.
 typedef struct himc_recording himc_recording;
 
-/// Reserves memory for `longest` seconds of the body `skeleton` (copied) at `rate` (Hz) 20 .. 10000.
-/// `path` (copied) ends in .bvh, .c3d or .trc and must be writable. NULL with the reason.
+/// Reserves memory for `longest` seconds of the body `skeleton` (copied) at `rate` (20 .. 10000
+/// Hz). `path` (copied) ends in .bvh, .c3d or .trc and must be writable. NULL with the reason.
 himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,
                                    double longest, himc_error *error);
 /// Frees it; frames that have not been written are lost.
@@ -208,13 +222,13 @@ bool himc_recording_write(const himc_recording *recording, himc_error *error);
 
 // Playing a take by a performance.
 
-typedef struct himc_performance himc_performance;
+typedef struct himc_performance himc_performance; ///< performance.h
 
 /// Options for the `take` command (tips' names, up axis). Strings are borrowed until the next call.
 void himc_performance_take_options(himc_performance *performance, const himc_take_options *options);
 
-/// Plays a take from memory, like the `take` command, by a player made from it with himc_player_new.
-/// The measures of `player` may have been changed since (within the ranges of
+/// Plays a take from memory, like the `take` command, by a player made from it with
+/// himc_player_new. The measures of `player` may have been changed since (within the ranges of
 /// himc_skeleton_config); joint rotations stay as captured. The player is seated. `name` begins
 /// notes and errors. Take and player are borrowed for this call. False with the reason.
 bool himc_performance_play_player(himc_performance *performance, himc_take *take,

@@ -22,6 +22,7 @@ HIMC_BEGIN
 #define HIMC_VMC_PORT 39539 ///< default port of programs that show avatars (protocol.vmc.info)
 #define HIMC_OSC_LINE 512   ///< longest line (bytes)
 
+/// Where a himc_osc listens, and what others may do. Strings are borrowed for the call.
 typedef struct himc_osc_config {
     const char *bind;  ///< numeric address to listen at; NULL is 127.0.0.1
     int port;          ///< 0 .. 65535, 0 any free one; -1 does not listen
@@ -32,6 +33,7 @@ typedef struct himc_osc_config {
 /// 127.0.0.1, HIMC_OSC_PORT, no files, no other hosts.
 himc_osc_config himc_osc_default(void);
 
+/// A socket, its thread and its subscriptions. Opaque.
 typedef struct himc_osc himc_osc;
 
 /// Opens the socket and starts the thread. NULL with one line if the port is taken, the address is
@@ -40,8 +42,9 @@ himc_osc *himc_osc_new(const himc_osc_config *config, himc_error *error);
 /// The same in place of `old`, which may be NULL: its subscriptions continue and it is freed. On
 /// error NULL, and `old` is unchanged.
 himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error);
+/// Ends the thread and closes the socket. NULL is allowed.
 void himc_osc_free(himc_osc *osc);
-/// The port listened at, or 0.
+/// The port that it listens at, 0 if it does not listen.
 int himc_osc_port(const himc_osc *osc);
 
 /// `subscribe` or `unsubscribe` by the user of this machine, who may name any host. himc_osc_line
@@ -64,7 +67,7 @@ HIMC_RT void himc_osc_publish(himc_osc *osc, himc_performance *performance, doub
 /// A line for the user: a receiver vanished, a host is unknown. False if there is none.
 HIMC_RT bool himc_osc_line(himc_osc *osc, char line[HIMC_OSC_LINE]);
 
-/// Since the start.
+/// Counters since himc_osc_new or himc_osc_reopen.
 typedef struct himc_osc_counts {
     long packets;      ///< received
     long commands;     ///< accepted
@@ -73,11 +76,13 @@ typedef struct himc_osc_counts {
     long refused;      ///< a command with an error, a file or a host that is not allowed
     long frequent;     ///< beyond the limits of a second, or waiting too long
     long overrun;      ///< lost in the system before they were read
-    long sent, unsent; ///< packets out; packets that the system refused
+    long sent;         ///< packets out
+    long unsent;       ///< packets that the system refused to send
     long lost;         ///< records dropped because a ring was full
-    int subscriptions;
+    int subscriptions; ///< now in force
 } himc_osc_counts;
 
+/// The counters now.
 HIMC_RT himc_osc_counts himc_osc_count(const himc_osc *osc);
 
 HIMC_END

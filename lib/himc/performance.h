@@ -1,9 +1,9 @@
-/// performance.h: the performer and its drums, clocked by the sample count: commands in, sound
-/// and strikes out.
+/// performance.h: the performer and its drums, clocked by the sample count: commands in, sound and
+/// strikes out.
 ///
-/// Only this module knows all stages; its step is algorithm 2 of the 2012 paper. What it plays
-/// depends on nothing but the commands and the sample on which each arrived: not on block size,
-/// clock or thread.
+/// The performance alone knows all stages; its step is algorithm 2 of the 2012 paper. The result
+/// depends on the commands and on the sample at which each arrives, not on block size, clock or
+/// thread.
 #ifndef HIMC_PERFORMANCE_H
 #define HIMC_PERFORMANCE_H
 
@@ -13,37 +13,42 @@
 
 HIMC_BEGIN
 
+/// The rates of a performance.
 typedef struct himc_performance_config {
     double sample_rate;  ///< (Hz) 8000 .. 192000, default 48000
     double physics_rate; ///< (Hz) 500 .. 48000, default 10000; never above sample_rate
     double task_rate;    ///< (Hz) 50 .. 2000, default 250; never above physics_rate
 } himc_performance_config;
 
+/// The default rates.
 himc_performance_config himc_performance_default(void);
 
+/// A performer with its drums. Made by himc_performance_new, freed by himc_performance_free.
 typedef struct himc_performance himc_performance;
 
+/// A performer at rest, without drums. NULL with the reason: a rate out of its range, or no memory.
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error);
-/// A recording under way is written first.
+/// Frees it, and its references to drums. A recording under way is written first. NULL is allowed.
 void himc_performance_free(himc_performance *performance);
 
-/// Takes a drum to play on (its own reference; its rate must be the performance's). Replaces one
-/// of the same name. The first drum is the one strokes without a drum go to; a performer without
-/// drums plays on a silent one.
+/// Adds a drum (retained), or replaces the one of the same name. Strokes without a drum's name go to
+/// the first drum; a performer without drums plays on a silent one. False with the reason: another
+/// sample rate than the performance's, more than HIMC_DRUMS drums.
 bool himc_performance_add_drum(himc_performance *performance, himc_drum *drum, himc_error *error);
-/// Drum `index`, or NULL past the last. Borrowed.
+/// Drum `index` (from 0), or NULL past the last. Borrowed.
 HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int index);
 
 /// Carries out a performer's command `delay` samples from now (0 .. 8192), on the physics step at
-/// that sample; one that may allocate or read a file (`score`, `take`, `stroke`, `player` ...) acts
-/// at once. Files are opened by the name given: relative names and search paths are the caller's
-/// business. A score's lines for drums go to the drums of those names; with `make_drums` its `drum`
-/// lines make them.
+/// that sample. Commands that may allocate or read a file (`score`, `take`, `stroke`, `player` ...)
+/// act at once. Relative file names are relative to the process. A score's lines for drums go to
+/// the drums of those names. False, and nothing changed, with the reason.
 bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
                               himc_error *error);
+/// Whether the command `drum` makes drums (at first false: the host adds them).
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
-#define HIMC_APPROACH \
-    1.0 ///< from wherever the sticks are to the beginning of a take, at `play` (s)
+
+/// Time (s) from the sticks' place at `play` to the first frame of a take.
+#define HIMC_APPROACH 1.0
 
 // The commands `stroke`, `hit`, `tempo`, `play` and `stop` for C programs: they act now.
 
@@ -57,32 +62,34 @@ bool himc_performance_add_stroke(himc_performance *performance, const himc_strok
 /// memory for that drum. A hit for which there is no time is given up, and a note says so.
 bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
                           himc_error *error);
-/// This tempo (1 .. 1000 beats per minute, else false) from now to the next change in the score.
+/// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the score.
 HIMC_RT bool himc_performance_set_tempo(himc_performance *performance, double bpm,
                                         himc_error *error);
 /// Plays the score from the current beat, or the take from its beginning. Allocates only if there is
 /// no drum yet; false if there is no memory for one.
 bool himc_performance_play(himc_performance *performance, himc_error *error);
-/// Stops; the sticks come to rest.
+/// Stops the score or the take; the sticks come to rest.
 HIMC_RT void himc_performance_stop(himc_performance *performance);
 
-/// A live target for a tip (m) from now on: what `target` does, for signals. Call it once a
-/// block, with the block's last sample of each coordinate: a stream of blocks of 64 samples comes
-/// at 750 Hz, which is more often than tasks do.
+/// Sets a live target (m) for a tip, like the command `target`, for signals. Call it once a block,
+/// with the block's last sample of each coordinate: blocks of 64 samples give 750 Hz, more than the
+/// task rate. A target that is not finite is ignored.
 HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand hand, himc_vec3 tip);
 
-/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n), each may be NULL;
-/// the drums' sound is in their rings (himc_drum_read).
+/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n); `force` and each of its
+/// entries may be NULL. The sound is in the drums (himc_drum_read).
 HIMC_RT void himc_performance_process(himc_performance *performance, int n,
                                       double *const force[HIMC_HANDS]);
 /// Samples played since the last realign.
 HIMC_RT uint64_t himc_performance_time(const himc_performance *performance);
 /// Counts samples from 0 again, here and in all drums; the performance goes on.
 HIMC_RT void himc_performance_realign(himc_performance *performance);
-/// Another sample rate, here and in all drums.
+/// Sets another sample rate (Hz, 8000 .. 192000), here and in all drums; sound and motion go on.
+/// False with the reason.
 bool himc_performance_set_rate(himc_performance *performance, double sample_rate,
                                himc_error *error);
 
+/// The kinds of events.
 typedef enum himc_event_kind {
     HIMC_EVENT_STRIKE, ///< a contact ended
     HIMC_EVENT_BEAT,   ///< a whole beat began
@@ -90,25 +97,29 @@ typedef enum himc_event_kind {
     HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach
 } himc_event_kind;
 
+/// A contact of a stick with a drum.
 typedef struct himc_strike {
-    double time; ///< first touch (s since play of the performance began, not realigned)
-    himc_hand hand;
-    char drum[HIMC_NAME_SIZE];
-    char nuance[HIMC_NAME_SIZE]; ///< "none" when no stroke of a score asked for it
-    double x, y;                 ///< on the head (m)
-    double velocity;             ///< downward (m/s)
+    double time;                 ///< of the first force (s since the performance was made or reset)
+    himc_hand hand;              ///< the hand that struck
+    char drum[HIMC_NAME_SIZE];   ///< name of the drum that was struck
+    char nuance[HIMC_NAME_SIZE]; ///< of the planned stroke, "none" without one
+    double x;                    ///< on the head, away from the performer (m)
+    double y;                    ///< on the head, to the left (m)
+    double velocity;             ///< of impact, downward (m/s)
     double force;                ///< peak (N)
     double impulse;              ///< (N s)
     double duration;             ///< (s)
-    double planned_time;         ///< when the score wanted it (s), NaN if none did
-    double planned_x, planned_y; ///< and where (m)
+    double planned_time;         ///< of the planned stroke (s), NaN without one
+    double planned_x;            ///< of the planned stroke, on the head (m)
+    double planned_y;            ///< of the planned stroke, on the head (m)
 } himc_strike;
 
+/// Something that has happened; the fields of its kind are valid.
 typedef struct himc_event {
-    himc_event_kind kind;
-    himc_strike strike;
-    double beat;
-    char text[sizeof((himc_error *)0)->text]; ///< of a note
+    himc_event_kind kind;                     ///< which fields are valid
+    himc_strike strike;                       ///< of HIMC_EVENT_STRIKE
+    double beat;                              ///< of HIMC_EVENT_BEAT
+    char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE
 } himc_event;
 
 /// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and
@@ -118,8 +129,8 @@ HIMC_RT bool himc_performance_event(himc_performance *performance, himc_event *e
 /// One row of motion at the task rate.
 typedef struct himc_motion_row {
     double time;                  ///< (s)
-    himc_vec3 target[HIMC_HANDS]; ///< of the tips (m)
-    himc_vec3 tip[HIMC_HANDS];    ///< simulated (m)
+    himc_vec3 target[HIMC_HANDS]; ///< targets of the tips (m)
+    himc_vec3 tip[HIMC_HANDS];    ///< simulated tips (m)
     double force[HIMC_HANDS];     ///< largest since the last row (N)
     himc_vec3 joint[HIMC_JOINTS]; ///< rotation vector from the zero pose, parent's frame (rad)
     himc_vec3 elbow[HIMC_HANDS];  ///< position (m)
@@ -133,11 +144,11 @@ void himc_performance_on_motion(himc_performance *performance,
 /// The moving body (body.h).
 typedef struct himc_body_state himc_body_state;
 
-/// What moves, at a task tick; borrowed for the call.
+/// The body and its targets at a task tick; borrowed for the call.
 typedef struct himc_tick {
-    double time;                  ///< (s since the performance was made)
+    double time;                  ///< (s since the performance was made or reset)
     const himc_body_state *body;  ///< all segments in the world
-    himc_vec3 target[HIMC_HANDS]; ///< of the tips (m)
+    himc_vec3 target[HIMC_HANDS]; ///< targets of the tips (m)
 } himc_tick;
 
 /// Calls `tick` in himc_performance_process at each task tick, beside himc_performance_on_motion;
@@ -145,27 +156,32 @@ typedef struct himc_tick {
 void himc_performance_on_tick(himc_performance *performance,
                               void (*tick)(void *, const himc_tick *), void *user);
 
+/// Figures since the performance was made or reset.
 typedef struct himc_performance_stats {
-    double seconds;         ///< played
-    int strokes;            ///< asked for by the score so far
-    int played;             ///< landed within 5 ms, on the drum asked for, within 2 cm of the spot
-    int missed;             ///< the rest
+    double seconds;         ///< time played (s)
+    int strokes;            ///< of the score, due so far
+    int played;             ///< landed within 5 ms, on the planned drum, within 2 cm of the point
+    int missed;             ///< strokes that did not
     double tip_rms;         ///< distance of tip and target outside contact (m)
     double stroke_height;   ///< mean over strokes, apex to contact (m)
     double tip_rms_percent; ///< tip_rms / stroke_height (%), NaN before the first stroke
-    double peak_force;      ///< (N)
-    int hits;               ///< asked for
-    double hit_latency;     ///< of the last hit, from its command to its touch as planned (s)
+    double peak_force;      ///< largest contact force (N)
+    int hits;               ///< accepted hits
+    double hit_latency;     ///< of the last hit, from its command to its planned contact (s)
     double longest_latency; ///< of all hits (s)
     long recoveries;        ///< times a non-finite state was met and the last good one restored
     long limit_hits;        ///< times a joint came to its bounds
-    long events_lost;       ///< because nobody took them
-    double sample_rate, physics_rate, task_rate; ///< in force (Hz)
+    long events_lost;       ///< events dropped because the host did not take them
+    double sample_rate;     ///< in force (Hz)
+    double physics_rate;    ///< in force (Hz)
+    double task_rate;       ///< in force (Hz)
 } himc_performance_stats;
 
+/// The figures now.
 HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *performance);
 
-/// Several lines about the state (mode, law, rates, drums, player, transport), for `info`.
+/// Calls `line` with each of several lines about the state (mode, law, rates, drums, player,
+/// transport), for `info`.
 void himc_performance_describe(const himc_performance *performance,
                                void (*line)(void *, const char *), void *user);
 

@@ -14,41 +14,40 @@ HIMC_BEGIN
 
 #define HIMC_TEMPO 100 ///< default (beats per minute); chosen: a walking pace
 
+/// A tempo and the beat at which it begins; the tempo is constant up to the next change.
 typedef struct himc_tempo_change {
-    double beat; ///< from here on (beats)
+    double beat; ///< first beat of this tempo (beats), 0 or more
     double bpm;  ///< HIMC_BPM_MIN .. HIMC_BPM_MAX; the nuances are made for 40 .. 200
 } himc_tempo_change;
 
 /// A line that is neither stroke nor tempo.
 typedef struct himc_score_line {
     char drum[HIMC_NAME_SIZE]; ///< the drum it is for; "" for the performer
-    himc_command command;
-    int line; ///< in the file, from 1
+    himc_command command;      ///< of that drum, or of the performer
+    int line;                  ///< in the file, from 1
 } himc_score_line;
 
 /// A score with its arrays, which it owns. Strokes are sorted by beat (stable).
 typedef struct himc_score {
-    himc_stroke *strokes;
-    int stroke_count;
-    himc_tempo_change *tempi; ///< sorted by beat; at least one, at beat 0 (default 100 BPM)
-    int tempo_count;
-    himc_score_line *lines;
-    int line_count;
+    himc_stroke *strokes;     ///< of both hands (stroke_count), owned; NULL if there are none
+    int stroke_count;         ///< 0 .. 200000
+    himc_tempo_change *tempi; ///< sorted by beat (tempo_count), owned; the first at beat 0
+    int tempo_count;          ///< 1 or more
+    himc_score_line *lines;   ///< as in the file (line_count), owned; NULL if there are none
+    int line_count;           ///< 0 .. 10000
 } himc_score;
 
 /// Reads the file; NULL with "file:line: ..." if anything in it is wrong. Free with
 /// himc_score_free.
 himc_score *himc_score_load(const char *path, himc_error *error);
 
-/// The same from a string; `name` stands for the file in errors.
-himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
-
+/// Frees the score and its arrays. NULL is allowed.
 void himc_score_free(himc_score *score);
 
-/// Seconds from beat 0 to `beat` through the tempo changes.
+/// Time from beat 0 to `beat` (s) through `count` (1 or more) tempo changes, sorted by beat.
 HIMC_RT double himc_score_seconds(const himc_tempo_change *tempi, int count, double beat);
 
-/// The inverse of himc_score_seconds.
+/// The beat at `seconds` after beat 0: the inverse of himc_score_seconds.
 HIMC_RT double himc_score_beat(const himc_tempo_change *tempi, int count, double seconds);
 
 HIMC_END

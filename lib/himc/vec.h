@@ -14,34 +14,41 @@ HIMC_BEGIN
 
 /// A quaternion w + x i + y j + z k.
 typedef struct himc_quat {
-    double w, x, y, z;
+    double w; ///< real part; cos(angle / 2) of a rotation
+    double x; ///< sin(angle / 2) times the axis' x
+    double y; ///< the same of y
+    double z; ///< the same of z
 } himc_quat;
 
-/// A matrix, row by row.
+/// A 3x3 matrix.
 typedef struct himc_mat3 {
-    double m[3][3];
+    double m[3][3]; ///< [row][column]
 } himc_mat3;
 
 // Vectors
 
+/// (x, y, z).
 static inline himc_vec3 himc_vec3_make(double x, double y, double z)
 {
     himc_vec3 result = {x, y, z};
     return result;
 }
 
+/// a + b.
 static inline himc_vec3 himc_vec3_add(himc_vec3 a, himc_vec3 b)
 {
     himc_vec3 result = {a.x + b.x, a.y + b.y, a.z + b.z};
     return result;
 }
 
+/// a - b.
 static inline himc_vec3 himc_vec3_sub(himc_vec3 a, himc_vec3 b)
 {
     himc_vec3 result = {a.x - b.x, a.y - b.y, a.z - b.z};
     return result;
 }
 
+/// s a.
 static inline himc_vec3 himc_vec3_scale(himc_vec3 a, double s)
 {
     himc_vec3 result = {a.x * s, a.y * s, a.z * s};
@@ -55,11 +62,13 @@ static inline himc_vec3 himc_vec3_madd(himc_vec3 a, double s, himc_vec3 b)
     return result;
 }
 
+/// The scalar product a . b.
 static inline double himc_vec3_dot(himc_vec3 a, himc_vec3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// The vector product a x b.
 static inline himc_vec3 himc_vec3_cross(himc_vec3 a, himc_vec3 b)
 {
     himc_vec3 result = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -87,6 +96,7 @@ static inline himc_vec3 himc_vec3_unit(himc_vec3 a)
 
 // Quaternions
 
+/// 1: no rotation.
 static inline himc_quat himc_quat_identity(void)
 {
     himc_quat result = {1, 0, 0, 0};
@@ -110,11 +120,13 @@ static inline himc_quat himc_quat_mul(himc_quat a, himc_quat b)
     return result;
 }
 
+/// The scalar product of all four components; of unit quaternions cos(angle / 2) between them.
 static inline double himc_quat_dot(himc_quat a, himc_quat b)
 {
     return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// s q.
 static inline himc_quat himc_quat_scale(himc_quat q, double s)
 {
     himc_quat result = {q.w * s, q.x * s, q.y * s, q.z * s};

@@ -1,5 +1,5 @@
-/// fuzz_take.c: takes from arbitrary bytes. Nothing may crash, read out of bounds, hang or break the
-/// promises of mocap.h: a take has finite positions or whole gaps, and its names are printable.
+/// fuzz_take.c: takes from arbitrary bytes. Nothing may crash, read out of bounds, hang or break
+/// the promises of mocap.h: a take has finite positions or whole gaps, and its names are printable.
 ///
 /// With libFuzzer (clang -fsanitize=fuzzer,address,undefined -DHIMC_LIBFUZZER) the first byte of an
 /// input gives the format. Without libFuzzer this is a program that mutates seeds by itself, in the

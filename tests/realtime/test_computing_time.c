@@ -2,6 +2,7 @@
 #include "../session.h"
 #include "drum/air.h"
 #include "drum/modes.h"
+#include "plan/score.h"
 
 #include <time.h>
 
@@ -14,7 +15,8 @@ static void test_two_thousand_modes_are_retuned_in_a_few_milliseconds(void)
 {
     enum { ROUNDS = 20 };
     himc_head head = himc_head_default();
-    himc_modes *modes = himc_modes_new(2000, NULL);
+    himc_shape round_head = {.kind = HIMC_CIRCLE};
+    himc_modes *modes = himc_modes_new(&round_head, 2000, NULL);
     TEST_ASSERT_NOT_NULL(modes);
     double sum = 0, begun = cpu_ms();
     for (int round = 0; round < ROUNDS; round++) {

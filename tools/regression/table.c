@@ -43,14 +43,15 @@ static void put_numbers(const char *name, const double *number, int count)
 
 static void put_all(const himc_posture_regression *regression)
 {
-    puts(
-        "/// posture_regression_table.c: the default posture regression (`make regression-table`).\n"
-        "///\n"
-        "/// Learned from three players, five nuances and three spots, each sequence relative to its\n"
-        "/// own means. Invariant: the arrays have the shapes of himc_posture_regression.\n"
-        "#include \"control/posture_regression.h\"\n\n"
-        "// clang-format off\n"
-        "const himc_posture_regression_numbers himc_posture_regression_table = {");
+    puts("/// posture_regression_table.c: the default posture regression "
+         "(`make regression-table`).\n"
+         "///\n"
+         "/// Learned from three players, five nuances and three spots, each sequence relative to "
+         "its\n"
+         "/// own means. Invariant: the arrays have the shapes of himc_posture_regression.\n"
+         "#include \"control/posture_regression.h\"\n\n"
+         "// clang-format off\n"
+         "const himc_posture_regression_numbers himc_posture_regression_table = {");
     put_numbers("weight", &regression->weight[0][0][0][0],
                 HIMC_HANDS * HIMC_ARM_JOINTS * 3 * HIMC_REGRESSION_TERMS);
     put_numbers("trunk", &regression->trunk[0][0], 3 * HIMC_REGRESSION_TRUNK_TERMS);

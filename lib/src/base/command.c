@@ -404,7 +404,9 @@ himc_word himc_command_word(himc_command_id id, int atom, int choice)
             return (himc_word){""};
         grammar = next_token(grammar, token, &optional);
     }
-    return is_argument(token) ? (himc_word){""} : cut_word(token, choice);
+    if (is_argument(token))
+        return (himc_word){""};
+    return cut_word(token, choice);
 }
 
 himc_file_use himc_command_file(const himc_command *command, int *atom)

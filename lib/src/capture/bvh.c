@@ -1,4 +1,5 @@
-/// bvh.c: Biovision's BVH: a skeleton of offsets, and a row of channels per frame; read and written.
+/// bvh.c: Biovision's BVH: a skeleton of offsets, and a row of channels per frame; read and
+/// written.
 ///
 /// A node's channels are applied in the file's order, the first outermost: R = R_1(c_1) R_2(c_2)
 /// R_3(c_3), whatever axes they are and however nodes differ. Position channels replace the offset

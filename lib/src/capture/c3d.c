@@ -1,14 +1,14 @@
-/// c3d.c: C3D, the binary file of optical motion capture: a header, parameters, then per frame every
-/// point's x, y, z and a residual, and the analog samples taken during the frame, which are skipped;
-/// read and written.
+/// c3d.c: C3D, the binary file of optical motion capture: a header, parameters, then per frame
+/// every point's x, y, z and a residual, and the analog samples taken during the frame, which are
+/// skipped; read and written.
 ///
 /// Points are floats if POINT:SCALE is negative, else 16-bit integers times it; numbers are those
 /// of three processors (c3d_parameters.c). A negative residual, or a coordinate that is not finite,
 /// is a gap. Counts beyond 65535 frames come from TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD
-/// (two words each) or POINT:LONG_FRAMES. Values that Vicon's models store among the points (angles,
-/// forces, moments, powers, scalars) are not positions and are left out. Event times count from frame
-/// 1, so a file that begins later subtracts its start. Reference: the C3D file format user guide,
-/// Motion Lab Systems 2008.
+/// (two words each) or POINT:LONG_FRAMES. Values that Vicon's models store among the points
+/// (angles, forces, moments, powers, scalars) are not positions and are left out. Event times count
+/// from frame 1, so a file that begins later subtracts its start. Reference: the C3D file format
+/// user guide, Motion Lab Systems 2008.
 #include "capture/c3d_parameters.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
@@ -172,10 +172,10 @@ static bool choose_points(c3d *r, int *count)
             r->take, "points: %d of them are values of a model (angles, forces, ...) and left out",
             r->points - *count);
     return *count > 0 ||
-           himc_error_set(
-               r->error,
-               "%s: all points are values of a model (angles, forces, ...), allowed: at least one position",
-               r->take->file);
+           himc_error_set(r->error,
+                          "%s: all points are values of a model (angles, forces, ...), allowed: at "
+                          "least one position",
+                          r->take->file);
 }
 
 static void name_points(const c3d *r)

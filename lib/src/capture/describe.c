@@ -85,10 +85,10 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
     for (int i = 0; i < count; i++)
         far += hypot(strikes[i].x.x - place.x, strikes[i].x.y - place.y) > ONE_DRUM;
     if (far > 0)
-        himc_tell(
-            to,
-            "drum: %d strikes are more than %g m from that centre, but a take is played on one drum",
-            far, ONE_DRUM);
+        himc_tell(to,
+                  "drum: %d strikes are more than %g m from that centre, but a take is played "
+                  "on one drum",
+                  far, ONE_DRUM);
     free(strikes);
 }
 
@@ -179,8 +179,8 @@ static void tell_places(const himc_player *player, const himc_head_frame *drum,
               player->placed ? "as the take shows" : "by the tips", hips.x, hips.y, hips.z);
     himc_tell(
         to,
-        "drumhead: centre %.3f m in front of the player, %.3f m to the left, %.3f m high; in the take "
-        "at %.3f %.3f %.3f m",
+        "drumhead: centre %.3f m in front of the player, %.3f m to the left, %.3f m high; in the "
+        "take at %.3f %.3f %.3f m",
         drum->center.x, drum->center.y, drum->center.z, head.x, head.y, head.z);
 }
 

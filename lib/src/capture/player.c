@@ -5,15 +5,16 @@
 /// is shown, its length is used for both, since players are nearly symmetric and a capture of one
 /// hand is common. Height: de Leva's man of 1.741 m has legs and trunk of known lengths; the
 /// player's height has the same ratio to his as the sums of the lengths that the take shows (legs
-/// and trunk, else arms). Mass: as the file states, else from the body mass index of the given body.
+/// and trunk, else arms). Mass: as the file states, else from the body mass index of the given
+/// body.
 ///
 /// Seat. The world's origin is under the player. A player shown by the take is moved there, and
-/// the seat is raised until the strikes meet the head; the drum moves only if strikes would miss the
-/// head. A take of tips alone is moved until its strikes fall on the drum's usual strike place; the
-/// player then sits where a player of that drum does. Without strikes the player keeps the height
-/// above the floor, or, with tips alone, the take is moved until the player reaches all of it; the
-/// drum is lowered out of its way. If the player walks, the motion of the hips is taken out of the
-/// whole take.
+/// the seat is raised until the strikes meet the head; the drum moves only if strikes would miss
+/// the head. A take of tips alone is moved until its strikes fall on the drum's usual strike place;
+/// the player then sits where a player of that drum does. Without strikes the player keeps the
+/// height above the floor, or, with tips alone, the take is moved until the player reaches all of
+/// it; the drum is lowered out of its way. If the player walks, the motion of the hips is taken out
+/// of the whole take.
 #include "capture/player.h"
 
 #include "base/head_frame.h"

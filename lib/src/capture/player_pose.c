@@ -2,11 +2,11 @@
 ///
 /// The world rotation of a limb's segment takes the axis of the zero pose to the line between its
 /// joint centres. Its rotation about that line comes from a skeleton, if there is one: the joint's
-/// world rotation Q after the rotation A that takes the library's zero pose to the file's, Q A, then
-/// the smallest rotation onto the line; A is the smallest rotation from the library's hanging limb
-/// to the file's (in a T-pose elbows bend forward and palms are down). From markers, y is the axis
-/// of flexion: a marker beside the segment, else upper arm x forearm and thigh x shank, else the
-/// horizontal direction across the stroke. The trunk's z runs from the waist to the neck, its y
+/// world rotation Q after the rotation A that takes the library's zero pose to the file's, Q A,
+/// then the smallest rotation onto the line; A is the smallest rotation from the library's hanging
+/// limb to the file's (in a T-pose elbows bend forward and palms are down). From markers, y is the
+/// axis of flexion: a marker beside the segment, else upper arm x forearm and thigh x shank, else
+/// the horizontal direction across the stroke. The trunk's z runs from the waist to the neck, its y
 /// along the shoulders. The pelvis of the body is held still, so the rotations of trunk and thighs
 /// are those in the world.
 ///

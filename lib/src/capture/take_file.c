@@ -1,8 +1,8 @@
 /// take_file.c: takes in files: loading and saving, by the suffix of the name.
 ///
 /// A file is read as a whole; the reader of its format fills a take in the file's own unit and
-/// axes, and himc_take_settle converts it. Invariant: a file that could not be written completely is
-/// removed.
+/// axes, and himc_take_settle converts it. Invariant: a file that could not be written completely
+/// is removed.
 #define _POSIX_C_SOURCE 200809L
 #include "capture/take.h"
 #include "capture/take_text.h"

@@ -7,8 +7,8 @@
 /// a skeleton without legs may be 0.3 m long, but then only in m, cm or mm. Marker files do state a
 /// unit, not always the right one: points that lie more than 8 m apart within one frame, or stay
 /// within 2 cm over the whole take, are read again in the one metric unit that makes the distance
-/// 0.2 .. 4 m and leaves them within 100 m of the origin, and a note says so. If no unit does, small
-/// sizes are accepted as the file states them, and large ones are refused.
+/// 0.2 .. 4 m and leaves them within 100 m of the origin, and a note says so. If no unit does,
+/// small sizes are accepted as the file states them, and large ones are refused.
 ///
 /// Axes. With the file's up axis u and its axis f that goes forward (to the right of the screen if
 /// the file states it, else x, or y if x is up), the rows of the rotation are f, u x f, u: y up
@@ -190,8 +190,8 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
     if (*unit == 0)
         return himc_error_set(
             error,
-            "%s: skeleton: the longest path along its bones is %.4g units, in m, cm, mm, CMU units, "
-            "inches or feet no player's size, allowed %g .. %g m",
+            "%s: skeleton: the longest path along its bones is %.4g units, in m, cm, mm, "
+            "CMU units, inches or feet no player's size, allowed %g .. %g m",
             take->file, size, legs ? LEAST_SKELETON : LEAST_ARMS, MOST_SKELETON);
     snprintf(take->units_text, sizeof take->units_text,
              "%s, guessed from the skeleton: %.4g units along its bones", unit_name(*unit, text),

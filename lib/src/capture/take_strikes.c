@@ -10,10 +10,10 @@
 /// The capture's filter blunts the track near the touch, so time and speed come from before it: a
 /// parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall, before the
 /// deceleration reaches a tenth of A. A must be larger than noise alone makes it (noise.c); a noisy
-/// track is judged by longer differences. In a sharp track (nearly all of D in two frames) the touch
-/// is where the parabolas before and after intersect, and the speed is the slope there. In a blunted
-/// track the touch is where the parabola before passes the height of the lowest position, and the
-/// speed is its slope at the last undisturbed sample.
+/// track is judged by longer differences. In a sharp track (nearly all of D in two frames) the
+/// touch is where the parabolas before and after intersect, and the speed is the slope there. In a
+/// blunted track the touch is where the parabola before passes the height of the lowest position,
+/// and the speed is its slope at the last undisturbed sample.
 ///
 /// In a gap longer than a contact no strike is reported, because the curve that bridges a gap bends
 /// arbitrarily.

@@ -25,14 +25,14 @@ typedef struct himc_unit {
     double bend[3]; ///< shape of the fall: b0, b1, b2 in units.c
 } himc_unit;
 
-/// Cuts the strokes of both hands out of a take; the caller sets nuance, spot and grip. Strokes that
-/// are not one clear fall are left out. Writes at most `capacity` units, returns the number of all,
-/// or -1 with the reason: no tips, no strokes.
+/// Cuts the strokes of both hands out of a take; the caller sets nuance, spot and grip. Strokes
+/// that are not one clear fall are left out. Writes at most `capacity` units, returns the number of
+/// all, or -1 with the reason: no tips, no strokes.
 int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit *units,
                    int capacity, himc_error *error);
 
-/// Height (heights) and its first two derivatives by the share, at a share 0 .. 1 of the time of the
-/// fall, for a speed `landing` at the touch (heights per fall).
+/// Height (heights) and its first two derivatives by the share, at a share 0 .. 1 of the time of
+/// the fall, for a speed `landing` at the touch (heights per fall).
 HIMC_RT void himc_unit_at(const himc_unit *unit, double share, double landing, double fall[3]);
 
 #endif

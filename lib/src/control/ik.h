@@ -1,5 +1,5 @@
-/// ik.h: inverse kinematics of an arm, the parts that only the controller uses: the solvers'
-/// inverse, the elbow as a second task, the release of the contact normal; private.
+/// ik.h: inverse kinematics of an arm, the parts that only the controller uses: the forward map,
+/// the solvers' inverse, the elbow as a second task, the release of the contact normal; private.
 #ifndef HIMC_IK_H
 #define HIMC_IK_H
 
@@ -10,6 +10,11 @@
 /// TRANSPOSE and SDLS are less than the true inverse, since they take shorter steps.
 HIMC_RT himc_mat3 himc_ik_inverse(const himc_arm_jacobian *jacobian, himc_solver solver,
                                   double damping, himc_vec3 error);
+
+/// J x: the displacement of the tip (m) by these joint rotations (rad), or its velocity (m/s) by
+/// their rates (rad/s).
+HIMC_RT himc_vec3 himc_ik_forward(const himc_arm_jacobian *jacobian,
+                                  const himc_vec3 rotation[HIMC_ARM_JOINTS]);
 
 /// W J' f: the joint rotations (world frame) for a vector f at the tip.
 HIMC_RT void himc_ik_apply_transposed(const himc_arm_jacobian *jacobian, himc_vec3 f,

@@ -1,4 +1,5 @@
-/// contact.h: what drum.c needs of contact.c beside himc_contact_step.
+/// contact.h: the private part of contact.c: what drum.c needs beside himc_contact_step, and the
+/// energy, which only tests read.
 #ifndef HIMC_CONTACT_H
 #define HIMC_CONTACT_H
 
@@ -12,5 +13,8 @@ HIMC_RT int himc_contact_clear(const himc_membrane *membrane, himc_stick *const 
 /// Moves a stick by one sample (h in s) without contact, as himc_contact_step does to a stick out
 /// of reach.
 HIMC_RT void himc_stick_fly(himc_stick *stick, double h);
+
+/// Energy in a stick and its contact: m v^2/2 + k c^(alpha+1)/(alpha+1) (J); gravity not counted.
+HIMC_RT double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick);
 
 #endif

@@ -3,8 +3,8 @@
 ///
 /// Every sample is the same computation however it is asked for. While nothing can touch the head
 /// (himc_contact_clear) it runs free in long vectorised passes, with the same bits as single
-/// steps (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does not
-/// depend on how the caller cuts time into blocks.
+/// steps (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does
+/// not depend on how the caller cuts time into blocks.
 #include "drum/drum_state.h"
 
 #include "drum/contact.h"

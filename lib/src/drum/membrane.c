@@ -13,6 +13,7 @@
 #include "drum/membrane_state.h"
 
 #include "drum/bessel.h"
+#include "drum/membrane_probe.h"
 #include "drum/pickup.h"
 
 #include <math.h>

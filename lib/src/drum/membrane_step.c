@@ -21,6 +21,8 @@
 /// rest of s is dropped, so energy falls.
 #include "drum/membrane_state.h"
 
+#include "drum/membrane_probe.h"
+
 #include <math.h>
 
 #define SLACK 1e-6            // rise per tension; chosen: 0.001 cent

@@ -1,11 +1,11 @@
 /// score.c: a score file read in one pass: statements to commands, strokes sorted by beat.
 ///
 /// text.c splits words and command.c checks them; this file adds lines for drums, the tempo map,
-/// the order, and the check that a player can play the strokes. The tempo map is piecewise constant:
-/// seconds are the sum of 60/bpm times beats, and the inverse takes the same sum backwards. Limits
-/// of size refuse a wrong file in one line before memory runs out. Invariant: the whole score is
-/// good, or nothing of it is kept.
-#include "himc/score.h"
+/// the order, and the check that a player can play the strokes. The tempo map is piecewise
+/// constant: seconds are the sum of 60/bpm times beats, and the inverse takes the same sum
+/// backwards. Limits of size refuse a wrong file in one line before memory runs out. Invariant: the
+/// whole score is good, or nothing of it is kept.
+#include "plan/score.h"
 
 #include "base/argument.h"
 #include "base/text.h"

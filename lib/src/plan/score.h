@@ -1,0 +1,11 @@
+/// score.h: the reader of scores behind himc_score_load; private.
+#ifndef HIMC_PLAN_SCORE_H
+#define HIMC_PLAN_SCORE_H
+
+#include "himc/score.h"
+
+/// The score in a string, as himc_score_load reads it from a file; `name` stands for the file in
+/// errors. Free with himc_score_free.
+himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
+
+#endif
