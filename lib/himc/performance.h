@@ -31,9 +31,9 @@ himc_performance *himc_performance_new(const himc_performance_config *config, hi
 /// Frees it, and its references to drums. A recording under way is written first. NULL is allowed.
 void himc_performance_free(himc_performance *performance);
 
-/// Adds a drum (retained), or replaces the one of the same name. Strokes without a drum's name go to
-/// the first drum; a performer without drums plays on a silent one. False with the reason: another
-/// sample rate than the performance's, more than HIMC_DRUMS drums.
+/// Adds a drum (retained), or replaces the one of the same name. Strokes without a drum's name go
+/// to the first drum; a performer without drums plays on a silent one. False with the reason:
+/// another sample rate than the performance's, more than HIMC_DRUMS drums.
 bool himc_performance_add_drum(himc_performance *performance, himc_drum *drum, himc_error *error);
 /// Drum `index` (from 0), or NULL past the last. Borrowed.
 HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int index);
@@ -52,9 +52,9 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 
 // The commands `stroke`, `hit`, `tempo`, `play` and `stop` for C programs: they act now.
 
-/// Adds a stroke to the score: beat 0 .. 1e9, dynamic 0 .. 1, x and y -1 .. 1 m. May allocate. False
-/// if a field is out of its range, the hand has another stroke within 40 ms, there are too many
-/// strokes or drums, or there is no memory.
+/// Adds a stroke to the score: beat 0 .. 1e9, dynamic 0 .. 1, x and y -1 .. 1 m. May allocate.
+/// False if a field is out of its range, the hand has another stroke within 40 ms, there are too
+/// many strokes or drums, or there is no memory.
 bool himc_performance_add_stroke(himc_performance *performance, const himc_stroke *stroke,
                                  himc_error *error);
 /// Plays a stroke (its beat is ignored) as soon as it can be prepared. Allocates only for a drum
@@ -62,11 +62,12 @@ bool himc_performance_add_stroke(himc_performance *performance, const himc_strok
 /// memory for that drum. A hit for which there is no time is given up, and a note says so.
 bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
                           himc_error *error);
-/// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the score.
+/// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the
+/// score.
 HIMC_RT bool himc_performance_set_tempo(himc_performance *performance, double bpm,
                                         himc_error *error);
-/// Plays the score from the current beat, or the take from its beginning. Allocates only if there is
-/// no drum yet; false if there is no memory for one.
+/// Plays the score from the current beat, or the take from its beginning. Allocates only if there
+/// is no drum yet; false if there is no memory for one.
 bool himc_performance_play(himc_performance *performance, himc_error *error);
 /// Stops the score or the take; the sticks come to rest.
 HIMC_RT void himc_performance_stop(himc_performance *performance);
@@ -76,8 +77,8 @@ HIMC_RT void himc_performance_stop(himc_performance *performance);
 /// task rate. A target that is not finite is ignored.
 HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand hand, himc_vec3 tip);
 
-/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n); `force` and each of its
-/// entries may be NULL. The sound is in the drums (himc_drum_read).
+/// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n); `force` and each of
+/// its entries may be NULL. The sound is in the drums (himc_drum_read).
 HIMC_RT void himc_performance_process(himc_performance *performance, int n,
                                       double *const force[HIMC_HANDS]);
 /// Samples played since the last realign.
