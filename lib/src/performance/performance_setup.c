@@ -6,7 +6,6 @@
 /// yet simulated, so that every sum in floating point is that of a performance just made.
 #include "performance/performance_state.h"
 #include "performance/research.h"
-#include "performance/research.h"
 
 #include <stdlib.h>
 
