@@ -108,7 +108,7 @@ static void test_any_change_while_ringing_makes_no_larger_step_than_the_ringing(
     }
 }
 
-// the largest step of a blow on a drum that was changed before, if `change` is one
+// the largest step of a strike; with `change` the drum was changed before
 static double blow_on(const char *change)
 {
     double step, bend;

@@ -73,7 +73,7 @@ static double energy(int count)
     return sum;
 }
 
-// A blow of `count` sticks: largest deviation of the energy from its start, and largest rise in one
+// A strike of `count` sticks: largest deviation of the energy from its start, and largest rise in one
 // step, as fractions of it.
 static void blow(int count, double k, double mu, double *drift, double *rise)
 {

@@ -275,7 +275,7 @@ static void test_values_that_are_not_finite_change_nothing(void)
     same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
 }
 
-/// A planner of one drum whose hands reach as `beyond` says, with `strokes` of alternating hands.
+/// A planner of one drum with a reach given by `beyond`, with `strokes` of alternating hands.
 static void use_reach(double (*beyond)(const void *body, himc_hand hand, himc_vec3 point),
                       int strokes)
 {

@@ -128,7 +128,7 @@ static void test_the_performer_gets_the_players_body_and_seat(void)
     bool said = false;
     save_take(250);
     session_do(p, "take %s", FILE_NAME);
-    snprintf(line, sizeof line, "%s: the player's body has", FILE_NAME);
+    snprintf(line, sizeof line, "%s: the player's body: ", FILE_NAME);
     while (himc_performance_event(p, &event))
         said = said || (event.kind == HIMC_EVENT_NOTE && strstr(event.text, line) &&
                         strstr(event.text, "1.82 m"));

@@ -142,7 +142,7 @@ static void test_between_strikes_the_joints_are_the_captured_ones(void)
     }
 }
 
-// in the mode of the publication no blow is cut out and no arm bent: the bounce is the captured one
+// as published, no strike is replaced and no arm bent: the rebound is the captured one
 static void test_unbent_joints_follow_the_captured_rebound(void)
 {
     make_played(250);

@@ -77,7 +77,7 @@ static void goes_on_from(const himc_target *s, double t)
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0, distance(s->a, now.a));
 }
 
-// the last blow is at 0.4 s; the take's time slows down from 0.37 s to its end at 0.424 s
+// the last strike is at 0.4 s; the take's time slows down from 0.37 s to its end at 0.424 s
 static void test_near_the_end_rejoining_begins_in_the_measured_state_as_time_slows_down(void)
 {
     make_take(beaten, 250, 107);
@@ -106,7 +106,7 @@ static void test_from_far_off_rejoining_is_slow_and_no_throw_is_followed(void)
     TEST_ASSERT_TRUE(hardest < 1500 && fastest < 13);
 }
 
-// blows every 60 ms, from 4 cm: after a separation the next blow is near
+// strikes every 60 ms, from 4 cm: after a separation the next strike is near
 static double rolled(double t)
 {
     double since = fmod(t, 0.06), v = 2.5;
