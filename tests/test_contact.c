@@ -73,8 +73,8 @@ static double energy(int count)
     return sum;
 }
 
-// A strike of `count` sticks: largest deviation of the energy from its start, and largest rise in one
-// step, as fractions of it.
+// A strike of `count` sticks: largest deviation of the energy from its start, and largest rise in
+// one step, as fractions of it.
 static void blow(int count, double k, double mu, double *drift, double *rise)
 {
     remake();

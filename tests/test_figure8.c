@@ -89,8 +89,8 @@ static void test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives(vo
     }
 }
 
-// the gain depends on the head's phase at the strike, so strikes come at eight instants spread over two
-// periods of the principal mode; on average energies add
+// the gain depends on the head's phase at the strike, so strikes come at eight instants spread over
+// two periods of the principal mode; on average energies add
 static void test_equal_strike_sounds_louder_on_the_ringing_head(void)
 {
     double calm = loudness[4], force = blow[4].force, ringing = 0;

@@ -1,5 +1,5 @@
 /// test_handover.c: the hands go from the take to the planner and back without a jerk, whenever a
-/// take is stopped, over, replaced or dropped; and the state after `reset`, `player` and `gain reset`.
+/// take is stopped, over, replaced or dropped; and the state after `reset`, `player`, `gain reset`.
 #include "take_players.h"
 
 #include "session.h"

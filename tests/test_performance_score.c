@@ -1,5 +1,5 @@
-/// test_performance_score.c: lines of a score that act on its strokes: hits, a take, a first beat; and
-/// a take with exchanged sides.
+/// test_performance_score.c: lines of a score that act on its strokes: hits, a take, a first beat;
+/// and a take with exchanged sides.
 #include "take_players.h"
 
 #include "session.h"

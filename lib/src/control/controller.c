@@ -7,8 +7,8 @@
 /// Joint limits have priority over all of this (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
-/// the inertia, and the inertia about a joint's long axis is small. So servos act on the state at the
-/// step's end, as Tan, Liu & Turk's stable PD does (2011): with D = h kd + h^2 ks at each joint,
+/// the inertia, and the inertia about a joint's long axis is small. So servos act on the state at
+/// the end of the step (Tan, Liu & Turk's stable PD, 2011): with D = h kd + h^2 ks at each joint,
 ///     (M + D) q'' = tau_known - C,   tau = tau_known - D q'',
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "control/controller.h"

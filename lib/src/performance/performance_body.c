@@ -1,7 +1,7 @@
 /// performance_body.c: the body, its controller and the forces on it.
 ///
-/// The controller assumes the skeleton; the engine simulates the plant, which may be heavier. A push
-/// is a constant force on a segment's centre of mass. It is not given to the controller, so it
+/// The controller assumes the skeleton; the engine simulates the plant, which may be heavier. A
+/// push is a constant force on a segment's centre of mass. It is not given to the controller, so it
 /// disturbs the motion. The pelvis is held, and `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
 

@@ -4,9 +4,9 @@
 /// acceleration of forward dynamics, and is solved with the head's modes sample by sample
 /// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
 /// ends of the contact see the same force, and the body's tip and the point differ only by the
-/// change of M in a step; that offset is kept during contact and decays afterwards. From the planned
-/// time of contact, or the first force, to separation, control does not act along the head's normal.
-/// Then the plan continues from the measured state of the stick.
+/// change of M in a step; that offset is kept during contact and decays afterwards. From the
+/// planned time of contact, or the first force, to separation, control does not act along the
+/// head's normal. Then the plan continues from the measured state of the stick.
 #include "performance/performance_contacts.h"
 
 #include "body/dynamics.h"
