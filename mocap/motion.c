@@ -16,7 +16,7 @@
 #define FIRST_IMPACT 1.0     // (s)
 #define TAIL 0.8             // after the last impact (s)
 #define MEMORY 0.4           // correlation of the variation from stroke to stroke
-#define WITH_HEIGHT 0.8      // part of a speed's variation that goes with the height's ...
+#define WITH_HEIGHT 0.8      // part of a speed's variation that follows the height's ...
 #define OWN 0.6              // ... and the independent part: the squares sum to one
 #define BLEND 0.04           // time after the impact at which the next stroke's postures begin (s)
 #define AIM_SPREAD 0.003     // standard deviations: of the aim (m)

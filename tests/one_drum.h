@@ -55,7 +55,7 @@ static inline double peak(const double *x, int n)
     return most;
 }
 
-// Two sticks, two strikes and an outside force whose point moves, in blocks of `block` samples.
+// Two sticks, two strikes and an outside force at a moving point, in blocks of `block` samples.
 static inline void scene(int block, double *out, double *place, double *force0)
 {
     tearDown();

@@ -46,7 +46,7 @@ static inline player make_player(int who)
     return p;
 }
 
-// from 0 at a blow over 1 back to 0; `smooth` swings through the blow, else it reverses in it
+// from 0 at a strike over 1 back to 0; `smooth` swings through the strike, else it reverses in it
 static inline double stroke_shape(double phase, bool smooth)
 {
     phase -= floor(phase);

@@ -1,4 +1,4 @@
-/// pushes.h: what tests of pushes share: a piece is played twice, once with a push of 200 N for 100
+/// pushes.h: shared by tests of pushes: a piece is played twice, once with a push of 200 N for 100
 /// ms, and what is left of it a second later is how much farther the tips are from their targets.
 #ifndef HIMC_TESTS_PUSHES_H
 #define HIMC_TESTS_PUSHES_H

@@ -1,5 +1,5 @@
-/// session.h: what tests of whole sessions share: a performer with its drums, commands, pieces from
-/// a seed, and what was struck.
+/// session.h: shared by tests of whole sessions: a performer with its drums, commands, pieces from
+/// a seed, and the strikes.
 #ifndef HIMC_TESTS_SESSION_H
 #define HIMC_TESTS_SESSION_H
 

@@ -142,7 +142,7 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
     free(reference);
 }
 
-static void test_bank_gives_each_of_several_readouts_as_if_alone(void)
+static void test_bank_readouts_are_equal_alone_and_together(void)
 {
     static double read[5][500], alone[2][500];
     const himc_readout *const readouts[] = {&displacement, &velocity, &displacement, &velocity,
@@ -245,7 +245,7 @@ int main(void)
     RUN_TEST(test_bank_response_is_the_change_by_one_newton);
     RUN_TEST(test_bank_work_of_a_force_is_the_energy_gained);
     RUN_TEST(test_bank_runs_give_the_same_bits_in_any_blocks);
-    RUN_TEST(test_bank_gives_each_of_several_readouts_as_if_alone);
+    RUN_TEST(test_bank_readouts_are_equal_alone_and_together);
     RUN_TEST(test_bank_coupling_of_a_spring_on_the_sum_of_squares_is_exact);
     RUN_TEST(test_bank_silences_oscillators_that_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);

@@ -62,7 +62,7 @@ static void test_range_includes_its_ends(void)
     TEST_ASSERT_EQUAL_STRING("", error.text);
 }
 
-static void test_range_names_field_value_and_what_is_allowed(void)
+static void test_range_names_field_value_and_allowed_range(void)
 {
     TEST_ASSERT_FALSE(himc_check_range("radius", 0, 0.05, 1, "m", &error));
     TEST_ASSERT_EQUAL_STRING("radius: 0 m, allowed 0.05 .. 1 m", error.text);
@@ -75,7 +75,7 @@ static void test_range_without_unit_has_no_stray_space(void)
     TEST_ASSERT_EQUAL_STRING("modes: 7000, allowed 1 .. 4000", error.text);
 }
 
-static void test_range_refuses_what_is_not_finite_even_if_unbounded(void)
+static void test_range_refuses_values_that_are_not_finite_even_if_unbounded(void)
 {
     TEST_ASSERT_FALSE(himc_check_range("mass", NAN, 1, 2, "kg", &error));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "mass: nan kg"));
@@ -107,9 +107,9 @@ int main(void)
     RUN_TEST(test_prefix_goes_before_the_line);
     RUN_TEST(test_long_errors_are_cut_and_stay_strings);
     RUN_TEST(test_range_includes_its_ends);
-    RUN_TEST(test_range_names_field_value_and_what_is_allowed);
+    RUN_TEST(test_range_names_field_value_and_allowed_range);
     RUN_TEST(test_range_without_unit_has_no_stray_space);
-    RUN_TEST(test_range_refuses_what_is_not_finite_even_if_unbounded);
+    RUN_TEST(test_range_refuses_values_that_are_not_finite_even_if_unbounded);
     RUN_TEST(test_hands_have_names);
     RUN_TEST(test_version_is_made_of_its_three_numbers);
     return UNITY_END();

@@ -136,7 +136,7 @@ static himc_take *load_hop(void)
     return take;
 }
 
-static void test_cmu_capture_equals_matrices_computed_elsewhere(void)
+static void test_cmu_capture_equals_independently_computed_matrices(void)
 {
     // y up, metres, from rotation matrices by an independent program; frames 0 and 700
     static const struct {
@@ -321,7 +321,7 @@ int main(void)
     RUN_TEST(test_permuted_position_channels_are_read_by_name);
     RUN_TEST(test_position_channels_of_a_joint_replace_its_offset);
     RUN_TEST(test_rotations_and_offsets_reproduce_the_points);
-    RUN_TEST(test_cmu_capture_equals_matrices_computed_elsewhere);
+    RUN_TEST(test_cmu_capture_equals_independently_computed_matrices);
     RUN_TEST(test_cmu_player_is_of_human_size_and_faces_along_x);
     RUN_TEST(test_units_are_guessed_from_the_skeletons_size);
     RUN_TEST(test_a_17_metre_player_is_refused_unless_the_unit_is_given);

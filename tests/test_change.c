@@ -81,7 +81,7 @@ static double peak(const double *x, int from, int to)
     return most;
 }
 
-static void test_change_of_anything_while_it_rings_makes_no_step_beyond_the_ringings_own(void)
+static void test_any_change_while_ringing_makes_no_larger_step_than_the_ringing(void)
 {
     static const char *const change[] = {
         "modes 20",         "modes 900",          "modes 1",        "damp 0.3",
@@ -108,7 +108,7 @@ static void test_change_of_anything_while_it_rings_makes_no_step_beyond_the_ring
     }
 }
 
-// the largest step of a blow on a drum that was changed before, if `change` is one
+// the largest step of a strike; with `change` the drum was changed before
 static double blow_on(const char *change)
 {
     double step, bend;
@@ -121,7 +121,7 @@ static double blow_on(const char *change)
     return step;
 }
 
-static void test_change_of_anything_in_mid_contact_makes_no_step_beyond_a_blows_own(void)
+static void test_any_change_in_contact_makes_no_larger_step_than_a_strike(void)
 {
     static const char *const change[] = {"modes 50", "modes 900",   "damp 0.5", "mallet wood",
                                          "air 0",    "kettle 0.06", "glide 0",  "tune A3"};
@@ -146,7 +146,7 @@ static void test_change_of_anything_in_mid_contact_makes_no_step_beyond_a_blows_
     }
 }
 
-static void test_change_of_technique_silences_the_head_in_10_ms_and_lets_it_swing_on(void)
+static void test_change_of_technique_silences_the_head_in_10_ms_and_it_still_vibrates(void)
 {
     says("strike -0.219 0.02 5");
     play(0, LENGTH);
@@ -166,7 +166,7 @@ static void test_change_of_technique_silences_the_head_in_10_ms_and_lets_it_swin
     TEST_ASSERT_TRUE(peak(sound, 20480, LENGTH) > 0.001);
 }
 
-static void test_change_of_technique_is_refused_where_nobody_answers(void)
+static void test_technique_is_refused_without_an_external_sound(void)
 {
     himc_drum_set_external_sound(drum, false);
     TEST_ASSERT_FALSE(say("technique clip"));
@@ -179,7 +179,7 @@ static void test_change_of_technique_is_refused_where_nobody_answers(void)
     says("technique modal");
 }
 
-static void test_touches_of_strikes_are_told_with_place_velocity_and_pitch(void)
+static void test_contact_onsets_of_strikes_have_place_velocity_and_pitch(void)
 {
     himc_contact_onset touch;
     himc_drum_strike_at(drum, 100, -0.1, 0.1, 3, &error);
@@ -195,7 +195,7 @@ static void test_touches_of_strikes_are_told_with_place_velocity_and_pitch(void)
     TEST_ASSERT_FALSE(himc_drum_contact_next(drum, &touch));
 }
 
-static void test_touches_that_nobody_takes_are_the_latest_64(void)
+static void test_of_contact_onsets_not_taken_the_latest_64_are_kept(void)
 {
     himc_contact_onset touch;
     int count = 0;
@@ -212,11 +212,11 @@ static void test_touches_that_nobody_takes_are_the_latest_64(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_change_of_anything_while_it_rings_makes_no_step_beyond_the_ringings_own);
-    RUN_TEST(test_change_of_anything_in_mid_contact_makes_no_step_beyond_a_blows_own);
-    RUN_TEST(test_change_of_technique_silences_the_head_in_10_ms_and_lets_it_swing_on);
-    RUN_TEST(test_change_of_technique_is_refused_where_nobody_answers);
-    RUN_TEST(test_touches_of_strikes_are_told_with_place_velocity_and_pitch);
-    RUN_TEST(test_touches_that_nobody_takes_are_the_latest_64);
+    RUN_TEST(test_any_change_while_ringing_makes_no_larger_step_than_the_ringing);
+    RUN_TEST(test_any_change_in_contact_makes_no_larger_step_than_a_strike);
+    RUN_TEST(test_change_of_technique_silences_the_head_in_10_ms_and_it_still_vibrates);
+    RUN_TEST(test_technique_is_refused_without_an_external_sound);
+    RUN_TEST(test_contact_onsets_of_strikes_have_place_velocity_and_pitch);
+    RUN_TEST(test_of_contact_onsets_not_taken_the_latest_64_are_kept);
     return UNITY_END();
 }

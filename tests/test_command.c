@@ -437,7 +437,7 @@ static void test_every_form_of_every_command_is_accepted(void)
         TEST_ASSERT_TRUE_MESSAGE(drum(head[i]), head[i]);
 }
 
-static void test_faults_name_what_value_and_what_is_allowed(void)
+static void test_errors_name_field_value_and_allowed_values(void)
 {
     refused(perform("stroke 1 left legato 1.7"),
             "stroke: DYNAMIC: 1.7, allowed ppp pp p mp mf f ff fff or 0 .. 1");
@@ -540,7 +540,7 @@ static void test_backslash_keeps_a_space_in_a_file_name(void)
     TEST_ASSERT_EQUAL_STRING("my score.txt", command.atom[0].symbol);
 }
 
-static void test_copy_points_into_itself(void)
+static void test_a_copied_command_points_to_its_own_text(void)
 {
     himc_command copy;
     TEST_ASSERT_TRUE(perform("gain wrist 40 1"));
@@ -550,7 +550,7 @@ static void test_copy_points_into_itself(void)
     TEST_ASSERT_TRUE(copy.atom[0].symbol == copy.storage);
 }
 
-static void test_names_of_drums_cannot_be_taken_for_anything_else(void)
+static void test_invalid_names_of_drums_are_refused(void)
 {
     TEST_ASSERT_FALSE(perform("drum rim"));
     TEST_ASSERT_FALSE(perform("drum stroke"));
@@ -612,7 +612,7 @@ int main(void)
     RUN_TEST(test_command_made_without_the_parser_is_checked_and_completed);
     RUN_TEST(test_stroke_is_read_with_word_and_number_forms);
     RUN_TEST(test_every_form_of_every_command_is_accepted);
-    RUN_TEST(test_faults_name_what_value_and_what_is_allowed);
+    RUN_TEST(test_errors_name_field_value_and_allowed_values);
     RUN_TEST(test_unknown_commands_are_answered_with_the_nearest_name);
     RUN_TEST(test_numbers_that_are_not_finite_are_refused);
     RUN_TEST(test_ends_of_a_range_arrive_exactly_from_single_precision);
@@ -620,8 +620,8 @@ int main(void)
     RUN_TEST(test_note_names_arrive_as_frequencies);
     RUN_TEST(test_text_and_atoms_give_the_same_bits);
     RUN_TEST(test_backslash_keeps_a_space_in_a_file_name);
-    RUN_TEST(test_copy_points_into_itself);
-    RUN_TEST(test_names_of_drums_cannot_be_taken_for_anything_else);
+    RUN_TEST(test_a_copied_command_points_to_its_own_text);
+    RUN_TEST(test_invalid_names_of_drums_are_refused);
     RUN_TEST(test_random_atoms_never_break_the_parser);
     return UNITY_END();
 }

@@ -73,8 +73,8 @@ static double energy(int count)
     return sum;
 }
 
-// A blow of `count` sticks: largest deviation of the energy from its start, and largest rise in one
-// step, as fractions of it.
+// A strike of `count` sticks: largest deviation of the energy from its start, and largest rise in
+// one step, as fractions of it.
 static void blow(int count, double k, double mu, double *drift, double *rise)
 {
     remake();
@@ -265,7 +265,7 @@ static double one_way_energy(double velocity)
     return himc_membrane_energy(membrane);
 }
 
-static void test_one_way_blow_grows_with_velocity_and_stays_finite_for_any_stiffness(void)
+static void test_one_way_force_grows_with_velocity_and_stays_finite_for_any_stiffness(void)
 {
     double soft = one_way_energy(1), middle = one_way_energy(2), loud = one_way_energy(4);
     TEST_ASSERT_TRUE(soft > 0 && middle > 2 * soft && loud > 2 * middle);
@@ -387,7 +387,7 @@ int main(void)
     RUN_TEST(test_contact_converges_with_the_square_of_the_step);
     RUN_TEST(test_contact_keeps_its_first_point_until_it_ends);
     RUN_TEST(test_one_way_stick_is_not_moved_by_the_head);
-    RUN_TEST(test_one_way_blow_grows_with_velocity_and_stays_finite_for_any_stiffness);
+    RUN_TEST(test_one_way_force_grows_with_velocity_and_stays_finite_for_any_stiffness);
     RUN_TEST(test_one_way_motion_force_follows_hertz_with_the_mallets_exponent);
     RUN_TEST(test_one_way_head_force_scales_with_the_peak_of_the_motion_force);
     RUN_TEST(test_contact_counts_chatter_as_one_contact);

@@ -336,14 +336,14 @@ static void keeps_on_its_feet(double factor, double step)
         }
 }
 
-static void test_all_laws_stand_gains_of_a_tenth_and_of_ten_and_a_thousand_times(void)
+static void test_all_laws_are_stable_at_gains_of_a_tenth_ten_and_a_thousand_times(void)
 {
     keeps_on_its_feet(0.1, STEP);
     keeps_on_its_feet(10, STEP);
     keeps_on_its_feet(1000, STEP);
 }
 
-static void test_all_laws_stand_those_gains_at_one_kilohertz_of_physics(void)
+static void test_all_laws_are_stable_at_those_gains_at_1_khz_physics(void)
 {
     keeps_on_its_feet(0.1, 1e-3);
     keeps_on_its_feet(1, 1e-3);
@@ -440,8 +440,8 @@ int main(void)
     RUN_TEST(test_released_tip_is_not_accelerated_along_the_normal_with_gains_of_the_user);
     RUN_TEST(test_released_tip_is_not_pushed_by_a_target_below_the_head);
     RUN_TEST(test_released_tip_is_still_steered_across_the_normal);
-    RUN_TEST(test_all_laws_stand_gains_of_a_tenth_and_of_ten_and_a_thousand_times);
-    RUN_TEST(test_all_laws_stand_those_gains_at_one_kilohertz_of_physics);
+    RUN_TEST(test_all_laws_are_stable_at_gains_of_a_tenth_ten_and_a_thousand_times);
+    RUN_TEST(test_all_laws_are_stable_at_those_gains_at_1_khz_physics);
     RUN_TEST(test_printed_law_over_no_time_is_equation_2);
     RUN_TEST(test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm);
     RUN_TEST(test_default_gains_are_critically_damped_at_the_frequencies_of_the_table);

@@ -103,7 +103,7 @@ static double implicit(double ks, double kd, double inertia, double e, double ra
     return (ks * e + (kd + h * ks) * rate) / (inertia + h * kd + h * h * ks);
 }
 
-static void test_computed_torque_uses_each_axis_own_gains_of_the_user(void)
+static void test_computed_torque_uses_the_users_gains_of_each_axis(void)
 {
     himc_vec3 ks = {10, 20, 40}, kd = {0.3, 0.1, 0.2}, want[HIMC_JOINTS];
     himc_vec3 e = {0.02, -0.03, 0.04}, rate = {0.5, 0.7, -0.6}; // about the child's axes
@@ -132,7 +132,7 @@ static void test_computed_torque_uses_each_axis_own_gains_of_the_user(void)
 }
 
 // tau = g + ks (e + h e' + h^2 (q''_t - q'')) + kd (e' + h (q''_t - q'')), q'' being what tau makes
-static void test_servos_fed_forward_are_equation_2_where_the_step_ends(void)
+static void test_feedforward_servos_are_equation_2_at_the_end_of_the_step(void)
 {
     himc_vec3 gravity[HIMC_JOINTS], got[HIMC_JOINTS];
     himc_vec3 e[HIMC_JOINTS], rate[HIMC_JOINTS], asked[HIMC_JOINTS];
@@ -172,7 +172,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_transpose_has_a_step_length_for_each_demand);
-    RUN_TEST(test_computed_torque_uses_each_axis_own_gains_of_the_user);
-    RUN_TEST(test_servos_fed_forward_are_equation_2_where_the_step_ends);
+    RUN_TEST(test_computed_torque_uses_the_users_gains_of_each_axis);
+    RUN_TEST(test_feedforward_servos_are_equation_2_at_the_end_of_the_step);
     return UNITY_END();
 }

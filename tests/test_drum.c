@@ -118,7 +118,7 @@ static void test_drum_ring_keeps_the_latest_samples_only(void)
     TEST_ASSERT_TRUE(sound[10] != 0);
 }
 
-static void test_drum_goes_on_sounding_at_another_rate(void)
+static void test_drum_sounds_on_at_another_sample_rate(void)
 {
     says("strike -0.2 0 3");
     advance(4800);
@@ -184,7 +184,7 @@ int main(void)
     RUN_TEST(test_drum_sound_stays_finite_with_absurd_outside_forces);
     RUN_TEST(test_drum_counts_time_from_0_when_realigned_and_goes_on_sounding);
     RUN_TEST(test_drum_ring_keeps_the_latest_samples_only);
-    RUN_TEST(test_drum_goes_on_sounding_at_another_rate);
+    RUN_TEST(test_drum_sounds_on_at_another_sample_rate);
     RUN_TEST(test_drum_plays_more_strikes_at_once_than_it_has_mallets);
     RUN_TEST(test_drum_is_driven_by_one_performer_at_a_time);
     RUN_TEST(test_drum_allocates_nothing_while_it_plays);

@@ -35,7 +35,7 @@ static void test_drum_tunes_its_principal_mode(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 146.8324, principal());
 }
 
-static void test_drum_commands_set_what_they_say(void)
+static void test_drum_commands_set_their_parameters(void)
 {
     himc_membrane *membrane = himc_drum_membrane(drum);
     unsigned revision = himc_drum_revision(drum);
@@ -75,7 +75,7 @@ static void test_drum_commands_set_what_they_say(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "2000 modes"));
 }
 
-static void test_drum_refuses_what_no_drum_is_and_plays_on_as_if_nothing_had_been_said(void)
+static void test_drum_refuses_impossible_values_and_its_sound_does_not_change(void)
 {
     static const char *const bad[] = {"radius 0",
                                       "radius nan",
@@ -186,8 +186,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_drum_tunes_its_principal_mode);
-    RUN_TEST(test_drum_commands_set_what_they_say);
-    RUN_TEST(test_drum_refuses_what_no_drum_is_and_plays_on_as_if_nothing_had_been_said);
+    RUN_TEST(test_drum_commands_set_their_parameters);
+    RUN_TEST(test_drum_refuses_impossible_values_and_its_sound_does_not_change);
     RUN_TEST(test_drum_checks_commands_that_no_parser_has_seen);
     RUN_TEST(test_drum_survives_any_change_in_the_middle_of_a_contact);
     return UNITY_END();

@@ -68,7 +68,7 @@ static void play(const char *const *score, int lines, double seconds)
     himc_performance_free(p);
 }
 
-static void test_sound_amplitude_rises_with_the_force_of_three_blows(void)
+static void test_sound_amplitude_rises_with_the_force_of_three_strikes(void)
 {
     TEST_ASSERT_EQUAL_INT(BLOWS, blows);
     for (int i = 0; i < 2; i++) {
@@ -89,9 +89,9 @@ static void test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives(vo
     }
 }
 
-// the gain depends on the head's phase at the blow, so blows fall at eight instants spread over two
-// periods of the principal mode; on average energies add
-static void test_equal_blow_sounds_louder_on_the_ringing_head(void)
+// the gain depends on the head's phase at the strike, so strikes come at eight instants spread over
+// two periods of the principal mode; on average energies add
+static void test_equal_strike_sounds_louder_on_the_ringing_head(void)
 {
     double calm = loudness[4], force = blow[4].force, ringing = 0;
     for (int i = 0; i < 8; i++) {
@@ -112,8 +112,8 @@ int main(void)
 {
     UNITY_BEGIN();
     play(experiment, sizeof experiment / sizeof *experiment, SECONDS);
-    RUN_TEST(test_sound_amplitude_rises_with_the_force_of_three_blows);
+    RUN_TEST(test_sound_amplitude_rises_with_the_force_of_three_strikes);
     RUN_TEST(test_forces_of_the_paper_come_at_the_speeds_the_contact_law_gives);
-    RUN_TEST(test_equal_blow_sounds_louder_on_the_ringing_head);
+    RUN_TEST(test_equal_strike_sounds_louder_on_the_ringing_head);
     return UNITY_END();
 }

@@ -137,7 +137,7 @@ static double energy(int count)
     return sum;
 }
 
-// A blow of `count` sticks: the energy's largest deviation from its start, and its largest growth
+// A strike of `count` sticks: the energy's largest deviation from its start, and its largest growth
 // above the lowest so far, as fractions of it.
 static void blow(int count, double k, double mu, double *drift, double *growth)
 {

@@ -1,5 +1,5 @@
 /// test_handover.c: the hands go from the take to the planner and back without a jerk, whenever a
-/// take is stopped, over, replaced or dropped; and what `reset`, `player` and `gain reset` leave.
+/// take is stopped, over, replaced or dropped; and the state after `reset`, `player`, `gain reset`.
 #include "take_players.h"
 
 #include "session.h"
@@ -97,7 +97,7 @@ static void test_a_take_is_left_in_the_middle_of_a_stroke_without_a_jump(void)
     }
 }
 
-static void test_joint_targets_ease_from_the_captured_to_the_natural(void)
+static void test_joint_targets_cross_fade_from_captured_to_natural(void)
 {
     playing(2.4);
     session_do(p, "mode id");
@@ -111,7 +111,7 @@ static void test_joint_targets_ease_from_the_captured_to_the_natural(void)
     himc_performance_free(p);
 }
 
-static void test_strikes_after_a_stop_are_not_waited_for(void)
+static void test_strikes_after_a_stop_are_not_awaited(void)
 {
     playing(2.3);
     int strokes = himc_performance_measure(p).strokes;
@@ -133,17 +133,18 @@ static void test_a_take_stopped_before_it_begins_comes_to_rest(void)
     himc_performance_free(p);
 }
 
-static void test_hits_and_targets_have_the_hands_when_a_take_is_over(void)
+static void test_hits_and_targets_move_the_hands_after_a_take(void)
 {
     heard h = {0};
     playing(1.5);
     TEST_ASSERT_FALSE(session_try(p, "hit right accent f"));
-    TEST_ASSERT_EQUAL_STRING("hit: a take has the hands, allowed when it is over", error.text);
+    TEST_ASSERT_EQUAL_STRING("hit: a take moves the hands, allowed when it is over", error.text);
     session_do(p, "target right 0.5 -0.1 1.2");
     session_do(p, "target right 0.5 -0.1 1.2");
     session_play(p, 0.01, &h);
     TEST_ASSERT_EQUAL_INT(1, h.notes); // not for each of a stream
-    TEST_ASSERT_EQUAL_STRING("target right: a take has the hands, allowed when it is over", h.note);
+    TEST_ASSERT_EQUAL_STRING("target right: a take moves the hand, allowed when it is over",
+                             h.note);
     session_play(p, SECONDS + 1, NULL);
     h.strikes = 0;
     session_do(p, "hit right accent f");
@@ -194,7 +195,7 @@ static void test_reset_leaves_a_performer_as_just_made(void)
     himc_performance_free(new);
 }
 
-static void test_gain_reset_changes_nothing_that_is_fresh(void)
+static void test_gain_reset_changes_nothing_in_a_new_performance(void)
 {
     p = session_new();
     himc_controller before = p->body->controller;
@@ -225,12 +226,12 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_stopped_take_is_left_without_a_jerk);
     RUN_TEST(test_a_take_is_left_in_the_middle_of_a_stroke_without_a_jump);
-    RUN_TEST(test_joint_targets_ease_from_the_captured_to_the_natural);
-    RUN_TEST(test_strikes_after_a_stop_are_not_waited_for);
+    RUN_TEST(test_joint_targets_cross_fade_from_captured_to_natural);
+    RUN_TEST(test_strikes_after_a_stop_are_not_awaited);
     RUN_TEST(test_a_take_stopped_before_it_begins_comes_to_rest);
-    RUN_TEST(test_hits_and_targets_have_the_hands_when_a_take_is_over);
+    RUN_TEST(test_hits_and_targets_move_the_hands_after_a_take);
     RUN_TEST(test_reset_leaves_a_performer_as_just_made);
-    RUN_TEST(test_gain_reset_changes_nothing_that_is_fresh);
+    RUN_TEST(test_gain_reset_changes_nothing_in_a_new_performance);
     RUN_TEST(test_player_after_a_take_is_a_body_of_that_size);
     return UNITY_END();
 }

@@ -123,7 +123,7 @@ static void test_gravity_torque_of_a_horizontal_straight_arm(void)
     }
 }
 
-static void test_standing_still_in_the_zero_pose_asks_almost_no_torque_of_arms(void)
+static void test_standing_still_in_the_zero_pose_needs_almost_no_torque_in_the_arms(void)
 {
     himc_pose pose = himc_pose_zero();
     himc_body_state s;
@@ -136,7 +136,7 @@ static void test_standing_still_in_the_zero_pose_asks_almost_no_torque_of_arms(v
                                       himc_vec3_length(torque[himc_arm_joint((himc_hand)hand, k)]));
 }
 
-static void test_still_means_gravity_alone(void)
+static void test_still_gives_the_torques_of_gravity_alone(void)
 {
     himc_body_state s, resting;
     himc_vec3 a[HIMC_JOINTS], b[HIMC_JOINTS], c[HIMC_JOINTS];
@@ -409,8 +409,8 @@ int main(void)
     RUN_TEST(test_forward_dynamics_returns_the_accelerations_inverse_dynamics_was_asked_for);
     RUN_TEST(test_inverse_dynamics_returns_the_torques_forward_dynamics_was_given);
     RUN_TEST(test_gravity_torque_of_a_horizontal_straight_arm);
-    RUN_TEST(test_standing_still_in_the_zero_pose_asks_almost_no_torque_of_arms);
-    RUN_TEST(test_still_means_gravity_alone);
+    RUN_TEST(test_standing_still_in_the_zero_pose_needs_almost_no_torque_in_the_arms);
+    RUN_TEST(test_still_gives_the_torques_of_gravity_alone);
     RUN_TEST(test_power_of_the_torques_is_the_change_of_energy);
     RUN_TEST(test_tip_acceleration_is_the_difference_of_its_velocity);
     RUN_TEST(test_effective_mass_is_force_over_tip_acceleration);

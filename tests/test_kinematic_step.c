@@ -51,7 +51,7 @@ static double off(himc_hand hand)
     return himc_vec3_length(himc_vec3_sub(state.tip[hand], reference.tip[hand].x));
 }
 
-static void test_what_is_asked_for_is_shown_at_once(void)
+static void test_a_kinematic_step_at_the_targets_changes_nothing(void)
 {
     himc_pose before = pose;
     show(1);
@@ -59,7 +59,7 @@ static void test_what_is_asked_for_is_shown_at_once(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1, fabs(himc_quat_dot(before.joint[j], pose.joint[j])));
 }
 
-static void test_tips_go_where_the_joint_targets_do_not_have_them(void)
+static void test_tips_reach_targets_that_the_joint_targets_miss(void)
 {
     static const int steps[HIMC_SOLVERS] = {[HIMC_SOLVER_DLS] = 8,
                                             [HIMC_SOLVER_PINV] = 8,
@@ -130,8 +130,8 @@ static void test_a_moving_tip_is_met_in_place_and_speed(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_what_is_asked_for_is_shown_at_once);
-    RUN_TEST(test_tips_go_where_the_joint_targets_do_not_have_them);
+    RUN_TEST(test_a_kinematic_step_at_the_targets_changes_nothing);
+    RUN_TEST(test_tips_reach_targets_that_the_joint_targets_miss);
     RUN_TEST(test_damping_slows_a_step_as_the_solver_says);
     RUN_TEST(test_the_null_space_is_for_the_joint_targets_or_for_nothing);
     RUN_TEST(test_a_moving_tip_is_met_in_place_and_speed);

@@ -76,7 +76,7 @@ static void learn(double margin)
     TEST_ASSERT_TRUE_MESSAGE(learned, error.text);
 }
 
-static void test_mean_of_rotations_is_their_centre_whatever_their_signs(void)
+static void test_mean_of_rotations_does_not_depend_on_signs(void)
 {
     himc_pose mean = random_pose(), axes = random_pose();
     spread_motion(&mean, &axes, himc_vec3_make(0.35, 0.16, 0.04));
@@ -334,7 +334,7 @@ static void test_table_1_of_the_right_arm_mirrors_the_left(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_mean_of_rotations_is_their_centre_whatever_their_signs);
+    RUN_TEST(test_mean_of_rotations_does_not_depend_on_signs);
     RUN_TEST(test_mean_of_one_rotation_is_that_rotation_and_of_two_the_middle);
     RUN_TEST(test_learned_axes_and_radii_are_those_of_the_distribution);
     RUN_TEST(test_learned_bounds_contain_the_motion_and_touch_it);

@@ -108,7 +108,7 @@ static void test_boxes_of_table_1_touch_their_ellipsoids_on_every_side(void)
     }
 }
 
-static void test_a_turn_about_one_axis_as_far_as_the_box_goes_is_on_it(void)
+static void test_a_rotation_about_one_axis_to_the_boxes_bound_is_on_the_bound(void)
 {
     limits.kind = HIMC_LIMITS_EULER;
     for (int j = 0; j < HIMC_JOINTS; j++)
@@ -130,7 +130,7 @@ static himc_quat about(double x, double y, double z)
 }
 
 // at y = pi/2 x and z rotate about the same line, and x gets the whole rotation
-static void test_at_gimbal_lock_x_gets_the_whole_rotation(void)
+static void test_in_gimbal_lock_x_gets_the_whole_rotation(void)
 {
     limits.kind = HIMC_LIMITS_EULER;
     limits.joint[ELBOW] = (himc_limit){
@@ -153,7 +153,7 @@ int main(void)
     RUN_TEST(test_neck_of_table_1_is_as_printed);
     RUN_TEST(test_arms_of_table_1_are_as_printed_and_the_right_one_mirrored);
     RUN_TEST(test_boxes_of_table_1_touch_their_ellipsoids_on_every_side);
-    RUN_TEST(test_a_turn_about_one_axis_as_far_as_the_box_goes_is_on_it);
-    RUN_TEST(test_at_gimbal_lock_x_gets_the_whole_rotation);
+    RUN_TEST(test_a_rotation_about_one_axis_to_the_boxes_bound_is_on_the_bound);
+    RUN_TEST(test_in_gimbal_lock_x_gets_the_whole_rotation);
     return UNITY_END();
 }

@@ -150,7 +150,7 @@ static void test_four_timpani_are_reached_by_turning(void)
     himc_performance_free(p);
 }
 
-static void test_drums_that_nobody_placed_stand_beside_each_other_in_reach(void)
+static void test_drums_without_a_place_stand_beside_each_other_in_reach(void)
 {
     static const int inches[] = {32, 29, 26};
     himc_performance *p = session_new();
@@ -338,7 +338,7 @@ static void test_ten_thousand_commands_a_second_change_nothing_for_the_other_han
     himc_performance_free(p);
 }
 
-static void test_what_no_player_can_do_is_refused_in_one_line(void)
+static void test_impossible_commands_are_refused_in_one_line(void)
 {
     himc_performance *p = with_kettle();
     static const char *const bad[][2] = {{"tempo -60", "BPM"},
@@ -403,13 +403,13 @@ int main(void)
     RUN_TEST(test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_end_at_rest);
     RUN_TEST(test_one_hand_is_live_while_the_other_plays_its_score);
     RUN_TEST(test_four_timpani_are_reached_by_turning);
-    RUN_TEST(test_drums_that_nobody_placed_stand_beside_each_other_in_reach);
+    RUN_TEST(test_drums_without_a_place_stand_beside_each_other_in_reach);
     RUN_TEST(test_no_timpano_is_out_of_reach_of_either_hand);
     RUN_TEST(test_two_players_do_not_disturb_each_other);
     RUN_TEST(test_french_grip_plays_with_the_fingers_german_with_the_wrist);
     RUN_TEST(test_palms_are_down_in_german_and_face_each_other_in_french);
     RUN_TEST(test_ten_thousand_commands_a_second_change_nothing_for_the_other_hand);
-    RUN_TEST(test_what_no_player_can_do_is_refused_in_one_line);
+    RUN_TEST(test_impossible_commands_are_refused_in_one_line);
     RUN_TEST(test_a_million_strokes_are_refused_in_one_line_and_in_time);
     RUN_TEST(test_units_of_a_real_stroke_are_played_on_the_beat);
     return UNITY_END();

@@ -155,7 +155,7 @@ static double roughness(int from, int to)
     return most;
 }
 
-// a blow's sound, 0.2 s old
+// the sound of a strike, 0.2 s old
 static void ring(void)
 {
     for (int i = 0; i < 300; i++) {

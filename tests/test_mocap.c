@@ -147,7 +147,7 @@ static void test_joints_move_at_human_speeds(void)
     TEST_ASSERT_TRUE(trunk < 1);
 }
 
-// a stroke whose lift would end 5 ms after the next fall begins
+// a stroke with a lift that would end 5 ms after the next fall begins
 static void test_strokes_that_overlap_follow_each_other_without_a_jump(void)
 {
     mocap_curve curve;

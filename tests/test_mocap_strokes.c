@@ -206,7 +206,7 @@ static void learn(int unseen, int nuance, himc_posture_regression *regression)
     }
 }
 
-static void test_joints_of_an_unknown_player_follow_from_the_tips_within_a_degree(void)
+static void test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree(void)
 {
     double worst = 0;
     for (int unseen = 0; unseen < HIMC_MOCAP_PLAYERS; unseen++) {
@@ -238,7 +238,7 @@ static void test_joints_of_an_unknown_player_follow_from_the_tips_within_a_degre
     TEST_ASSERT_TRUE(worst <= 1);
 }
 
-static void test_the_readme_has_the_measured_table(void)
+static void test_mocap_readme_has_the_measured_table(void)
 {
     static char table[8192], readme[32768];
     FILE *file = fopen("mocap/README.md", "r");
@@ -261,7 +261,7 @@ int main(void)
     RUN_TEST(test_nuances_are_ordered_as_in_the_captures);
     RUN_TEST(test_the_accent_is_high_and_narrow_vertical_accent_and_staccato_deep);
     RUN_TEST(test_the_elbow_falls_before_the_stick_does);
-    RUN_TEST(test_joints_of_an_unknown_player_follow_from_the_tips_within_a_degree);
-    RUN_TEST(test_the_readme_has_the_measured_table);
+    RUN_TEST(test_joints_of_an_unseen_player_follow_from_the_tips_within_a_degree);
+    RUN_TEST(test_mocap_readme_has_the_measured_table);
     return UNITY_END();
 }

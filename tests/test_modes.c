@@ -97,7 +97,7 @@ static void test_modes_are_in_order_each_once_and_pairs_together(void)
     himc_modes_free(modes);
 }
 
-// every (m, n) whose zero lies below the last one's is in the list, and nothing else is
+// the list has every (m, n) with a zero below the last one's, and no other
 static void test_modes_list_has_no_hole(void)
 {
     himc_modes *modes = himc_modes_new(&circle, 501, &error);

@@ -50,7 +50,7 @@ static void test_noise_is_measured_through_motion_of_any_size_at_any_rate(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_noise(x, 4));
 }
 
-// blows every 0.5 s, with smooth motion between them
+// strikes every 0.5 s, with smooth motion between them
 static himc_vec3 drumming(double t)
 {
     touch_time = 0.3 + 0.5 * floor(fmax(0, t) / 0.5);

@@ -155,7 +155,7 @@ static void test_a_taken_port_gives_one_clear_line(void)
 }
 
 // the only test with the network thread and the clock of the system
-static void test_the_network_thread_serves_by_itself(void)
+static void test_the_network_thread_serves_a_subscription(void)
 {
     himc_error error;
     himc_osc_free(osc);
@@ -184,6 +184,6 @@ int main(void)
     RUN_TEST(test_time_tag_is_ntp_time);
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);
-    RUN_TEST(test_the_network_thread_serves_by_itself);
+    RUN_TEST(test_the_network_thread_serves_a_subscription);
     return UNITY_END();
 }

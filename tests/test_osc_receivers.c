@@ -33,7 +33,7 @@ static void test_subscriptions_change_and_end_while_playing(void)
     TEST_ASSERT_EQUAL_INT(0, count("/himc/targets"));
 }
 
-static void test_a_receiver_that_vanishes_is_told_once_and_found_again(void)
+static void test_a_vanished_receiver_is_noted_once_and_found_again(void)
 {
     char atoms[64];
     int port = 0, other = open_ear(&port), lines = 0;
@@ -69,7 +69,7 @@ static void subscribe_unreachable(void)
     TEST_ASSERT_TRUE(himc_osc_command(osc, &command, &error));
 }
 
-static void test_an_address_unreachable_is_one_line_and_stalls_nobody(void)
+static void test_an_unreachable_address_gives_one_line_and_delays_no_other(void)
 {
     subscribe_unreachable();
     subscribe("pose");
@@ -81,7 +81,7 @@ static void test_an_address_unreachable_is_one_line_and_stalls_nobody(void)
     TEST_ASSERT_TRUE(himc_osc_count(osc).unsent > 0);
 }
 
-static void test_an_address_unreachable_is_tried_once_a_second(void)
+static void test_an_unreachable_address_is_tried_once_a_second(void)
 {
     subscribe_unreachable();
     play(0.2);
@@ -91,7 +91,7 @@ static void test_an_address_unreachable_is_tried_once_a_second(void)
     TEST_ASSERT_INT_WITHIN(2, 2 * 5, himc_osc_count(osc).unsent - before);
 }
 
-static void test_an_address_unreachable_is_forgotten_after_a_minute(void)
+static void test_an_unreachable_address_is_removed_after_a_minute(void)
 {
     subscribe_unreachable();
     play(0.02);
@@ -127,7 +127,7 @@ static void test_subscriptions_outlive_listening_elsewhere(void)
     TEST_ASSERT_INT_WITHIN(20, 20 * 16, count("/himc/body"));
 }
 
-static void test_an_unknown_name_of_a_host_stalls_nobody(void)
+static void test_an_unknown_host_name_delays_no_other_subscriber(void)
 {
     himc_command command;
     himc_error error;
@@ -184,12 +184,12 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_subscriptions_change_and_end_while_playing);
-    RUN_TEST(test_a_receiver_that_vanishes_is_told_once_and_found_again);
-    RUN_TEST(test_an_address_unreachable_is_one_line_and_stalls_nobody);
-    RUN_TEST(test_an_address_unreachable_is_tried_once_a_second);
-    RUN_TEST(test_an_address_unreachable_is_forgotten_after_a_minute);
+    RUN_TEST(test_a_vanished_receiver_is_noted_once_and_found_again);
+    RUN_TEST(test_an_unreachable_address_gives_one_line_and_delays_no_other);
+    RUN_TEST(test_an_unreachable_address_is_tried_once_a_second);
+    RUN_TEST(test_an_unreachable_address_is_removed_after_a_minute);
     RUN_TEST(test_subscriptions_outlive_listening_elsewhere);
-    RUN_TEST(test_an_unknown_name_of_a_host_stalls_nobody);
+    RUN_TEST(test_an_unknown_host_name_delays_no_other_subscriber);
     RUN_TEST(test_200_subscriptions_are_served_and_the_257th_refused);
     return UNITY_END();
 }

@@ -44,7 +44,7 @@ static void test_files_outside_the_folder_are_refused_however_they_are_named(voi
     rmdir(folder);
 }
 
-static void test_nobody_makes_it_send_to_a_third_host(void)
+static void test_no_stranger_directs_packets_to_a_third_host(void)
 {
     static const char *const bad[] = {"192.0.2.1 9 pose", "example.org 9 pose",
                                       "::1%lo 9 pose",    "255.255.255.255 9 pose",
@@ -82,7 +82,7 @@ static void test_no_file_is_written_or_read_by_other_commands(void)
     TEST_ASSERT_EQUAL_INT(-1, access("himc-osc-stranger.c3d", F_OK));
 }
 
-static void test_nobody_removes_what_another_host_subscribed(void)
+static void test_no_stranger_removes_subscriptions_of_another_host(void)
 {
     himc_command command;
     himc_error error;
@@ -219,7 +219,7 @@ static void test_strangers_get_50_answers_a_second(void)
 }
 
 // as when the network thread stands still
-static void test_a_full_ring_is_counted_and_stops_nobody(void)
+static void test_a_full_ring_is_counted_and_blocks_no_call(void)
 {
     osc_ring ring = {0};
     int *slot;
@@ -255,7 +255,7 @@ static size_t storm_packet(char data[64], int i)
 }
 
 // 100,000 packets a second for two: 8000 are read at once and 8000 a second, the rest is counted
-static void test_a_storm_is_counted_and_the_pose_goes_on(void)
+static void test_a_storm_is_counted_and_poses_continue(void)
 {
     enum { BLOCKS = 500, BURST = 400 };
     char data[64];
@@ -314,9 +314,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_no_file_is_read_over_the_network_unless_allowed);
     RUN_TEST(test_files_outside_the_folder_are_refused_however_they_are_named);
-    RUN_TEST(test_nobody_makes_it_send_to_a_third_host);
+    RUN_TEST(test_no_stranger_directs_packets_to_a_third_host);
     RUN_TEST(test_no_file_is_written_or_read_by_other_commands);
-    RUN_TEST(test_nobody_removes_what_another_host_subscribed);
+    RUN_TEST(test_no_stranger_removes_subscriptions_of_another_host);
     RUN_TEST(test_our_own_addresses_are_never_answered);
     RUN_TEST(test_malformed_packets_are_counted);
     RUN_TEST(test_the_audio_side_never_allocates);
@@ -324,8 +324,8 @@ int main(void)
     RUN_TEST(test_a_command_that_takes_long_is_the_last_of_its_block);
     RUN_TEST(test_commands_beyond_1000_points_a_second_are_counted);
     RUN_TEST(test_strangers_get_50_answers_a_second);
-    RUN_TEST(test_a_full_ring_is_counted_and_stops_nobody);
-    RUN_TEST(test_a_storm_is_counted_and_the_pose_goes_on);
+    RUN_TEST(test_a_full_ring_is_counted_and_blocks_no_call);
+    RUN_TEST(test_a_storm_is_counted_and_poses_continue);
     RUN_TEST(test_packets_lost_in_the_system_are_counted);
     return UNITY_END();
 }

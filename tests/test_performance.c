@@ -214,7 +214,7 @@ static void test_process_never_allocates_after_the_first_stroke(void)
     himc_performance_free(p);
 }
 
-static void test_bad_commands_change_nothing_and_name_what_is_allowed(void)
+static void test_bad_commands_change_nothing_and_name_the_allowed_values(void)
 {
     himc_performance *p = with_score(PIECE);
     static const char *const bad[][2] = {{"gain knuckle 1 1", "left-wrist"},
@@ -248,7 +248,7 @@ static void test_target_out_of_reach_is_clamped_with_one_line(void)
     himc_performance_free(p);
 }
 
-static void test_drum_that_nobody_has_is_silent_and_said_once(void)
+static void test_unknown_drum_is_silent_and_noted_once(void)
 {
     himc_performance *p = new_performance();
     himc_event event;
@@ -355,7 +355,7 @@ static void test_real_stroke_strikes_the_drum_from_its_bead_alone(void)
 
 // the stick in micro-contact and the body's own tip feel one impulse: only what the inertia changes
 // in a step parts them; and once they leave the head the plan goes on from where the tip really is
-static void test_stick_and_body_stay_together_and_the_plan_joins_the_tip(void)
+static void test_stick_and_body_tip_stay_together_and_the_plan_joins_the_tip(void)
 {
     himc_performance *p = with_score(PIECE);
     double parted = 0, away = 0, slip = 0;
@@ -405,7 +405,7 @@ static void sound_of(himc_performance *p, double *sound)
     himc_performance_free(p);
 }
 
-static void test_calls_for_C_programs_do_as_the_commands_of_the_same_name(void)
+static void test_calls_for_C_programs_equal_the_commands_of_the_same_name(void)
 {
     static double typed[RATE], told[RATE];
     const himc_stroke stroke = {
@@ -465,16 +465,16 @@ int main(void)
     RUN_TEST(test_one_way_coupling_also_sounds);
     RUN_TEST(test_strikes_are_reported_as_they_were_asked_for);
     RUN_TEST(test_process_never_allocates_after_the_first_stroke);
-    RUN_TEST(test_bad_commands_change_nothing_and_name_what_is_allowed);
+    RUN_TEST(test_bad_commands_change_nothing_and_name_the_allowed_values);
     RUN_TEST(test_target_out_of_reach_is_clamped_with_one_line);
-    RUN_TEST(test_drum_that_nobody_has_is_silent_and_said_once);
+    RUN_TEST(test_unknown_drum_is_silent_and_noted_once);
     RUN_TEST(test_commands_wait_for_their_sample);
     RUN_TEST(test_any_gain_stays_finite_and_recovers);
     RUN_TEST(test_sample_rate_changes_while_playing);
     RUN_TEST(test_realign_does_not_disturb_the_sound);
-    RUN_TEST(test_stick_and_body_stay_together_and_the_plan_joins_the_tip);
+    RUN_TEST(test_stick_and_body_tip_stay_together_and_the_plan_joins_the_tip);
     RUN_TEST(test_a_late_stroke_is_not_counted_as_played);
-    RUN_TEST(test_calls_for_C_programs_do_as_the_commands_of_the_same_name);
+    RUN_TEST(test_calls_for_C_programs_equal_the_commands_of_the_same_name);
     RUN_TEST(test_calls_for_C_programs_refuse_what_is_out_of_range);
     RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
     return UNITY_END();

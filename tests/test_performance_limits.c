@@ -85,7 +85,7 @@ static void test_limits_that_are_hit_show_in_info_in_rows_of_motion_and_in_figur
     }
 }
 
-static void test_limits_of_a_take_hold_its_own_motion(void)
+static void test_limits_of_a_take_contain_its_motion(void)
 {
     char path[] = "/tmp/himc-limits-XXXXXX.bvh";
     int file = mkstemps(path, 4);
@@ -114,7 +114,7 @@ static void test_limits_of_a_take_hold_its_own_motion(void)
 }
 
 // joints that a take hardly moves may move by 0.05 rad, others by a twentieth more than they did
-static void test_limits_of_a_take_are_nowhere_narrower_than_0_05(void)
+static void test_limits_of_a_take_are_at_least_0_05_wide(void)
 {
     enum { FRAMES = 100, ELBOW = HIMC_LEFT_FOREARM - 1 };
     static himc_pose pose[FRAMES];
@@ -138,7 +138,7 @@ static void test_limits_of_a_take_are_nowhere_narrower_than_0_05(void)
     }
 }
 
-static void test_a_joint_shown_at_its_bounds_does_not_move_on(void)
+static void test_a_kinematic_joint_at_its_bounds_stops(void)
 {
     himc_vec3 rate[HIMC_JOINTS], moves = {1, 2, 3}, stands = {0, 0, 0};
     himc_performance *p = piece();
@@ -163,7 +163,7 @@ static void test_a_joint_shown_at_its_bounds_does_not_move_on(void)
     himc_performance_free(p);
 }
 
-static void test_strength_of_a_joint_is_counted_where_it_does_not_suffice(void)
+static void test_too_little_strength_of_a_joint_is_counted(void)
 {
     himc_performance *p = piece();
     session_do(p, "strength left-wrist 0.2");
@@ -176,7 +176,7 @@ static void test_strength_of_a_joint_is_counted_where_it_does_not_suffice(void)
     himc_performance_free(p);
 }
 
-static void test_human_strength_plays_accents_and_goes_with_the_players_mass(void)
+static void test_human_strength_plays_accents_and_grows_with_the_players_mass(void)
 {
     himc_performance *p = piece();
     session_do(p, "strength human");
@@ -192,10 +192,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_limits_are_off_until_asked_for_and_after_reset);
     RUN_TEST(test_limits_that_are_hit_show_in_info_in_rows_of_motion_and_in_figures);
-    RUN_TEST(test_limits_of_a_take_hold_its_own_motion);
-    RUN_TEST(test_limits_of_a_take_are_nowhere_narrower_than_0_05);
-    RUN_TEST(test_a_joint_shown_at_its_bounds_does_not_move_on);
-    RUN_TEST(test_strength_of_a_joint_is_counted_where_it_does_not_suffice);
-    RUN_TEST(test_human_strength_plays_accents_and_goes_with_the_players_mass);
+    RUN_TEST(test_limits_of_a_take_contain_its_motion);
+    RUN_TEST(test_limits_of_a_take_are_at_least_0_05_wide);
+    RUN_TEST(test_a_kinematic_joint_at_its_bounds_stops);
+    RUN_TEST(test_too_little_strength_of_a_joint_is_counted);
+    RUN_TEST(test_human_strength_plays_accents_and_grows_with_the_players_mass);
     return UNITY_END();
 }

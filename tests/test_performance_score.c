@@ -1,5 +1,5 @@
-/// test_performance_score.c: lines of a score that act on what it plays: hits, a take, a beat to
-/// begin at; and a take whose sides are exchanged.
+/// test_performance_score.c: lines of a score that act on its strokes: hits, a take, a first beat;
+/// and a take with exchanged sides.
 #include "take_players.h"
 
 #include "session.h"
@@ -54,7 +54,7 @@ static void test_a_hit_in_a_score_is_played_when_it_is_loaded(void)
     heard_free(&h);
 }
 
-static void test_a_seek_in_a_score_is_where_it_begins(void)
+static void test_a_score_begins_at_its_seek(void)
 {
     static const char *const text[] = {
         "tempo 240; stroke 0 left legato mf; stroke 2 right accent mf;"
@@ -101,7 +101,7 @@ static void exchange_sides(himc_take *take)
     }
 }
 
-static void test_a_take_whose_left_and_right_are_exchanged_is_refused(void)
+static void test_a_take_with_left_and_right_exchanged_is_refused(void)
 {
     for (int exchanged = 0; exchanged < 2; exchanged++) {
         himc_take *take = made_take(TRC);
@@ -123,9 +123,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_hit_in_a_score_is_played_when_it_is_loaded);
-    RUN_TEST(test_a_seek_in_a_score_is_where_it_begins);
+    RUN_TEST(test_a_score_begins_at_its_seek);
     RUN_TEST(test_a_take_in_a_score_without_strokes_is_played);
     RUN_TEST(test_a_take_in_a_score_with_strokes_is_refused_with_its_line);
-    RUN_TEST(test_a_take_whose_left_and_right_are_exchanged_is_refused);
+    RUN_TEST(test_a_take_with_left_and_right_exchanged_is_refused);
     return UNITY_END();
 }

@@ -113,7 +113,7 @@ static void test_stroke_before_an_accent_is_lifted_higher(void)
     TEST_ASSERT_TRUE(accent > 1.3 * legato);
 }
 
-static void test_downstroke_only_falls(void)
+static void test_downstroke_never_rises(void)
 {
     for (int nuance = 0; nuance < HIMC_NUANCES; nuance++)
         for (double step = 0.15; step < 2; step *= 1.4) {
@@ -217,7 +217,7 @@ static void test_acceleration_has_no_jumps_even_when_the_tempo_changes(void)
     TEST_ASSERT_TRUE_MESSAGE(jump < 1e-4 * range, "acceleration jumps");
 }
 
-static void test_plan_goes_on_from_the_measured_state_at_separation(void)
+static void test_plan_continues_from_the_measured_state_at_separation(void)
 {
     for (int i = 0; i < 10; i++)
         add(planner, 2 + i, HIMC_RIGHT, (himc_nuance)(i % 5), 0.7);
@@ -267,10 +267,10 @@ int main(void)
     RUN_TEST(test_nuances_keep_their_order_of_height_and_depth_at_every_dynamic);
     RUN_TEST(test_staccato_is_pulled_off_faster_than_it_strikes);
     RUN_TEST(test_stroke_before_an_accent_is_lifted_higher);
-    RUN_TEST(test_downstroke_only_falls);
+    RUN_TEST(test_downstroke_never_rises);
     RUN_TEST(test_tip_stays_between_head_and_one_metre_above_it);
     RUN_TEST(test_acceleration_has_no_jumps_even_when_the_tempo_changes);
-    RUN_TEST(test_plan_goes_on_from_the_measured_state_at_separation);
+    RUN_TEST(test_plan_continues_from_the_measured_state_at_separation);
     RUN_TEST(test_tip_lands_on_the_other_drum_along_its_normal);
     return UNITY_END();
 }

@@ -238,7 +238,7 @@ static double storm(unsigned seed, int commands)
     return digest;
 }
 
-static void test_tip_thrown_off_a_head_is_halted_within_15_cm(void)
+static void test_tip_thrown_off_a_head_stops_within_15_cm(void)
 {
     for (double speed = 1; speed <= 16; speed *= 2) {
         himc_target off = {{0.45, 0.1, PLANE}, {-speed, 0, 1}, {0, 0, 0}};
@@ -275,7 +275,7 @@ static void test_values_that_are_not_finite_change_nothing(void)
     same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
 }
 
-/// A planner of one drum whose hands reach as `beyond` says, with `strokes` of alternating hands.
+/// A planner of one drum with a reach given by `beyond`, with `strokes` of alternating hands.
 static void use_reach(double (*beyond)(const void *body, himc_hand hand, himc_vec3 point),
                       int strokes)
 {
@@ -381,7 +381,7 @@ int main(void)
     RUN_TEST(test_strokes_nearer_than_40_ms_or_on_no_drum_are_refused);
     RUN_TEST(test_stroke_added_while_playing_is_played);
     RUN_TEST(test_state_is_continuous_through_every_command);
-    RUN_TEST(test_tip_thrown_off_a_head_is_halted_within_15_cm);
+    RUN_TEST(test_tip_thrown_off_a_head_stops_within_15_cm);
     RUN_TEST(test_motion_stays_finite_and_near_through_ten_thousand_random_commands);
     RUN_TEST(test_the_same_commands_give_the_same_bits);
     RUN_TEST(test_values_that_are_not_finite_change_nothing);

@@ -98,7 +98,7 @@ static void test_ik_shows_the_captured_joints(void)
     TEST_ASSERT_TRUE(degrees_rms(&w) < 1);
 }
 
-static void test_himc_plays_it_from_the_tips_alone(void)
+static void test_himc_plays_a_take_from_the_tips_alone(void)
 {
     watch w;
     save_take(250);
@@ -128,7 +128,7 @@ static void test_the_performer_gets_the_players_body_and_seat(void)
     bool said = false;
     save_take(250);
     session_do(p, "take %s", FILE_NAME);
-    snprintf(line, sizeof line, "%s: the player's body has", FILE_NAME);
+    snprintf(line, sizeof line, "%s: the player's body: ", FILE_NAME);
     while (himc_performance_event(p, &event))
         said = said || (event.kind == HIMC_EVENT_NOTE && strstr(event.text, line) &&
                         strstr(event.text, "1.82 m"));
@@ -136,7 +136,7 @@ static void test_the_performer_gets_the_players_body_and_seat(void)
     himc_performance_free(p);
 }
 
-static void test_a_drum_elsewhere_is_moved_under_the_strikes_and_struck(void)
+static void test_a_drum_in_another_place_is_moved_under_the_strikes_and_struck(void)
 {
     himc_performance *p = session_new();
     himc_drum *drum = himc_drum_new("kettle", 23, 48000, &error);
@@ -199,10 +199,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_id_follows_the_captured_joints_and_rebounds_by_physics);
     RUN_TEST(test_ik_shows_the_captured_joints);
-    RUN_TEST(test_himc_plays_it_from_the_tips_alone);
+    RUN_TEST(test_himc_plays_a_take_from_the_tips_alone);
     RUN_TEST(test_any_rate_of_capture_is_played);
     RUN_TEST(test_the_performer_gets_the_players_body_and_seat);
-    RUN_TEST(test_a_drum_elsewhere_is_moved_under_the_strikes_and_struck);
+    RUN_TEST(test_a_drum_in_another_place_is_moved_under_the_strikes_and_struck);
     RUN_TEST(test_another_take_and_a_score_follow_a_take);
     RUN_TEST(test_a_take_that_is_refused_changes_nothing);
     return UNITY_END();

@@ -2,7 +2,7 @@
 /// zero pose and unit; impossible bodies are refused.
 #include "read_players.h"
 
-static void test_measures_of_a_skeleton_take_are_the_bodys_own(void)
+static void test_measures_of_a_skeleton_take_are_those_of_the_body(void)
 {
     himc_skeleton_config config = another_player();
     make_take(&config);
@@ -242,7 +242,7 @@ static void test_a_cmu_skeleton_gives_a_player_of_human_size(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_measures_of_a_skeleton_take_are_the_bodys_own);
+    RUN_TEST(test_measures_of_a_skeleton_take_are_those_of_the_body);
     RUN_TEST(test_mass_that_is_not_stated_keeps_the_body_mass_index);
     RUN_TEST(test_mass_and_height_stated_by_the_file_are_used);
     RUN_TEST(test_poses_of_a_skeleton_take_come_back_unchanged);

@@ -55,7 +55,7 @@ static void test_a_real_stroke_is_found_again_after_a_push_of_the_forearm(void)
                           .direction = {0, 0, -1}});
 }
 
-static void test_a_push_does_what_force_over_time_does(void)
+static void test_a_push_acts_as_a_force_for_its_time(void)
 {
     himc_character *c;
     himc_skeleton body;
@@ -86,7 +86,7 @@ static void refused(const char *text, const char *why)
     himc_performance_free(p);
 }
 
-static void test_pushes_of_nothing_or_too_hard_are_refused_in_one_line(void)
+static void test_pushes_of_unknown_segments_or_too_hard_are_refused_in_one_line(void)
 {
     refused("push pelvis 1 0 0 1", "push: SEGMENT: pelvis, allowed trunk neck head left-upper-arm");
     refused("push tail 1 0 0 1", "push: SEGMENT: tail, allowed trunk neck");
@@ -98,8 +98,8 @@ static void test_pushes_of_nothing_or_too_hard_are_refused_in_one_line(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_a_push_does_what_force_over_time_does);
-    RUN_TEST(test_pushes_of_nothing_or_too_hard_are_refused_in_one_line);
+    RUN_TEST(test_a_push_acts_as_a_force_for_its_time);
+    RUN_TEST(test_pushes_of_unknown_segments_or_too_hard_are_refused_in_one_line);
     RUN_TEST(test_the_hand_pushed_forward_comes_back_by_computed_torque);
     RUN_TEST(test_a_stick_pushed_up_comes_back_by_the_printed_law_at_gains_of_a_tenth);
     RUN_TEST(test_the_trunk_pushed_aside_comes_back_by_feedforward_at_gains_ten_times);

@@ -103,7 +103,7 @@ static void test_himc_has_elbow_and_wrist_within_2_cm_from_the_bead_alone(void)
     expect_near("himc");
 }
 
-static void test_id_has_them_within_2_cm_from_the_joints(void)
+static void test_id_has_elbow_and_wrist_within_2_cm_from_the_joints(void)
 {
     expect_near("id");
 }
@@ -112,6 +112,6 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_himc_has_elbow_and_wrist_within_2_cm_from_the_bead_alone);
-    RUN_TEST(test_id_has_them_within_2_cm_from_the_joints);
+    RUN_TEST(test_id_has_elbow_and_wrist_within_2_cm_from_the_joints);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/// test_recording.c: what is played, written as a take, plays back to the same strokes.
+/// test_recording.c: a recording, written as a take, plays back to the same strokes.
 #include "session.h"
 #include "capture/take.h"
 

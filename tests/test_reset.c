@@ -134,73 +134,77 @@ static void process(himc_performance *p, unsigned *seed, double seconds)
 }
 
 // a command of a random kind; some are refused in some states
-static void random_command(himc_performance *p, unsigned *seed, char *story)
+// commands without random numbers
+static const char *const plain_commands[] = {"play",
+                                             "stop",
+                                             "clear",
+                                             "loop 1",
+                                             "loop 0",
+                                             "seek 1.5",
+                                             "mode id",
+                                             "mode ik",
+                                             "mode himc",
+                                             "solver sdls",
+                                             "solver transpose",
+                                             "law printed",
+                                             "law feedforward",
+                                             "damping 0.1",
+                                             "posture 0",
+                                             "bend 0",
+                                             "elbow 1",
+                                             "weights 1 0.5 2 1",
+                                             "gain right-wrist 20 0.5",
+                                             "gain frequency 2",
+                                             "gain reset",
+                                             "limits ellipsoid",
+                                             "limits euler",
+                                             "strength human",
+                                             "strength left-elbow 3",
+                                             "rate physics 700",
+                                             "rate task 100",
+                                             "coupling one-way",
+                                             "grip french",
+                                             "player 1.9 95",
+                                             "player 1.6 50",
+                                             "push trunk 100 -50 20 0.2",
+                                             "push left-forearm 0 0 60 1",
+                                             "take " TAKE,
+                                             "take " TAKE,
+                                             "drum tom 26",
+                                             "drum tam 29",
+                                             "units " TAKE " accent",
+                                             "units clear",
+                                             "score " SCORE,
+                                             "record build/reset-out.bvh",
+                                             "record stop",
+                                             "reset"};
+
+// writes one command of a random kind, with random atoms
+static void random_text(char *text, size_t size, unsigned *seed)
 {
     static const char *const hands[] = {"left", "right"},
                              *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent",
                                                  "staccato"},
-                             *const drums[] = {"", " normal silent", " rim kettle", " 0.05 0.1"},
-                             *const plain[] = {"play",
-                                               "stop",
-                                               "clear",
-                                               "loop 1",
-                                               "loop 0",
-                                               "seek 1.5",
-                                               "mode id",
-                                               "mode ik",
-                                               "mode himc",
-                                               "solver sdls",
-                                               "solver transpose",
-                                               "law printed",
-                                               "law feedforward",
-                                               "damping 0.1",
-                                               "posture 0",
-                                               "bend 0",
-                                               "elbow 1",
-                                               "weights 1 0.5 2 1",
-                                               "gain right-wrist 20 0.5",
-                                               "gain frequency 2",
-                                               "gain reset",
-                                               "limits ellipsoid",
-                                               "limits euler",
-                                               "strength human",
-                                               "strength left-elbow 3",
-                                               "rate physics 700",
-                                               "rate task 100",
-                                               "coupling one-way",
-                                               "grip french",
-                                               "player 1.9 95",
-                                               "player 1.6 50",
-                                               "push trunk 100 -50 20 0.2",
-                                               "push left-forearm 0 0 60 1",
-                                               "take " TAKE,
-                                               "take " TAKE,
-                                               "drum tom 26",
-                                               "drum tam 29",
-                                               "units " TAKE " accent",
-                                               "units clear",
-                                               "score " SCORE,
-                                               "record build/reset-out.bvh",
-                                               "record stop",
-                                               "reset"};
-    char text[200];
+                             *const drums[] = {"", " normal silent", " rim kettle", " 0.05 0.1"};
+    const int plain = sizeof plain_commands / sizeof plain_commands[0];
     const char *hand = hands[choose(seed, 2)], *nuance = nuances[choose(seed, 5)],
                *drum = drums[choose(seed, 4)];
     double x = chance(seed), y = chance(seed), z = chance(seed);
     switch (choose(seed, 8)) {
-    case 0:
-        snprintf(text, sizeof text, "stroke %.2f %s %s %.2f%s", 3 * x, hand, nuance, y, drum);
-        break;
-    case 1: snprintf(text, sizeof text, "hit %s %s %.2f%s", hand, nuance, x, drum); break;
+    case 0: snprintf(text, size, "stroke %.2f %s %s %.2f%s", 3 * x, hand, nuance, y, drum); break;
+    case 1: snprintf(text, size, "hit %s %s %.2f%s", hand, nuance, x, drum); break;
     case 2:
-        snprintf(text, sizeof text, "target %s %.3f %.3f %.3f", hand, 0.3 + 0.5 * x, y - 0.5,
-                 0.7 + z);
+        snprintf(text, size, "target %s %.3f %.3f %.3f", hand, 0.3 + 0.5 * x, y - 0.5, 0.7 + z);
         break;
-    case 3: snprintf(text, sizeof text, "tempo %.1f", 60 + 200 * x); break;
-    default:
-        snprintf(text, sizeof text, "%s",
-                 plain[choose(seed, (int)(sizeof plain / sizeof plain[0]))]);
+    case 3: snprintf(text, size, "tempo %.1f", 60 + 200 * x); break;
+    default: snprintf(text, size, "%s", plain_commands[choose(seed, plain)]);
     }
+}
+
+static void random_command(himc_performance *p, unsigned *seed, char *story)
+{
+    char text[200];
+    random_text(text, sizeof text, seed);
     snprintf(story + strlen(story), 1000 - strlen(story), "%s; ", text);
     himc_command c;
     himc_error ignored;

@@ -66,7 +66,7 @@ static void test_himc_puts_the_tips_of_a_longer_arm_at_the_captured_positions(vo
     TEST_ASSERT_TRUE(play() < 1e-4);
 }
 
-static void test_id_does_so_with_arms_bent_to_the_tips(void)
+static void test_id_with_bent_arms_puts_the_tips_at_the_captured_positions(void)
 {
     lengthen_arms();
     tell("mode id");
@@ -97,7 +97,7 @@ static void keep_mode(void *user, const char *line)
         snprintf(user, 256, "%s", line);
 }
 
-static void test_reset_bends_again(void)
+static void test_reset_bends_arms_again(void)
 {
     char mode[256] = "";
     lengthen_arms();
@@ -115,9 +115,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_himc_puts_the_tips_of_a_longer_arm_at_the_captured_positions);
-    RUN_TEST(test_id_does_so_with_arms_bent_to_the_tips);
+    RUN_TEST(test_id_with_bent_arms_puts_the_tips_at_the_captured_positions);
     RUN_TEST(test_joints_as_captured_miss_by_the_difference_in_length);
     RUN_TEST(test_joints_as_captured_have_the_tips_of_their_own_player);
-    RUN_TEST(test_reset_bends_again);
+    RUN_TEST(test_reset_bends_arms_again);
     return UNITY_END();
 }

@@ -63,7 +63,7 @@ static void test_empty_score_has_the_default_tempo(void)
     himc_score_free(s);
 }
 
-static void test_faults_are_told_with_file_and_line(void)
+static void test_errors_name_file_and_line(void)
 {
     refused(
         "play;\nstroke 1 left legatto f;",
@@ -170,7 +170,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_score_sorts_strokes_and_keeps_other_lines_in_order);
     RUN_TEST(test_empty_score_has_the_default_tempo);
-    RUN_TEST(test_faults_are_told_with_file_and_line);
+    RUN_TEST(test_errors_name_file_and_line);
     RUN_TEST(test_a_statement_of_more_than_1280_characters_is_refused_in_one_line);
     RUN_TEST(test_a_byte_order_mark_is_skipped);
     RUN_TEST(test_seconds_and_beat_are_inverse_through_tempo_changes);

@@ -181,7 +181,7 @@ static void keep_line(void *user, const char *line)
     strncat(user, line, 4000 - strlen(user));
 }
 
-static void test_score_with_a_fault_anywhere_changes_nothing(void)
+static void test_score_with_an_error_anywhere_changes_nothing(void)
 {
     static const char *const faults[][2] = {
         {"gain nose 1 1;", ":5: gain: JOINT: nose, allowed waist"},
@@ -228,7 +228,7 @@ static void test_score_with_too_many_drums_changes_nothing(void)
     himc_performance_free(p);
 }
 
-static void test_playing_nothing_is_said(void)
+static void test_play_without_strokes_gives_a_note(void)
 {
     himc_performance *p = with_kettle();
     heard h = {0};
@@ -240,7 +240,7 @@ static void test_playing_nothing_is_said(void)
     himc_performance_free(p);
 }
 
-static void test_seek_goes_on_from_another_beat(void)
+static void test_seek_continues_from_another_beat(void)
 {
     himc_performance *p = with_kettle();
     heard h = {0};
@@ -345,10 +345,10 @@ int main(void)
     RUN_TEST(test_loop_begins_again_on_its_whole_beat_and_ends_when_told);
     RUN_TEST(test_tempo_bends_a_loop_without_losing_a_stroke);
     RUN_TEST(test_scores_that_are_queued_follow_each_other_at_their_own_tempi);
-    RUN_TEST(test_score_with_a_fault_anywhere_changes_nothing);
+    RUN_TEST(test_score_with_an_error_anywhere_changes_nothing);
     RUN_TEST(test_score_with_too_many_drums_changes_nothing);
-    RUN_TEST(test_playing_nothing_is_said);
-    RUN_TEST(test_seek_goes_on_from_another_beat);
+    RUN_TEST(test_play_without_strokes_gives_a_note);
+    RUN_TEST(test_seek_continues_from_another_beat);
     RUN_TEST(test_accent_is_prepared_higher_than_legato_in_every_context);
     RUN_TEST(test_acceleration_has_no_jumps_at_any_join_even_when_the_tempo_changes);
     return UNITY_END();

@@ -32,7 +32,7 @@ static double mass_without_sticks(void)
     return sum - skeleton.segment[HIMC_LEFT_STICK].mass - skeleton.segment[HIMC_RIGHT_STICK].mass;
 }
 
-static void test_body_is_a_tree_of_20_segments_19_joints_57_freedoms(void)
+static void test_body_is_a_tree_of_20_segments_19_joints_57_degrees_of_freedom(void)
 {
     build();
     TEST_ASSERT_EQUAL_INT(20, HIMC_SEGMENTS);
@@ -142,7 +142,7 @@ static void test_trunk_is_two_parts_merged_by_parallel_axes(void)
 }
 
 // 25 g shaft and 20 g head, 0.36 m, held at 0.10 m: centre 0.252 m from the butt
-static void test_default_mallet_has_the_known_centre_and_inertias(void)
+static void test_default_mallet_has_the_expected_centre_and_inertias(void)
 {
     build();
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -317,14 +317,14 @@ static void test_length_of_a_stick_is_not_silently_ignored(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_body_is_a_tree_of_20_segments_19_joints_57_freedoms);
+    RUN_TEST(test_body_is_a_tree_of_20_segments_19_joints_57_degrees_of_freedom);
     RUN_TEST(test_arm_is_trunk_upper_arm_forearm_hand_stick);
     RUN_TEST(test_every_joint_is_found_by_its_own_name);
     RUN_TEST(test_masses_sum_to_the_performer_in_both_anthropometries);
     RUN_TEST(test_table_1_keeps_the_proportions_of_the_paper);
     RUN_TEST(test_arm_has_the_masses_and_inertias_of_de_leva);
     RUN_TEST(test_trunk_is_two_parts_merged_by_parallel_axes);
-    RUN_TEST(test_default_mallet_has_the_known_centre_and_inertias);
+    RUN_TEST(test_default_mallet_has_the_expected_centre_and_inertias);
     RUN_TEST(test_mallet_inertia_is_that_of_a_rod_and_a_ball_in_slices);
     RUN_TEST(test_left_and_right_mirror_each_other);
     RUN_TEST(test_body_scales_with_height_and_mass);

@@ -125,7 +125,7 @@ static void test_a_rate_below_40_hz_is_noted(void)
 }
 
 // by its name it is the right tip
-static void test_a_right_tip_that_is_named_as_the_left_one_leaves_the_right_hand_empty(void)
+static void test_a_right_tip_named_as_the_left_leaves_the_right_hand_without_a_tip(void)
 {
     himc_take_options options = z_up();
     himc_take_tip tips[HIMC_HANDS];
@@ -160,7 +160,7 @@ int main(void)
     RUN_TEST(test_a_jump_without_return_is_left_as_it_is);
     RUN_TEST(test_a_name_of_two_points_is_noted_and_the_first_is_read);
     RUN_TEST(test_a_rate_below_40_hz_is_noted);
-    RUN_TEST(test_a_right_tip_that_is_named_as_the_left_one_leaves_the_right_hand_empty);
+    RUN_TEST(test_a_right_tip_named_as_the_left_leaves_the_right_hand_without_a_tip);
     RUN_TEST(test_one_point_named_as_both_tips_is_refused);
     return UNITY_END();
 }

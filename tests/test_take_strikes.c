@@ -18,7 +18,7 @@ static himc_vec3 dead_stroke(double t)
     return himc_vec3_make(0.6, 0.1, 0.8 + (t < touch_time ? bounce_height(t) : 0));
 }
 
-// the same blow seen through a low-pass filter of about 40 Hz
+// the same strike seen through a low-pass filter of about 40 Hz
 static himc_vec3 blunt_bounce(double t)
 {
     double sum = 0, weight = 0, s = 0.004;

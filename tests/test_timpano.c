@@ -176,7 +176,7 @@ static void pedal(int block)
     TEST_ASSERT_TRUE(peak(sound, RATE, 3 * RATE / 2) > 0.2 * peak(sound, RATE / 4, RATE / 2));
 }
 
-static void test_timpano_pedals_from_a2_to_e3_without_a_step(void)
+static void test_timpano_glides_from_a2_to_e3_without_a_step(void)
 {
     pedal(480);
     tearDown();
@@ -199,7 +199,7 @@ static void test_timpano_is_damped_by_a_hand(void)
     TEST_ASSERT_TRUE(peak(sound, 4800, 9600) > 0.5 * before);
 }
 
-static void test_timpano_gives_each_of_several_pickups_as_if_alone(void)
+static void test_timpano_pickups_are_equal_alone_and_together(void)
 {
     static double alone[9600];
     says("pickups 3");
@@ -262,9 +262,9 @@ int main(void)
     RUN_TEST(test_timpano_decays_in_the_order_of_real_ones);
     RUN_TEST(test_timpano_concentric_modes_decay_at_once_except_near_the_kettles_resonance);
     RUN_TEST(test_timpano_without_air_is_the_ideal_membrane);
-    RUN_TEST(test_timpano_pedals_from_a2_to_e3_without_a_step);
+    RUN_TEST(test_timpano_glides_from_a2_to_e3_without_a_step);
     RUN_TEST(test_timpano_is_damped_by_a_hand);
-    RUN_TEST(test_timpano_gives_each_of_several_pickups_as_if_alone);
+    RUN_TEST(test_timpano_pickups_are_equal_alone_and_together);
     RUN_TEST(test_timpano_is_brighter_with_a_hard_mallet_and_a_hard_strike);
     return UNITY_END();
 }

@@ -70,7 +70,7 @@ static double along_normal(himc_vec3 v, const stick_contact *c)
     return himc_vec3_dot(himc_head_frame_normal(himc_drum_head_frame(drum)), v);
 }
 
-static void test_touch_point_moves_as_the_bodys_tip_does(void)
+static void test_contact_point_moves_like_the_bodys_tip(void)
 {
     double apart = 0, largest = 0;
     stick_contact before[HIMC_HANDS] = {{0}};
@@ -94,7 +94,7 @@ static void test_touch_point_moves_as_the_bodys_tip_does(void)
     TEST_ASSERT_TRUE(apart < 0.01 * largest);
 }
 
-static void test_touch_point_goes_on_from_where_the_last_step_left_it(void)
+static void test_contact_point_continues_from_the_last_step(void)
 {
     double jump = 0, offset = 0;
     stick_contact before[HIMC_HANDS] = {{0}};
@@ -117,7 +117,7 @@ static void test_touch_point_goes_on_from_where_the_last_step_left_it(void)
     TEST_ASSERT_TRUE(jump < 1e-6);
 }
 
-static void test_touch_keeps_its_mallet_to_its_end(void)
+static void test_contact_keeps_its_mallet_to_its_end(void)
 {
     himc_command wood;
     himc_drum *drum = himc_performance_drum(performance, 0);
@@ -137,7 +137,7 @@ static void test_touch_keeps_its_mallet_to_its_end(void)
     TEST_ASSERT_EQUAL_DOUBLE(1e10, c->stick.head.stiffness);
 }
 
-static void test_touches_are_told_at_every_stroke_as_it_begins(void)
+static void test_contact_onsets_are_reported_at_each_stroke(void)
 {
     himc_drum *drum = himc_performance_drum(performance, 0);
     himc_strike struck[8];
@@ -166,9 +166,9 @@ static void test_touches_are_told_at_every_stroke_as_it_begins(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_touch_point_moves_as_the_bodys_tip_does);
-    RUN_TEST(test_touch_point_goes_on_from_where_the_last_step_left_it);
-    RUN_TEST(test_touch_keeps_its_mallet_to_its_end);
-    RUN_TEST(test_touches_are_told_at_every_stroke_as_it_begins);
+    RUN_TEST(test_contact_point_moves_like_the_bodys_tip);
+    RUN_TEST(test_contact_point_continues_from_the_last_step);
+    RUN_TEST(test_contact_keeps_its_mallet_to_its_end);
+    RUN_TEST(test_contact_onsets_are_reported_at_each_stroke);
     return UNITY_END();
 }

@@ -128,7 +128,7 @@ static void test_target_is_smooth_except_at_the_contact(void)
     TEST_ASSERT_TRUE(jump[2] < 10); // the jerk of 7e5 m/s^3 after a blow
 }
 
-static void test_after_separation_the_target_goes_on_from_the_measured_state_and_rejoins(void)
+static void test_after_separation_the_target_continues_from_the_measured_state_and_rejoins(void)
 {
     make_take(4, 0);
     double time, x, y;
@@ -221,7 +221,7 @@ static void test_the_take_may_be_freed_and_the_strikes_are_on_the_usual_spot(voi
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0, distance(spot, mean));
 }
 
-static void test_one_strike_somewhere_else_does_not_move_the_head(void)
+static void test_one_strike_in_another_place_does_not_move_the_head(void)
 {
     make_take_with(4, 0, 0.15);
     for (int k = 1; k <= 8; k++) {
@@ -288,12 +288,12 @@ int main(void)
     RUN_TEST(test_impact_speed_is_recovered_within_two_percent);
     RUN_TEST(test_impact_speed_survives_noise_of_a_fifth_of_a_millimetre);
     RUN_TEST(test_target_is_smooth_except_at_the_contact);
-    RUN_TEST(test_after_separation_the_target_goes_on_from_the_measured_state_and_rejoins);
+    RUN_TEST(test_after_separation_the_target_continues_from_the_measured_state_and_rejoins);
     RUN_TEST(test_20_ms_after_separation_the_take_is_followed_at_any_speed_of_the_stick);
     RUN_TEST(test_after_rewind_the_track_is_the_same_bit_by_bit);
     RUN_TEST(test_approach_and_stop_lead_in_and_out_smoothly);
     RUN_TEST(test_the_take_may_be_freed_and_the_strikes_are_on_the_usual_spot);
-    RUN_TEST(test_one_strike_somewhere_else_does_not_move_the_head);
+    RUN_TEST(test_one_strike_in_another_place_does_not_move_the_head);
     RUN_TEST(test_playing_allocates_nothing);
     RUN_TEST(test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth);
     RUN_TEST(test_a_hand_without_a_tip_rests);

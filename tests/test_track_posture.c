@@ -79,7 +79,7 @@ static void compare_tips(double t, double off[2])
     }
 }
 
-static void test_joint_targets_bring_the_tips_to_their_targets_through_every_blow(void)
+static void test_joint_targets_bring_the_tips_to_their_targets_through_every_strike(void)
 {
     double off[2] = {0, 0};
     make_played(250);
@@ -129,7 +129,7 @@ static double worst_joint(himc_posture_motion motion(double t), double from, dou
     return worst;
 }
 
-static void test_between_blows_the_joints_are_the_captured_ones(void)
+static void test_between_strikes_the_joints_are_the_captured_ones(void)
 {
     static const double rates[] = {100, 250, 2000};
     for (int i = 0; i < 3; i++) {
@@ -142,8 +142,8 @@ static void test_between_blows_the_joints_are_the_captured_ones(void)
     }
 }
 
-// in the mode of the publication no blow is cut out and no arm bent: the bounce is the captured one
-static void test_as_captured_the_joints_bounce_with_the_frames(void)
+// as published, no strike is replaced and no arm bent: the rebound is the captured one
+static void test_unbent_joints_follow_the_captured_rebound(void)
 {
     make_played(250);
     TEST_ASSERT_TRUE(worst_joint(captured_at, 0.5, 2.5) < 1.5 * DEGREE);
@@ -274,10 +274,10 @@ static void test_an_arm_without_a_stick_is_bent_from_its_present_state(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_joint_targets_bring_the_tips_to_their_targets_through_every_blow);
+    RUN_TEST(test_joint_targets_bring_the_tips_to_their_targets_through_every_strike);
     RUN_TEST(test_after_separation_the_joints_follow_the_measured_stick);
-    RUN_TEST(test_between_blows_the_joints_are_the_captured_ones);
-    RUN_TEST(test_as_captured_the_joints_bounce_with_the_frames);
+    RUN_TEST(test_between_strikes_the_joints_are_the_captured_ones);
+    RUN_TEST(test_unbent_joints_follow_the_captured_rebound);
     RUN_TEST(test_joint_targets_are_smooth_except_at_the_contact);
     RUN_TEST(test_joints_approach_from_their_present_state_and_come_to_rest_after_a_stop);
     RUN_TEST(test_postures_allocate_nothing);

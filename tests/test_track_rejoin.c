@@ -77,8 +77,8 @@ static void goes_on_from(const himc_target *s, double t)
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0, distance(s->a, now.a));
 }
 
-// the last blow is at 0.4 s; the take's time slows down from 0.37 s to its end at 0.424 s
-static void test_near_the_end_the_way_back_begins_in_the_measured_state_though_time_slows_down(void)
+// the last strike is at 0.4 s; the take's time slows down from 0.37 s to its end at 0.424 s
+static void test_near_the_end_rejoining_begins_in_the_measured_state_as_time_slows_down(void)
 {
     make_take(beaten, 250, 107);
     double time = contact_after(0.2);
@@ -88,7 +88,7 @@ static void test_near_the_end_the_way_back_begins_in_the_measured_state_though_t
 }
 
 // a stick pushed 0.4 m upwards, and one thrown at 40 m/s
-static void test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed(void)
+static void test_from_far_off_rejoining_is_slow_and_no_throw_is_followed(void)
 {
     make_take(beaten, 250, 250);
     double time = contact_after(0.2) + 0.008, hardest = 0, fastest = 0;
@@ -106,7 +106,7 @@ static void test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed(vo
     TEST_ASSERT_TRUE(hardest < 1500 && fastest < 13);
 }
 
-// blows every 60 ms, from 4 cm: after a separation the next blow is near
+// strikes every 60 ms, from 4 cm: after a separation the next strike is near
 static double rolled(double t)
 {
     double since = fmod(t, 0.06), v = 2.5;
@@ -115,7 +115,7 @@ static double rolled(double t)
 
 // a stick that leaves late has less than 20 ms before the next strike's fall begins: over steps of
 // 10 us position agrees with velocity and acceleration
-static void test_the_way_back_ends_before_the_next_strike_begins(void)
+static void test_rejoining_ends_before_the_next_strike_begins(void)
 {
     double h = 1e-5;
     make_take(rolled, 1000, 1000);
@@ -189,10 +189,10 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_approach_ends_on_the_head_without_acceleration);
-    RUN_TEST(test_near_the_end_the_way_back_begins_in_the_measured_state_though_time_slows_down);
-    RUN_TEST(test_the_way_back_ends_before_the_next_strike_begins);
+    RUN_TEST(test_near_the_end_rejoining_begins_in_the_measured_state_as_time_slows_down);
+    RUN_TEST(test_rejoining_ends_before_the_next_strike_begins);
     RUN_TEST(test_a_stick_that_leaves_too_late_changes_nothing);
-    RUN_TEST(test_from_far_off_the_way_back_is_gentle_and_no_throw_is_followed);
+    RUN_TEST(test_from_far_off_rejoining_is_slow_and_no_throw_is_followed);
     RUN_TEST(test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_second);
     return UNITY_END();
 }

@@ -1,7 +1,7 @@
 /// test_two_way.c: a free arm's stick on a head: physics at 10 kHz with the contact at 48 kHz
 /// inside, against one in which engine and contact step together at 480 kHz.
 ///
-/// The arm has no torques: what is compared is the coupling alone (effective mass, micro-steps and
+/// The arm has no torques: this compares the coupling alone (effective mass, micro-steps and
 /// the impulse given back in the same step), for soft felt to a rigid mallet.
 #include "himc/himc.h"
 
@@ -72,7 +72,7 @@ static void load_stick(himc_stick *stick, const himc_body_state *state, double o
     stick->velocity = state->tip_velocity[HIMC_RIGHT].z;
 }
 
-// a blow, `steps` of the engine for every `samples` of the head
+// a strike, `steps` of the engine for every `samples` of the head
 static result strike(double k, double rate, int samples, int steps)
 {
     static const himc_vec3 none[HIMC_JOINTS];

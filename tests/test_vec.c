@@ -168,7 +168,7 @@ static void test_matrix_from_axes_has_them_as_columns(void)
     ASSERT_NEAR(z, himc_mat3_apply(&r, himc_vec3_make(0, 0, 1)), 0);
 }
 
-static void test_matrix_product_is_one_after_the_other(void)
+static void test_matrix_product_applies_the_right_matrix_first(void)
 {
     himc_mat3 a = {{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}}, b = {{{0, -1, 2}, {3, 1, 0}, {5, 2, 1}}};
     himc_mat3 c = himc_mat3_mul(&a, &b);
@@ -207,7 +207,7 @@ int main(void)
     RUN_TEST(test_matrix_and_quaternion_are_the_same_rotation);
     RUN_TEST(test_matrix_to_quaternion_and_back_at_every_largest_component);
     RUN_TEST(test_matrix_from_axes_has_them_as_columns);
-    RUN_TEST(test_matrix_product_is_one_after_the_other);
+    RUN_TEST(test_matrix_product_applies_the_right_matrix_first);
     RUN_TEST(test_symmetric_inverse_times_matrix_is_one);
     return UNITY_END();
 }

@@ -9,11 +9,10 @@
 
 /// One option; the table of these is the parser's and the help's.
 typedef struct cli_option {
-    const char *name; ///< "rate" is --rate
-    char letter;      ///< 'o' is -o; 0 for none
-    const char
-        *value; ///< what follows it, "HZ"; NULL for a switch; a command's name stands for the
-                ///< words of that command
+    const char *name;  ///< "rate" is --rate
+    char letter;       ///< 'o' is -o; 0 for none
+    const char *value; ///< its argument, "HZ"; NULL for a switch; a command's name stands for the
+                       ///< words of that command
     const char *does;
 } cli_option;
 
@@ -53,7 +52,7 @@ int cli_fail(const cli_call *call, const char *format, ...) __attribute__((forma
 /// Returns 0, or fails if the output did not reach stdout (a full disk).
 int cli_finish(const cli_call *call);
 
-/// The whole number after option `name`, which must lie in [low, high]; left as it is if `text` is
+/// The whole number after option `name`, which must lie in [low, high]; unchanged if `text` is
 /// NULL.
 bool cli_count(const char *name, const char *text, int low, int high, const char *unit, int *out,
                himc_error *error);

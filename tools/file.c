@@ -1,7 +1,7 @@
 /// file.c: a file that appears complete or not at all.
 ///
 /// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
-/// and is atomic. An interrupted run removes what it had begun. Symbolic links are followed, so
+/// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
 /// that the link stays and its file changes.
 #define _XOPEN_SOURCE 700
 #include "cli.h"

@@ -1,5 +1,5 @@
-/// render_tables.h: what `himc render` writes beside the sound: rows of strokes and motion, and the
-/// report.
+/// render_tables.h: the tables that `himc render` writes beside the sound: rows of strokes and
+/// motion, and the report.
 #ifndef RENDER_TABLES_H
 #define RENDER_TABLES_H
 

@@ -126,7 +126,7 @@ static int run(const cli_arguments *arguments)
     struct sigaction action = {.sa_handler = stop};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    // where the system lets us, ahead of what has no deadline
+    // if the system allows it, ahead of processes without a deadline
     sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &(struct sched_param){10});
     himc_performance_on_tick(performance, himc_osc_tick, osc);
     printf("listening at %s port %d\n", config.bind ? config.bind : "127.0.0.1",

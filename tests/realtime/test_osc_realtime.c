@@ -34,7 +34,7 @@ static void test_subscriptions_change_while_playing(void)
     TEST_ASSERT_INT_WITHIN(6, 10, count("/himc/targets"));
 }
 
-static void test_a_receiver_that_vanishes_is_told_once_and_found_again(void)
+static void test_a_vanished_receiver_is_noted_once_and_found_again(void)
 {
     char atoms[64];
     int port = 0, other = open_ear(&port);
@@ -58,7 +58,7 @@ static void test_a_receiver_that_vanishes_is_told_once_and_found_again(void)
     TEST_ASSERT_INT_WITHIN(20 * 5, 20 * 16, count("/himc/body"));
 }
 
-static void test_an_address_unreachable_stalls_nobody(void)
+static void test_an_unreachable_address_delays_no_other_subscriber(void)
 {
     himc_command command;
     himc_error error;
@@ -71,7 +71,7 @@ static void test_an_address_unreachable_stalls_nobody(void)
     TEST_ASSERT_INT_WITHIN(20 * 5, 20 * 33, count("/himc/body"));
 }
 
-static void test_an_unknown_name_of_a_host_stalls_nobody(void)
+static void test_an_unknown_host_name_delays_no_other_subscriber(void)
 {
     himc_command command;
     himc_error error;
@@ -144,7 +144,7 @@ static void test_commands_take_a_tenth_of_the_time_at_most(void)
 }
 
 // valid, malformed and random bytes as fast as they go, all counted, the pose still coming
-static void test_a_storm_is_counted_and_the_pose_goes_on(void)
+static void test_a_storm_is_counted_and_poses_continue(void)
 {
     uint32_t seed = 1;
     char data[64];
@@ -181,12 +181,12 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_pose_comes_33_times_a_second_with_20_bodies);
     RUN_TEST(test_subscriptions_change_while_playing);
-    RUN_TEST(test_a_receiver_that_vanishes_is_told_once_and_found_again);
-    RUN_TEST(test_an_address_unreachable_stalls_nobody);
-    RUN_TEST(test_an_unknown_name_of_a_host_stalls_nobody);
+    RUN_TEST(test_a_vanished_receiver_is_noted_once_and_found_again);
+    RUN_TEST(test_an_unreachable_address_delays_no_other_subscriber);
+    RUN_TEST(test_an_unknown_host_name_delays_no_other_subscriber);
     RUN_TEST(test_subscriptions_outlive_listening_elsewhere);
     RUN_TEST(test_the_audio_side_takes_microseconds);
     RUN_TEST(test_commands_take_a_tenth_of_the_time_at_most);
-    RUN_TEST(test_a_storm_is_counted_and_the_pose_goes_on);
+    RUN_TEST(test_a_storm_is_counted_and_poses_continue);
     return UNITY_END();
 }

@@ -268,7 +268,7 @@ static bool inertias(const himc_air_order *order, const himc_air_problem *p, dou
     return true;
 }
 
-// the complex eigenvalue nearest to x, with the air as it is at x
+// the complex eigenvalue nearest to x, with the air's load at x
 static bool complex_at(const himc_air_order *order, const himc_air_problem *p, double x,
                        double complex *nearest)
 {

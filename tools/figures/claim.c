@@ -1,4 +1,4 @@
-/// claim.c: on what the published claim depends: HIMC has a smaller error of the tip than joint
+/// claim.c: conditions of the published claim: HIMC has a smaller error of the tip than joint
 /// space control, by "about 2% of motion amplitude" (Bouënard, Gibet & Wanderley 2012, section
 /// 3.3.2). `claim rates|nuances|measures TRIALS` prints a CSV table; errors in percent of
 /// amplitude, `gain` over the stiffness of a player (the default gain is 3), difference is ID minus

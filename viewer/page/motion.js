@@ -91,7 +91,7 @@ export class Motion {
         this.sent = -Infinity;
     }
 
-    // passes on what a performer would have sent in the last `dt` ms
+    // passes on the packets that a performer would have sent in the last `dt` ms
     update(now, dt, on) {
         if (this.playing) this.at += dt;
         if (this.at > this.length) this.seek(0);

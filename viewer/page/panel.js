@@ -1,4 +1,4 @@
-// Everything written over the stage: buttons, numbers, and the running score of what was played.
+// Everything written over the stage: buttons, numbers, and the running score of the played strokes.
 const $ = id => document.getElementById(id);
 const short = value => (typeof value === "number" ? +value.toPrecision(4) : value);
 const STATUS_SHOWN = ["load", "sound", "physics", "task", "strokes", "played", "recoveries"];

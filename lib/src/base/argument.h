@@ -1,4 +1,4 @@
-/// argument.h: the arguments in the grammar of a command row: what BEAT, HAND, DRUM ... may be.
+/// argument.h: the arguments in the grammar of a command row: the allowed BEAT, HAND, DRUM ...
 #ifndef HIMC_ARGUMENT_H
 #define HIMC_ARGUMENT_H
 

@@ -25,7 +25,7 @@ typedef struct reading {
     int choice[HIMC_COMMAND_ATOMS];
 } reading;
 
-/// How far a form of the grammar was followed, and what stopped it.
+/// How far a form of the grammar fitted, and the reason for its end.
 typedef struct attempt {
     int rank; ///< larger is closer
     enum { FITS, WRONG, MISSING, TOO_MANY } end;
@@ -199,7 +199,7 @@ static bool refuse(const himc_command_row *row, const himc_atom *atoms, const at
                           named ? ": " : "", value, best->allowed);
 }
 
-/// Of two failures the closer one; of two equally close wrong atoms, both of what was allowed.
+/// Of two failures the closer one; of two equally close wrong atoms, the allowed values of both.
 static void keep_closer(attempt *best, const attempt *other)
 {
     if (other->rank > best->rank || (other->rank == best->rank && best->end == TOO_MANY)) {

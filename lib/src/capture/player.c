@@ -250,7 +250,7 @@ void himc_player_free(himc_player *player)
 
 // The seat.
 
-// chosen: hip joints of a child on a stool, and of a tall man who stands (m)
+// chosen: hip joints of a child on a stool, and of a tall standing man (m)
 #define LOWEST_SEAT 0.3
 #define HIGHEST_SEAT 1.3
 #define ON_HEAD 0.97 // chosen: share of the radius within which strikes meet the head
@@ -346,7 +346,7 @@ static void seat_player(himc_player *player, himc_vec3 struck, himc_head_frame *
     player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, kept - player->hips.z);
 }
 
-// a player who strikes nothing is as high above the floor as in the take
+// a player without strikes keeps the captured height above the floor
 static void keep_player(himc_player *player)
 {
     double seat = fmin(fmax(player->hips.z, LOWEST_SEAT), HIGHEST_SEAT);

@@ -271,9 +271,9 @@ static const char *const low_words[] = {"hips", "hip",  "joint", "pelvis", "asis
                                         "psi",  "knee", "ankle", "foot",   "toe",  "heel", NULL};
 static const char *const shoulder_words[] = {"shoulder", "sho", "acromion", "acr", "joint", NULL};
 
-#define BLURRED 40.0      // chosen: a contact of some 7 ms is less than a third of a frame (Hz)
-#define CLEARLY 0.8       // chosen: share of a direction along one axis that makes it that axis
-#define STEADY 0.5        // chosen: share of the summed lengths, less is a player who turns round
+#define BLURRED 40.0 // chosen: a contact of some 7 ms is less than a third of a frame (Hz)
+#define CLEARLY 0.8  // chosen: share of a direction along one axis that makes it that axis
+#define STEADY 0.5   // chosen: share of the summed lengths, less means a player that turns round
 #define LEAST_ACROSS 0.03 // chosen: a shorter left-to-right vector has no direction (m)
 #define MOST_PAIRS 16     // chosen: a body has fewer
 

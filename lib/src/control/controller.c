@@ -3,12 +3,12 @@
 ///
 /// `printed` is tau = ks dq - kd q', `feedforward` tau = g(q) + ks dq + kd (q'_t - q'),
 /// `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse dynamics. While a
-/// stick touches the head all three let go of the normal: the physics makes the rebound. Joint
-/// limits win over all of it (limit_torque.c).
+/// stick touches the head all three do not act along the normal: the physics makes the rebound.
+/// Joint limits have priority over all of this (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
-/// the inertia it meets, and a joint's long axis meets little. So servos act on the state at the
-/// step's end, as Tan, Liu & Turk's stable PD does (2011): with D = h kd + h^2 ks at each joint,
+/// the inertia, and the inertia about a joint's long axis is small. So servos act on the state at
+/// the end of the step (Tan, Liu & Turk's stable PD, 2011): with D = h kd + h^2 ks at each joint,
 ///     (M + D) q'' = tau_known - C,   tau = tau_known - D q'',
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "control/controller.h"
@@ -31,7 +31,7 @@ static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jac
     himc_arm_scatter(arm, hand, all);
 }
 
-// in contact the tip is not accelerated along the normal, whatever the gains of the joints are
+// in contact the tip is not accelerated along the normal, for any gains of the joints
 static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
                                  const himc_reference *reference, const himc_arm_jacobian *jacobian,
                                  himc_vec3 wanted[HIMC_JOINTS])
@@ -44,8 +44,8 @@ static void release_acceleration(const himc_skeleton *skeleton, const himc_body_
         }
 }
 
-// Equation 2 with the state that the step ends in, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'', in
-// place of the one it begins in: the known part. The rest, -(h kd + h^2 ks) q'', is the joint's
+// Equation 2 with the state at the end of the step, q+ = q + h q' + h^2 q'' and q'+ = q' + h q'',
+// instead of that at its beginning: the known part. The rest, -(h kd + h^2 ks) q'', is the joint's
 // resistance.
 static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
                              const tracking_error *e, himc_vec3 spin, int j)
@@ -53,7 +53,7 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
     double h = c->step;
     himc_vec3 angle = himc_vec3_madd(e->angle[j], h, e->rate[j]);
     himc_vec3 rate = himc_vec3_scale(spin, -1);
-    if (c->config.law != HIMC_LAW_PRINTED) { // the velocity's error, and the target goes on
+    if (c->config.law != HIMC_LAW_PRINTED) { // the error of velocity, and the target's motion
         rate = himc_vec3_madd(e->rate[j], h, e->acceleration[j]);
         angle = himc_vec3_madd(angle, h * h, e->acceleration[j]);
     }
@@ -63,7 +63,7 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
 }
 
 // the forces at released tips that stop their acceleration along the normal: m a, with the mass of
-// an arm whose joints have servos
+// an arm with servos at its joints
 static void release_forces(const himc_skeleton *skeleton, const himc_body_state *s,
                            const himc_reference *reference, const himc_articulation *art,
                            const himc_vec3 *known, himc_vec3 force[HIMC_HANDS])
@@ -92,7 +92,7 @@ static void add_tip_force(const himc_skeleton *skeleton, const himc_body_state *
             torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
 }
 
-// equation 2, with the target's velocity and gravity fed forward or not, implicitly over the step
+// equation 2, implicit over the step, with or without feedforward of target velocity and gravity
 static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *s, const himc_reference *reference,
                           const tracking_error *e, himc_vec3 torque[HIMC_JOINTS])
@@ -179,7 +179,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_strength_apply(c, torque);
 }
 
-// inertia of all segments that hang on a joint, about the child's axes
+// inertia of all segments moved by a joint, about the child's axes
 static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_state *s, int joint)
 {
     double sum[3] = {0, 0, 0};

@@ -27,18 +27,18 @@ typedef struct himc_gain {
     himc_vec3 damping;   ///< (N m s/rad)
 } himc_gain;
 
-/// How often and how far limits and strength acted since this was cleared, joint by joint.
+/// For each joint, how often and how far limits and strength acted since the last clearing.
 typedef struct himc_saturation_counts {
     double measure[HIMC_JOINTS];  ///< himc_limit_measure at the last step
-    bool held[HIMC_JOINTS];       ///< at its bounds and not well within since
-    long hits[HIMC_JOINTS];       ///< times a joint came to its bounds
+    bool held[HIMC_JOINTS];       ///< was at its bounds, and not well within since
+    long hits[HIMC_JOINTS];       ///< number of times a joint reached its bounds
     double farthest[HIMC_JOINTS]; ///< largest angle beyond (rad)
     double torque[HIMC_JOINTS];   ///< largest asked for (N m)
-    long weak[HIMC_JOINTS];       ///< steps in which that was more than the strength
+    long weak[HIMC_JOINTS];       ///< steps with a torque above the strength
     long steps;
 } himc_saturation_counts;
 
-/// What the user decides about control. Plain: change a copy and himc_controller_configure.
+/// The user's settings of control. Plain: change a copy and himc_controller_configure.
 typedef struct himc_controller_config {
     himc_pipeline mode;
     himc_law law;
@@ -46,9 +46,9 @@ typedef struct himc_controller_config {
     double damping;                 ///< lambda of the inverse kinematics (m)
     double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in the inverse kinematics
     bool null_space_off;            ///< no posture in the null space of the tips, as published
-    bool elbow;                 ///< the elbow's place comes second, before the rest of the posture
-    double bandwidth;           ///< of computed torque, critically damped (Hz)
-    bool gain_set[HIMC_JOINTS]; ///< the joint has the gain below; computed torque uses it, too
+    bool elbow;                     ///< the elbow's place has priority over the rest of the posture
+    double bandwidth;               ///< of computed torque, critically damped (Hz)
+    bool gain_set[HIMC_JOINTS];     ///< the joint has the gain below; computed torque uses it, too
     himc_gain gain[HIMC_JOINTS];
     bool human_strength;          ///< himc_controller_set_human_strength has set `strength`
     double strength[HIMC_JOINTS]; ///< largest torque of each joint (N m); 0: no maximum
@@ -58,18 +58,18 @@ typedef struct himc_controller_config {
 typedef struct himc_controller {
     himc_controller_config config;
     double step; ///< of the physics (s), over which servos are implicit; 0: explicit
-    himc_vec3 inertia[HIMC_JOINTS];     ///< of all that hangs on each joint, about the child's axes
-                                        ///< (kg m^2)
-    himc_gain gain[HIMC_JOINTS];        ///< in force: the user's, else the usual ones
+    himc_vec3 inertia[HIMC_JOINTS];     ///< of all segments moved by each joint, about the child's
+                                        ///< axes (kg m^2)
+    himc_gain gain[HIMC_JOINTS];        ///< in force: the user's, else the default
     const himc_limits *limits;          ///< borrowed; NULL (default) for none
     himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
 } himc_controller;
 
-/// What the body should do now.
+/// The present targets of the body.
 typedef struct himc_reference {
     himc_target tip[HIMC_HANDS];
     himc_posture_motion posture;  ///< joint targets of `id`; in `himc` the null-space target
-    bool released[HIMC_HANDS];    ///< the tip is in contact: control lets go of the normal
+    bool released[HIMC_HANDS];    ///< the tip is in contact: no control along the normal
     himc_vec3 normal[HIMC_HANDS]; ///< of the head it touches
 } himc_reference;
 
@@ -77,15 +77,15 @@ typedef struct himc_reference {
 /// maximum of strength.
 HIMC_RT himc_controller_config himc_controller_config_default(void);
 
-/// A controller for a body, its inertia as in the given state; no limits, no counts.
+/// Makes a controller for a body, with the inertia in the given state; no limits, no counts.
 HIMC_RT void himc_controller_init(himc_controller *controller, const himc_controller_config *config,
                                   const himc_skeleton *skeleton, const himc_body_state *posture);
 
-/// Another configuration for the same body.
+/// Sets another configuration for the same body.
 HIMC_RT void himc_controller_configure(himc_controller *controller,
                                        const himc_controller_config *config);
 
-/// Usual gain of a joint: stiffness I w^2 and damping 2 I w, critically damped, I the joint's
+/// Default gain of a joint: stiffness I w^2 and damping 2 I w, critically damped, I the joint's
 /// inertia about each axis, w three times 2 pi 8 Hz at the shoulder, 10 elbow, 14 wrist, 18 grip,
 /// 5 elsewhere.
 HIMC_RT himc_gain himc_controller_usual_gain(const himc_controller *controller, int joint);

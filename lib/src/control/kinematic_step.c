@@ -1,7 +1,7 @@
 /// kinematic_step.c: inverse kinematics alone, pipeline 1 of the 2012 paper: a pose without
 /// dynamics.
 ///
-/// The body goes on for a step at its present rates, and is then corrected by its tracking errors
+/// The body moves for a step at its present rates, and is then corrected by its tracking errors
 /// (tracking_error.h): the tips by the solver, the rest by the joint targets in their null space.
 /// So each physics step is one Newton step of the solver, from about 1e-5 m off.
 #include "control/tracking_error.h"

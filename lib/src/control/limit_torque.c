@@ -1,12 +1,12 @@
 /// limit_torque.c: joints beyond their bounds are brought back towards the nearest orientation
 /// within (2012 paper, section 3.1): by accelerations in computed torque, by torques in the PD
-/// laws. Limits win over tips, tips over posture.
+/// laws. Limits have priority over tips, tips over posture.
 ///
 /// Computed torque: the orientation that a joint would have after a time T is kept within bounds,
 ///     q_T = exp(omega T + alpha T^2 / 2) q,     alpha += 2 / T^2 log(q_T^-1 q_lim(q_T)),
 /// from outside e'' = -2 / T^2 e - 2 / T e', a spring damped by .71 of critical. A motion that
-/// turns back by itself is left alone, one along the limit slides freely. The arm's other degrees of
-/// freedom give back what the tips lose: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
+/// returns by itself is not changed; a motion along the limit is free. The arm's other degrees of
+/// freedom compensate the loss at the tips: d = P W J' (J P W J' + lambda^2)^-1 lost, P without the
 /// directions of the corrections.
 ///
 /// Servos: tau = I (w^2 e - 2 w (omega - omega_lim)), e = log(q^-1 q_lim) and omega_lim the motion
@@ -18,16 +18,16 @@
 #include "body/dynamics.h"
 
 // chosen: firm beside strokes of up to 10 Hz and soft beside the physics rate
-#define HORIZON 0.0056      // T: a spring of 40 Hz (s)
-#define LIMIT_SPRING 60.0   // beside a servo (Hz)
-#define RETURN_SPEED 3.0    // of the way back from far beyond (rad/s)
-#define LARGEST_BEYOND 0.02 // a joint further beyond is pulled no harder (rad)
-#define LOST_DAMPING 0.05   // lambda, of the motion that tips get back (m)
-#define GIVE_BACK_PASSES 3  // each may send another joint out of its bounds
+#define HORIZON 0.0056        // T: a spring of 40 Hz (s)
+#define LIMIT_SPRING 60.0     // beside a servo (Hz)
+#define RETURN_SPEED 3.0      // of the way back from far beyond (rad/s)
+#define LARGEST_BEYOND 0.02   // beyond this the pull does not grow (rad)
+#define LOST_DAMPING 0.05     // lambda, of the compensation at the tips (m)
+#define COMPENSATION_PASSES 3 // each may move another joint out of its bounds
 // chosen: of bounds, for the count of hits
-#define HIT_MEASURE 0.95  // a joint held so near its bounds has hit them ...
-#define FREE_MEASURE 0.85 // ... and has to come back this far before it can hit them again
-// chosen: above rounding, below anything that is seen
+#define HIT_MEASURE 0.95  // a joint this near its bounds has hit them ...
+#define FREE_MEASURE 0.85 // ... and can hit them again after a return to here
+// chosen: above rounding, below anything visible
 #define LEAST_BEYOND 1e-9     // a joint beyond by less is within (rad)
 #define LEAST_CORRECTION 0.01 // (rad/s^2)
 #define SLIDE_STEP 1e-4       // over which motion along a limit is measured (s)
@@ -88,7 +88,7 @@ static himc_vec3 correction(const himc_limits *limits, int j, const joint_place 
     return himc_vec3_scale(back, (1 - late / angle) * 2 / (HORIZON * HORIZON));
 }
 
-// the joints that these accelerations would take out of their bounds
+// the joints that these accelerations would move out of their bounds
 static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
                        const himc_body_state *s, const joint_place at[HIMC_JOINTS],
                        const himc_vec3 *relative, limit_stops *found)
@@ -98,7 +98,7 @@ static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
         if (!c->limits->joint[j].bound)
             continue;
         int p = skeleton->segment[j + 1].parent;
-        // seen from the parent, which turns
+        // relative to the rotating parent
         himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
         himc_vec3 alpha = himc_vec3_sub(relative[j], himc_vec3_cross(s->spin[p], spin));
         alpha = himc_mat3_apply_transposed(&s->rotation[p], alpha);
@@ -120,7 +120,7 @@ static void count_hit(himc_saturation_counts *saturation, int j)
     saturation->held[j] = true;
 }
 
-// accelerations of the arm that move its tip so and turn no stopped joint along its way back
+// accelerations of the arm that move its tip so, none along the directions of the corrections
 static void give_back(const limit_stops *stop, const himc_arm_jacobian *jacobian, himc_hand hand,
                       himc_vec3 lost, himc_vec3 wanted[HIMC_JOINTS])
 {
@@ -159,7 +159,7 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
     find_places(c, skeleton, s, at);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         before[hand] = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
-    for (int pass = 0; pass <= GIVE_BACK_PASSES; pass++) {
+    for (int pass = 0; pass <= COMPENSATION_PASSES; pass++) {
         find_stops(c, skeleton, s, at, wanted, &stop);
         if (stop.count == 0)
             break;
@@ -168,7 +168,7 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
             himc_vec3 *a = &wanted[stop.joint[h]];
             *a = himc_vec3_madd(*a, stop.more[h], stop.inward[h]);
         }
-        for (int hand = 0; pass < GIVE_BACK_PASSES && hand < HIMC_HANDS; hand++) {
+        for (int hand = 0; pass < COMPENSATION_PASSES && hand < HIMC_HANDS; hand++) {
             himc_vec3 now = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
             himc_vec3 lost = himc_vec3_sub(before[hand], now);
             give_back(&stop, &jacobian[hand], (himc_hand)hand, lost, wanted);
@@ -183,7 +183,7 @@ static double energy(const joint_place *at, himc_vec3 inertia, himc_vec3 spin)
     return inertia.x * v.x * v.x + inertia.y * v.y * v.y + inertia.z * v.z * v.z;
 }
 
-// the way to the nearest orientation within, and how fast that is left, in the parent's frame
+// the rotation to the nearest orientation within, and its rate, in the parent's frame
 static void find_way(const himc_limits *limits, int j, const joint_place *at, himc_vec3 inertia,
                      himc_vec3 *way, himc_vec3 *rate)
 {
@@ -218,7 +218,7 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
         himc_vec3 i = c->inertia[j], light = himc_vec3_make(1 / i.x, 1 / i.y, 1 / i.z);
         himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);
         himc_vec3 n = himc_mat3_apply(parent, himc_vec3_unit(way));
-        // what a servo does to a joint's inertia drives it no further out
+        // the servo's torque must not move the joint further out
         double outward = fmin(himc_vec3_dot(n, himc_mat3_scale_along(child, light, torque[j])), 0);
         a = himc_vec3_madd(himc_mat3_apply(parent, a), -outward, n);
         torque[j] = himc_vec3_add(torque[j], himc_mat3_scale_along(child, i, a));

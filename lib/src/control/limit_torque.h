@@ -5,8 +5,8 @@
 #include "control/controller.h"
 
 /// Changes relative accelerations so that joints stay within their bounds or come back; the arms'
-/// other degrees of freedom give the tips back what they lose by that. So limits win over tips and
-/// tips over posture. Counts in the controller's saturation counts.
+/// other degrees of freedom compensate at the tips. So limits have priority over tips, and tips
+/// over posture. Counts in the controller's saturation counts.
 HIMC_RT void himc_limits_compliance(const himc_controller *controller,
                                     const himc_skeleton *skeleton, const himc_body_state *state,
                                     const himc_arm_jacobian jacobian[HIMC_HANDS],

@@ -1,11 +1,11 @@
 /// posture_crossfade.c: exp(d) q, with q the new source's joint target and d a quintic from the
-/// difference of the two sources (angle, rate, acceleration) to zero: C2, whatever the sources do.
+/// difference of the two sources (angle, rate, acceleration) to zero: C2 for any two sources.
 /// Rates are added as if d turned about one axis, which is exact at both ends.
 #include "control/posture_crossfade.h"
 
 #include "himc/vec.h"
 
-#define CROSSFADE_TIME 0.6 // chosen: slow enough that no torque shows it, over before a stroke (s)
+#define CROSSFADE_TIME 0.6 // chosen: invisible in the torques, over before a stroke (s)
 
 void himc_posture_crossfade_begin(himc_posture_crossfade *c, double t,
                                   const himc_posture_motion *before, const himc_posture_motion *now)

@@ -1,11 +1,11 @@
-/// posture_crossfade.h: joint targets go from one source to another without a jump.
+/// posture_crossfade.h: a change of the source of joint targets without a jump.
 #ifndef HIMC_POSTURE_CROSSFADE_H
 #define HIMC_POSTURE_CROSSFADE_H
 
 #include "base/quintic.h"
 #include "body/posture.h"
 
-/// Plain. Joint targets are the new source's turned by an offset that goes to zero.
+/// Plain. The joint targets are those of the new source, rotated by an offset that goes to zero.
 typedef struct himc_posture_crossfade {
     double since;                     ///< its beginning (s); -infinity: over
     himc_quintic offset[HIMC_JOINTS]; ///< rotation vectors (rad)
@@ -15,9 +15,9 @@ typedef struct himc_posture_crossfade {
 HIMC_RT void himc_posture_crossfade_begin(himc_posture_crossfade *crossfade, double t,
                                           const himc_posture_motion *before,
                                           const himc_posture_motion *now);
-/// The new source's targets from now on.
+/// Ends the cross-fade: the new source's targets from now on.
 HIMC_RT void himc_posture_crossfade_cancel(himc_posture_crossfade *crossfade);
-/// Turns the new source's targets at `t` (s), not before the beginning, by the offset.
+/// Rotates the new source's targets at `t` (s), not before the beginning, by the offset.
 HIMC_RT void himc_posture_crossfade_apply(const himc_posture_crossfade *crossfade, double t,
                                           himc_posture_motion *motion);
 

@@ -1,4 +1,4 @@
-/// strength.c: torque maxima, as the 2012 paper has them of its physics engine (section 3.3).
+/// strength.c: torque maxima, in the 2012 paper a feature of its physics engine (section 3.3).
 ///
 /// There each axis of a motor has its own maximum; here a joint's torque keeps its direction and is
 /// shortened, so that a weak joint pulls weakly but in the right direction. Measured isometric maxima: neck

@@ -44,7 +44,7 @@ static himc_vec3 clamp_length(himc_vec3 v, double most)
 typedef struct arm_tasks {
     const himc_controller *controller;
     const himc_arm_jacobian *jacobian;
-    himc_mat3 inverse; // of J W J', as the solver has it
+    himc_mat3 inverse; // of J W J', by the solver
     himc_elbow_task elbow;
     himc_hand hand;
 } arm_tasks;
@@ -59,8 +59,8 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
         himc_elbow_task_init(&tasks->elbow, tasks->jacobian, upper_arm, c->damping);
 }
 
-// the tip's demand through the Jacobian, the posture's in its null space, there the elbow's place
-// first; the solution is linear in all of them
+// the demand of the tip through the Jacobian, then the elbow's place and the posture in its null
+// space; the solution is linear in all of them
 static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
 {
     const himc_controller_config *c = &tasks->controller->config;
@@ -90,8 +90,8 @@ himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_
     return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
 }
 
-// The Jacobian is true near the target only: an arm pushed far away that follows it turns in
-// circles. So it returns by its joint targets, whose posture has the tip at the target.
+// The Jacobian is true near the target only: an arm pushed far away would follow it in circles. So
+// the arm returns by its joint targets; their posture has the tip at the target.
 static void return_by_joints(const tracking_error *joints, double away, himc_hand hand,
                              tracking_error *e)
 {

@@ -17,7 +17,7 @@ HIMC_RT void himc_tracking_error_joints(const himc_skeleton *skeleton, const him
                                         const himc_posture_motion *target, tracking_error *e);
 
 /// Replaces the errors of an arm's joints by those that bring its tip to `asked`, or to the nearest
-/// place in reach; the old ones go into the null space.
+/// place in reach; the old errors move into the null space.
 HIMC_RT void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skeleton,
                                      const himc_body_state *s, const himc_target *asked,
                                      himc_hand hand, const himc_arm_jacobian *jacobian,

@@ -39,7 +39,7 @@
 #define RIM 1.07
 // modes of order 0 that the kettle's spring couples; chosen: twice those in the table
 #define COUPLED_MODES 8
-#define BELOW_SOUND 0.99      // largest first guess of an iteration whose root is below 1
+#define BELOW_SOUND 0.99      // largest first guess of an iteration with a root below 1
 #define SOUND_STEPS 5         // of that iteration, by Newton; chosen
 #define BISECTIONS 40         // for a coupled mode: 1e-12 of the interval
 #define LEAST_DIRECTIVITY 0.2 // chosen: keeps the radiation of a resonant mode finite

@@ -81,7 +81,7 @@ HIMC_RT void himc_bank_coupling_weights(const himc_bank *bank, const double *on_
 HIMC_RT void himc_bank_run_coupled(himc_bank *bank, const double *weight,
                                    himc_tension_coupling *coupling);
 
-/// After a step was run: adds what `force` (N) during that step has done, spread over the
+/// After a step was run: adds the effect of `force` (N) during that step, spread over the
 /// oscillators by the weights `shape` (padded).
 HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);
 /// Value of `readout` at the end of a step per newton through `shape` (padded) during it. For a

@@ -84,7 +84,7 @@ static void with_slope(int m, double z, double *value, double *slope)
                 at = before = 0;
         }
     }
-    if (m == 0) // J_0' = -J_1, which is what `above` holds at the end
+    if (m == 0) // J_0' = -J_1, which is `above` at the end
         before = -above;
     *value = at / sum;
     *slope = before / sum - m / z * *value;

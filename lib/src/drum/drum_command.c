@@ -14,8 +14,8 @@
 #define FARTHEST_PLACE 10.0 // on each axis (m)
 
 // Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
-// softer felt loses more. A stick's head and what moves with it when nobody holds it weigh about 30
-// g. In the order of the words of `mallet`.
+// softer felt loses more. The head of a free stick and the part that moves with it are about 30 g.
+// In the order of the words of `mallet`.
 static const himc_mallet_head presets[] = {
     [DRUM_MALLET_SOFT] =
         {.stiffness = 1e7, .exponent = 2.54, .loss = 0.15, .mass = 0.030, .radius = 0.0175},

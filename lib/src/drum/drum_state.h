@@ -1,4 +1,4 @@
-/// drum_state.h: what a drum is made of; shared by drum.c (sound), drum_strike.c (its own mallets,
+/// drum_state.h: the parts of a drum; shared by drum.c (sound), drum_strike.c (its own mallets,
 /// contact onsets) and drum_command.c.
 #ifndef HIMC_DRUM_STATE_H
 #define HIMC_DRUM_STATE_H

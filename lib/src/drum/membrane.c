@@ -6,7 +6,7 @@
 /// it is used. In air each mode has another frequency, decay and mass but the same shape (air.h),
 /// so all of this holds there too.
 ///
-/// All arrays whose length is the number of modes are one block of memory, the core. Another number
+/// All arrays with an entry for each mode are one block of memory, the core. Another number
 /// of modes is another core, made beside the old one and exchanged. After any change of head, rate
 /// or pickups, oscillators and readouts are computed anew from the same tables; the bank keeps the
 /// modes' energy and phase, and a declick keeps the sound continuous.

@@ -1,4 +1,4 @@
-/// membrane_state.h: what a membrane is made of; shared by membrane.c (how it is made and changed)
+/// membrane_state.h: the parts of a membrane; shared by membrane.c (how it is made and changed)
 /// and membrane_step.c (how it moves). Calls go from membrane.c to membrane_step.c only.
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H

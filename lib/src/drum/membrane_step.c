@@ -170,7 +170,7 @@ static void run_free(himc_membrane *m, int n, double *const *sound, double *watc
     m->watched = watched[n - 1];
 }
 
-// runs one step of the modes with the film stretched; finds what its force depends on
+// runs one step of the modes with the film stretched; finds the terms of the film's force
 static void run_stretched(himc_membrane *m)
 {
     core *c = &m->core;

@@ -34,7 +34,7 @@ HIMC_RT double himc_strike_point_film_coupling(const himc_membrane *membrane,
                                                const strike_point *s);
 /// The film's force in this step (J^1/2) is the value returned less `half` times P . F.
 HIMC_RT double himc_membrane_film_force(const himc_membrane *membrane, double *half);
-/// Adds what `force` (N, up positive) at the strike point during this step has done.
+/// Adds the effect of `force` (N, up positive) at the strike point during this step.
 HIMC_RT void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, double force);
 /// Adds the film's force, `coupled` being P . F of all forces, and ends the step.
 HIMC_RT void himc_membrane_end_step(himc_membrane *membrane, double coupled);

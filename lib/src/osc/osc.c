@@ -350,7 +350,7 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
 }
 
 // a head of 2000 modes takes 25 ms to make anew; a sender of such commands one after the other must
-// not take the time of the sound, so what they take is paid for from a bucket of seconds
+// not take the time of the sound, so their time is paid for from a bucket of seconds
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 {
     const osc_order *order;

@@ -1,4 +1,4 @@
-/// stepped.h: a himc_osc whose clock and network thread are in the hands of its caller, so that
+/// stepped.h: a himc_osc with clock and network thread controlled by its caller, so that
 /// rates, limits and time-outs can be tested exactly and without waiting.
 #ifndef HIMC_OSC_STEPPED_H
 #define HIMC_OSC_STEPPED_H

@@ -1,8 +1,8 @@
 /// performance.c: the sample clock and the physics step: algorithm 2 of the 2012 paper, with a
 /// drum in it.
 ///
-/// A step is simulated when its first sample is asked for, and its forces wait here; so what is
-/// played does not depend on how many samples are asked for at a time.
+/// A step is simulated when the host takes its first sample; its forces wait here. So the result
+/// does not depend on the block size.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 
@@ -19,7 +19,7 @@ static contact_scene scene_of(himc_performance *p)
                            .events = &p->events};
 }
 
-// replaces a state that the physics cannot go on from by that of the targets, and counts it
+// replaces an invalid state of the physics by that of the targets, and counts it
 static void recover(himc_performance *p)
 {
     if (himc_statistics_recovery(&p->statistics) == 0)
@@ -65,7 +65,7 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
         recover(p);
 }
 
-// the body shown as inverse kinematics has it; only the sticks' ends meet the head
+// the body moved by inverse kinematics; only the ends of the sticks are in contact with the head
 static void step_kinematics(himc_performance *p, int n, double t, double h)
 {
     contact_scene scene = scene_of(p);

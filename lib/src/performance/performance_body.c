@@ -1,9 +1,8 @@
-/// performance_body.c: the body, its control and what acts on it.
+/// performance_body.c: the body, its controller and the forces on it.
 ///
-/// Skeleton and plant are two: control believes in the first, the engine simulates the second, so
-/// a body can be heavier than control knows. A push is a constant force on a segment's centre of
-/// mass, of which control knows nothing: its effect on the motion is what one pushes for. The
-/// pelvis is held, and in `ik` there is no body to push.
+/// The controller assumes the skeleton; the engine simulates the plant, which may be heavier. A
+/// push is a constant force on a segment's centre of mass. It is not given to the controller, so it
+/// disturbs the motion. The pelvis is held, and `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
 
 #include <stdio.h>
@@ -11,7 +10,7 @@
 #include <string.h>
 
 // chosen: the engine keeps joints together to a micrometre
-#define JOINT_GAP 0.01 // a joint further apart holds nothing (m)
+#define JOINT_GAP 0.01 // a joint further apart has come apart (m)
 
 performance_body *himc_body_new(himc_error *error)
 {
@@ -103,7 +102,7 @@ void himc_body_push(performance_body *b, int segment, himc_vec3 force, double un
     b->push_end = fmax(b->push_end, until);
 }
 
-// numbers may be finite when there is no body any more
+// the numbers may be finite although the body has come apart
 static bool is_whole(const performance_body *b)
 {
     for (int i = 1; i < HIMC_SEGMENTS; i++) {

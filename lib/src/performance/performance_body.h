@@ -1,5 +1,5 @@
-/// performance_body.h: the part of a performance that moves: the body as control believes it to be
-/// and as it is simulated, its control, joint limits and pushes.
+/// performance_body.h: the body of a performance, as the controller assumes it and as it is
+/// simulated, with its controller, joint limits and pushes.
 #ifndef HIMC_PERFORMANCE_BODY_H
 #define HIMC_PERFORMANCE_BODY_H
 
@@ -14,8 +14,8 @@ typedef struct body_push {
 } body_push;
 
 typedef struct performance_body {
-    himc_skeleton skeleton;        ///< as control believes it to be
-    himc_skeleton plant;           ///< as it is simulated: masses may differ
+    himc_skeleton skeleton;        ///< assumed by the controller
+    himc_skeleton plant;           ///< simulated: masses may differ
     himc_character *character;     ///< owned
     himc_body_state state;         ///< at the beginning of the last step
     himc_vec3 torque[HIMC_JOINTS]; ///< of the last step (N m)
@@ -30,12 +30,12 @@ typedef struct performance_body {
 performance_body *himc_body_new(himc_error *error);
 void himc_body_free(performance_body *body);
 
-/// Makes the segments anew for these settings. False, and nothing changed, if it cannot be.
+/// Makes the segments again for these settings. False, and nothing changed, if this fails.
 bool himc_body_build(performance_body *body, const performance_settings *settings,
                      himc_error *error);
 /// Puts the body into the posture of a tick: at rest, or back from a state that was not finite.
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
-/// Puts the simulated body where the kinematic one was shown.
+/// Sets the simulated body to the last kinematic pose.
 HIMC_RT void himc_body_take_up(performance_body *body);
 /// A new controller for this body, made for the resting posture.
 void himc_body_init_controller(performance_body *body, const himc_controller_config *config,
@@ -43,7 +43,7 @@ void himc_body_init_controller(performance_body *body, const himc_controller_con
 HIMC_RT void himc_body_configure(performance_body *body, const himc_controller_config *config);
 /// Joint limits from now on; NULL for none.
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
-/// Counts of limits begin again.
+/// Sets the counts of limits to zero.
 HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
 HIMC_RT void himc_body_push(performance_body *body, int segment, himc_vec3 force, double until);
 
@@ -51,15 +51,15 @@ HIMC_RT void himc_body_push(performance_body *body, int segment, himc_vec3 force
 HIMC_RT bool himc_body_observe(performance_body *body, bool check);
 /// The torques for this state, in a step of `h` (s).
 HIMC_RT void himc_body_control(performance_body *body, const himc_reference *reference, double h);
-/// Moves the simulated body by `h` (s) from time `t` (s). False if the engine cannot.
+/// Moves the simulated body by `h` (s) from time `t` (s). False if the engine fails.
 HIMC_RT bool himc_body_simulate(performance_body *body, const himc_vec3 tip_force[HIMC_HANDS],
                                 double t, double h);
-/// Moves the body as inverse kinematics has it, by `h` (s). False if the state is not finite.
+/// Moves the body by inverse kinematics, by `h` (s). False if the state is not finite.
 HIMC_RT bool himc_body_follow(performance_body *body, const himc_reference *reference, double h);
 /// Clamps a kinematic pose to the joint limits and stops the joints that this moves.
 HIMC_RT void himc_body_clamp(performance_body *body, himc_pose *pose, himc_vec3 rate[HIMC_JOINTS]);
 
-/// Times that a joint came to its bounds.
+/// Number of times that a joint reached its bounds.
 HIMC_RT long himc_body_limit_hits(const performance_body *body);
 
 /// The joint of that name; false if there is none, `command` begins the error.

@@ -1,7 +1,7 @@
 /// performance_clock.c: samples, physics steps and task ticks.
 ///
 /// Step k of the physics covers the samples from floor(k fs / F_S) to floor((k + 1) fs / F_S),
-/// counted from where the rates were last set: 4 or 5 samples of 48 kHz at 10 kHz, 24 in every 5
+/// counted from the last change of the rates: 4 or 5 samples of 48 kHz at 10 kHz, 24 in every 5
 /// steps. A task tick comes every round(F_S / F_T) steps.
 #include "performance/performance_clock.h"
 

@@ -11,8 +11,8 @@ typedef struct performance_clock {
     double sample_rate;  ///< (Hz)
     double physics_rate; ///< in force: never above the sample rate (Hz)
     double task_rate;    ///< (Hz)
-    int64_t played;      ///< taken by the host; below 0 while samples from before a reset are left
-    int64_t aligned;     ///< where himc_performance_time counts from
+    int64_t played;      ///< taken by the host; below 0 while samples from before a reset remain
+    int64_t aligned;     ///< zero of himc_performance_time
     int64_t made;        ///< simulated: the next step begins here
     int64_t step_origin; ///< where step 0 began
     int64_t step;        ///< steps since then
@@ -30,15 +30,15 @@ static inline int himc_clock_ahead(const performance_clock *clock)
     return (int)(clock->made - clock->played);
 }
 
-/// Time 0 at that sample rate; himc_clock_set_rates next.
+/// Starts at time 0 with that sample rate; call himc_clock_set_rates next.
 void himc_clock_init(performance_clock *clock, double sample_rate);
-/// Other rates of physics and tasks; step 0 begins now.
+/// Sets the rates of physics and tasks; step 0 begins now.
 HIMC_RT void himc_clock_set_rates(performance_clock *clock, double physics, double task);
-/// Another sample rate. Time in seconds goes on; so do the samples played since the last realign.
+/// Sets the sample rate. Time in seconds and the samples played since the last realign continue.
 HIMC_RT void himc_clock_set_sample_rate(performance_clock *clock, double sample_rate);
-/// Time 0 is now; the samples played since the last realign go on.
+/// Sets time 0 to now; the count of samples played since the last realign continues.
 HIMC_RT void himc_clock_restart(performance_clock *clock);
-/// Samples played count from 0 again.
+/// Counts the samples played from 0 again.
 HIMC_RT void himc_clock_realign(performance_clock *clock);
 
 /// Whether a task tick falls on the next step.

@@ -11,7 +11,7 @@
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
 
-// what to play
+// playing
 
 static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
 {
@@ -196,7 +196,7 @@ static bool do_law(himc_performance *p, const himc_command *c, himc_error *error
     return true;
 }
 
-// all joints: k_s goes with the square of the natural frequency, k_d with the frequency itself
+// all joints: k_s is proportional to the square of the natural frequency, k_d to the frequency
 static void scale_frequencies(const himc_controller *controller, himc_controller_config *config,
                               double factor)
 {
@@ -236,7 +236,7 @@ static bool do_limits(himc_performance *p, const himc_command *c, himc_error *er
     s.limits = (himc_limits_kind)c->choice[0];
     himc_performance_adopt(p, &s);
     himc_performance_renew_limits(p);
-    himc_body_clear_limit_counts(p->body); // they were of other limits
+    himc_body_clear_limit_counts(p->body); // the counts belong to other limits
     return true;
 }
 
@@ -301,7 +301,7 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
     performance_settings s = p->settings;
     s.skeleton.height = c->atom[0].number;
     s.skeleton.mass = c->atom[1].number;
-    s.skeleton.seat = s.skeleton.shoulders = 0; // not those that a take has measured
+    s.skeleton.seat = s.skeleton.shoulders = 0; // not those measured from a take
     memset(s.skeleton.length, 0, sizeof s.skeleton.length);
     return himc_performance_rebuild(p, &s, error);
 }
@@ -334,7 +334,7 @@ static bool do_push(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-// a recording that cannot be written is lost, and the error says so
+// a recording that cannot be written is lost, with an error
 static bool finish_recording(himc_performance *p, himc_error *error)
 {
     bool written = himc_performance_write_recording(p, error);
@@ -363,7 +363,7 @@ static bool do_reset(himc_performance *p, const himc_command *c, himc_error *err
     return himc_performance_reset(p, error);
 }
 
-// carried out by the program around the library, with himc_performance_describe
+// carried out by the host, with himc_performance_describe
 static bool leave_to_host(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)p, (void)c, (void)error;
@@ -390,7 +390,7 @@ static performance_action *const actions[HIMC_COMMANDS] = {
 #include "himc/command_rows.h"
 };
 
-// drums that a waiting command will want are made now, not in the audio callback
+// makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
 {
     int index;

@@ -4,9 +4,9 @@
 /// acceleration of forward dynamics, and is solved with the head's modes sample by sample
 /// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
 /// ends of the contact see the same force, and the body's tip and the point differ only by the
-/// change of M in a step; that offset is kept while they touch and decays afterwards. From the
-/// planned time of contact, or the first force, to separation control lets go of the head's normal;
-/// then the plan goes on from the stick's measured state.
+/// change of M in a step; that offset is kept during contact and decays afterwards. From the
+/// planned time of contact, or the first force, to separation, control does not act along the
+/// head's normal. Then the plan continues from the measured state of the stick.
 #include "performance/performance_contacts.h"
 
 #include "body/dynamics.h"
@@ -14,21 +14,21 @@
 
 #include <string.h>
 
-// chosen: about what a listener hears and a spectator sees of a misplaced stroke
+// chosen: about the smallest error of a stroke that can be heard and seen
 #define PLAYED_TIME 0.005 // a stroke has landed if it touches within this of its time (s) ...
 #define PLAYED_PLACE 0.02 // ... and within this of its place (m)
-// chosen: a step at 30 m/s is 3 mm, and sticks hang over the rim without meaning to strike
-#define NEAR_HEAD 0.02       // above the head at rest: from here on a stick is looked after (m)
-#define DEEPEST_CONTACT 0.10 // a stick deeper than this is not on the head but under it (m) ...
-#define DEEPEST_ARRIVAL 0.03 // ... and so is a deeper one that has not come from above (m)
+// chosen: a step at 30 m/s is 3 mm, and resting sticks hang over the rim
+#define NEAR_HEAD 0.02       // above the head at rest: sticks below this are simulated (m)
+#define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m) ...
+#define DEEPEST_ARRIVAL 0.03 // ... and a stick not from above is if deeper than this (m)
 // chosen: longer than the gaps inside one contact of a mallet and a swinging head
-#define RISING_GAP 0.0015 // without force that ends a contact of a rising stick (s) ...
-#define ANY_GAP 0.005     // ... and of any (s)
+#define RISING_GAP 0.0015 // time without force that ends the contact of a rising stick (s) ...
+#define ANY_GAP 0.005     // ... and of any stick (s)
 // chosen: a few times the 5 .. 15 ms of a contact
-#define LONGEST_RELEASE 0.060 // control lets go at most so long (s)
-#define LATEST_CONTACT 0.015  // after the planned time, for a contact still to come (s)
-#define SAME_STROKE 0.100     // between planned and real contact of one stroke (s)
-// chosen: 1e-4 s / ln(1 / 0.9), soon gone and without a jump; as 0.9 a step at 10 kHz
+#define LONGEST_RELEASE 0.060 // control releases the normal for at most this time (s)
+#define LATEST_CONTACT 0.015  // of a contact after its planned time (s)
+#define SAME_STROKE 0.100     // largest time between planned and real contact of one stroke (s)
+// chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
 
 void himc_contacts_clear(performance_contacts *c)
@@ -76,7 +76,7 @@ static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc
     himc_motion_go_on_from(s->motion, hand, t, &m);
 }
 
-// a planned contact that has not come: the plan goes on without it
+// gives up a planned contact that has not come; the plan continues
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
                     const planned_stroke *next)
 {
@@ -88,7 +88,7 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
     go_on_from_here(c, s, hand, t);
 }
 
-// in `ik` the stick's end in contact is the micro-contact's, and the arm follows it
+// in `ik` the contact moves the end of the stick, and the arm follows
 static void follow_stick(const stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
     himc_target tip = s->motion->reference.tip[hand];
@@ -123,7 +123,7 @@ void himc_contacts_release(performance_contacts *c, const contact_scene *s, doub
         release_hand(&c->hand[hand], s, (himc_hand)hand, t);
 }
 
-// whether a tip is on that head or near enough to matter; `local` is its place and height over it
+// true if a tip is on that head or near it; `local` is its place and height over the head
 static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand hand, int drum,
                     himc_vec3 *local)
 {
@@ -134,7 +134,7 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
     return at.x * at.x + at.y * at.y < radius * radius && at.z < NEAR_HEAD && at.z > lowest;
 }
 
-// the drum a tip is over, or -1; of two at one place the one it means to strike
+// the drum below a tip, or -1; of two drums at one place, the planned one
 static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand hand,
                       himc_vec3 *local)
 {
@@ -195,7 +195,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     himc_statistics_strokes(s->statistics, 1, played);
 }
 
-// enters the forces of a step's `n` samples into the strike; returns the impulse (N s)
+// adds the forces of a step's `n` samples to the strike; returns the impulse (N s)
 static double note_forces(stick_contact *c, const contact_scene *s, himc_hand hand,
                           const double *forces, int n, double velocity)
 {
@@ -287,7 +287,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
 static void end_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
-    if (c->strike.velocity > 0) // a head raised into a resting stick is no blow
+    if (c->strike.velocity > 0) // a head raised into a resting stick is no strike
         himc_events_add(s->events, &event);
     if (c->released)
         go_on_from_here(c, s, hand, t);

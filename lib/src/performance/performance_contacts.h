@@ -1,4 +1,4 @@
-/// performance_contacts.h: the part of a performance in which sticks meet heads.
+/// performance_contacts.h: the contacts of sticks and heads in a performance.
 #ifndef HIMC_PERFORMANCE_CONTACTS_H
 #define HIMC_PERFORMANCE_CONTACTS_H
 
@@ -14,13 +14,13 @@
 /// A hand's stick on a head.
 typedef struct stick_contact {
     bool touching;      ///< from the first force to separation
-    bool released;      ///< control lets go of the normal
+    bool released;      ///< control does not act along the normal
     int drum;           ///< slot
     himc_stick stick;   ///< in micro-contact
-    double offset;      ///< of the micro height from the body's own tip (m); decays after contact
-    double last_force;  ///< when there was force last (s)
+    double offset;      ///< of the stick's height from the body's tip (m); decays after contact
+    double last_force;  ///< time of the last force (s)
     double peak_row;    ///< largest force since the last motion row (N)
-    himc_strike strike; ///< being made
+    himc_strike strike; ///< in progress
 } stick_contact;
 
 typedef struct performance_contacts {
@@ -29,7 +29,7 @@ typedef struct performance_contacts {
     int force_count;                        ///< its samples
 } performance_contacts;
 
-/// What a contact acts on: the stroke is over, the plan goes on, the user is told.
+/// The parts that a contact changes: it ends a stroke, continues the plan and reports to the user.
 typedef struct contact_scene {
     const performance_clock *clock;
     const performance_settings *settings;
@@ -40,16 +40,16 @@ typedef struct contact_scene {
     performance_events *events;
 } contact_scene;
 
-/// Sticks in the air, without a history; forces not yet played stay.
+/// Sets all sticks to the air, without a history; forces not yet played remain.
 HIMC_RT void himc_contacts_clear(performance_contacts *contacts);
-/// Decides for each hand at `t` whether control lets go of the head's normal; strokes whose contact
-/// has not come are given up.
+/// Decides for each hand at `t` whether control releases the head's normal; gives up strokes that
+/// are past their contact time without a contact.
 HIMC_RT void himc_contacts_release(performance_contacts *contacts, const contact_scene *scene,
                                    double t);
 /// Advances all drums by `n` samples with the sticks on them; the forces on the tips (N).
 HIMC_RT void himc_contacts_advance(performance_contacts *contacts, const contact_scene *scene,
                                    int n, himc_vec3 tip_force[HIMC_HANDS]);
-/// Ends contacts whose sticks have left, at `t`.
+/// Ends the contacts of sticks that have separated, at `t`.
 HIMC_RT void himc_contacts_finish(performance_contacts *contacts, const contact_scene *scene,
                                   double t);
 

@@ -1,8 +1,8 @@
 /// performance_drums.c: the drums of a performance.
 ///
-/// A drum that nobody has placed stands on the arc around the player on which the first one stands,
-/// at the angle nearest to straight ahead at which its rim is clear of the others', to the right
-/// before to the left. So no two drums are at one place, where no stick could tell them apart.
+/// A drum without a `place` is put on the arc of the first drum around the player. Its angle is
+/// the one nearest to straight ahead at which its rim is clear of the others, first to the right,
+/// then to the left. So no two drums are at one place, where a stick could not tell them apart.
 #include "performance/performance_drums.h"
 #include "base/head_frame.h"
 #include "drum/drum_state.h"
@@ -11,8 +11,8 @@
 
 // chosen: as timpani are set up, rims a finger apart and all within a turn of the trunk
 #define RIM_GAP 0.02        // least, between two rims (m)
-#define ARC_ANGLE_STEP 0.02 // from one angle tried to the next (rad)
-#define ARC_END 1.9         // a player turns no further (rad)
+#define ARC_ANGLE_STEP 0.02 // between two angles that are tried (rad)
+#define ARC_END 1.9         // largest turn of a player (rad)
 #define ARC_STEP 0.1        // from one arc to the next (m)
 #define LARGEST_ARC 2.0     // (m)
 
@@ -60,7 +60,7 @@ static void stand(drum_slot *slot, himc_vec3 center)
     himc_drum_stand(slot->drum, center);
 }
 
-// puts a drum that nobody has placed where there is room
+// places a drum automatically
 static void find_room(performance_drums *d, int index)
 {
     drum_slot *slot = &d->slot[index];
@@ -162,7 +162,7 @@ void himc_drums_tell_places(performance_drums *d, performance_events *events)
     for (int i = 0; i < d->count; i++) {
         himc_vec3 at = himc_drums_frame(d, i)->center;
         if (d->slot[i].untold && !himc_drum_is_placed(d->slot[i].drum))
-            himc_events_note(events, "drum %s stands at %.2f %.2f %.2f: `place` says where",
+            himc_events_note(events, "drum %s stands at %.2f %.2f %.2f: `place` moves it",
                              himc_drum_name(d->slot[i].drum), at.x, at.y, at.z);
         d->slot[i].untold = false;
     }

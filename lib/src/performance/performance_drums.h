@@ -1,5 +1,4 @@
-/// performance_drums.h: the part of a performance that holds its drums: found by name, made,
-/// replaced, and where they stand.
+/// performance_drums.h: the drums of a performance: found by name, made, replaced, placed.
 #ifndef HIMC_PERFORMANCE_DRUMS_H
 #define HIMC_PERFORMANCE_DRUMS_H
 
@@ -19,14 +18,14 @@ typedef enum drum_source {
 typedef struct drum_slot {
     himc_drum *drum; ///< a reference of the performance's own
     drum_source source;
-    unsigned revision;   ///< that the planner knows
+    unsigned revision;   ///< last one given to the planner
     bool untold;         ///< auto-placed; the user has not been notified
-    bool moved;          ///< the performer has put it somewhere else, see himc_drums_put_back
+    bool moved;          ///< moved by the performer, see himc_drums_put_back
     bool placed;         ///< himc_drum_is_placed before that ...
-    himc_vec3 found, at; ///< ... where it stood then, and where it was put (m)
+    himc_vec3 found, at; ///< ... its position then, and its new position (m)
 } drum_slot;
 
-/// Strokes name their drum by its slot. Slots are given up by himc_drums_put_back alone.
+/// Strokes refer to their drum by its slot. Only himc_drums_put_back frees slots.
 typedef struct performance_drums {
     drum_slot slot[HIMC_DRUMS];
     int count;
@@ -35,23 +34,23 @@ typedef struct performance_drums {
 /// Slot of the drum with that name, -1 if there is none.
 HIMC_RT int himc_drums_find(const performance_drums *drums, const char *name);
 HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, int index);
-/// Takes a drum and its reference, in the slot of the same name or a new one. A drum that nobody
-/// has placed is put where there is room. False, and nothing changed, if there is no slot left.
+/// Takes a drum and its reference, in the slot of the same name or a new one. A drum without a
+/// place is placed automatically. False, and nothing changed, if there is no slot left.
 bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source source, int *index,
                     himc_error *error);
 /// Makes a drum and adds it.
 bool himc_drums_make(performance_drums *drums, const char *name, double inches, double sample_rate,
                      drum_source source, int *index, himc_error *error);
-/// Puts a drum under a take's strikes, until its owner places it or himc_drums_put_back.
+/// Moves a drum under a take's strikes, until its owner places it or himc_drums_put_back.
 bool himc_drums_move(performance_drums *drums, int index, himc_vec3 center, himc_error *error);
-/// Drops all drums but those given by the host, in their order. These are as when they were added:
-/// heads at rest, standing where their owner has put them, else where there is room.
+/// Drops all drums except those given by the host, which keep their order. These are as when they
+/// were added: heads at rest, at the place of their owner or else placed automatically.
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
 
 /// Whether a drum has changed since the last call.
 HIMC_RT bool himc_drums_noticed(performance_drums *drums, int index);
-/// Notes where auto-placed drums stand, once each.
+/// Reports the place of each auto-placed drum once.
 HIMC_RT void himc_drums_tell_places(performance_drums *drums, performance_events *events);
 
 #endif

@@ -1,16 +1,16 @@
-/// performance_events.h: the part of a performance that tells its host what happened: a bounded
-/// queue of events, and the calls at each task tick.
+/// performance_events.h: the reports of a performance to its host: a bounded queue of events, and
+/// the calls at each task tick.
 #ifndef HIMC_PERFORMANCE_EVENTS_H
 #define HIMC_PERFORMANCE_EVENTS_H
 
 #include "himc/performance.h"
 
-#define EVENTS_WAITING 1024 // chosen: a minute of a roll whose host does not listen
+#define EVENTS_WAITING 1024 // chosen: a minute of a roll with a host that takes none
 
 typedef struct performance_events {
     himc_event event[EVENTS_WAITING]; ///< ring, oldest first
     int first, count;
-    long lost; ///< dropped because nobody took them
+    long lost; ///< dropped because the host took none
     void (*on_motion)(void *, const himc_motion_row *);
     void *motion_user;
     void (*on_tick)(void *, const himc_tick *);
@@ -25,7 +25,7 @@ HIMC_RT void himc_events_note(performance_events *events, const char *format, ..
 /// Takes the oldest event; false if there is none.
 HIMC_RT bool himc_events_take(performance_events *events, himc_event *event);
 
-/// Who is called at each task tick; NULL: nobody.
+/// Sets the function that is called at each task tick; NULL for none.
 void himc_events_on_motion(performance_events *events, void (*row)(void *, const himc_motion_row *),
                            void *user);
 void himc_events_on_tick(performance_events *events, void (*tick)(void *, const himc_tick *),

@@ -1,7 +1,7 @@
-/// performance_motion.c: what the body should do now.
+/// performance_motion.c: the targets of the body.
 ///
-/// A hand follows the take while that plays, else the planner. It is handed over where it is: the
-/// planner goes on from the tip's state, C2. Joint targets come from the take's postures, the
+/// A hand follows the take while that plays, else the planner. At the change the planner continues
+/// from the tip's present state, C2. Joint targets come from the take's postures, the
 /// natural posture or, as null-space target of `himc`, a player's posture regression; from one
 /// source to another they cross-fade (posture_crossfade.h).
 #include "performance/performance_motion.h"
@@ -14,13 +14,13 @@
 #include <string.h>
 
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
-#define TRUNK_FORESIGHT 1.2 // chosen: a stroke further ahead does not turn the trunk yet (s)
-#define TRUNK_STEP 0.02     // longest that himc_trunk_posture_approach goes on (s)
-#define REPLANNED 0.02      // chosen: a stroke given up may be planned again so much later (s)
-#define LIMIT_HEIGHT 0.35   // chosen: a large stroke; the mean posture's tips go up to here (m)
-#define LIMIT_HEIGHTS 8     // postures in that mean
-#define OUT_OF_REACH 1e-3   // chosen: a target missed by more is told of (m)
-#define BEAT_ROUNDING 1e-9  // of a time in seconds, in beats
+#define TRUNK_FORESIGHT 1.2 // chosen: strokes further ahead do not turn the trunk (s)
+#define TRUNK_STEP 0.02     // longest step of himc_trunk_posture_approach (s)
+#define REPLANNED 0.02     // chosen: least delay of a stroke that is given up and planned again (s)
+#define LIMIT_HEIGHT 0.35  // chosen: a large stroke; the mean posture's tips go up to here (m)
+#define LIMIT_HEIGHTS 8    // postures in that mean
+#define OUT_OF_REACH 1e-3  // chosen: the user is told of a target missed by more (m)
+#define BEAT_ROUNDING 1e-9 // of a time in seconds, in beats
 
 // distance of a place from the nearest one that the tip reaches
 static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
@@ -74,7 +74,7 @@ void himc_motion_set_drum(performance_motion *m, int index, const himc_head_fram
     m->replan = true;
 }
 
-// whose hands they are
+// take or planner
 
 bool himc_motion_tracks(const performance_motion *m, himc_hand hand)
 {
@@ -123,7 +123,7 @@ void himc_motion_set_track(performance_motion *m, himc_track *track, const himc_
         m->learned = *learned;
 }
 
-// what is planned
+// plan
 
 himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, double t)
 {
@@ -169,7 +169,7 @@ void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
 
 // trunk and grip
 
-// where a hand strikes next, or where it is
+// the next strike point of a hand, or its position
 static himc_vec3 attention(const performance_motion *m, const performance_drums *drums,
                            himc_hand hand, double t)
 {
@@ -179,14 +179,14 @@ static himc_vec3 attention(const performance_motion *m, const performance_drums 
     return himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y);
 }
 
-// at a time not before the course was set
+// the course at a time, not before it was set
 static himc_trunk_posture trunk_at(const performance_motion *m, double t)
 {
     return himc_trunk_posture_approach(&m->course.from, &m->course.goal,
                                        fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
 }
 
-// sets the course anew, from trunk and grip at `t` to those the next strokes want
+// sets a new course, from trunk and grip at `t` to those for the next strokes
 static void set_course(performance_motion *m, const performance_settings *s,
                        const performance_drums *drums, double t)
 {
@@ -232,8 +232,8 @@ static void follow_regression(const performance_motion *m, const performance_set
                                    &tick->posture);
 }
 
-// The player of a take holds the trunk as the take has it, not as the strokes ask: the regression's
-// sway departs from there.
+// With a take the trunk has its captured posture, not the one for the strokes; the regression's
+// trunk rotation is relative to it.
 static void fit_regression(performance_motion *m, const performance_settings *s)
 {
     himc_pose pose;
@@ -260,7 +260,7 @@ void himc_motion_set_regression(performance_motion *m, const performance_setting
     fit_regression(m, s);
 }
 
-// cross-fades a tick's joint targets from the source before to this one, while that is due
+// cross-fades a tick's joint targets from the source before to this one, during a cross-fade
 static void crossfade(performance_motion *m, himc_setpoint *tick)
 {
     if (m->crossfade_due && tick == &m->from) {

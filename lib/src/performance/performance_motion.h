@@ -1,5 +1,5 @@
-/// performance_motion.h: the part of a performance that says what the body should do: planner and
-/// take, the postures that go with the tips, and the setpoints of the task ticks.
+/// performance_motion.h: the targets of a performance's body: planner and take, the postures for
+/// the tips, and the setpoints of the task ticks.
 #ifndef HIMC_PERFORMANCE_MOTION_H
 #define HIMC_PERFORMANCE_MOTION_H
 
@@ -11,13 +11,13 @@
 #include "performance/performance_settings.h"
 #include "plan/track.h"
 
-/// Trunk and grip on their way to where the next strokes want them.
+/// The course of trunk and grip towards the posture for the next strokes.
 typedef struct trunk_course {
     himc_trunk_posture from, goal;
     double time; ///< of `from` (s)
 } trunk_course;
 
-/// The stroke a hand is on or comes to.
+/// The present or next stroke of a hand.
 typedef struct planned_stroke {
     bool any;
     double time; ///< of contact (s)
@@ -29,7 +29,7 @@ typedef struct planned_stroke {
 typedef struct performance_motion {
     himc_planner *planner; ///< owned
     himc_track *track;     ///< owned; instead of the planner when a take is loaded
-    double track_start;    ///< (s); infinite while the planner has the hands
+    double track_start;    ///< (s); infinite while the planner moves the hands
     bool has_learned;
     himc_limits learned;  ///< joint limits of the take's player
     himc_posture posture; ///< makes natural postures for the tips
@@ -38,11 +38,11 @@ typedef struct performance_motion {
     himc_posture_regression
         regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
-    bool crossfade_due; ///< joint targets have another source from the next tick on
+    bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;        ///< of the ticks before and after
     himc_reference reference;      ///< now
-    bool replan;                   ///< `from` is read anew, too
+    bool replan;                   ///< `from` is read again, too
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
@@ -53,17 +53,17 @@ typedef struct performance_motion {
 performance_motion *himc_motion_new(himc_error *error);
 void himc_motion_free(performance_motion *motion);
 
-/// Another body: its resting posture, and the targets at `t` (s) for it to begin in.
+/// Sets another body: its resting posture, and its first targets at `t` (s).
 void himc_motion_build(performance_motion *motion, const himc_skeleton *skeleton,
                        const performance_settings *settings, double t);
-/// The pose in which controllers are made: sticks at rest.
+/// The pose for making controllers: sticks at rest.
 void himc_motion_resting_pose(const performance_motion *motion, himc_pose *pose);
 /// Mean of a stroke's postures at the planned places, from the first head up.
 HIMC_RT himc_pose himc_motion_mean_pose(const performance_motion *motion, double t);
 
-/// The setpoints are read anew at the next step.
+/// Reads the setpoints again at the next step.
 HIMC_RT void himc_motion_replan(performance_motion *motion);
-/// Drum `index` stands there.
+/// Sets the head frame of drum `index`.
 HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
                                   const himc_head_frame *frame);
 /// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
@@ -76,15 +76,15 @@ HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
 HIMC_RT himc_target himc_motion_planned(const performance_motion *motion, himc_hand hand, double t);
 HIMC_RT planned_stroke himc_motion_stroke(const performance_motion *motion,
                                           const performance_drums *drums, himc_hand hand, double t);
-/// The stroke planned for that time is over: struck or given up.
+/// Ends the stroke planned for that time: struck or given up.
 HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, double planned_time);
-/// The plan goes on from that state of the tip, which has left the head.
+/// Continues the plan from that state of the tip, which has left the head.
 HIMC_RT void himc_motion_go_on_from(performance_motion *motion, himc_hand hand, double t,
                                     const himc_target *measured);
-/// Control lets go of the normal of a head, or not.
+/// Sets whether control releases the normal of a head.
 HIMC_RT void himc_motion_release(performance_motion *motion, himc_hand hand, bool released);
 HIMC_RT void himc_motion_set_normal(performance_motion *motion, himc_hand hand, himc_vec3 normal);
-/// In `ik`: the tip is there, and the posture goes with it.
+/// In `ik`: sets the tip's target to that state, and the posture accordingly.
 HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_settings *settings,
                                   himc_hand hand, const himc_target *tip, double t);
 
@@ -92,14 +92,14 @@ HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_
 HIMC_RT bool himc_motion_tracks(const performance_motion *motion, himc_hand hand);
 /// True for a hand without a task: not in the take, or on its way to the take's first frame.
 HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand hand, double t);
-/// The planner goes on with the hands that the take has.
+/// Gives the hands of the take to the planner.
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
 HIMC_RT bool himc_motion_free_hand(performance_motion *motion, himc_hand hand, double t);
-/// A take in place of the one before (NULL: none), with the limits of its player (NULL: none).
+/// Replaces the take (NULL: none) and the limits of its player (NULL: none).
 void himc_motion_set_track(performance_motion *motion, himc_track *track,
                            const himc_limits *learned, double t);
-/// The null-space target from now on; NULL: the natural posture. `of_take`: dropped with the take.
+/// Sets the null-space target; NULL: the natural posture. `of_take`: dropped with the take.
 HIMC_RT void himc_motion_set_regression(performance_motion *motion,
                                         const performance_settings *settings,
                                         const himc_posture_regression *regression, bool of_take);
@@ -107,11 +107,11 @@ HIMC_RT void himc_motion_set_regression(performance_motion *motion,
 /// `play` and `stop`.
 HIMC_RT void himc_motion_play(performance_motion *motion, double t);
 HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
-/// A live target. Returns where the tip goes; `reachable` is false if that is not the place asked
-/// for, `first` true if the target before was reachable.
+/// Sets a live target. Returns the place to which the tip moves; `reachable` is false if this is
+/// not the requested place, `first` true if the target before was reachable.
 HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand hand, himc_vec3 asked,
                                         bool *reachable, bool *first);
-/// A live target is refused: the take has the hand. True for the first one.
+/// Refuses a live target, because the take moves the hand. True for the first one.
 HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
 
 /// The whole beat that has begun at `t` since the last call, or -1.

@@ -1,21 +1,21 @@
-/// performance_play.c: what to play, for C programs and for the commands of the same names: strokes
-/// and hits, transport, live targets, units of motion. Scores and takes have files of their own.
+/// performance_play.c: playing, for C programs and for the commands of the same names: strokes and
+/// hits, transport, live targets, units of motion. Scores and takes have files of their own.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 
 #include <string.h>
 
-#define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; of a target under a head (m)
+#define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
 #define UNDER_THE_HEAD 0.3  // a target deeper than this is under the drum, not in its head (m)
 
-#define LATEST_BEAT 1e9 // beats are exact to 1e-7 so far
+#define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
 static bool check_stroke(const himc_stroke *s, himc_error *error)
 {
     bool placed = s->spot == HIMC_SPOT_XY;
     if ((unsigned)s->hand >= HIMC_HANDS || (unsigned)s->nuance >= HIMC_NUANCES ||
         (unsigned)s->spot > HIMC_SPOT_XY || !memchr(s->drum, 0, sizeof s->drum))
-        return himc_error_set(error, "stroke: hand, nuance, spot or drum's name is none");
+        return himc_error_set(error, "stroke: no such hand, nuance or spot, or no drum's name");
     return himc_check_range("stroke: DYNAMIC", s->dynamic, 0, 1, "", error) &&
            himc_check_range("stroke: X", placed ? s->x : 0, -1, 1, "m", error) &&
            himc_check_range("stroke: Y", placed ? s->y : 0, -1, 1, "m", error);
@@ -38,7 +38,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     if (!check_stroke(stroke, error))
         return false;
     if (!himc_motion_free_hand(p->motion, stroke->hand, now))
-        return himc_error_set(error, "hit: a take has the hands, allowed when it is over");
+        return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
     if (!himc_performance_ensure_drum(p, stroke->drum, &drum, error))
         return false;
     himc_drums_tell_places(&p->drums, &p->events);
@@ -75,7 +75,7 @@ void himc_performance_stop(himc_performance *p)
     himc_motion_stop(p->motion, step_time(p));
 }
 
-// a tip is sent no further into a head than this
+// limits the depth of a target in a head
 static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
 {
     for (int i = 0; i < p->drums.count; i++) {
@@ -88,7 +88,7 @@ static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
     return x;
 }
 
-// notes come once each time that a stream of targets begins to be refused or leaves the reach
+// one note when a stream of targets begins to be refused, or leaves the reach
 void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 asked)
 {
     bool reachable, first;
@@ -96,7 +96,8 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
         return;
     if (!himc_motion_free_hand(p->motion, hand, step_time(p))) {
         if (himc_motion_refuse_target(p->motion, hand))
-            himc_events_note(&p->events, "target %s: a take has the hands, allowed when it is over",
+            himc_events_note(&p->events,
+                             "target %s: a take moves the hand, allowed when it is over",
                              himc_hand_name(hand));
         return;
     }
@@ -108,7 +109,7 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     himc_motion_replan(p->motion);
 }
 
-// cuts a take into units of that nuance, at `spot` or where they were played if that is NULL
+// cuts a take into units of that nuance, at `spot` or, if that is NULL, at their captured places
 static bool add_units(himc_performance *p, himc_take *take, const char *path, himc_nuance nuance,
                       const himc_spot *spot, himc_error *error)
 {

@@ -1,5 +1,5 @@
 /// performance_queue.c: commands wait in the order in which they came. In a storm of commands the
-/// first one dropped is an error; the rest are counted and told of when the storm is over.
+/// first one dropped is an error; the rest are counted and reported after the storm.
 #include "performance/performance_queue.h"
 
 void himc_queue_clear(performance_queue *q)

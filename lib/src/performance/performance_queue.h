@@ -1,4 +1,4 @@
-/// performance_queue.h: the part of a performance that keeps commands until their sample.
+/// performance_queue.h: the commands of a performance that wait for their sample.
 #ifndef HIMC_PERFORMANCE_QUEUE_H
 #define HIMC_PERFORMANCE_QUEUE_H
 
@@ -15,9 +15,9 @@ typedef struct waiting_command {
 } waiting_command;
 
 typedef struct performance_queue {
-    waiting_command waiting[WAITING_COMMANDS]; ///< in the order in which they came
+    waiting_command waiting[WAITING_COMMANDS]; ///< in their order of arrival
     int count;
-    long dropped; ///< because too many waited
+    long dropped; ///< because the queue was full
 } performance_queue;
 
 /// Carries out a command now; false, and nothing changed, with the reason.

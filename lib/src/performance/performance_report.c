@@ -1,5 +1,5 @@
-/// performance_report.c: what a performance tells: figures, rows of motion, `info`; and the
-/// recording of what it plays.
+/// performance_report.c: the reports of a performance: figures, rows of motion, `info`; and the
+/// recording of its motion.
 #include "performance/performance_state.h"
 
 #include <stdio.h>
@@ -70,7 +70,7 @@ static void record(himc_performance *p, double t)
     if (!r->file || himc_recording_add(r->file, &p->body->state) || r->full)
         return;
     r->full = true;
-    himc_events_note(&p->events, "%s: no more room, recorded up to %.3f s",
+    himc_events_note(&p->events, "%s: the recording is full, recorded up to %.3f s",
                      himc_recording_path(r->file), t);
 }
 
@@ -110,7 +110,7 @@ void himc_performance_drop_recording(himc_performance *p)
 
 // info
 
-/// Where lines of `info` go.
+/// The receiver of the lines of `info`.
 typedef struct reader {
     void (*line)(void *, const char *);
     void *user;

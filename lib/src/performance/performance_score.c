@@ -1,17 +1,17 @@
-/// performance_score.c: `score FILE`: all of a score is taken, or nothing.
+/// performance_score.c: `score FILE`: a score is accepted as a whole, or refused.
 ///
-/// The file is parsed as a whole (score.c); then it is rehearsed: its lines for drums go to trial
-/// drums like the real ones, its lines for the performer are checked, its drums are counted. Only
-/// then is anything done. While a score plays, the next one's beats follow its own. Invariant: a
-/// score that is refused has changed nothing.
+/// The file is parsed as a whole (score.c) and then tried: its lines for drums go to copies of the
+/// drums, its lines for the performer are checked, its drums are counted. Only then is it carried
+/// out. While a score plays, the beats of the next one follow its own. Invariant: a score that is
+/// refused has changed nothing.
 #include "performance/performance_state.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define TRIAL_RECORDING 0.1 // a file that can be made is not filled (s)
+#define TRIAL_RECORDING 0.1 // of the trial of a file that can be opened (s)
 
-/// Drums as a score would leave them; owned.
+/// Copies of the drums, for trying a score; owned.
 typedef struct rehearsal {
     himc_performance *performance;
     performance_action *run; ///< of a command
@@ -58,7 +58,7 @@ static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc
     return r->drum[r->drums++] = drum;
 }
 
-/// Whether a line for the performer could be carried out; one that reads a file reads it now.
+/// True if a line for the performer can be carried out; reads the file that it names.
 static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *error)
 {
     himc_performance *p = r->performance;
@@ -102,7 +102,7 @@ static bool rehearse_line(rehearsal *r, const himc_score_line *line, himc_error 
                     himc_error_prefix(error, "%s", line->drum));
 }
 
-/// Drums there would be: those there are, those of the lines, those the strokes name.
+/// Number of drums with this score: the present ones, and those named by lines and strokes.
 static bool count_drums(const rehearsal *r, const himc_score *score, himc_error *error)
 {
     const char *name[HIMC_DRUMS];
@@ -154,7 +154,7 @@ static bool run_line(himc_performance *p, const himc_score_line *line, performan
             himc_error_prefix(error, "%s", line->drum));
 }
 
-// commands that act on strokes or on the transport are carried out when the strokes are there
+// commands that act on strokes or on the transport are carried out after the strokes are loaded
 static bool comes_after_strokes(const himc_score_line *line)
 {
     return himc_command_table((int)line->command.id)->marks & HIMC_AFTER_STROKES;

@@ -1,21 +1,21 @@
-/// performance_settings.h: what commands set; `reset` puts the default back.
+/// performance_settings.h: the settings made by commands; `reset` restores the default.
 #ifndef HIMC_PERFORMANCE_SETTINGS_H
 #define HIMC_PERFORMANCE_SETTINGS_H
 
 #include "control/controller.h"
 #include "himc/performance.h"
 
-/// How the player of a take holds the body.
+/// The captured rest pose: the posture of a take's player.
 typedef struct captured_player {
     bool known[HIMC_JOINTS];  ///< joints of `rest` that the take shows
     himc_pose rest;           ///< mean of neck, head and legs
-    himc_trunk_posture trunk; ///< mean of the trunk; of use if its joint is known
+    himc_trunk_posture trunk; ///< mean of the trunk; valid if its joint is known
 } captured_player;
 
 typedef struct performance_settings {
-    double physics_rate, task_rate; ///< asked for (Hz)
+    double physics_rate, task_rate; ///< requested (Hz)
     himc_skeleton_config skeleton;
-    double weight[HIMC_SEGMENTS]; ///< of each simulated segment over the one control believes in
+    double weight[HIMC_SEGMENTS]; ///< mass of each simulated segment over its assumed mass
     himc_controller_config control;
     himc_limits_kind limits;
     himc_grip grip;
@@ -24,10 +24,10 @@ typedef struct performance_settings {
     captured_player captured;
 } performance_settings;
 
-/// Those of a performance just made with that configuration.
+/// The settings of a new performance with that configuration.
 performance_settings himc_settings_default(const himc_performance_config *config);
 
-/// Whether the captured trunk is known: then it is held instead of the natural one.
+/// True if the captured trunk is known; it replaces the natural one.
 static inline bool himc_settings_trunk_known(const performance_settings *settings)
 {
     return settings->captured.known[HIMC_TRUNK - 1];

@@ -1,15 +1,15 @@
 /// performance_setup.c: a performance made, rebuilt and reset.
 ///
-/// A performance is its settings and the parts that follow from them. Whatever may fail, a new body
-/// or a new plan, is made aside first and then put in the place of the old one: a refusal changes
-/// nothing. `reset` is the default settings and new parts; time begins at 0 at the first sample not
-/// yet simulated, so that every sum in floating point is that of a performance just made.
+/// A performance is its settings and the parts that follow from them. Each part that
+/// can fail, a new body or a new plan, is made first and then replaces the old one, so a failure
+/// changes nothing. `reset` is the default settings and new parts. Time begins at 0 at the first
+/// sample not yet simulated, so every floating point sum equals that of a new performance.
 #include "performance/performance_state.h"
 #include "performance/research.h"
 
 #include <stdlib.h>
 
-#define LIGHTEST 0.2 // chosen: an uncertain body, not another one; of a segment's mass over belief
+#define LIGHTEST 0.2 // chosen: an uncertain body, not another one; true over assumed mass
 #define HEAVIEST 5.0
 
 himc_performance_config himc_performance_default(void)
@@ -55,7 +55,7 @@ static void put_together(performance_motion *motion, performance_body *body,
     himc_body_init_controller(body, &s->control, &rest);
 }
 
-/// The parts that take memory.
+/// The parts that need memory.
 typedef struct made_parts {
     performance_motion *motion;
     performance_body *body;
@@ -79,7 +79,7 @@ static bool make_parts(made_parts *parts, const performance_settings *s, himc_er
     return true;
 }
 
-// everything but drums, events and recording begins anew with these settings and parts
+// restarts everything except drums, events and recording with these settings and parts
 static void begin(himc_performance *p, const performance_settings *s, const made_parts *parts)
 {
     p->settings = *s;

@@ -6,9 +6,9 @@
 ///
 ///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
 ///     performance_contacts        sticks on heads: acts on motion, statistics and events
-///     performance_report.c        what is told: figures, rows of motion, `info`; the recording
+///     performance_report.c        reports: figures, rows of motion, `info`; the recording
 ///     performance_setup.c         new, rebuild, reset: puts the parts together; the settings
-///     performance_play.c, _take.c, _score.c     what to play
+///     performance_play.c, _take.c, _score.c     playing strokes, takes and scores
 ///     performance_command.c       the commands
 ///     performance.c               the step
 #ifndef HIMC_PERFORMANCE_STATE_H
@@ -25,16 +25,16 @@
 #include "performance/performance_settings.h"
 #include "performance/performance_statistics.h"
 
-/// What the host has decided; `reset` leaves it.
+/// The host's settings; `reset` keeps them.
 typedef struct performance_host {
-    himc_performance_config config; ///< that the performance was made with
+    himc_performance_config config; ///< given to himc_performance_new
     himc_take_options take_options;
     bool make_drums; ///< `drum` makes one
 } performance_host;
 
 typedef struct performance_recording {
     himc_recording *file; ///< owned; NULL when nothing is recorded
-    bool full;            ///< and the user knows
+    bool full;            ///< and the user was notified
 } performance_recording;
 
 struct himc_performance {
@@ -61,35 +61,35 @@ static inline double step_time(const himc_performance *p)
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
 // performance_report.c
-/// Tells host and recording where everything is, at a task tick.
+/// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 bool himc_performance_begin_recording(himc_performance *p, const char *path, himc_error *error);
-/// Writes the recording, says so and ends it. If it cannot be written it goes on.
+/// Writes the recording, reports it and ends it. If it cannot be written it continues.
 bool himc_performance_write_recording(himc_performance *p, himc_error *error);
 void himc_performance_drop_recording(himc_performance *p);
 
 // performance_setup.c
-/// Other settings for the same body.
+/// Sets other settings for the same body.
 HIMC_RT void himc_performance_adopt(himc_performance *p, const performance_settings *settings);
-/// Other settings with another body, which begins where the targets are. False, and nothing
-/// changed, if it cannot be made.
+/// Sets other settings with another body, which begins at the targets. False, and nothing changed,
+/// if it cannot be made.
 bool himc_performance_rebuild(himc_performance *p, const performance_settings *settings,
                               himc_error *error);
-/// Everything as just made, but for the host's drums, callbacks and events. False, and nothing
-/// changed, if there is no memory or a recording cannot be written.
+/// Resets everything except the host's drums, callbacks and events. False, and nothing changed,
+/// if there is no memory or a recording cannot be written.
 bool himc_performance_reset(himc_performance *p, himc_error *error);
-/// The rates of the settings are in force; a step begins now.
+/// Applies the rates of the settings; a step begins now.
 HIMC_RT void himc_performance_restart_steps(himc_performance *p);
-/// Joint limits anew: a drum, the take or the settings have changed.
+/// Updates the joint limits after a change of a drum, the take or the settings.
 HIMC_RT void himc_performance_renew_limits(himc_performance *p);
-/// Drums that have changed are made known to the planner.
+/// Gives the drums that have changed to the planner.
 HIMC_RT void himc_performance_notice_drums(himc_performance *p);
 /// The drum of that name ("": the first); a silent one is made if there is none.
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
                                   himc_error *error);
 bool himc_performance_make_drum(himc_performance *p, const char *name, double inches,
                                 himc_error *error);
-/// The planner has the hands; limits and posture regression of the take go with it.
+/// Drops the take with its limits and posture regression; the planner moves the hands.
 void himc_performance_drop_track(himc_performance *p);
 
 // performance_play.c

@@ -1,4 +1,4 @@
-/// performance_statistics.h: the part of a performance that measures how well it is played.
+/// performance_statistics.h: the errors and counts of a performance.
 #ifndef HIMC_PERFORMANCE_STATISTICS_H
 #define HIMC_PERFORMANCE_STATISTICS_H
 
@@ -12,26 +12,26 @@ typedef struct performance_statistics {
     long height_count;
     double apex[HIMC_HANDS]; ///< highest target over the head since the last strike (m)
     int strokes, played, hits;
-    double hit_latency, longest_latency; ///< from a hit's command to its touch as planned (s)
+    double hit_latency, longest_latency; ///< from a hit's command to its planned contact (s)
     double peak_force;                   ///< (N)
     long recoveries;
 } performance_statistics;
 
 HIMC_RT void himc_statistics_clear(performance_statistics *statistics);
-/// The target of that hand is `height` over the head (m).
+/// Adds a target of that hand, `height` over the head (m).
 HIMC_RT void himc_statistics_height(performance_statistics *statistics, himc_hand hand,
                                     double height, bool touching);
-/// A tip is `away` from its target (m).
+/// Adds the distance `away` of a tip from its target (m).
 HIMC_RT void himc_statistics_tip(performance_statistics *statistics, himc_vec3 away);
-/// Strokes of the score are over, `played` of them landed on time and place.
+/// Adds finished strokes of the score; `played` of them landed on time and place.
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
-/// A hit is planned to touch that long after its command (s).
+/// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
 HIMC_RT void himc_statistics_force(performance_statistics *statistics, double force);
-/// A state that was not finite has been replaced; returns how many there were before.
+/// Counts a state that was not finite and was replaced; returns the count before.
 HIMC_RT long himc_statistics_recovery(performance_statistics *statistics);
 
-/// Fills what is measured here.
+/// Fills the fields that this part measures.
 HIMC_RT void himc_statistics_read(const performance_statistics *statistics,
                                   himc_performance_stats *out);
 

@@ -1,14 +1,14 @@
-/// performance_take.c: the command `take`: a capture's player becomes the performer, and sits where
-/// the capture has it, before a drum that stands under the strikes.
+/// performance_take.c: the command `take`: the performer gets the body and the seat of the captured
+/// player, before a drum under the strikes.
 ///
-/// In `id` and `ik` the joints follow the captured postures, but for arms that hold no stick; in
-/// `himc` only the tips are known, and the null space follows the natural posture, with neck, head,
-/// legs and the trunk's mean of this player. An arm that the take shows whole follows a posture
+/// In `id` and `ik` the joints follow the captured postures, except for arms without a stick. In
+/// `himc` only the tips are given; the null space follows the natural posture, with neck, head,
+/// legs and the mean trunk of this player. A completely captured arm follows a posture
 /// regression instead: the default one, corrected by this take's postures.
 ///
-/// Joint limits are learned from the captured postures. An arm shown without a stick was held
-/// otherwise than one with a stick: its limits come from the postures that its tips ask for, in
-/// `himc` and, bent from the captured ones, in `id`.
+/// Joint limits are learned from the captured postures. An arm without a stick was held differently
+/// from one with a stick; its limits are learned from the postures for its tips: the natural ones
+/// in `himc`, the captured ones bent to the tips in `id`.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 #include "body/limits.h"
@@ -20,12 +20,12 @@
 // chosen: a player goes a little further than one take shows
 #define LIMIT_MARGIN 0.05     // beyond the captured range, as a share of it ...
 #define LEAST_LIMIT 0.05      // ... and this far whatever the range (rad)
-#define POSTURES_SEEN 1000    // frames of a take from which bent arms' limits are learned
+#define POSTURES_SEEN 1000    // frames of a take, for the limits of bent arms
 #define REACH_CHECK_STEP 0.01 // from one check of a take's reach to the next (s)
-#define OUT_OF_REACH 1e-3     // a tip further from its place is out of reach (m)
+#define OUT_OF_REACH 1e-3     // a tip further from its target is out of reach (m)
 #define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
 
-// says what was repaired in reading it
+// notes on the repairs made while reading the take
 static void note_repairs(himc_performance *p, himc_take *take, const char *path)
 {
     himc_take_tip tips[HIMC_HANDS];
@@ -39,7 +39,7 @@ static void note_repairs(himc_performance *p, himc_take *take, const char *path)
                              tips[hand].name, tips[hand].filled);
 }
 
-// says how much of a take the player cannot follow; the arm then stretches towards it
+// a note on the part of the take out of reach; there the arm stretches towards the tips
 static void note_reach(himc_performance *p, const himc_track *track, const char *path)
 {
     double length = himc_track_length(track), farthest = 0;
@@ -61,7 +61,7 @@ static void note_reach(himc_performance *p, const himc_track *track, const char 
                          100.0 * far / count, farthest);
 }
 
-// puts the drum under the take's strikes, or lowers one that is in its way
+// moves the drum under the take's strikes, or lowers a drum that is in the way
 static bool move_drum(himc_performance *p, int index, himc_vec3 to, const himc_track *track,
                       const char *path, himc_error *error)
 {
@@ -73,7 +73,7 @@ static bool move_drum(himc_performance *p, int index, himc_vec3 to, const himc_t
         return false;
     himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", path,
                      himc_drum_name(p->drums.slot[index].drum), to.x, to.y, to.z,
-                     strikes ? "where the take strikes" : "out of the take's way");
+                     strikes ? "under the take's strikes" : "out of the take's way");
     return true;
 }
 
@@ -120,7 +120,7 @@ static void postures_at(const himc_posture *posture, const himc_track *track, do
     memcpy(pose[1].joint, motion.joint, sizeof motion.joint);
 }
 
-// limits of arms without sticks anew, from the postures that the tips ask for
+// learns the limits of arms without sticks again, from the postures for the tips
 static bool learn_bent(const himc_player *player, const himc_track *track,
                        const himc_posture *posture, himc_limits *learned, himc_error *error)
 {
@@ -170,7 +170,7 @@ static captured_player captured_of(const himc_player *player)
 {
     captured_player c = {.rest = player->mean, .trunk = mean_trunk(player)};
     memcpy(c.known, player->known, sizeof c.known);
-    // seated by the shoulders, a player has them where they were seen with this trunk only
+    // a seat found from the shoulders is valid with this trunk only
     c.known[HIMC_TRUNK - 1] = player->known[HIMC_TRUNK - 1] || player->placed;
     return c;
 }
@@ -189,12 +189,12 @@ static bool adopt_player(himc_performance *p, const himc_player *player, const c
     s.captured = captured_of(player);
     if (!himc_performance_rebuild(p, &s, error))
         return false;
-    himc_events_note(&p->events, "%s: the player's body has %d lengths from it, %.2f m, %.0f kg",
+    himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
                      path, player->lengths, s.skeleton.height, s.skeleton.mass);
     return true;
 }
 
-// says how many strikes of a take are on none of the drum it is played on
+// a note on the strikes of a take that are beside its drum
 static void note_outside(himc_performance *p, himc_take *take, const himc_track *track,
                          const himc_drum *drum, const char *path)
 {
@@ -212,8 +212,7 @@ static void note_outside(himc_performance *p, himc_take *take, const himc_track 
     }
     free(strikes);
     if (outside > 0)
-        himc_events_note(&p->events,
-                         "%s: %d of %d strikes are beside drum %s: a take is played on one", path,
+        himc_events_note(&p->events, "%s: %d of %d strikes are beside drum %s and silent", path,
                          outside, count, himc_drum_name(drum));
 }
 
@@ -249,7 +248,7 @@ static void adopt_regression(himc_performance *p, const himc_player *player, con
     himc_motion_set_regression(p->motion, &p->settings, fitted ? &regression : NULL, fitted);
 }
 
-// a capture in which left and right are exchanged has its drum behind the player
+// if left and right are exchanged in a capture, its drum is behind the player
 static bool check_side(const himc_player *player, const himc_head_frame *frame, himc_error *error)
 {
     if (!player->placed || player->walks || frame->center.x >= 0)
@@ -300,7 +299,7 @@ bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_pla
     return played;
 }
 
-// plays a take by the player it shows
+// plays a take with the body of its player
 static bool play_own_player(himc_performance *p, himc_take *take, const char *name,
                             himc_error *error)
 {

@@ -4,7 +4,7 @@
 /// legato 4.3, tenuto 4.2, accent 4.5, vertical accent 7.5, staccato 2.8 m/s, and 1.39 times that
 /// in the louder takes). Heights and depths keep the differences between nuances of Bouënard, Gibet
 /// & Wanderley 2012 (section 3): accent highest and shallow, vertical accent and staccato deep,
-/// tenuto rising weakly, staccato pulled off. Peak force goes with speed^1.1, so a speed ratio of
+/// tenuto rising weakly, staccato pulled off. Peak force grows as speed^1.1, so a speed ratio of
 /// 10 from ppp to fff gives 22 dB. The steepness s = v T/H of a fall from the height H to the speed
 /// v in the time T is 1.9 to 2.1 here; it is monotone up to 2.5 (gesture.h). A stroke given the
 /// share r < 1 of its time keeps its speed and s and so is r as high, until v/T, which grows with
@@ -34,7 +34,7 @@
 #define UNIT_DEPTH_GROWTH 1.2 // its depth grows with its height up to this factor
 #define MOST_ARC 4.0          // at its apex
 
-/// At f. `shape` is s; height goes with speed^height_exponent below f.
+/// At f. `shape` is s; height grows as speed^height_exponent below f.
 static const struct profile {
     double height, speed, shape, height_exponent, dwell, rise, depth, arc, rebound, rebound_time;
 } profile[HIMC_NUANCES] = {

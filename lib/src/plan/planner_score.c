@@ -3,7 +3,7 @@
 /// Strokes are kept for each hand, sorted by beat, since a hand only ever asks for its next one.
 /// While playing, beat b is at the time origin + S(b), S being the sum of 60/bpm over the tempo
 /// map. A change of tempo at beat b replaces the map up to b and moves the origin so that b stays
-/// where it is. In a loop whose round has the length L, beat b of round k is at origin + k S(L) +
+/// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
 /// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
 /// strictly, so every time has one beat.
 #include "plan/planner_score.h"

@@ -28,7 +28,7 @@
 #define REJOIN_PEAK 250.0    // ... as long as this peak acceleration takes (m/s^2)
 #define FASTEST_STICK 12.0   // a stick that leaves the head faster has been thrown (m/s)
 #define NEXT_STRIKE_GAP 1e-3 // the way ends so much before the next bridge begins (s)
-#define LEAST_REJOIN 0.015   // with less time left the way stays as it is (s)
+#define LEAST_REJOIN 0.015   // with less time left the path is not changed (s)
 #define SLOWEST_REJOIN 0.2   // rate of the take's time below which nothing is replanned
 
 // a stop; chosen: no tip falls on the head after it

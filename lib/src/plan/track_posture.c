@@ -10,8 +10,8 @@
 /// r_k the levers from the joints to the tip, w_k larger towards the stick, as a hand corrects;
 /// repeated, since it is the linear part of the way. Rates come from differences of that map. In
 /// the mode that follows joints as published, joints are neither cut nor bent: a second fit, of all
-/// frames. An arm whose tip is a finger's end holds no stick: bent to the tip it would be out of
-/// shape, so it has the natural posture instead.
+/// frames. An arm whose tip is the end of a finger holds no stick: bent to the tip it would be out
+/// of shape, so it has the natural posture instead.
 #include "plan/track_state.h"
 #include "plan/track_time.h"
 
