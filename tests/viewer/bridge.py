@@ -307,7 +307,7 @@ def test_skeleton_of_the_page_is_the_librarys():
 
 
 def test_no_list_of_segments_is_written_in_the_viewer():
-    """Single names are there, where a part of the figure belongs to a segment: at most two a line."""
+    """Single names are allowed, where a part of the figure belongs to a segment: one a line."""
     for folder in ("viewer", "viewer/page"):
         for name in os.listdir(folder):
             path = os.path.join(folder, name)
@@ -530,7 +530,7 @@ def test_a_slow_reader_gets_the_newest_and_stalls_nobody():
 
 
 def test_a_slow_client_gets_the_whole_motion():
-    """At full length the transfer takes longer than the 20 s after which an idle client is dropped."""
+    """At full length it takes longer than the 20 s after which an idle client is dropped."""
     seconds = 45 if os.environ.get("HIMC_LONG") else 1
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as motion:
         motion.write("time_s,x\n" + "1,2\n" * 4000000)
