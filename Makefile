@@ -252,7 +252,7 @@ $(VIEWER_O): $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
-$(VIEWER): $(VIEWER_O) $(BUILD)/lib/base/line.o
+$(VIEWER): $(VIEWER_O) $(filter $(BUILD)/lib/base/%,$(LIB_O))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
 
