@@ -24,11 +24,14 @@ static bool check_stroke(const himc_stroke *s, himc_error *error)
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
+    if (!check_stroke(stroke, error) ||
+        !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
+        !himc_planner_accepts(p->motion->planner, stroke, error) ||
+        !himc_performance_ensure_drum(p, stroke->drum, &drum, error) ||
+        !himc_planner_add(p->motion->planner, stroke, drum, error))
+        return false;
     himc_motion_replan(p->motion);
-    return check_stroke(stroke, error) &&
-           himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) &&
-           himc_performance_ensure_drum(p, stroke->drum, &drum, error) &&
-           himc_planner_add(p->motion->planner, stroke, drum, error);
+    return true;
 }
 
 bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_error *error)

@@ -52,6 +52,8 @@ HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
+/// Whether himc_planner_add would accept it; makes room for it.
+bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, himc_error *error);
 /// Replaces the tempo map (copied); beats must rise. While playing, the current beat stays where it
 /// is.
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
