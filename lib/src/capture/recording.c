@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
@@ -57,14 +58,13 @@ static bool check_path(const char *path, himc_error *error)
 {
     if (!himc_take_is_format(path, error))
         return false;
-    FILE *existing = fopen(path, "rb"), *file = fopen(path, "ab");
+    bool existed = access(path, F_OK) == 0;
+    FILE *file = fopen(path, "ab");
     if (!file)
         himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
     if (file)
         fclose(file);
-    if (existing)
-        fclose(existing);
-    else if (file)
+    if (file && !existed)
         remove(path);
     return file != NULL;
 }
