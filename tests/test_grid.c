@@ -200,7 +200,7 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     refuses("bad.txt", "tension 1000\ndensity 0\n", "bad.txt:2: density: 0");
     refuses("bad.txt", "tension 1000\nplaces p\nmass m\nstiffness k\n", "density: missing");
     refuses("bad.txt", "shape round\n", "bad.txt:1: shape: unknown");
-    refuses("bad.txt", "places nowhere\n", "nowhere: No such file");
+    refuses("bad.txt", "places nowhere\n", "nowhere: cannot be read: No such file");
     TEST_ASSERT_FALSE(shape_of("none.txt"));
 }
 

@@ -12,6 +12,7 @@
 /// Everyday a long call is tried at some of its allocations, with HIMC_LONG at all.
 #define _GNU_SOURCE
 #include "allocations.h"
+#include "disc_mesh.h"
 #include "take_players.h"
 
 #include "session.h"
@@ -24,11 +25,12 @@
 #include "osc/stepped.h"
 
 #include <link.h>
+#include <sys/stat.h>
 
 #define BVH "build/no_memory.bvh"
 #define C3D "build/no_memory.c3d"
 #define TRC "build/no_memory.trc"
-#define MESH "build/no_memory_mesh.txt"
+#define MESH "build/no_memory_mesh"
 #define SCORE "build/no_memory.txt"
 #define OUT "build/no_memory_out"
 #define RATE 8000.0
@@ -253,11 +255,17 @@ static bool send_drum(void *it, himc_error *why)
 
 static void test_a_drums_command_without_memory_changes_nothing(void)
 {
-    static const char *const text[] = {"modes 60",     "shape rectangle 0.5 0.4",
-                                       "shape circle", "radius 0.33",
-                                       "tension 3000", "air 0",
-                                       "decay 2",      "pickups 4",
-                                       "air 1",        "tune A2"};
+    static const char *const text[] = {"modes 60",
+                                       "shape rectangle 0.5 0.4",
+                                       "shape " MESH "/head.txt",
+                                       "shape circle",
+                                       "radius 0.33",
+                                       "tension 3000",
+                                       "air 0",
+                                       "decay 2",
+                                       "pickups 4",
+                                       "air 1",
+                                       "tune A2"};
     himc_drum *drum = himc_drum_new("kettle", 23, RATE, &error);
     himc_drum *twin = himc_drum_new("kettle", 23, RATE, &error);
     for (size_t i = 0; CAN_FAIL_ALLOCATIONS && i < sizeof text / sizeof text[0]; i++) {
@@ -480,6 +488,10 @@ static bool make_files(void)
         !himc_take_save(markers, C3D, &error) || !himc_take_save(markers, TRC, &error))
         return false;
     himc_take_free(markers);
+    disc_mesh mesh = disc_mesh_new(3, 0.3, 3000, 0.3);
+    mkdir(MESH, 0777);
+    disc_mesh_write(&mesh, MESH, 3000, 0.3);
+    disc_mesh_free(&mesh);
     write_text(SCORE, "drum tom 29; kettle modes 30; tempo 120; tempo 90 2;\n"
                       "stroke 0.5 left accent f normal kettle; stroke 1 right tenuto mf; play;\n");
     return true;
@@ -497,9 +509,8 @@ int main(void)
     RUN_TEST(test_a_performers_command_without_memory_changes_nothing);
     RUN_TEST(test_many_allocations_were_tried);
     himc_take_free(sample_take);
-    static const char *const files[] = {BVH,   C3D,        TRC,        MESH,
-                                        SCORE, OUT ".bvh", OUT ".c3d", OUT ".trc"};
+    static const char *const files[] = {BVH, C3D, TRC, SCORE, OUT ".bvh", OUT ".c3d", OUT ".trc"};
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
         unlink(files[i]);
-    return UNITY_END();
+    return system("rm -r " MESH) == 0 ? UNITY_END() : 1;
 }
