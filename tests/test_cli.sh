@@ -38,7 +38,7 @@ refuses() {
     timeout 120 "$himc" "$@" >stdout 2>stderr </dev/null
     code=$?
     lines="$(wc -l <stdout) $(wc -l <stderr)"
-    if [ $code = 1 ] && [ "$lines" = "0 1" ] && grep -qF -- "$text" stderr; then
+    if [ $code = 1 ] && [ "$lines" = "0 1" ] && ! LC_ALL=C grep -q '[[:cntrl:]]' stderr && grep -qF -- "$text" stderr; then
         line "$name" PASS
     else
         failures=$((failures + 1))
@@ -105,6 +105,12 @@ refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --ra
     render piece.txt -o x.wav --speed 2
 refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q
 refuses test_option_without_value_is_refused "--rate needs a value" render piece.txt -o x.wav --rate
+red=$(printf '\033[31m')
+refuses test_no_call_reaches_the_terminal 'paint?[31m' "paint$red"
+refuses test_no_file_name_reaches_the_terminal 'x?[31m.txt' render "x$red.txt" -o x.wav
+refuses test_no_option_reaches_the_terminal '?[31m' render piece.txt -o x.wav --rate "$red"
+printf 'take x%s.bvh;\n' "$red" >red.txt
+refuses test_no_name_in_a_score_reaches_the_terminal 'x?[31m.bvh' render red.txt -o x.wav
 refuses test_no_source_is_refused "no SOURCE given" render -o x.wav
 refuses test_two_sources_are_refused '"b.txt" is one too many' render a.txt b.txt -o x.wav
 refuses test_no_output_is_refused "no -o OUT.wav given" render piece.txt
