@@ -135,14 +135,14 @@ static double growth_of(int count, double k)
                                 .y = 0.03 * i,
                                 .velocity = -6 - i};
         sticks[i] = &stick[i];
-        start += himc_contact_energy(m, &stick[i]);
+        start += himc_contact_energy(&stick[i]);
     }
     lowest = start;
     for (int n = 0; n < 600; n++) {
         himc_contact_step(m, sticks, count);
         double now = himc_membrane_energy(m);
         for (int i = 0; i < count; i++)
-            now += himc_contact_energy(m, &stick[i]);
+            now += himc_contact_energy(&stick[i]);
         growth = fmax(growth, (now - lowest) / start);
         lowest = fmin(lowest, now);
     }

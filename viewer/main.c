@@ -1,6 +1,7 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
 #include "base/file.h"
+#include "base/line.h"
 #include "receive.h"
 #include "web.h"
 
@@ -38,8 +39,9 @@ static void on_signal(int number)
     stop = 1;
 }
 
-static int fail(const char *text)
+static int fail(char *text)
 {
+    himc_line_clean(text);
     fprintf(stderr, "himc-viewer: %s\n", text);
     return 1;
 }

@@ -7,6 +7,7 @@
 #ifndef HIMC_TESTS_FUZZ_H
 #define HIMC_TESTS_FUZZ_H
 
+#include "base/line.h"
 #include "himc/base.h"
 
 #include <fcntl.h>
@@ -42,7 +43,7 @@ static inline void require_line(const himc_error *error)
 {
     size_t length = strnlen(error->text, sizeof error->text);
     require(length > 0 && length < sizeof error->text, "an error has a text that ends");
-    require(!strchr(error->text, '\n'), "an error is one line");
+    require(himc_line_is_clean(error->text), "an error is one line without control characters");
 }
 
 /// The bytes as a text, to be freed.

@@ -10,6 +10,7 @@
 static inline void hear(void *user, const char *line)
 {
     require(strlen(line) < 256, "a line is at most 255 characters");
+    require(himc_line_is_clean(line), "a line has no control characters");
     ++*(int *)user;
 }
 

@@ -56,14 +56,6 @@ static void set_file(himc_take *take, const char *name)
              n > room ? name + n - room : name);
 }
 
-// names from a file may hold anything, an error is one line of printable characters
-static void keep_one_line(himc_error *error)
-{
-    for (char *c = error ? error->text : NULL; c && *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 127)
-            *c = '?';
-}
-
 himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
                           const himc_take_options *options, himc_error *error)
 {
@@ -83,7 +75,6 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
     else if (f->read(take, bytes, size, error) && himc_take_settle(take, options, error))
         return take;
     himc_take_free(take);
-    keep_one_line(error);
     return NULL;
 }
 
