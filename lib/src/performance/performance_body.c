@@ -47,6 +47,7 @@ bool himc_body_build(performance_body *b, const performance_settings *s, himc_er
     himc_character *character = himc_character_new(&plant, error);
     if (!character)
         return false;
+    himc_character_use(character, s->engine);
     himc_character_free(b->character);
     b->character = character;
     b->skeleton = skeleton;
@@ -76,9 +77,10 @@ void himc_body_init_controller(performance_body *b, const himc_controller_config
     b->controller.saturation = &b->saturation;
 }
 
-void himc_body_configure(performance_body *b, const himc_controller_config *config)
+void himc_body_configure(performance_body *b, const performance_settings *s)
 {
-    himc_controller_configure(&b->controller, config);
+    himc_controller_configure(&b->controller, &s->control);
+    himc_character_use(b->character, s->engine);
 }
 
 void himc_body_set_limits(performance_body *b, const himc_limits *limits)

@@ -40,7 +40,8 @@ HIMC_RT void himc_body_take_up(performance_body *body);
 /// A new controller for this body, made for the resting posture.
 void himc_body_init_controller(performance_body *body, const himc_controller_config *config,
                                const himc_pose *rest);
-HIMC_RT void himc_body_configure(performance_body *body, const himc_controller_config *config);
+/// Other settings of controller and engine for the same body.
+HIMC_RT void himc_body_configure(performance_body *body, const performance_settings *settings);
 /// Joint limits from now on; NULL for none.
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
 /// Sets the counts of limits to zero.
