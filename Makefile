@@ -151,6 +151,12 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all
 	@$(PROGRAM) bench
 
+bench-peers: deps $(BUILD)/tools/skeleton/table ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
+	@tools/deps.sh tools/deps-peers.txt
+	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }
+	@$(MAKE) all
+	@$(PROGRAM) bench --peers
+
 ##@ Documentation
 figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
 	@tools/deps.sh tools/deps-figures.txt
@@ -190,7 +196,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-realtime check-realtime bench check-bench \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -233,9 +239,9 @@ $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs two
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs three
 # files of the library and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o $(BUILD)/lib/base/line.o
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
@@ -252,7 +258,7 @@ $(VIEWER_O): $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
-$(VIEWER): $(VIEWER_O)
+$(VIEWER): $(VIEWER_O) $(filter $(BUILD)/lib/base/%,$(LIB_O))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
 

@@ -6,6 +6,7 @@
 /// a stick counts at its surface: about that axis it has 1e-6 kg m^2, so a rounding of 1e-14 N m
 /// moves it. With HIMC_LONG (make test-long) 1000 cases, else a few.
 #include "body/character.h"
+#include "performance/performance_state.h"
 
 #include "session.h"
 #include "bodies.h"
@@ -241,6 +242,25 @@ static void test_engines_can_change_in_the_middle_of_a_motion(void)
     twins_free(&t);
 }
 
+static void listen(void *user, const char *line)
+{
+    strncat(user, line, 200);
+}
+
+static void test_another_body_keeps_the_engine(void)
+{
+    char info[8192] = "";
+    himc_performance *p = session_new();
+    session_do(p, "engine ode");
+    session_do(p, "player 1.9 90");
+    himc_performance_describe(p, listen, info);
+    TEST_ASSERT_NOT_NULL(strstr(info, "engine ode"));
+    TEST_ASSERT_EQUAL_INT(HIMC_ENGINE_ODE, himc_character_engine(p->body->character));
+    session_do(p, "reset");
+    TEST_ASSERT_EQUAL_INT(HIMC_ENGINE_TREE, himc_character_engine(p->body->character));
+    himc_performance_free(p);
+}
+
 typedef struct tips {
     himc_vec3 at[2000][HIMC_HANDS];
     int rows;
@@ -300,6 +320,7 @@ int main(void)
     RUN_TEST(test_tree_has_the_implicit_gyroscopic_moment_of_dworldstep);
     RUN_TEST(test_a_body_taken_apart_comes_together_as_by_dworldstep);
     RUN_TEST(test_engines_can_change_in_the_middle_of_a_motion);
+    RUN_TEST(test_another_body_keeps_the_engine);
     RUN_TEST(test_a_piece_is_the_same_by_both_engines);
     return UNITY_END();
 }

@@ -130,6 +130,11 @@ void himc_character_use(himc_character *c, himc_engine engine)
     c->engine = engine;
 }
 
+himc_engine himc_character_engine(const himc_character *c)
+{
+    return c->engine;
+}
+
 // velocity of each joint: the sum of w x r from the pelvis outwards
 static void origin_velocities(const himc_skeleton *skeleton, const himc_body_state *s,
                               himc_vec3 v[HIMC_SEGMENTS])

@@ -21,6 +21,7 @@ typedef enum himc_engine {
 
 /// Chooses the engine, from the next step on. Both make the same motion to rounding.
 HIMC_RT void himc_character_use(himc_character *character, himc_engine engine);
+HIMC_RT himc_engine himc_character_engine(const himc_character *character);
 
 /// Sets the body to a state. Only orientations and spins are used, the rest follows from them.
 HIMC_RT void himc_character_place(himc_character *character, const himc_body_state *state);
