@@ -81,6 +81,9 @@ HIMC_COMMAND_ROW(RATE, rate, PERFORMER, NOW, 0, "physics HZ | task HZ",
                  "sets the rate of simulation or control")
 HIMC_COMMAND_ROW(COUPLING, coupling, PERFORMER, AT_SAMPLE, 0, "two-way|one-way",
                  "two-way: the head's vibration pushes back on the stick")
+HIMC_COMMAND_ROW(ENGINE, engine, PERFORMER, AT_SAMPLE, 0, "tree|ode",
+                 "chooses who solves the equations of the body's motion, to the same result: himc, "
+                 "along the tree of joints, or the Open Dynamics Engine")
 HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
 HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, 0, "SEGMENT FX FY FZ SECONDS",
                  "pushes a segment of the body with a force for a time")
