@@ -86,15 +86,15 @@ static bool do_take(himc_performance *p, const himc_command *c, himc_error *erro
 static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
 {
     enum { CLEAR };
-    himc_motion_replan(p->motion);
-    if (c->form == CLEAR) {
-        himc_planner_clear_units(p->motion->planner);
-        return true;
-    }
     bool has_spot = c->count > 2 && c->choice[2] >= 0;
     himc_spot spot = has_spot ? (himc_spot)c->choice[2] : HIMC_SPOT_NORMAL;
-    return himc_performance_add_units(p, c->atom[0].symbol, (himc_nuance)c->choice[1],
-                                      has_spot ? &spot : NULL, error);
+    if (c->form == CLEAR)
+        himc_planner_clear_units(p->motion->planner);
+    else if (!himc_performance_add_units(p, c->atom[0].symbol, (himc_nuance)c->choice[1],
+                                         has_spot ? &spot : NULL, error))
+        return false;
+    himc_motion_replan(p->motion);
+    return true;
 }
 
 static bool do_target(himc_performance *p, const himc_command *c, himc_error *error)

@@ -24,7 +24,6 @@ static bool check_stroke(const himc_stroke *s, himc_error *error)
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
-    himc_motion_replan(p->motion);
     if (!check_stroke(stroke, error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
@@ -34,6 +33,7 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
         return false;
     }
     himc_performance_keep_drum(p, &drum);
+    himc_motion_replan(p->motion);
     return himc_planner_add(p->motion->planner, stroke, drum.index, error);
 }
 

@@ -200,8 +200,11 @@ bool himc_performance_load_score(himc_performance *p, const char *path, performa
     himc_score *score = himc_score_load(path, error);
     if (!score)
         return false;
-    bool ok = rehearse(p, score, path, run, error) && fill_from_score(p, score, path, run, error);
+    bool ok = rehearse(p, score, path, run, error);
+    if (ok) {
+        himc_motion_replan(p->motion);
+        ok = fill_from_score(p, score, path, run, error);
+    }
     himc_score_free(score);
-    himc_motion_replan(p->motion);
     return ok;
 }
