@@ -215,6 +215,8 @@ static void set_defaults(soak *s)
     session_do(s->p, "coupling two-way");
     session_do(s->p, "grip german");
     session_do(s->p, "limits off");
+    for (int drum = 1; drum < 3; drum++)
+        session_drum(s->p, drum, "modes 200"); // memory grows with them
 }
 
 static void change_control(soak *s)
