@@ -38,19 +38,29 @@ static himc_skeleton make_plant(const himc_skeleton *skeleton, const double *wei
     return plant;
 }
 
+bool himc_body_make_parts(body_parts *parts, const performance_settings *s, himc_error *error)
+{
+    if (!himc_skeleton_init(&parts->skeleton, &s->skeleton, error))
+        return false;
+    parts->plant = make_plant(&parts->skeleton, s->weight);
+    parts->character = himc_character_new(&parts->plant, error);
+    return parts->character != NULL;
+}
+
+void himc_body_adopt(performance_body *b, const body_parts *parts)
+{
+    himc_character_free(b->character);
+    b->character = parts->character;
+    b->skeleton = parts->skeleton;
+    b->plant = parts->plant;
+}
+
 bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
 {
-    himc_skeleton skeleton;
-    if (!himc_skeleton_init(&skeleton, &s->skeleton, error))
+    body_parts parts;
+    if (!himc_body_make_parts(&parts, s, error))
         return false;
-    himc_skeleton plant = make_plant(&skeleton, s->weight);
-    himc_character *character = himc_character_new(&plant, error);
-    if (!character)
-        return false;
-    himc_character_free(b->character);
-    b->character = character;
-    b->skeleton = skeleton;
-    b->plant = plant;
+    himc_body_adopt(b, &parts);
     return true;
 }
 
@@ -67,18 +77,20 @@ void himc_body_take_up(performance_body *b)
     himc_character_place(b->character, &b->state);
 }
 
-void himc_body_init_controller(performance_body *b, const himc_controller_config *config,
+void himc_body_init_controller(performance_body *b, const performance_settings *s,
                                const himc_pose *rest)
 {
     himc_body_state state;
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
-    himc_controller_init(&b->controller, config, &b->skeleton, &state);
+    himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     b->controller.saturation = &b->saturation;
+    himc_character_use(b->character, s->engine);
 }
 
-void himc_body_configure(performance_body *b, const himc_controller_config *config)
+void himc_body_configure(performance_body *b, const performance_settings *s)
 {
-    himc_controller_configure(&b->controller, config);
+    himc_controller_configure(&b->controller, &s->control);
+    himc_character_use(b->character, s->engine);
 }
 
 void himc_body_set_limits(performance_body *b, const himc_limits *limits)

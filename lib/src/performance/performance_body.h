@@ -30,6 +30,16 @@ typedef struct performance_body {
 performance_body *himc_body_new(himc_error *error);
 void himc_body_free(performance_body *body);
 
+/// The segments of a body.
+typedef struct body_parts {
+    himc_skeleton skeleton, plant;
+    himc_character *character; ///< owned until a body has them
+} body_parts;
+/// Makes segments for these settings, for himc_body_adopt or himc_character_free.
+bool himc_body_make_parts(body_parts *parts, const performance_settings *settings,
+                          himc_error *error);
+/// Replaces the body's segments.
+void himc_body_adopt(performance_body *body, const body_parts *parts);
 /// Makes the segments again for these settings. False, and nothing changed, if this fails.
 bool himc_body_build(performance_body *body, const performance_settings *settings,
                      himc_error *error);
@@ -37,10 +47,11 @@ bool himc_body_build(performance_body *body, const performance_settings *setting
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
 /// Sets the simulated body to the last kinematic pose.
 HIMC_RT void himc_body_take_up(performance_body *body);
-/// A new controller for this body, made for the resting posture.
-void himc_body_init_controller(performance_body *body, const himc_controller_config *config,
+/// A new controller for this body, made for the resting posture; and the engine of the settings.
+void himc_body_init_controller(performance_body *body, const performance_settings *settings,
                                const himc_pose *rest);
-HIMC_RT void himc_body_configure(performance_body *body, const himc_controller_config *config);
+/// Other settings of controller and engine for the same body.
+HIMC_RT void himc_body_configure(performance_body *body, const performance_settings *settings);
 /// Joint limits from now on; NULL for none.
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
 /// Sets the counts of limits to zero.

@@ -37,6 +37,7 @@ performance_settings himc_settings_default(const himc_performance_config *config
                               .task_rate = config->task_rate,
                               .skeleton = himc_skeleton_default(),
                               .control = himc_controller_config_default(),
+                              .engine = HIMC_ENGINE_TREE,
                               .limits = HIMC_LIMITS_OFF,
                               .grip = HIMC_GRIP_GERMAN};
     for (int i = 0; i < HIMC_SEGMENTS; i++)
@@ -52,7 +53,7 @@ static void put_together(performance_motion *motion, performance_body *body,
     himc_motion_build(motion, &body->skeleton, s, t);
     himc_body_place(body, &motion->from);
     himc_motion_resting_pose(motion, &rest);
-    himc_body_init_controller(body, &s->control, &rest);
+    himc_body_init_controller(body, s, &rest);
 }
 
 /// The parts that need memory.
@@ -151,20 +152,28 @@ void himc_performance_restart_steps(himc_performance *p)
 void himc_performance_adopt(himc_performance *p, const performance_settings *s)
 {
     p->settings = *s;
-    himc_body_configure(p->body, &s->control);
+    himc_body_configure(p->body, s);
 }
 
-bool himc_performance_rebuild(himc_performance *p, const performance_settings *wanted,
-                              himc_error *error)
+void himc_performance_embody(himc_performance *p, const performance_settings *wanted,
+                             const body_parts *parts)
 {
     performance_settings s = *wanted;
-    if (!himc_body_build(p->body, &s, error))
-        return false;
+    himc_body_adopt(p->body, parts);
     if (s.control.human_strength)
         himc_controller_set_human_strength(&s.control, s.skeleton.mass);
     p->settings = s;
     put_together(p->motion, p->body, &s, step_time(p));
     himc_performance_renew_limits(p);
+}
+
+bool himc_performance_rebuild(himc_performance *p, const performance_settings *wanted,
+                              himc_error *error)
+{
+    body_parts parts;
+    if (!himc_body_make_parts(&parts, wanted, error))
+        return false;
+    himc_performance_embody(p, wanted, &parts);
     return true;
 }
 
@@ -240,18 +249,38 @@ bool himc_performance_make_drum(himc_performance *p, const char *name, double in
     return true;
 }
 
+bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_drum *drum,
+                                himc_error *error)
+{
+    *drum = (wanted_drum){.index = name[0] ? himc_drums_find(&p->drums, name) : 0};
+    if (drum->index >= 0 && drum->index < p->drums.count)
+        return true;
+    name = name[0] ? name : "drum";
+    if (!himc_drums_have_room(&p->drums, name, error))
+        return false;
+    drum->index = p->drums.count;
+    drum->fresh = himc_drum_new(name, USUAL_INCHES, p->clock.sample_rate, error);
+    return drum->fresh != NULL;
+}
+
+void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
+{
+    int index;
+    if (!drum->fresh || !himc_drums_add(&p->drums, drum->fresh, DRUM_SILENT, &index, NULL))
+        return;
+    himc_performance_notice_drums(p);
+    himc_events_note(&p->events, "no drum %s: playing on a silent one",
+                     himc_drum_name(drum->fresh));
+}
+
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
                                   himc_error *error)
 {
-    *index = name[0] ? himc_drums_find(&p->drums, name) : 0;
-    if (*index >= 0 && *index < p->drums.count)
-        return true;
-    if (!himc_drums_make(&p->drums, name[0] ? name : "drum", USUAL_INCHES, p->clock.sample_rate,
-                         DRUM_SILENT, index, error))
+    wanted_drum drum;
+    if (!himc_performance_want_drum(p, name, &drum, error))
         return false;
-    himc_performance_notice_drums(p);
-    himc_events_note(&p->events, "no drum %s: playing on a silent one",
-                     himc_drum_name(p->drums.slot[*index].drum));
+    himc_performance_keep_drum(p, &drum);
+    *index = drum.index;
     return true;
 }
 

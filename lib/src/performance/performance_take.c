@@ -9,6 +9,8 @@
 /// Joint limits are learned from the captured postures. An arm without a stick was held differently
 /// from one with a stick; its limits are learned from the postures for its tips: the natural ones
 /// in `himc`, the captured ones bent to the tips in `id`.
+///
+/// All that can fail is made first (prepare_take); only then anything changes (play_prepared).
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 #include "body/limits.h"
@@ -61,20 +63,38 @@ static void note_reach(himc_performance *p, const himc_track *track, const char 
                          100.0 * far / count, farthest);
 }
 
-// moves the drum under the take's strikes, or lowers a drum that is in the way
-static bool move_drum(himc_performance *p, int index, himc_vec3 to, const himc_track *track,
-                      const char *path, himc_error *error)
+/// What is made of a take before anything changes. Owned.
+typedef struct prepared_take {
+    wanted_drum drum;
+    himc_head_frame frame; ///< of the drum as it will stand
+    himc_track *track;
+    himc_limits learned; ///< if the player shows postures
+    body_parts body;     ///< if the player shows lengths
+    performance_settings settings;
+    himc_posture_regression regression; ///< of the arms, if `corrected`
+    bool corrected;
+    himc_error uncorrected; ///< why not, if the arms are shown
+    int strikes, outside;   ///< of the take, and of these beside the drum
+} prepared_take;
+
+static bool is_same_place(himc_vec3 a, himc_vec3 b)
 {
+    return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
+}
+
+// moves the drum under the take's strikes, or lowers a drum that is in the way
+static void move_drum(himc_performance *p, const prepared_take *made, const char *path)
+{
+    const himc_track *track = made->track;
+    int index = made->drum.index;
     bool strikes = himc_track_strikes(track, HIMC_LEFT) + himc_track_strikes(track, HIMC_RIGHT) > 0;
-    himc_vec3 from = himc_drums_frame(&p->drums, index)->center;
-    if (himc_vec3_length(himc_vec3_sub(to, from)) < SAME_PLACE)
-        return true;
-    if (!himc_drums_move(&p->drums, index, to, error))
-        return false;
+    himc_vec3 to = made->frame.center;
+    if (is_same_place(to, himc_drums_frame(&p->drums, index)->center) ||
+        !himc_drums_move(&p->drums, index, to, NULL))
+        return;
     himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", path,
                      himc_drum_name(p->drums.slot[index].drum), to.x, to.y, to.z,
                      strikes ? "under the take's strikes" : "out of the take's way");
-    return true;
 }
 
 static himc_trunk_posture mean_trunk(const himc_player *player)
@@ -175,45 +195,49 @@ static captured_player captured_of(const himc_player *player)
     return c;
 }
 
-// the body of the take's player, if the take shows one
-static bool adopt_player(himc_performance *p, const himc_player *player, const char *path,
+// the settings with the body of the take's player, if the take shows one
+static bool prepare_body(const himc_performance *p, const himc_player *player, prepared_take *made,
                          himc_error *error)
 {
-    performance_settings s = p->settings;
-    if (player->lengths == 0) {
-        memset(s.captured.known, 0, sizeof s.captured.known);
-        himc_performance_adopt(p, &s);
+    made->settings = p->settings;
+    memset(made->settings.captured.known, 0, sizeof made->settings.captured.known);
+    if (player->lengths == 0)
         return true;
-    }
-    s.skeleton = player->config;
-    s.captured = captured_of(player);
-    if (!himc_performance_rebuild(p, &s, error))
-        return false;
-    himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
-                     path, player->lengths, s.skeleton.height, s.skeleton.mass);
-    return true;
+    made->settings.skeleton = player->config;
+    made->settings.captured = captured_of(player);
+    return himc_body_make_parts(&made->body, &made->settings, error);
 }
 
-// a note on the strikes of a take that are beside its drum
-static void note_outside(himc_performance *p, himc_take *take, const himc_track *track,
-                         const himc_drum *drum, const char *path)
+static void adopt_player(himc_performance *p, const himc_player *player, const prepared_take *made,
+                         const char *path)
+{
+    const performance_settings *s = &made->settings;
+    if (player->lengths == 0) {
+        himc_performance_adopt(p, s);
+        return;
+    }
+    himc_performance_embody(p, s, &made->body);
+    himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
+                     path, player->lengths, s->skeleton.height, s->skeleton.mass);
+}
+
+// counts the strikes of a take, and those beside the drum as it will stand
+static bool count_strikes(const himc_performance *p, himc_take *take, prepared_take *made,
+                          himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
-    himc_error ignored;
-    const himc_head_frame *place = himc_drum_head_frame(drum);
-    if (!himc_take_tips(take, &p->host.take_options, tips, &ignored))
-        return;
-    int count, outside = 0;
-    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    for (int i = 0; i < count; i++) {
-        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(track));
-        himc_vec3 local = himc_head_frame_from_world(place, at);
-        outside += hypot(local.x, local.y) > place->radius;
+    if (!himc_take_tips(take, &p->host.take_options, tips, error))
+        return false;
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &made->strikes);
+    if (!strikes)
+        return himc_error_set(error, "out of memory");
+    for (int i = 0; i < made->strikes; i++) {
+        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(made->track));
+        himc_vec3 local = himc_head_frame_from_world(&made->frame, at);
+        made->outside += hypot(local.x, local.y) > made->frame.radius;
     }
     free(strikes);
-    if (outside > 0)
-        himc_events_note(&p->events, "%s: %d of %d strikes are beside drum %s and silent", path,
-                         outside, count, himc_drum_name(drum));
+    return true;
 }
 
 // an arm, its hand and stick included
@@ -222,30 +246,43 @@ static bool shows_arm(const himc_player *player, himc_hand hand)
     return player->pose && !player->walks && himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
 }
 
-// the default regression, corrected by this take, unless another has been set
-static void adopt_regression(himc_performance *p, const himc_player *player, const himc_take *take,
-                             const char *path)
+// another regression than that of a take has been set
+static bool has_own_regression(const himc_performance *p)
 {
-    himc_posture_regression regression;
-    himc_error error = {""};
+    return p->motion->has_regression && !p->motion->regression_of_take;
+}
+
+// the default regression, corrected by this take; false without memory
+static bool prepare_regression(const himc_performance *p, const himc_player *player,
+                               const himc_take *take, prepared_take *made, himc_error *error)
+{
+    bool memory = true;
     himc_posture_regression_take seen = {
-        .skeleton = &p->body->skeleton,
+        .skeleton = player->lengths > 0 ? &made->body.skeleton : &p->body->skeleton,
         .pose = player->pose,
         .frames = player->frames,
         .rate = himc_take_rate(take),
         .unseen_arm = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
         .unseen_trunk = !player->known[HIMC_TRUNK - 1]};
-    if (p->motion->has_regression && !p->motion->regression_of_take) {
+    if (has_own_regression(p) || (seen.unseen_arm[HIMC_LEFT] && seen.unseen_arm[HIMC_RIGHT]))
+        return true;
+    himc_posture_regression_default(&made->regression);
+    made->corrected =
+        himc_posture_regression_correct(&made->regression, &seen, &memory, &made->uncorrected);
+    return memory || himc_error_set(error, "%s", made->uncorrected.text);
+}
+
+static void adopt_regression(himc_performance *p, const prepared_take *made, const char *path)
+{
+    if (has_own_regression(p)) {
         himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
         return;
     }
-    himc_posture_regression_default(&regression);
-    bool shown = !seen.unseen_arm[HIMC_LEFT] || !seen.unseen_arm[HIMC_RIGHT];
-    bool fitted = shown && himc_posture_regression_correct(&regression, &seen, &error);
-    if (shown && !fitted)
+    if (made->uncorrected.text[0])
         himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", path,
-                         error.text);
-    himc_motion_set_regression(p->motion, &p->settings, fitted ? &regression : NULL, fitted);
+                         made->uncorrected.text);
+    himc_motion_set_regression(p->motion, &p->settings, made->corrected ? &made->regression : NULL,
+                               made->corrected);
 }
 
 // if left and right are exchanged in a capture, its drum is behind the player
@@ -259,34 +296,62 @@ static bool check_side(const himc_player *player, const himc_head_frame *frame, 
                           -frame->center.x);
 }
 
+static void free_prepared(prepared_take *made)
+{
+    himc_drum_release(made->drum.fresh);
+    himc_track_free(made->track);
+    himc_character_free(made->body.character);
+}
+
+static bool prepare_take(himc_performance *p, himc_take *take, himc_player *player,
+                         prepared_take *made, himc_error *error)
+{
+    const himc_take_options *options = &p->host.take_options;
+    if (!himc_performance_want_drum(p, "", &made->drum, error))
+        return false;
+    made->frame = made->drum.fresh ? *himc_drum_head_frame(made->drum.fresh)
+                                   : *himc_drums_frame(&p->drums, made->drum.index);
+    himc_vec3 from = made->frame.center;
+    if (!himc_player_sit(player, take, options, &made->frame, error) ||
+        !check_side(player, &made->frame, error))
+        return false;
+    made->track = himc_track_new_played(take, options, &made->frame, player, error);
+    return made->track && learn_limits(player, made->track, &made->frame, &made->learned, error) &&
+           (is_same_place(made->frame.center, from) ||
+            himc_drum_check_place(made->frame.center, error)) &&
+           prepare_body(p, player, made, error) && count_strikes(p, take, made, error) &&
+           prepare_regression(p, player, take, made, error);
+}
+
+static void play_prepared(himc_performance *p, himc_take *take, const himc_player *player,
+                          const prepared_take *made, const char *path)
+{
+    himc_performance_keep_drum(p, &made->drum);
+    move_drum(p, made, path);
+    adopt_player(p, player, made, path);
+    himc_performance_notice_drums(p);
+    note_repairs(p, take, path);
+    note_reach(p, made->track, path);
+    if (made->outside > 0)
+        himc_events_note(&p->events, "%s: %d of %d strikes are beside drum %s and silent", path,
+                         made->outside, made->strikes,
+                         himc_drum_name(p->drums.slot[made->drum.index].drum));
+    himc_performance_drop_track(p);
+    himc_motion_set_track(p->motion, made->track, player->pose ? &made->learned : NULL,
+                          step_time(p));
+    himc_performance_renew_limits(p);
+    adopt_regression(p, made, path);
+}
+
 static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
                       himc_error *error)
 {
-    int drum;
-    if (!himc_performance_ensure_drum(p, "", &drum, error))
-        return false;
-    himc_limits learned;
-    himc_head_frame frame = *himc_drums_frame(&p->drums, drum);
-    himc_player_sit(player, take, &p->host.take_options, &frame);
-    if (!check_side(player, &frame, error))
-        return false;
-    himc_track *track = himc_track_new_played(take, &p->host.take_options, &frame, player, error);
-    if (!track)
-        return false;
-    if (!learn_limits(player, track, &frame, &learned, error) ||
-        !move_drum(p, drum, frame.center, track, path, error) ||
-        !adopt_player(p, player, path, error)) {
-        himc_track_free(track);
+    prepared_take made = {.strikes = 0};
+    if (!prepare_take(p, take, player, &made, error)) {
+        free_prepared(&made);
         return false;
     }
-    himc_performance_notice_drums(p);
-    note_repairs(p, take, path);
-    note_reach(p, track, path);
-    note_outside(p, take, track, p->drums.slot[drum].drum, path);
-    himc_performance_drop_track(p);
-    himc_motion_set_track(p->motion, track, player->pose ? &learned : NULL, step_time(p));
-    himc_performance_renew_limits(p);
-    adopt_regression(p, player, take, path);
+    play_prepared(p, take, player, &made, path);
     return true;
 }
 
