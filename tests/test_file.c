@@ -206,18 +206,18 @@ static void test_file_is_loaded_whole_or_refused(void)
     memset(text, 'a', most + 1);
     text[most] = text[most + 1] = '\0';
     put("long", text);
-    char *loaded = himc_file_load(NULL, at("long"), most, &size, &error);
+    char *loaded = himc_file_load(at("long"), most, &size, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(loaded, error.text);
     TEST_ASSERT_TRUE(size == most);
     TEST_ASSERT_EQUAL_STRING(text, loaded);
     free(loaded);
     text[most] = 'a';
     put("long", text);
-    TEST_ASSERT_NULL(himc_file_load(NULL, at("long"), most, &size, &error));
+    TEST_ASSERT_NULL(himc_file_load(at("long"), most, &size, &error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "long: too long, allowed 1 MiB"), error.text);
     free(text);
     // the kernel says 0 bytes of such a file
-    loaded = himc_file_load(NULL, "/proc/self/status", most, &size, &error);
+    loaded = himc_file_load("/proc/self/status", most, &size, &error);
     TEST_ASSERT_TRUE(loaded && size > 100 && strstr(loaded, "Threads:"));
     free(loaded);
 }

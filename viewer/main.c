@@ -96,7 +96,7 @@ static char *read_motion(const char *path, size_t *size, char error[256])
 {
     static const char first[] = "time_s,";
     himc_error fault;
-    char *text = himc_file_load(NULL, path, PLAY_MAX, size, &fault);
+    char *text = himc_file_load(path, PLAY_MAX, size, &fault);
     if (!text)
         snprintf(error, 256, "%.255s", fault.text);
     if (text && (*size < sizeof first || strncmp(text, first, sizeof first - 1) != 0)) {

@@ -157,8 +157,8 @@ static char *read_all(FILE *stream, size_t most, size_t *size)
     return bytes;
 }
 
-char *himc_file_load(const char *folder, const char *path, size_t most, size_t *size,
-                     himc_error *error)
+char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
+                        himc_error *error)
 {
     int file = folder ? open_inside(folder, path, error) : open_regular(path, O_RDONLY, error);
     FILE *stream = stream_of(path, file, "rb", error);
@@ -175,4 +175,9 @@ char *himc_file_load(const char *folder, const char *path, size_t most, size_t *
         himc_error_set(error, "%s: cannot be read: %s", path, strerror(why));
     free(bytes);
     return NULL;
+}
+
+char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *error)
+{
+    return himc_file_load_in(NULL, path, most, size, error);
 }

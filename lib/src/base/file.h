@@ -20,11 +20,13 @@ typedef enum himc_file_write_mode {
 /// written or is something else, which is then unchanged. Never waits. The caller closes it.
 FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *error);
 
-/// The whole of a regular file of at most `most` bytes, with a 0 after it. With a `folder` (a real
-/// path, not NULL) only a file inside it, links followed; if there is none, the line is the same
-/// whatever stands there, so that it tells nothing about the disk. `size` (bytes, without that 0).
-/// NULL with one line. The caller frees it.
-char *himc_file_load(const char *folder, const char *path, size_t most, size_t *size,
-                     himc_error *error);
+/// The whole of a regular file of at most `most` bytes, with a 0 after it. `size` (bytes, without
+/// that 0). NULL with one line. The caller frees it.
+char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *error);
+
+/// The same, but with a `folder` (a real path, not NULL) only of a file inside it, links followed;
+/// if there is none, the line is the same whatever stands there, and tells nothing about the disk.
+char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
+                        himc_error *error);
 
 #endif

@@ -84,7 +84,7 @@ himc_take *himc_take_load_in(const char *folder, const char *path, const himc_ta
     if (!himc_take_is_format(path, error))
         return NULL;
     size_t size = 0;
-    char *bytes = himc_file_load(folder, path, MOST_BYTES, &size, error);
+    char *bytes = himc_file_load_in(folder, path, MOST_BYTES, &size, error);
     himc_take *take = bytes ? himc_take_read(bytes, size, path, options, error) : NULL;
     free(bytes);
     return take;

@@ -296,7 +296,7 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
 {
     size_t size;
     himc_score *score = NULL;
-    char *text = himc_file_load(folder, path, SCORE_BYTES_MAX, &size, error);
+    char *text = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
     if (text && memchr(text, 0, size))
         himc_error_set(error, "%s: not a text file", path);
     else if (text)
