@@ -233,9 +233,9 @@ $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs two
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs three
 # files of the library and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o $(BUILD)/lib/base/line.o
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
@@ -252,7 +252,7 @@ $(VIEWER_O): $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
-$(VIEWER): $(VIEWER_O)
+$(VIEWER): $(VIEWER_O) $(filter $(BUILD)/lib/base/%,$(LIB_O))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
 

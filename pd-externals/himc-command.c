@@ -5,25 +5,49 @@ leaves to its host: it finds files as Pd does, opens the network, answers `info`
 #include "himc-tilde.h"
 #include "himc/osc.h"
 
+#include "g_canvas.h"
+#include <stdlib.h>
+#include <sys/stat.h>
+
 #define NETWORK_PERIOD \
     2.0                    /* between two looks for commands from the network (ms); chosen: shorter
                                  than a block of 128 samples */
 #define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
 
-/* Finds a file as Pd does: absolute, beside the patch, or along the search path. */
+/* A search for a file. */
+typedef struct _search {
+    const char *name;
+    char *path;
+    size_t size;
+    bool found;
+} t_search;
+
+/* Looks in one folder, "~" being the home folder; 0 ends the search. */
+static int search_folder(const char *folder, void *user)
+{
+    t_search *search = user;
+    const char *home = folder[0] == '~' ? getenv("HOME") : NULL;
+    int length = snprintf(search->path, search->size, "%s%s/%s", home ? home : "",
+                          folder + (home != NULL), search->name);
+    struct stat status;
+    search->found = length >= 0 && (size_t)length < search->size &&
+                    stat(search->path, &status) == 0 && S_ISREG(status.st_mode);
+    return !search->found;
+}
+
+/* Finds a file as Pd does: absolute, beside the patch, or along the search path. Opens nothing: Pd's
+canvas_open would wait for the writer of a FIFO. */
 static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size,
                               himc_error *error)
 {
-    char folder[MAXPDSTRING], *base;
-    int file = canvas_open(x->x_canvas, name, "", folder, &base, MAXPDSTRING, 0);
-    if (file < 0)
-        return himc_error_set(error, "%s: no such file beside the patch or in Pd's search path",
-                              name);
-    sys_close(file);
-    if ((size_t)snprintf(path, size, "%s/%s", folder, base) >= size)
-        return himc_error_set(error, "%s: its full name is longer than %zu characters", name,
-                              size - 1);
-    return true;
+    bool absolute = sys_isabsolutepath(name);
+    t_search search = {name + absolute, path, size, false};
+    if (absolute)
+        search_folder(name[0] == '~' ? "~" : "", &search);
+    else
+        canvas_path_iterate(x->x_canvas, search_folder, &search);
+    return search.found ||
+           himc_error_set(error, "%s: no such file beside the patch or in Pd's search path", name);
 }
 
 /* Replaces the file name in a command by the full name: of an existing file to read, or beside the

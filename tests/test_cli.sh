@@ -35,10 +35,10 @@ refuses() {
     text=$2
     shift 2
     tests=$((tests + 1))
-    "$himc" "$@" >stdout 2>stderr
+    timeout 120 "$himc" "$@" >stdout 2>stderr </dev/null
     code=$?
     lines="$(wc -l <stdout) $(wc -l <stderr)"
-    if [ $code = 1 ] && [ "$lines" = "0 1" ] && grep -qF -- "$text" stderr; then
+    if [ $code = 1 ] && [ "$lines" = "0 1" ] && ! LC_ALL=C grep -q '[[:cntrl:]]' stderr && grep -qF -- "$text" stderr; then
         line "$name" PASS
     else
         failures=$((failures + 1))
@@ -105,6 +105,12 @@ refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --ra
     render piece.txt -o x.wav --speed 2
 refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q
 refuses test_option_without_value_is_refused "--rate needs a value" render piece.txt -o x.wav --rate
+red=$(printf '\033[31m')
+refuses test_no_call_reaches_the_terminal 'paint?[31m' "paint$red"
+refuses test_no_file_name_reaches_the_terminal 'x?[31m.txt' render "x$red.txt" -o x.wav
+refuses test_no_option_reaches_the_terminal '?[31m' render piece.txt -o x.wav --rate "$red"
+printf 'take x%s.bvh;\n' "$red" >red.txt
+refuses test_no_name_in_a_score_reaches_the_terminal 'x?[31m.bvh' render red.txt -o x.wav
 refuses test_no_source_is_refused "no SOURCE given" render -o x.wav
 refuses test_two_sources_are_refused '"b.txt" is one too many' render a.txt b.txt -o x.wav
 refuses test_no_output_is_refused "no -o OUT.wav given" render piece.txt
@@ -123,9 +129,27 @@ refuses test_unknown_limits_are_refused "allowed off ellipsoid euler" render pie
 refuses test_unknown_axis_is_refused '"x", allowed y or z' render cut.trc -o x.wav --up x
 refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, allowed with a take" \
     render piece.txt -o x.wav --left-tip LSTK
-refuses test_missing_score_is_refused "none.txt: No such file" render none.txt -o x.wav
+refuses test_missing_score_is_refused "none.txt: cannot be read: No such file" render none.txt -o x.wav
 refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
-refuses test_folder_is_refused "directory" render . -o x.wav
+refuses test_folder_is_refused ".: cannot be read: a folder, allowed a regular file" render . -o x.wav
+mkfifo pipe pipe.bvh
+refuses test_fifo_as_a_score_is_refused "pipe: cannot be read: a FIFO, allowed" render pipe -o x.wav
+refuses test_fifo_as_a_take_is_refused "pipe.bvh: cannot be read: a FIFO, allowed" render pipe.bvh -o x.wav
+refuses test_fifo_is_refused_by_info "pipe: cannot be read: a FIFO, allowed" info pipe
+refuses test_fifo_is_refused_by_modes "pipe: cannot be read: a FIFO, allowed" modes pipe
+refuses test_fifo_for_a_sound_is_refused "pipe: cannot be written: a FIFO" render piece.txt -o pipe
+refuses test_fifo_for_strokes_is_refused "pipe: cannot be written: a FIFO" \
+    render piece.txt -o x.wav --strokes pipe
+refuses test_fifo_for_a_motion_is_refused "pipe: cannot be written: a FIFO" \
+    render piece.txt -o x.wav --motion pipe
+refuses test_fifo_for_a_log_is_refused "pipe: cannot be written: a FIFO" evaluate --trials 1 --log pipe
+refuses test_fifo_for_a_table_is_refused "pipe: cannot be written: a FIFO" evaluate --csv pipe
+printf 'drum kettle;\nrecord pipe.bvh;\n' >into-pipe.txt
+refuses test_fifo_for_a_recording_is_refused "record: pipe.bvh: cannot be written: a FIFO" \
+    render into-pipe.txt -o x.wav
+refuses test_folder_for_a_sound_is_refused ".: cannot be written: a folder" render piece.txt -o .
+refuses test_device_for_a_sound_is_refused "/dev/zero: cannot be written: a device" \
+    render piece.txt -o /dev/zero
 refuses test_unknown_row_is_refused "--only: magic, allowed: a nuance" evaluate --only legato,magic
 refuses test_a_comma_alone_is_refused "--only: no word, allowed" evaluate --only ,
 refuses test_words_of_no_row_are_refused "--only: ik,printed: no row has all of these words" \
@@ -144,7 +168,7 @@ refuses test_typo_is_refused_with_its_line "typo.txt:2: " render typo.txt -o x.w
 refuses test_nan_in_a_score_is_refused "nan.txt:1: " render nan.txt -o x.wav
 refuses test_typo_is_refused_by_info "typo.txt:2: " info typo.txt
 refuses test_typo_is_refused_by_modes "typo.txt:2: " modes typo.txt
-refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: kettle: /dev/zero: not a file" \
+refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: kettle: /dev/zero: cannot be read: a device" \
     render endless-shape.txt -o x.wav
 refuses test_unknown_tip_is_refused_by_info 'left tip: no point "nope", allowed: LTIP, RTIP' \
     info still.trc --left-tip nope
@@ -152,9 +176,15 @@ refuses test_score_too_long_for_a_wav_file_is_refused "endless.txt: lasts" \
     render endless.txt -o x.wav
 refuses test_missing_folder_is_refused "none/x.wav: cannot be written" \
     render piece.txt -o none/x.wav
-refuses test_full_disk_is_refused "No space left" render piece.txt -o /dev/full
-refuses test_full_disk_under_a_table_is_refused "No space left" \
-    render piece.txt -o x.wav --motion /dev/full
+# files that end early, as on a full disk
+whole=$himc
+himc=$work/full_disk
+printf '#!/bin/sh\ntrap "" XFSZ\nulimit -f 8\nexec "%s" "$@"\n' "$whole" >"$himc"
+chmod +x "$himc"
+refuses test_full_disk_is_refused "x.wav: cannot be written: File too large" render piece.txt -o x.wav
+refuses test_full_disk_under_a_table_is_refused "x.csv: cannot be written: File too large" \
+    render piece.txt -o /dev/null --motion x.csv
+himc=$whole
 refuses test_one_file_for_two_tables_is_refused "x.csv: named twice" \
     render piece.txt -o x.wav --strokes x.csv --motion x.csv
 refuses test_score_is_not_overwritten "piece.txt: named twice" render piece.txt -o ./piece.txt

@@ -133,7 +133,7 @@ static double energy(int count)
 {
     double sum = himc_membrane_energy(membrane);
     for (int i = 0; i < count; i++)
-        sum += himc_contact_energy(membrane, &stick[i]);
+        sum += himc_contact_energy(&stick[i]);
     return sum;
 }
 

@@ -135,14 +135,14 @@ static double growth_of(int count, double k)
                                 .y = 0.03 * i,
                                 .velocity = -6 - i};
         sticks[i] = &stick[i];
-        start += himc_contact_energy(m, &stick[i]);
+        start += himc_contact_energy(&stick[i]);
     }
     lowest = start;
     for (int n = 0; n < 600; n++) {
         himc_contact_step(m, sticks, count);
         double now = himc_membrane_energy(m);
         for (int i = 0; i < count; i++)
-            now += himc_contact_energy(m, &stick[i]);
+            now += himc_contact_energy(&stick[i]);
         growth = fmax(growth, (now - lowest) / start);
         lowest = fmin(lowest, now);
     }
@@ -200,7 +200,7 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     refuses("bad.txt", "tension 1000\ndensity 0\n", "bad.txt:2: density: 0");
     refuses("bad.txt", "tension 1000\nplaces p\nmass m\nstiffness k\n", "density: missing");
     refuses("bad.txt", "shape round\n", "bad.txt:1: shape: unknown");
-    refuses("bad.txt", "places nowhere\n", "nowhere: No such file");
+    refuses("bad.txt", "places nowhere\n", "nowhere: cannot be read: No such file");
     TEST_ASSERT_FALSE(shape_of("none.txt"));
 }
 

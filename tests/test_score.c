@@ -83,7 +83,8 @@ static void test_errors_name_file_and_line(void)
     TEST_ASSERT_NOT_NULL(
         strstr(error.text, "s.txt:1: kettle: tun: unknown command, did you mean tune?"));
     TEST_ASSERT_NULL(himc_score_load("/no/such/file.txt", &error));
-    TEST_ASSERT_EQUAL_STRING("/no/such/file.txt: No such file or directory", error.text);
+    TEST_ASSERT_EQUAL_STRING("/no/such/file.txt: cannot be read: No such file or directory",
+                             error.text);
     TEST_ASSERT_NULL(himc_score_load("tests", &error));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
 }

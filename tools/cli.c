@@ -7,6 +7,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 
+#include "base/line.h"
+
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
@@ -123,12 +125,12 @@ void cli_help(const cli_call *call)
 int cli_fail(const cli_call *call, const char *format, ...)
 {
     fflush(stdout);
-    fprintf(stderr, "himc %s: ", call->name);
+    char line[sizeof((himc_error *)0)->text];
     va_list args;
     va_start(args, format);
-    vfprintf(stderr, format, args);
+    himc_line_print(line, sizeof line, format, args);
     va_end(args);
-    fputc('\n', stderr);
+    fprintf(stderr, "himc %s: %s\n", call->name, line);
     return 1;
 }
 

@@ -58,7 +58,7 @@ bool cli_count(const char *name, const char *text, int low, int high, const char
                himc_error *error);
 
 /// A file that appears under its name complete or not at all: it is written beside it and renamed
-/// in the end. A file that is not regular (/dev/null, a pipe) is written directly.
+/// in the end. /dev/null is written directly; anything else but a regular file is refused.
 typedef struct cli_file {
     char path[4096]; ///< "" when not wanted
     char temp[4096]; ///< where it is written until kept; "" when written directly

@@ -2,6 +2,7 @@
 /// digits, so reading returns them to 1e-9 of their size.
 #define _POSIX_C_SOURCE 200809L
 #include "evaluate_log.h"
+#include "base/file.h"
 #include "control/controller.h"
 
 #include <errno.h>
@@ -9,7 +10,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct column {
@@ -230,18 +230,11 @@ static bool begin(evaluate_log *log, himc_error *error)
 bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, himc_error *error)
 {
     off_t end;
-    struct stat status;
     if (!path)
         return true;
     snprintf(log->path, sizeof log->path, "%s", path);
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
-        return himc_error_set(error, "%s: not a regular file, allowed for --log: a regular file",
-                              path);
-    log->stream = fopen(path, "a+");
-    if (!log->stream)
-        return himc_error_set(error, "%s: cannot be opened: %s", path, strerror(errno));
-    rewind(log->stream);
-    if (!read_rows(log->stream, table, path, &end, error))
+    log->stream = himc_file_write(path, HIMC_FILE_CONTINUE, error);
+    if (!log->stream || !read_rows(log->stream, table, path, &end, error))
         return false;
     if (ftruncate(fileno(log->stream), end) || fseek(log->stream, 0, SEEK_END))
         return himc_error_set(error, "%s: cannot be continued: %s", path, strerror(errno));

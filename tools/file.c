@@ -4,6 +4,7 @@
 /// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
 /// that the link stays and its file changes.
 #define _XOPEN_SOURCE 700
+#include "base/file.h"
 #include "cli.h"
 
 #include <errno.h>
@@ -92,8 +93,8 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
     if (exists && S_ISREG(status.st_mode) && access(file->path, W_OK))
         return file_error(path, error);
     if (exists && !S_ISREG(status.st_mode)) {
-        file->stream = fopen(file->path, "wb");
-        return file->stream || file_error(path, error);
+        file->stream = himc_file_write(path, HIMC_FILE_REPLACE, error);
+        return file->stream != NULL;
     }
     int descriptor = open_beside(file, exists ? status.st_mode : 0666 & ~mask);
     if (descriptor < 0)

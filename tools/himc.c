@@ -36,8 +36,9 @@ static void print_names(FILE *stream)
 
 static int refuse(const char *what, const char *name)
 {
-    fprintf(stderr, "himc: %s%s%s%s, allowed: ", what, name ? " \"" : "", name ? name : "",
-            name ? "\"" : "");
+    himc_error line;
+    himc_error_set(&line, "%s%s%s%s", what, name ? " \"" : "", name ? name : "", name ? "\"" : "");
+    fprintf(stderr, "himc: %s, allowed: ", line.text);
     print_names(stderr);
     fprintf(stderr, ", --help, --version\n");
     return 1;

@@ -23,6 +23,10 @@ door() {
     awk -f tools/door.awk lib/himc/*.h lib/src/*/*.[ch] tools/*.[ch] tools/*/*.[ch] mocap/*.[ch] viewer/*.[ch] \
         pd-externals/*.[ch] docs/examples/*.c
 }
+one_opener() {
+    ! git grep --untracked -nE '\<(fopen|open|openat|creat|sf_open|canvas_open|sys_open)\(' -- 'lib/*.c' 'tools/*.c' 'viewer/*.c' 'pd-externals/*.c' \
+        ':!lib/src/base/file.c'
+}
 # the shared library shows the functions of the public headers and nothing else
 shared_symbols() {
     nm -D --defined-only "$build"/libhimc.so.* | sed 's/.* //' | sort >"$build/shown"
@@ -37,6 +41,7 @@ check "includes and calls between rooms and files; who knows which library" room
 check "the public headers" door
 check "symbols of the shared library" shared_symbols
 check "names the library shows its host" prefixed_symbols
+check "files are opened by base/file.c alone" one_opener
 check "cppcheck" cppcheck -q -j2 --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
     --suppress=uninitvar --suppress=legacyUninitvar --suppress=missingInclude --suppress=checkersReport -Ilib -Ilib/src \
     lib/src tools pd-externals

@@ -114,8 +114,11 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
         return false;
     if (!cli_tell(performance, take ? "take" : "score", wanted->source, error))
         return false;
-    if (loops)
-        printf("note: %s: loop: one round is rendered\n", wanted->source);
+    if (loops) {
+        himc_error note;
+        himc_error_set(&note, "%s: loop: one round is rendered", wanted->source);
+        printf("note: %s\n", note.text);
+    }
     return (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
            cli_tell(performance, "play", NULL, error);
 }

@@ -1,5 +1,7 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
+#include "base/file.h"
+#include "base/line.h"
 #include "receive.h"
 #include "web.h"
 
@@ -7,12 +9,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #define OSC_PORT 9001
 #define HTTP_PORT 8080
-#define PLAY_MAX (512L << 20) // largest motion (bytes); chosen: half an hour
+#define PLAY_MAX ((size_t)512 << 20) // largest motion (bytes); chosen: half an hour
 
 static const char help[] =
     "usage: himc-viewer [OPTION...]\n\n"
@@ -38,8 +39,9 @@ static void on_signal(int number)
     stop = 1;
 }
 
-static int fail(const char *text)
+static int fail(char *text)
 {
+    himc_line_clean(text);
     fprintf(stderr, "himc-viewer: %s\n", text);
     return 1;
 }
@@ -93,21 +95,10 @@ static bool parse(options *o, char **argv, char error[256])
 static char *read_motion(const char *path, size_t *size, char error[256])
 {
     static const char first[] = "time_s,";
-    struct stat about;
-    FILE *file = fopen(path, "rb");
-    char *text = NULL;
-    *size = 0;
-    if (!file || fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode))
-        snprintf(error, 256, "%.180s: cannot be read", path);
-    else if (about.st_size > PLAY_MAX)
-        snprintf(error, 256, "%.180s: %ld MB, allowed up to %ld", path, (long)(about.st_size >> 20),
-                 PLAY_MAX >> 20);
-    else if (!(text = malloc((size_t)about.st_size + 1)))
-        snprintf(error, 256, "%.180s: out of memory", path);
-    else
-        *size = fread(text, 1, (size_t)about.st_size, file);
-    if (file)
-        fclose(file);
+    himc_error fault;
+    char *text = himc_file_load(path, PLAY_MAX, size, &fault);
+    if (!text)
+        snprintf(error, 256, "%.255s", fault.text);
     if (text && (*size < sizeof first || strncmp(text, first, sizeof first - 1) != 0)) {
         snprintf(error, 256,
                  "%.180s:1: not a motion: its first column must be time_s (himc render --motion)",

@@ -188,7 +188,8 @@ typedef struct himc_mallet_head {
 ///
 /// During a contact the point of first contact holds: felt does not slide, and moving a loaded
 /// point would do work. The caller sets the first group of fields, himc_contact_step the second,
-/// which begins as 0.
+/// which begins as 0. A stick that is put into the head, or deeper than it was, is lifted to the
+/// surface, or to the compression that it had: only the step itself presses it in.
 typedef struct himc_stick {
     himc_mallet_head head; ///< the felt at its end
     double mass;           ///< effective mass along the normal (kg)
@@ -199,15 +200,16 @@ typedef struct himc_stick {
     double velocity;       ///< up positive (m/s); the step changes it
     bool one_way; ///< the stick meets a head at rest; the head's vibration does not push back
 
-    double force;      ///< mean of the last sample (N, >= 0, on the stick upwards)
-    bool touching;     ///< c > 0 after the last sample
-    double contact_x;  ///< x of the point of first contact, while touching (m)
-    double contact_y;  ///< y of it (m)
-    double dent;       ///< displacement of the head there after the last sample (m)
-    double peak;       ///< largest force of this contact (N)
-    unsigned contacts; ///< begun so far, chatter counted once
-    double chatter;    ///< a force within this time (s) belongs to the same contact
-    double impact;     ///< downward velocity at the beginning of the contact (m/s)
+    double force;       ///< mean of the last sample (N, >= 0, on the stick upwards)
+    bool touching;      ///< c > 0 after the last sample
+    double contact_x;   ///< x of the point of first contact, while touching (m)
+    double contact_y;   ///< y of it (m)
+    double dent;        ///< displacement of the head there after the last sample (m)
+    double compression; ///< c after the last sample (m, negative: a gap)
+    double peak;        ///< largest force of this contact (N)
+    unsigned contacts;  ///< begun so far, chatter counted once
+    double chatter;     ///< a force within this time (s) belongs to the same contact
+    double impact;      ///< downward velocity at the beginning of the contact (m/s)
 } himc_stick;
 
 #define HIMC_STICKS 8 ///< of a performer at one head; its own mallets are as many; chosen

@@ -210,6 +210,12 @@ report numbers_that_are_none_are_refused \
     "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"
 report refused_messages_change_nothing "$(lines "principal mode 150 Hz")"
 
+mkfifo "$work/fifo.bvh"
+for word in take record; do
+    TEST_TIMEOUT=60 play_pd command.pd -send "himc-test $word $work/fifo.bvh"
+    report "a_fifo_to_${word}_is_refused_at_once" "$(grep -q "^error: himc~: $word: .*fifo.bvh: " "$work/log" || cat "$work/log")"
+done
+
 for patch in "$root"/pd-externals/*-help.pd "$root"/patches/[0-9]*.pd "$root"/patches/techniques/*-help.pd; do
     play_pd "$patch" -send "pd dsp 1" -send "pd quit"
     report "$(basename "$patch" .pd | tr -c 'a-z0-9\n' _)_opens_without_an_error" \

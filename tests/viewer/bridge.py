@@ -567,6 +567,11 @@ def test_trouble_is_one_clear_line():
     assert "unknown option" in error_line("--nonsense", "1")
     assert "not an address" in error_line("--bind", "nowhere")
     assert "cannot be read" in error_line("--play", "/nowhere.csv")
+    assert "x?[31m?y.csv: cannot" in error_line("--play", "x\033[31m\ny.csv")
+    assert "a device, allowed a regular file" in error_line("--play", "/dev/zero")
+    with tempfile.TemporaryDirectory() as folder:
+        os.mkfifo(folder + "/fifo.csv")
+        assert "a FIFO, allowed a regular file" in error_line("--play", folder + "/fifo.csv")
     assert "Makefile:1: not a motion" in error_line("--play", "Makefile")
 
 

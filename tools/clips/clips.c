@@ -4,6 +4,8 @@
 /// WAV file of 32-bit floats, in the units of `pickup air`, and ends in silence. FOLDER/clips.txt
 /// lists them, one line each: distance from the centre per radius, velocity (m/s), pitch (Hz), rate
 /// (Hz), file.
+#define _POSIX_C_SOURCE 200809L // fileno
+#include "base/file.h"
 #include "himc/himc.h"
 
 #include <math.h>
@@ -67,8 +69,13 @@ static void play(double place, double velocity)
 static void keep(const char *path)
 {
     SF_INFO info = {.samplerate = RATE, .channels = 1, .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
-    SNDFILE *file = sf_open(path, SFM_WRITE, &info);
-    if (!file || sf_writef_double(file, sound, LENGTH) != LENGTH || sf_close(file))
+    himc_error error;
+    FILE *stream = himc_file_write(path, HIMC_FILE_REPLACE, &error);
+    if (!stream)
+        fail(error.text);
+    SNDFILE *file = sf_open_fd(fileno(stream), SFM_WRITE, &info, SF_FALSE);
+    if (!file || sf_writef_double(file, sound, LENGTH) != LENGTH || sf_close(file) ||
+        fclose(stream))
         fail(sf_strerror(NULL));
 }
 
@@ -78,9 +85,10 @@ int main(int count, char **argument)
     if (count != 2)
         fail("takes a folder");
     snprintf(path, sizeof path, "%s/clips.txt", argument[1]);
-    FILE *list = fopen(path, "w");
+    himc_error error;
+    FILE *list = himc_file_write(path, HIMC_FILE_REPLACE, &error);
     if (!list)
-        fail("cannot write clips.txt");
+        fail(error.text);
     for (int s = 0; s < 3; s++)
         for (int d = 0; d < 3; d++) {
             snprintf(name, sizeof name, "%s-%s.wav", himc_spot_name((himc_spot)s),

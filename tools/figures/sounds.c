@@ -3,6 +3,8 @@
 /// scale: D3 to A3 on a 23 inch timpano; roll: 13 strokes a second from pp to ff and back;
 /// glissando: a stroke, then the pedal from D3 to A3 and back; mallets: soft, medium, hard, wood.
 /// The drum is in air. Stereo, one pickup on each side.
+#define _POSIX_C_SOURCE 200809L // fileno
+#include "base/file.h"
 #include "himc/himc.h"
 
 #include <math.h>
@@ -117,13 +119,18 @@ static void save(const player *p, const char *folder, const char *name)
     SF_INFO info = {.samplerate = RATE, .channels = 2, .format = SF_FORMAT_OGG | SF_FORMAT_VORBIS};
     double quality = 0.4; // chosen: no difference to be heard, 40 kB a sound
     snprintf(path, sizeof path, "%s/%s.ogg", folder, name);
-    SNDFILE *file = sf_open(path, SFM_WRITE, &info);
+    himc_error error;
+    FILE *stream = himc_file_write(path, HIMC_FILE_REPLACE, &error);
+    if (!stream)
+        fail(error.text);
+    SNDFILE *file = sf_open_fd(fileno(stream), SFM_WRITE, &info, SF_FALSE);
     if (!file)
         fail(sf_strerror(NULL));
     sf_command(file, SFC_SET_VBR_ENCODING_QUALITY, &quality, sizeof quality);
     for (int at = 0; at < p->at; at += BLOCK)
         sf_writef_double(file, p->sound + 2 * at, BLOCK);
     sf_close(file);
+    fclose(stream);
 }
 
 int main(int count, char **argument)

@@ -3,7 +3,8 @@
 /// A line has a time (s), a frequency (Hz) and the level (dB re full scale); the lines of one time
 /// are a block. Hann windows of 4096 samples, one every 20 ms, by the Goertzel recurrence, which
 /// computes only the frequencies that are drawn.
-#include "himc/base.h"
+#define _POSIX_C_SOURCE 200809L // fileno
+#include "base/file.h"
 
 #include <math.h>
 #include <sndfile.h>
@@ -26,13 +27,18 @@ static void fail(const char *what)
 // the first channel
 static double *read_sound(const char *path, SF_INFO *info)
 {
-    SNDFILE *file = sf_open(path, SFM_READ, info);
+    himc_error error;
+    FILE *stream = himc_file_read(path, &error);
+    if (!stream)
+        fail(error.text);
+    SNDFILE *file = sf_open_fd(fileno(stream), SFM_READ, info, SF_FALSE);
     if (!file)
         fail(sf_strerror(NULL));
     double *all = malloc(sizeof(double) * (size_t)info->frames * (size_t)info->channels);
     if (!all || sf_readf_double(file, all, info->frames) != info->frames)
         fail("cannot read the whole file");
     sf_close(file);
+    fclose(stream);
     for (sf_count_t i = 0; i < info->frames; i++)
         all[i] = all[i * info->channels];
     return all;

@@ -5,6 +5,7 @@
 /// comes before the row without one. Ranges that a struct's check shares are in himc/ranges.h.
 #include "base/argument.h"
 
+#include "base/line.h"
 #include "himc/ranges.h"
 
 #include <ctype.h>
@@ -150,10 +151,7 @@ static bool is_name(const char *word)
 {
     if (!word[0] || strlen(word) >= HIMC_NAME_SIZE || strpbrk(word, " \t/#*?,;:[]{}\\\"$"))
         return false;
-    for (const char *s = word; *s; s++)
-        if (iscntrl((unsigned char)*s))
-            return false;
-    return strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
+    return himc_line_is_clean(word) && strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
            !himc_command_find(HIMC_PERFORMER, word);
 }
 

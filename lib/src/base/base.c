@@ -1,6 +1,8 @@
 /// base.c: errors are text for a person, written once, where the fault is found.
 #include "himc/base.h"
 
+#include "base/line.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +13,7 @@ bool himc_error_set(himc_error *error, const char *format, ...)
         return false;
     va_list args;
     va_start(args, format);
-    vsnprintf(error->text, sizeof error->text, format, args);
+    himc_line_print(error->text, sizeof error->text, format, args);
     va_end(args);
     return false;
 }
@@ -24,10 +26,11 @@ bool himc_error_prefix(himc_error *error, const char *format, ...)
     memcpy(old, error->text, sizeof old);
     va_list args;
     va_start(args, format);
-    int used = vsnprintf(error->text, sizeof error->text, format, args);
+    himc_line_print(error->text, sizeof error->text, format, args);
     va_end(args);
-    if (used >= 0 && (size_t)used < sizeof error->text)
-        snprintf(error->text + used, sizeof error->text - (size_t)used, ": %s", old);
+    size_t used = strlen(error->text);
+    snprintf(error->text + used, sizeof error->text - used, ": %s", old);
+    himc_line_clean(error->text); // a character may be cut in two
     return false;
 }
 

@@ -175,7 +175,7 @@ static const char *follow(const char *grammar, walk w, attempt *result)
 static void print_value(char *out, size_t size, const himc_atom *atom)
 {
     if (atom->kind == HIMC_ATOM_SYMBOL)
-        himc_text_printable(out, size, atom->symbol);
+        himc_text_shorten(out, size, atom->symbol);
     else
         snprintf(out, size, isfinite(atom->number) ? "%g" : "%g is not a finite number",
                  atom->number);
@@ -270,7 +270,7 @@ static bool refuse_name(himc_receiver receiver, const char *name, himc_error *er
 {
     const himc_command_row *row;
     char word[WORD_SIZE], names[ALLOWED_SIZE] = "";
-    himc_text_printable(word, sizeof word, name);
+    himc_text_shorten(word, sizeof word, name);
     for (int i = 0; (row = himc_command_table(i)); i++) {
         size_t used = strlen(names);
         if (row->receiver == receiver)

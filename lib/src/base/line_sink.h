@@ -2,8 +2,7 @@
 #ifndef HIMC_LINE_SINK_H
 #define HIMC_LINE_SINK_H
 
-#include <stdarg.h>
-#include <stdio.h>
+#include "base/line.h"
 
 /// A callback and its argument.
 typedef struct himc_line_sink {
@@ -18,7 +17,7 @@ __attribute__((format(printf, 2, 3))) static inline void himc_tell(const himc_li
     char text[256];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    himc_line_print(text, sizeof text, format, args);
     va_end(args);
     to->line(to->user, text);
 }

@@ -123,12 +123,9 @@ bool himc_text_next(const char **text, int *line, himc_text_statement *statement
     return true;
 }
 
-void himc_text_printable(char *out, size_t size, const char *word)
+void himc_text_shorten(char *out, size_t size, const char *word)
 {
-    size_t i = 0;
-    for (; word[i] && i + 1 < size; i++)
-        out[i] = iscntrl((unsigned char)word[i]) ? '?' : word[i];
-    out[i] = '\0';
-    if (word[i] && size > 4)
+    int length = snprintf(out, size, "%s", word);
+    if (length >= 0 && (size_t)length >= size && size > 4)
         snprintf(out + size - 4, 4, "...");
 }

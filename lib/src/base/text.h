@@ -23,8 +23,7 @@ typedef struct himc_text_statement {
 /// newlines in it. False if only white space is left.
 bool himc_text_next(const char **text, int *line, himc_text_statement *statement);
 
-/// Copies a word for an error message into `out`: control characters become '?', long words are
-/// cut.
-void himc_text_printable(char *out, size_t size, const char *word);
+/// Copies a word for an error message into `out`; of a long word only the beginning.
+void himc_text_shorten(char *out, size_t size, const char *word);
 
 #endif

@@ -14,6 +14,7 @@
 /// are not, the file's unit is wrong. A player's left shoulder is on the side of the left hip.
 #include "capture/player.h"
 
+#include "base/line.h"
 #include "base/order.h"
 
 #include "capture/take.h"
@@ -141,7 +142,7 @@ void himc_player_note(himc_player *player, const char *format, ...)
         return;
     va_list args;
     va_start(args, format);
-    vsnprintf(player->notes[player->note_count++], sizeof player->notes[0], format, args);
+    himc_line_print(player->notes[player->note_count++], sizeof player->notes[0], format, args);
     va_end(args);
 }
 

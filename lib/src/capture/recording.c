@@ -9,13 +9,14 @@
 #define _POSIX_C_SOURCE 200809L
 #include "himc/mocap.h"
 
+#include "base/file.h"
 #include "capture/take.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
@@ -52,21 +53,19 @@ static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
     return himc_vec3_scale(skeleton->segment[segment].axis, skeleton->segment[segment].length);
 }
 
-// opens the file to append: its contents stay until there is something to write
+// the contents of an existing file stay until there is something to write
 static bool check_path(const char *path, himc_error *error)
 {
     if (!himc_take_is_format(path, error))
         return false;
-    FILE *existing = fopen(path, "rb"), *file = fopen(path, "ab");
+    bool existed = access(path, F_OK) == 0;
+    FILE *file = himc_file_write(path, HIMC_FILE_CONTINUE, error);
     if (!file)
-        himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
-    if (file)
-        fclose(file);
-    if (existing)
-        fclose(existing);
-    else if (file)
+        return false;
+    fclose(file);
+    if (!existed)
         remove(path);
-    return file != NULL;
+    return true;
 }
 
 himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,

@@ -13,6 +13,7 @@
 /// a seed gives the same noise on every machine.
 #include "capture/take.h"
 
+#include "base/line.h"
 #include "base/random.h"
 #include "capture/take_text.h"
 
@@ -87,7 +88,7 @@ void himc_take_note(himc_take *take, const char *format, ...)
         return;
     va_list args;
     va_start(args, format);
-    vsnprintf(take->notes[take->note_count++], sizeof take->notes[0], format, args);
+    himc_line_print(take->notes[take->note_count++], sizeof take->notes[0], format, args);
     va_end(args);
 }
 

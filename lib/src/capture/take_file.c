@@ -4,15 +4,15 @@
 /// axes, and himc_take_settle converts it. Invariant: a file that could not be written completely
 /// is removed.
 #define _POSIX_C_SOURCE 200809L
+#include "base/file.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-#define MOST_BYTES (1L << 30) // chosen: thirty million positions as text
+#define MOST_BYTES ((size_t)1 << 30) // chosen: thirty million positions as text
 
 typedef struct format {
     const char *suffix;
@@ -56,14 +56,6 @@ static void set_file(himc_take *take, const char *name)
              n > room ? name + n - room : name);
 }
 
-// names from a file may hold anything, an error is one line of printable characters
-static void keep_one_line(himc_error *error)
-{
-    for (char *c = error ? error->text : NULL; c && *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 127)
-            *c = '?';
-}
-
 himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
                           const himc_take_options *options, himc_error *error)
 {
@@ -83,36 +75,7 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
     else if (f->read(take, bytes, size, error) && himc_take_settle(take, options, error))
         return take;
     himc_take_free(take);
-    keep_one_line(error);
     return NULL;
-}
-
-// reads the whole file, to be freed; NULL with errno
-static void *read_file(const char *path, size_t *size)
-{
-    struct stat status;
-    if (stat(path, &status) != 0)
-        return NULL;
-    if (!S_ISREG(status.st_mode) || status.st_size > MOST_BYTES) {
-        errno = S_ISREG(status.st_mode) ? EFBIG : EINVAL;
-        return NULL;
-    }
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return NULL;
-    char *bytes = malloc((size_t)status.st_size + 1);
-    errno = bytes ? 0 : ENOMEM;
-    if (bytes) {
-        *size = fread(bytes, 1, (size_t)status.st_size, file);
-        if (ferror(file)) {
-            free(bytes);
-            bytes = NULL;
-        }
-    }
-    int why = errno;
-    fclose(file);
-    errno = why;
-    return bytes;
 }
 
 himc_take *himc_take_load(const char *path, const himc_take_options *options, himc_error *error)
@@ -120,15 +83,8 @@ himc_take *himc_take_load(const char *path, const himc_take_options *options, hi
     if (!himc_take_is_format(path, error))
         return NULL;
     size_t size = 0;
-    void *bytes = read_file(path, &size);
-    if (!bytes) {
-        const char *why = errno == EINVAL  ? "not a file"
-                          : errno == EFBIG ? "larger than 1 GiB"
-                                           : strerror(errno);
-        himc_error_set(error, "%s: cannot be read: %s", path, why);
-        return NULL;
-    }
-    himc_take *take = himc_take_read(bytes, size, path, options, error);
+    char *bytes = himc_file_load(path, MOST_BYTES, &size, error);
+    himc_take *take = bytes ? himc_take_read(bytes, size, path, options, error) : NULL;
     free(bytes);
     return take;
 }
@@ -138,9 +94,9 @@ bool himc_take_save(const himc_take *take, const char *path, himc_error *error)
     const format *f = format_of(path, error);
     if (!f)
         return false;
-    FILE *file = fopen(path, "wb");
+    FILE *file = himc_file_write(path, HIMC_FILE_REPLACE, error);
     if (!file)
-        return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
+        return false;
     errno = 0;
     bool good = f->write(file, take, error), lost = ferror(file);
     lost = fclose(file) != 0 || lost;

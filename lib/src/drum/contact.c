@@ -31,6 +31,11 @@
 /// while a stiff mallet is near, a sample is divided into substeps of 5 microseconds (the head's
 /// modes are exact in any step), and the sample's force is their mean.
 ///
+/// Between two samples anything may move head or stick: a change of the head, a step of the body, a
+/// drum put elsewhere. The compression does not grow by it, and a stick in the air gets to the
+/// surface at most (keep_compression). So a change, which gives the head no energy (membrane.c),
+/// gives the contact none either.
+///
 /// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the
 /// force of the motion F_m and the path of the stick. The head is then driven along that path by
 /// F_s = k_s c^alpha, c = d - x, k_s proportional to the largest F_m so far (2012 paper, equation
@@ -42,15 +47,16 @@
 #include <string.h>
 
 #define MAX_PAIRS (2 * HIMC_STICKS)
-#define NEWTON_STEPS 60     // chosen: bisection alone converges in them
-#define LINE_STEPS 30       // halvings of a line search; chosen
-#define ROUNDING 4e-16      // relative; two units in the last place of a double
-#define SMALL_STEP 1e-3     // r per compression below which a series replaces the difference
-#define CHATTER 0.0015      // (s) forces less than this apart are one contact; chosen
-#define STIFF_FORCE 100.0   // (N) at 1 mm, from which substeps are needed; hard has 32, wood 316
-#define REACH_ROUNDING 1e-6 // (m) allowance in an estimate of future heights
-#define REGULAR 1e-12       // of a compliance, added for a one-way stick, ...
-#define REGULAR_LEAST 1e-30 // ... (m/N) at least: so G is regular with two sticks at one point
+#define NEWTON_STEPS 60       // chosen: bisection alone converges in them
+#define LINE_STEPS 30         // halvings of a line search; chosen
+#define ROUNDING 4e-16        // relative; two units in the last place of a double
+#define SMALL_STEP 1e-3       // r per compression below which a series replaces the difference
+#define CHATTER 0.0015        // (s) forces less than this apart are one contact; chosen
+#define STIFF_FORCE 100.0     // (N) at 1 mm, from which substeps are needed; hard has 32, wood 316
+#define REACH_ROUNDING 1e-6   // (m) allowance in an estimate of future heights
+#define HEIGHT_ROUNDING 1e-12 // (m) of a height that is computed again by the caller
+#define REGULAR 1e-12         // of a compliance, added for a one-way stick, ...
+#define REGULAR_LEAST 1e-30   // ... (m/N) at least: so G is regular with two sticks at one point
 
 // the pair of a stick's head and the drumhead during one step
 typedef struct contact_pair {
@@ -415,6 +421,17 @@ static void step_near(himc_membrane *membrane, near_stick *near, int count, doub
     }
 }
 
+// Moves a stick after head or stick were moved from outside since the last sample; `before` is the
+// head's displacement now. A one-way stick meets the head at rest.
+static void keep_compression(himc_stick *s, double before)
+{
+    if (s->touching && !s->one_way)
+        s->height += before - s->dent; // it stays on a head that was changed
+    double surface = s->one_way ? 0 : before, most = s->touching ? s->compression : 0;
+    if (surface - s->height > most + HEIGHT_ROUNDING)
+        s->height = surface - most;
+}
+
 // a step of length h: a sample or a substep
 static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, double h)
 {
@@ -429,9 +446,7 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
         double x = s->touching ? s->contact_x : s->x, y = s->touching ? s->contact_y : s->y;
         strike_point *point = himc_membrane_strike_point(membrane, x, y);
         double before = himc_strike_point_displacement(membrane, point);
-        // a head that was changed since the last sample moves the sticks on it with it
-        if (s->touching && !s->one_way)
-            s->height += before - s->dent;
+        keep_compression(s, before);
         near[near_count++] = (near_stick){s, point, before, 0};
     }
     double coupled = himc_membrane_free_step(membrane);
@@ -441,8 +456,9 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
     for (int i = 0; i < near_count; i++) {
         himc_stick *s = near[i].stick;
         s->dent = himc_strike_point_displacement(membrane, near[i].point);
+        s->compression = (s->one_way ? 0 : s->dent) - s->height;
         if (!s->one_way)
-            hold_point(s, s->dent > s->height);
+            hold_point(s, s->compression > 0);
     }
 }
 
@@ -473,12 +489,8 @@ void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int c
         sticks[k]->force = mean[k];
 }
 
-double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick)
+double himc_contact_energy(const himc_stick *stick)
 {
-    double x = stick->touching ? stick->contact_x : stick->x,
-           y = stick->touching ? stick->contact_y : stick->y;
-    double c = stick->one_way ? -stick->height
-                              : himc_membrane_displacement(membrane, x, y) - stick->height;
     return 0.5 * stick->mass * stick->velocity * stick->velocity +
-           potential(stick->head.stiffness, stick->head.exponent, c);
+           potential(stick->head.stiffness, stick->head.exponent, stick->compression);
 }

@@ -14,7 +14,8 @@ HIMC_RT int himc_contact_clear(const himc_membrane *membrane, himc_stick *const 
 /// of reach.
 HIMC_RT void himc_stick_fly(himc_stick *stick, double h);
 
-/// Energy in a stick and its contact: m v^2/2 + k c^(alpha+1)/(alpha+1) (J); gravity not counted.
-HIMC_RT double himc_contact_energy(const himc_membrane *membrane, const himc_stick *stick);
+/// Energy in a stick and its contact after its last sample: m v^2/2 + k c^(alpha+1)/(alpha+1) (J);
+/// gravity not counted.
+HIMC_RT double himc_contact_energy(const himc_stick *stick);
 
 #endif

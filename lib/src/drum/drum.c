@@ -8,6 +8,7 @@
 #include "drum/drum_job.h"
 #include "drum/drum_state.h"
 
+#include "base/line.h"
 #include "drum/contact.h"
 
 #include <math.h>
@@ -55,6 +56,10 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     if (strlen(name) >= HIMC_NAME_SIZE) {
         himc_error_set(error, "drum: name %s, allowed up to %d characters", name,
                        HIMC_NAME_SIZE - 1);
+        return NULL;
+    }
+    if (!himc_line_is_clean(name)) {
+        himc_error_set(error, "drum: name %s, allowed without control characters, in UTF-8", name);
         return NULL;
     }
     if (!himc_check_range("inches", inches, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "in", error) ||

@@ -12,16 +12,15 @@
 /// head (modes.c).
 #include "drum/grid.h"
 
+#include "base/file.h"
 #include "himc/ranges.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define LINE 1200       // longest line of a head's file (characters); chosen: a path fits
 #define READ_SIZE 4096  // least room for the next part of a table's line (bytes)
@@ -211,24 +210,11 @@ static bool read_market(reader *r, matrix *m)
     return coordinate || read_array(r, m, symmetric);
 }
 
-// Opens a regular file for reading: it ends, unlike a device. NULL with the reason.
-static FILE *open_regular(const char *path, himc_error *error)
-{
-    struct stat status;
-    FILE *file = stat(path, &status) == 0 ? fopen(path, "r") : NULL;
-    if (file && S_ISREG(status.st_mode))
-        return file;
-    himc_error_set(error, "%s: %s", path, file ? "not a file" : strerror(errno));
-    if (file)
-        fclose(file);
-    return NULL;
-}
-
 // Reads a table. With `columns` > 0, rows must have so many numbers. At most HIMC_GRID_PLACES rows.
 // False with "file:line: ..." if anything in it is wrong.
 static bool load_matrix(matrix *out, const char *path, int columns, himc_error *error)
 {
-    reader r = {.file = open_regular(path, error), .path = path, .error = error};
+    reader r = {.file = himc_file_read(path, error), .path = path, .error = error};
     matrix m = {0};
     if (!r.file)
         return false;
@@ -463,7 +449,7 @@ himc_grid *himc_grid_load(const char *path, himc_error *error)
 {
     parts p = {0};
     himc_grid *grid = NULL;
-    FILE *file = open_regular(path, error);
+    FILE *file = himc_file_read(path, error);
     if (!file)
         return NULL;
     if (read_parts(&p, file, path, error)) {

@@ -9,6 +9,8 @@
 /// below 1400 bytes for the others, so that none is fragmented on the way.
 #include "osc/subscribe.h"
 
+#include "base/line.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -28,7 +30,7 @@ void himc_osc_tell(osc_ring *lines, const char *format, ...)
         return;
     va_list args;
     va_start(args, format);
-    vsnprintf(line, HIMC_OSC_LINE, format, args);
+    himc_line_print(line, HIMC_OSC_LINE, format, args);
     va_end(args);
     himc_osc_ring_push(lines);
 }

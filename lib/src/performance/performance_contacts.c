@@ -21,6 +21,9 @@
 #define NEAR_HEAD 0.02       // above the head at rest: sticks below this are simulated (m)
 #define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m) ...
 #define DEEPEST_ARRIVAL 0.03 // ... and a stick not from above is if deeper than this (m)
+// No arm moves a stick faster. A body that is thrown about by gains or a rate that cannot hold it
+// does, up to 100 m/s; the head then feels a blow as of the fastest free mallet, in each step.
+#define FASTEST_TIP HIMC_STRIKE_VELOCITY_MAX // (m/s) along the normal, and its change in a step
 // chosen: longer than the gaps inside one contact of a mallet and a swinging head
 #define RISING_GAP 0.0015 // time without force that ends the contact of a rising stick (s) ...
 #define ANY_GAP 0.005     // ... and of any stick (s)
@@ -148,6 +151,11 @@ static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand 
     return -1;
 }
 
+static double bounded(double x, double most)
+{
+    return x > most ? most : x < -most ? -most : x;
+}
+
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
                        const himc_articulation *art, const himc_vec3 *relative)
@@ -163,11 +171,12 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.acceleration = 0;
     if (!is_kinematic(s))
         c->stick.acceleration =
-            himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative));
+            bounded(himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative)),
+                    FASTEST_TIP * s->clock->physics_rate);
     if (is_kinematic(s) && c->touching)
         return;
     c->stick.height = local.z + c->offset;
-    c->stick.velocity = himc_vec3_dot(n, b->state.tip_velocity[hand]);
+    c->stick.velocity = bounded(himc_vec3_dot(n, b->state.tip_velocity[hand]), FASTEST_TIP);
 }
 
 static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,
@@ -230,13 +239,15 @@ typedef struct near_sticks {
     himc_vec3 relative[HIMC_JOINTS];
 } near_sticks;
 
-static void find_near(const performance_contacts *c, const contact_scene *s, near_sticks *near)
+static void find_near(performance_contacts *c, const contact_scene *s, near_sticks *near)
 {
     const performance_body *b = s->body;
     bool any = false;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         near->below[hand] = drum_below(&c->hand[hand], s, (himc_hand)hand, &near->local[hand]);
         any = any || near->below[hand] >= 0;
+        if (near->below[hand] != c->hand[hand].drum)
+            c->hand[hand].stick.touching = false; // it has left the head that it touched
     }
     if (!any)
         return;

@@ -1,8 +1,9 @@
 /// performance_events.c: events in a ring. It is the host's mailbox: `reset` leaves it as it is.
 #include "performance/performance_events.h"
 
+#include "base/line.h"
+
 #include <stdarg.h>
-#include <stdio.h>
 
 void himc_events_add(performance_events *e, const himc_event *event)
 {
@@ -19,7 +20,7 @@ void himc_events_note(performance_events *e, const char *format, ...)
     himc_event event = {.kind = HIMC_EVENT_NOTE};
     va_list args;
     va_start(args, format);
-    vsnprintf(event.text, sizeof event.text, format, args);
+    himc_line_print(event.text, sizeof event.text, format, args);
     va_end(args);
     himc_events_add(e, &event);
 }

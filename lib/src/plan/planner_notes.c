@@ -4,6 +4,8 @@
 /// times; the counts tell the rest at the end. What finds no room is counted in the last line.
 #include "plan/planner_notes.h"
 
+#include "base/line.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,7 +18,7 @@ static void put(planner_notes *notes, const char *format, va_list args)
         return;
     }
     himc_planner_note *note = &notes->line[(notes->first + notes->count++) % PLANNER_NOTES];
-    vsnprintf(note->text, sizeof note->text, format, args);
+    himc_line_print(note->text, sizeof note->text, format, args);
 }
 
 void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)

@@ -8,9 +8,9 @@
 #include "plan/score.h"
 
 #include "base/argument.h"
+#include "base/file.h"
 #include "base/text.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@
 // chosen: more than a day of drumming, and small enough for any machine's memory
 #define SCORE_STROKES_MAX 200000
 #define SCORE_LINES_MAX 10000
-#define SCORE_BYTES_MAX (64l << 20)
+#define SCORE_BYTES_MAX ((size_t)64 << 20)
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define STROKE_INTERVAL_MIN \
     0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
@@ -292,51 +292,15 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
     return NULL;
 }
 
-/// The whole file as a string, owned by the caller.
-static char *read_file(FILE *file, himc_error *error)
-{
-    size_t room = 1 << 16, used = 0, got;
-    char *text = malloc(room + 1);
-    while (text && (got = fread(text + used, 1, room - used, file)) > 0) {
-        used += got;
-        if (used > SCORE_BYTES_MAX) {
-            himc_error_set(error, "too long for a score, allowed %ld MiB", SCORE_BYTES_MAX >> 20);
-            free(text);
-            return NULL;
-        }
-        char *bigger = used < room ? text : realloc(text, (room *= 2) + 1);
-        if (!bigger)
-            free(text);
-        text = bigger;
-    }
-    if (!text)
-        himc_error_set(error, "out of memory");
-    if (text && ferror(file))
-        himc_error_set(error, "%s", strerror(errno));
-    else if (text && memchr(text, 0, used))
-        himc_error_set(error, "not a text file");
-    else if (text) {
-        text[used] = '\0';
-        return text;
-    }
-    free(text);
-    return NULL;
-}
-
 himc_score *himc_score_load(const char *path, himc_error *error)
 {
-    FILE *file = fopen(path, "r");
-    if (!file) {
-        himc_error_set(error, "%s: %s", path, strerror(errno));
-        return NULL;
-    }
-    char *text = read_file(file, error);
-    fclose(file);
-    if (!text) {
-        himc_error_prefix(error, "%s", path);
-        return NULL;
-    }
-    himc_score *score = himc_score_parse(text, path, error);
+    size_t size;
+    himc_score *score = NULL;
+    char *text = himc_file_load(path, SCORE_BYTES_MAX, &size, error);
+    if (text && memchr(text, 0, size))
+        himc_error_set(error, "%s: not a text file", path);
+    else if (text)
+        score = himc_score_parse(text, path, error);
     free(text);
     return score;
 }

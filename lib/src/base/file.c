@@ -1,0 +1,128 @@
+/// file.c: opens regular files and nothing else.
+///
+/// A FIFO waits for its other end, a device may never end, and both can take a file's name at any
+/// time. So a name is opened without waiting (O_NONBLOCK, which has no effect on a regular file),
+/// and the opened descriptor is asked for its kind, not the name. Invariant: a file is cut only
+/// after it is known to be regular.
+#define _POSIX_C_SOURCE 200809L
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// what stands under a name instead of a regular file; NULL for a regular one
+static const char *other_kind(const struct stat *status)
+{
+    return S_ISREG(status->st_mode)    ? NULL
+           : S_ISDIR(status->st_mode)  ? "a folder"
+           : S_ISFIFO(status->st_mode) ? "a FIFO"
+           : S_ISSOCK(status->st_mode) ? "a socket"
+                                       : "a device";
+}
+
+static bool is_null_device(const struct stat *status)
+{
+    struct stat device;
+    return S_ISCHR(status->st_mode) && stat("/dev/null", &device) == 0 &&
+           status->st_rdev == device.st_rdev;
+}
+
+// opens without waiting and looks at what was opened. -1 with one line
+static int open_regular(const char *path, int flags, himc_error *error)
+{
+    const char *fault = flags & O_CREAT ? "cannot be written" : "cannot be read";
+    struct stat status;
+    int file = open(path, flags | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666), why = errno;
+    bool known = file < 0 ? stat(path, &status) == 0 : fstat(file, &status) == 0;
+    const char *kind = known ? other_kind(&status) : NULL;
+    if (file >= 0 && known && (!kind || (flags & O_CREAT && is_null_device(&status))))
+        return file;
+    if (file >= 0)
+        close(file);
+    if (kind)
+        himc_error_set(error, "%s: %s: %s, allowed a regular file", path, fault, kind);
+    else
+        himc_error_set(error, "%s: %s: %s", path, fault, strerror(why));
+    return -1;
+}
+
+static FILE *stream_of(const char *path, int file, const char *mode, himc_error *error)
+{
+    FILE *stream = file < 0 ? NULL : fdopen(file, mode);
+    if (!stream && file >= 0) {
+        himc_error_set(error, "%s: %s", path, strerror(errno));
+        close(file);
+    }
+    return stream;
+}
+
+FILE *himc_file_read(const char *path, himc_error *error)
+{
+    return stream_of(path, open_regular(path, O_RDONLY, error), "rb", error);
+}
+
+FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *error)
+{
+    bool replace = mode == HIMC_FILE_REPLACE;
+    int flags = O_CREAT | (replace ? O_WRONLY : O_RDWR | O_APPEND);
+    int file = open_regular(path, flags, error);
+    // a device cannot be cut, and has nothing to lose
+    if (file >= 0 && replace && ftruncate(file, 0) != 0 && errno != EINVAL) {
+        himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
+        close(file);
+        return NULL;
+    }
+    FILE *stream = stream_of(path, file, replace ? "wb" : "a+b", error);
+    if (stream)
+        rewind(stream);
+    return stream;
+}
+
+// the whole stream, at most some bytes more than `most`; NULL with errno
+static char *read_all(FILE *stream, size_t most, size_t *size)
+{
+    struct stat status;
+    bool known = fstat(fileno(stream), &status) == 0 && status.st_size >= 0;
+    // one byte more than the file, to meet its end; that of /proc say 0 and grow here
+    size_t room = (known && (size_t)status.st_size < most ? (size_t)status.st_size : most) + 1;
+    size_t used = 0, got;
+    char *bytes = malloc(room + 1);
+    errno = 0;
+    while (bytes && used <= most && (got = fread(bytes + used, 1, room - used, stream)) > 0) {
+        used += got;
+        char *more = used < room ? bytes : realloc(bytes, (room *= 2) + 1);
+        if (!more)
+            free(bytes);
+        bytes = more;
+    }
+    if (bytes && ferror(stream)) {
+        free(bytes);
+        return NULL;
+    }
+    if (bytes)
+        bytes[used] = '\0';
+    *size = used;
+    return bytes;
+}
+
+char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *error)
+{
+    FILE *stream = himc_file_read(path, error);
+    if (!stream)
+        return NULL;
+    char *bytes = read_all(stream, most, size);
+    int why = errno;
+    fclose(stream);
+    if (bytes && *size <= most)
+        return bytes;
+    if (bytes)
+        himc_error_set(error, "%s: too long, allowed %zu MiB", path, most >> 20);
+    else
+        himc_error_set(error, "%s: cannot be read: %s", path, strerror(why));
+    free(bytes);
+    return NULL;
+}
