@@ -151,6 +151,12 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all
 	@$(PROGRAM) bench
 
+bench-peers: deps $(BUILD)/tools/skeleton/table ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
+	@tools/deps.sh tools/deps-peers.txt
+	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }
+	@$(MAKE) all
+	@$(PROGRAM) bench --peers
+
 ##@ Documentation
 figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
 	@tools/deps.sh tools/deps-figures.txt
@@ -190,7 +196,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-realtime check-realtime bench check-bench \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands

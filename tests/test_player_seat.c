@@ -8,7 +8,7 @@ static void test_a_player_at_the_origin_keeps_its_place(void)
     himc_head_frame drum = usual_drum;
     make_take(&given);
     read_player();
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(player->offset));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.root.z, player->config.seat);
     TEST_ASSERT_EQUAL_MEMORY(&usual_drum, &drum, sizeof drum);
@@ -26,7 +26,7 @@ static void test_a_distant_player_is_moved_to_the_drum(void)
     make_take(&given);
     move_take(himc_vec3_make(12, -5, 0.3));
     read_player();
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -12, player->offset.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5, player->offset.y);
     TEST_ASSERT_DOUBLE_WITHIN(0.012, -0.3, player->offset.z);
@@ -40,7 +40,7 @@ static void test_a_drum_that_strikes_would_miss_is_moved_under_them(void)
     drum.center = himc_vec3_make(0.9, 0.6, 0.85);
     make_take(&given);
     read_player();
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     // struck at 0.5 m, the usual place: three quarters of the radius in front of the centre
     TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.5 + 0.75 * drum.radius, drum.center.x);
     TEST_ASSERT_DOUBLE_WITHIN(0.03, 0, drum.center.y);
@@ -60,7 +60,7 @@ static void test_tips_alone_seat_the_player_so_that_strikes_meet_the_usual_place
     TEST_ASSERT_FALSE(player->placed);
     TEST_ASSERT_EQUAL_INT(0, player->lengths);
     TEST_ASSERT_EQUAL_INT(0, known_joints());
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     TEST_ASSERT_DOUBLE_WITHIN(0.03, 3, player->offset.x);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, -7, player->offset.y);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, -2, player->offset.z);
@@ -78,7 +78,7 @@ static void test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor(v
         memcpy(himc_take_at(take, i, 0), himc_take_at(take, 0, 0),
                (size_t)take->points * sizeof *take->x);
     read_player();
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2, player->offset.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3, player->offset.y);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, player->offset.z);
@@ -115,7 +115,7 @@ static void test_tips_without_strikes_are_brought_into_reach_and_the_drum_out_of
     himc_take_tip tips[HIMC_HANDS];
     himc_posture posture;
     make_tips(wide_circle);
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     TEST_ASSERT_TRUE(himc_take_tips(take, NULL, tips, &error));
     himc_posture_init(&posture, &skeleton, usual_drum.center.z + given.mallet_radius);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -143,7 +143,7 @@ static void test_a_walking_player_is_held_and_a_swaying_one_is_not_walking(void)
     TEST_ASSERT_EQUAL_INT(1, player->note_count);
     TEST_ASSERT_TRUE(worst_angle(0, HIMC_JOINTS) < 1e-6); // relative to the hips
     for (int twice = 0; twice < 2; twice++) {             // the motion is removed only once
-        TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+        TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
         himc_vec3 after = *himc_take_at(take, 100, take->points - 1);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_vec3_length(himc_vec3_sub(after, before)));
     }
@@ -162,7 +162,7 @@ static void test_description_has_height_mass_and_place_of_the_head(void)
     himc_head_frame drum = usual_drum;
     make_take(&given);
     read_player();
-    himc_player_sit(player, take, NULL, &drum);
+    himc_player_sit(player, take, NULL, &drum, NULL);
     himc_player_describe(player, &drum, hear, all);
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(all, "player: 1.750 m tall (by legs and trunk), 75.0 kg (by a body mass index of"),

@@ -158,8 +158,8 @@ static void test_a_take_of_the_player_corrects_the_weights_of_others(void)
     himc_error error = {""};
     himc_posture_regression regression = without(2);
     double before = arms_off(&regression, 2);
-    TEST_ASSERT_TRUE_MESSAGE(himc_posture_regression_correct(&regression, &captured[2], &error),
-                             error.text);
+    TEST_ASSERT_TRUE_MESSAGE(
+        himc_posture_regression_correct(&regression, &captured[2], NULL, &error), error.text);
     double after = arms_off(&regression, 2);
     printf("a player's arms: %.2f degrees by others' weights, %.2f corrected\n", before / DEGREE,
            after / DEGREE);
@@ -167,7 +167,7 @@ static void test_a_take_of_the_player_corrects_the_weights_of_others(void)
     himc_posture_regression_take none = captured[2];
     himc_posture_regression kept = regression;
     none.frames = 20;
-    TEST_ASSERT_FALSE(himc_posture_regression_correct(&regression, &none, &error));
+    TEST_ASSERT_FALSE(himc_posture_regression_correct(&regression, &none, NULL, &error));
     TEST_ASSERT_EQUAL_STRING("posture regression: a take of 20 frames, allowed 36 or more",
                              error.text);
     TEST_ASSERT_EQUAL_MEMORY(&kept, &regression, sizeof regression);
@@ -189,7 +189,7 @@ static void test_a_correction_is_a_ridge_regression_with_a_ridge_of_one(void)
 {
     himc_error error = {""};
     himc_posture_regression before = without(1), after = before;
-    TEST_ASSERT_TRUE_MESSAGE(himc_posture_regression_correct(&after, &captured[1], &error),
+    TEST_ASSERT_TRUE_MESSAGE(himc_posture_regression_correct(&after, &captured[1], NULL, &error),
                              error.text);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         double slope[ANGLES][TERMS] = {{0}}, most = 0;
@@ -233,7 +233,7 @@ static void test_an_unseen_arm_stays_unchanged(void)
     himc_posture_regression regression = without(0);
     himc_posture_regression_take take = captured[0];
     take.unseen_arm[HIMC_LEFT] = take.unseen_trunk = true;
-    TEST_ASSERT_TRUE_MESSAGE(himc_posture_regression_correct(&regression, &take, &error),
+    TEST_ASSERT_TRUE_MESSAGE(himc_posture_regression_correct(&regression, &take, NULL, &error),
                              error.text);
     for (int i = 0; i < captured[0].frames; i += 50) {
         himc_pose given = himc_pose_zero(), pose;

@@ -84,7 +84,7 @@ static void test_the_rate_of_a_noisy_joint_is_the_angular_velocity_of_its_fit(vo
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     himc_player *player = himc_player_new(take, NULL, &config, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(player, error.text);
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     srand(3);
     for (int i = 0; i < player->frames; i++) {
         himc_quat *q = &player->pose[i].joint[TRUNK];

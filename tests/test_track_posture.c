@@ -45,7 +45,7 @@ static void make_played(double rate)
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     player = himc_player_new(take, NULL, &given, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(player, error.text);
-    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum));
+    TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     track = himc_track_new_played(take, NULL, &drum, player, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     TEST_ASSERT_TRUE(himc_track_has_posture(track));

@@ -96,7 +96,7 @@ static bool describe_player(himc_take *take, const himc_take_options *take_optio
     himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, 48000, error);
     if (drum) {
         himc_head_frame place = *himc_drum_head_frame(drum);
-        bool seated = himc_player_sit(player, take, take_options, &place);
+        bool seated = himc_player_sit(player, take, take_options, &place, NULL);
         himc_player_describe(player, seated ? &place : NULL, print_line, NULL);
     }
     himc_player_free(player);

@@ -150,7 +150,8 @@ HIMC_RT void himc_membrane_watch(himc_membrane *membrane, double x, double y);
 HIMC_RT void himc_membrane_push(himc_membrane *membrane, double x, double y, double force);
 /// Advances by `n` samples without contact: sound[k][i] is the sound of pickup k (1.0 as its kind
 /// says; as many rows as there are pickups), watched[i] the displacement (m, up positive) of the
-/// watched point. Pushed forces act in the first sample.
+/// watched point. A row that is NULL, or `watched`, costs no time; what follows below is then 0.
+/// Pushed forces act in the first sample.
 HIMC_RT void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound,
                                double *watched);
 /// The last sample's sound of pickup 0 .. count - 1 (1.0 as its kind says).

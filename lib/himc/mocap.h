@@ -183,10 +183,11 @@ HIMC_RT static inline int himc_player_known_arm(const himc_player *player, himc_
 /// only if they would miss the head, or if no seat (0.3 .. 1.3 m) would do. Else the player sits
 /// where the strikes fall on the drum's usual strike place. Without strikes the seat is as the take
 /// shows it, or where all of the take is in reach, if there is such a place, and `drum` is lowered
-/// out of the way. If the player walks, the motion of the hips is removed from the take. False, and
-/// nothing else changed, if the take has no tips, or a gap in them that is too long.
+/// out of the way. If the player walks, the motion of the hips is removed from the take. False with
+/// the reason, and nothing else changed, if the take has no tips, a gap in them is too long, or
+/// there is no memory.
 bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
-                     himc_head_frame *drum);
+                     himc_head_frame *drum, himc_error *error);
 
 /// One line per fact about the player, for `himc info`; with `drum` (NULL if the player is not
 /// seated) also its place. A line is at most 255 characters; `line` gets `user` and the line.

@@ -124,7 +124,7 @@ static void check_player(himc_take *take, const himc_take_options *options)
     check_quats(player->mean.joint);
     for (int i = 0; player->pose && i < player->frames; i++)
         check_quats(player->pose[i].joint);
-    bool seated = himc_player_sit(player, take, options, &drum);
+    bool seated = himc_player_sit(player, take, options, &drum, NULL);
     require(!seated || (himc_vec3_finite(player->offset) && himc_vec3_finite(drum.center)),
             "a player sits somewhere");
     int lines = 0;

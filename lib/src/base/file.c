@@ -69,14 +69,13 @@ FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *e
 {
     bool replace = mode == HIMC_FILE_REPLACE;
     int flags = O_CREAT | (replace ? O_WRONLY : O_RDWR | O_APPEND);
-    int file = open_regular(path, flags, error);
-    // a device cannot be cut, and has nothing to lose
-    if (file >= 0 && replace && ftruncate(file, 0) != 0 && errno != EINVAL) {
+    FILE *stream = stream_of(path, open_regular(path, flags, error), replace ? "wb" : "a+b", error);
+    // cut last, when all else is there; a device cannot be cut, and has nothing to lose
+    if (stream && replace && ftruncate(fileno(stream), 0) != 0 && errno != EINVAL) {
         himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
-        close(file);
+        fclose(stream);
         return NULL;
     }
-    FILE *stream = stream_of(path, file, replace ? "wb" : "a+b", error);
     if (stream)
         rewind(stream);
     return stream;

@@ -24,16 +24,18 @@ static himc_vec3 fourth_difference(const himc_vec3 x[5])
     return himc_vec3_madd(himc_vec3_madd(outer, -4, inner), 6, x[2]);
 }
 
-double himc_noise(const himc_vec3 *x, int frames)
+bool himc_noise(const himc_vec3 *x, int frames, double *noise)
 {
     int count = frames - 4;
     double *size = count > 0 ? malloc((size_t)count * sizeof *size) : NULL;
+    *noise = 0;
     if (!size)
-        return 0;
+        return count <= 0;
     for (int i = 0; i < count; i++)
         size[i] = himc_vec3_length(fourth_difference(&x[i]));
     qsort(size, (size_t)count, sizeof *size, by_size);
     double middle = 0.5 * (size[(count - 1) / 2] + size[count / 2]);
     free(size);
-    return middle / (CHI_3_MEDIAN * sqrt(FOURTH_DIFFERENCE_VARIANCE));
+    *noise = middle / (CHI_3_MEDIAN * sqrt(FOURTH_DIFFERENCE_VARIANCE));
+    return true;
 }

@@ -5,7 +5,7 @@
 #include "himc/vec.h"
 
 /// Standard deviation (m) of the white noise on each coordinate of a point's track `x` (frames);
-/// smooth motion does not count. 0 for fewer than 5 frames or without memory.
-double himc_noise(const himc_vec3 *x, int frames);
+/// smooth motion does not count. 0 for fewer than 5 frames. False without memory.
+bool himc_noise(const himc_vec3 *x, int frames, double *noise);
 
 #endif

@@ -68,8 +68,10 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
 {
     int count;
     himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    if (!strikes)
+    if (!strikes) {
+        himc_tell(to, "strikes: no memory to find them");
         return;
+    }
     himc_tell(to, "strikes: %d", count);
     for (int i = 0; i < count && i < STRIKE_LINES; i++)
         himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", strikes[i].time,

@@ -264,15 +264,15 @@ void himc_player_free(himc_player *player)
 #define LEAST_AWAY 0.1       // chosen: nearer to the player's axis a strike has no direction (m)
 #define REACH_MISSING 1e-3   // chosen: less out of reach is in reach (m)
 
-// the centre of the take's strikes; false without strikes
-static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+// the centre of the take's strikes, if there are any; false without memory
+static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], bool *any,
                          himc_vec3 *place)
 {
     int count;
     himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    bool found = count > 0 && himc_take_strike_place(strikes, count, place);
+    *any = strikes && himc_take_strike_place(strikes, count, place);
     free(strikes);
-    return found;
+    return strikes && *any == (count > 0);
 }
 
 static himc_vec3 lowest_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS])
@@ -292,21 +292,25 @@ static void usual_place(const himc_head_frame *drum, double *x, double *aside)
     *aside = fabs(*aside);
 }
 
-himc_vec3 himc_strike_offset(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                             const himc_head_frame *drum, double mallet_radius)
+bool himc_strike_offset(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                        const himc_head_frame *drum, double mallet_radius, himc_vec3 *offset)
 {
     double x, aside;
     himc_vec3 struck;
+    bool strikes;
+    if (!strike_place(take, tips, &strikes, &struck))
+        return false;
     usual_place(drum, &x, &aside);
     himc_vec3 spot = himc_vec3_madd(himc_head_frame_to_world(drum, x, 0), mallet_radius,
                                     himc_head_frame_normal(drum));
-    if (!strike_place(take, tips, &struck)) {
+    if (!strikes) {
         struck = lowest_place(take, tips);
         spot.z += OVER_HEAD;
     }
     if (!tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present)
         spot.y += tips[HIMC_LEFT].present ? aside : -aside;
-    return himc_vec3_sub(spot, struck);
+    *offset = himc_vec3_sub(spot, struck);
+    return true;
 }
 
 // puts the drum under a strike place, on the line from the player through it
@@ -373,13 +377,14 @@ static himc_vec3 back_into_reach(const himc_posture *posture, const himc_take *t
 
 // finds an offset with all positions in reach if there is one, else one with little out of reach
 static bool bring_into_reach(himc_player *player, const himc_take *take,
-                             const himc_take_tip tips[HIMC_HANDS], const himc_head_frame *drum)
+                             const himc_take_tip tips[HIMC_HANDS], const himc_head_frame *drum,
+                             himc_error *error)
 {
     himc_skeleton skeleton;
     himc_posture posture;
     himc_vec3 best = player->offset;
     double least = INFINITY;
-    if (!himc_skeleton_init(&skeleton, &player->config, NULL))
+    if (!himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     himc_posture_init(&posture, &skeleton, drum->center.z + player->config.mallet_radius);
     for (int i = 0; i < REACH_STEPS && least > REACH_MISSING; i++) {
@@ -422,21 +427,24 @@ static void hold_hips(himc_player *player, himc_take *take)
 }
 
 bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
-                     himc_head_frame *drum)
+                     himc_head_frame *drum, himc_error *error)
 {
-    himc_vec3 struck;
+    himc_vec3 struck, offset = player->offset;
     himc_take_tip tips[HIMC_HANDS];
+    bool strikes;
     hold_hips(player, take);
-    if (!himc_take_tips(take, options, tips, NULL))
+    if (!himc_take_tips(take, options, tips, error))
         return false;
-    bool strikes = strike_place(take, tips, &struck);
+    if (!strike_place(take, tips, &strikes, &struck) ||
+        (!player->placed &&
+         !himc_strike_offset(take, tips, drum, player->config.mallet_radius, &offset)))
+        return himc_error_set(error, "%s: out of memory", take->file);
+    player->offset = offset;
     if (player->placed && strikes)
         seat_player(player, struck, drum);
     else if (player->placed)
         keep_player(player);
-    else
-        player->offset = himc_strike_offset(take, tips, drum, player->config.mallet_radius);
-    if (!player->placed && !strikes && !bring_into_reach(player, take, tips, drum))
+    else if (!strikes && !bring_into_reach(player, take, tips, drum, error))
         return false;
     if (!strikes)
         clear_drum(drum, take, tips, player->offset);

@@ -30,6 +30,7 @@ typedef struct player_points {
     int frames;
     himc_vec3 *x[POINT_COUNT]; ///< (frames) (m), owned, no gaps; NULL if not shown
     int node[POINT_COUNT];     ///< index of the point in the take, -1 if it is a mean of several
+    double *distance;          ///< (frames), owned: room for himc_player_distance
 } player_points;
 
 /// A segment's length as the distance between two joint centres.
@@ -73,8 +74,9 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
 // The seat: player.c.
 
 /// Offset that moves the centre of the take's strikes onto the drum's usual strike place (m);
-/// without strikes it moves the lowest position of a tip to a little above that place.
-himc_vec3 himc_strike_offset(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                             const himc_head_frame *drum, double mallet_radius);
+/// without strikes it moves the lowest position of a tip to a little above that place. False without
+/// memory.
+bool himc_strike_offset(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                        const himc_head_frame *drum, double mallet_radius, himc_vec3 *offset);
 
 #endif

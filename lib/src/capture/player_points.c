@@ -252,7 +252,8 @@ bool himc_player_points_find(player_points *p, himc_take *take, const himc_take_
     *p = (player_points){.take = take, .frames = himc_take_frames(take)};
     for (int i = 0; i < POINT_COUNT; i++)
         p->node[i] = -1;
-    if (!find_tips(p, take, options, present))
+    p->distance = malloc((size_t)p->frames * sizeof *p->distance);
+    if (!p->distance || !find_tips(p, take, options, present))
         return false;
     int lone = present[HIMC_LEFT] && !present[HIMC_RIGHT] ? HIMC_LEFT : HIMC_RIGHT;
     for (int i = 0; i < POINT_COUNT; i++) {
@@ -273,20 +274,18 @@ void himc_player_points_free(player_points *p)
 {
     for (int i = 0; i < POINT_COUNT; i++)
         free(p->x[i]);
+    free(p->distance);
 }
 
 double himc_player_distance(const player_points *p, int from, int to, double quantile)
 {
     const himc_vec3 *a = p->x[from], *b = p->x[to];
-    double *distance = a && b ? malloc((size_t)p->frames * sizeof *distance) : NULL;
-    if (!distance)
+    if (!a || !b)
         return 0;
     for (int i = 0; i < p->frames; i++)
-        distance[i] = himc_vec3_length(himc_vec3_sub(b[i], a[i]));
-    qsort(distance, (size_t)p->frames, sizeof *distance, himc_order_doubles);
-    double length = distance[(int)(quantile * p->frames)];
-    free(distance);
-    return length;
+        p->distance[i] = himc_vec3_length(himc_vec3_sub(b[i], a[i]));
+    qsort(p->distance, (size_t)p->frames, sizeof *p->distance, himc_order_doubles);
+    return p->distance[(int)(quantile * p->frames)];
 }
 
 const player_measure himc_player_limbs[PLAYER_LIMBS] = {

@@ -374,7 +374,8 @@ static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand ha
             add_point(&a, joints, joints < HIMC_ARM_JOINTS ? 1 : TIP_WEIGHT, matrix, theta);
         for (int i = 0; i < ANGLES; i++)
             matrix[ANGLES * i + i] += ROTATION_COST;
-        if (LAPACKE_dposv(LAPACK_ROW_MAJOR, 'U', ANGLES, 1, matrix, ANGLES, theta, 1) != 0)
+        // symmetric, so both orders of storage are the same; this one needs no memory
+        if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', ANGLES, 1, matrix, ANGLES, theta, ANGLES) != 0)
             return;
         rotate_arm(&a, hand, theta, pose);
     }

@@ -60,12 +60,11 @@ static bool check_path(const char *path, himc_error *error)
         return false;
     bool existed = access(path, F_OK) == 0;
     FILE *file = himc_file_write(path, HIMC_FILE_CONTINUE, error);
-    if (!file)
-        return false;
-    fclose(file);
+    if (file)
+        fclose(file);
     if (!existed)
         remove(path);
-    return true;
+    return file != NULL;
 }
 
 himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,

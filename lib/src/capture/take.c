@@ -47,7 +47,9 @@ bool himc_take_allocate(himc_take *take, double rate, int frames, int points, bo
         take->offsets = calloc(count, sizeof *take->offsets);
         take->rotations = calloc(all, sizeof *take->rotations);
     }
-    if (take->names && take->x &&
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        take->tip[hand] = malloc((size_t)frames * sizeof *take->tip[hand]);
+    if (take->names && take->x && take->tip[HIMC_LEFT] && take->tip[HIMC_RIGHT] &&
         (!skeleton || (take->parents && take->offsets && take->rotations)))
         return true;
     return himc_error_set(error, "%s: no memory for %d frames of %d points", take->file, frames,

@@ -109,13 +109,14 @@ int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *
 
 /// Index of the point that is a hand's tip by its name, or -1.
 int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_options *options);
-/// Finds strikes in order of time; writes at most `capacity`, returns the number of all.
+/// Finds strikes in order of time; writes at most `capacity`, returns the number of all, -1 without
+/// memory.
 int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                       himc_take_strike *strikes, int capacity);
 /// Place of a tip that touches the drumhead under these strikes: the mean over the hands of the
 /// median place of their strikes (m). A fall and its rebound meet below the head: on the simulated
 /// head a mallet stays some 7 ms, and the head is put so high that such a contact joins the two.
-/// False without strikes.
+/// False without strikes, and without memory.
 bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place);
 
 // The library's frame: take_frame.c.

@@ -496,22 +496,24 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-// points with equal names: himc_take_find gives the first
-static void note_names(himc_take *take)
+// points with equal names: himc_take_find gives the first; false without memory
+static bool note_names(himc_take *take, himc_error *error)
 {
     size_t count = (size_t)take->points;
     const char **name = malloc(count * sizeof *name);
-    for (size_t i = 0; name && i < count; i++)
+    if (!name)
+        return himc_error_set(error, "%s: no memory for %zu names", take->file, count);
+    for (size_t i = 0; i < count; i++)
         name[i] = take->names[i];
-    if (name)
-        qsort(name, count, sizeof *name, by_name);
-    for (size_t i = 1; name && i < count; i++)
+    qsort(name, count, sizeof *name, by_name);
+    for (size_t i = 1; i < count; i++)
         if (strcmp(name[i - 1], name[i]) == 0) {
             himc_take_note(take, "names: more than one point is called %s, the first is read",
                            name[i]);
             break;
         }
     free(name);
+    return true;
 }
 
 bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_error *error)
@@ -521,7 +523,8 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
     if (!settle_units(take, options, error))
         return false;
     himc_take_drop_spikes(take);
-    note_names(take);
+    if (!note_names(take, error))
+        return false;
     if (take->rate < BLURRED)
         himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);

@@ -288,7 +288,8 @@ int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS
     bool waits[HIMC_HANDS];
     for (int h = 0; h < HIMC_HANDS; h++) {
         tracks[h] = (track){take, tips[h].point, tips[h].x, take->frames, take->rate, 0};
-        tracks[h].noise = tips[h].present ? himc_noise(tips[h].x, tracks[h].frames) : 0;
+        if (tips[h].present && !himc_noise(tips[h].x, tracks[h].frames, &tracks[h].noise))
+            return -1;
         waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
     }
     // merges the two sorted lists while they are found
@@ -308,9 +309,13 @@ himc_take_strike *himc_take_find_strikes(const himc_take *take,
 {
     himc_take_strike none;
     int all = himc_take_strikes(take, tips, &none, 0);
-    himc_take_strike *strikes = calloc((size_t)all + 1, sizeof *strikes);
+    himc_take_strike *strikes = all < 0 ? NULL : calloc((size_t)all + 1, sizeof *strikes);
     *count = strikes ? himc_take_strikes(take, tips, strikes, all) : 0;
-    return strikes;
+    if (*count >= 0)
+        return strikes;
+    *count = 0;
+    free(strikes);
+    return NULL;
 }
 
 // height of the head above the point where fall and rebound intersect: v t down and u (CONTACT - t)

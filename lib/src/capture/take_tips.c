@@ -60,10 +60,6 @@ static bool refuse_gap(const himc_take *take, himc_hand hand, int point, himc_ta
 static bool fill_tip(himc_take *take, himc_hand hand, int point, double longest, himc_take_tip *tip,
                      himc_error *error)
 {
-    if (!take->tip[hand])
-        take->tip[hand] = malloc((size_t)take->frames * sizeof *take->tip[hand]);
-    if (!take->tip[hand])
-        return himc_error_set(error, "%s: no memory for %d frames", take->file, take->frames);
     himc_take_gap g;
     tip->filled = himc_take_fill(take, point, longest, take->tip[hand], &g);
     if (tip->filled < 0)

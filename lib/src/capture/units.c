@@ -209,6 +209,10 @@ int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit 
         return -1;
     int found, count = 0;
     himc_take_strike *strikes = himc_take_find_strikes(take, tips, &found);
+    if (!strikes) {
+        himc_error_set(error, "out of memory");
+        return -1;
+    }
     for (int i = 0; i < found; i++) {
         cut c = {.x = tips[strikes[i].hand].x,
                  .frames = himc_take_frames(take),

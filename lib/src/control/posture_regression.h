@@ -65,9 +65,11 @@ bool himc_posture_regression_learn(himc_posture_regression *regression,
 
 /// Fits the take's player and corrects the weights by his take: ridge regression, the smallest
 /// change that explains the take. One stroke corrects the parts that it moves and leaves the rest.
-/// False, and nothing changed, with the reason.
+/// False, and nothing changed, with the reason. `memory` (NULL if unwanted) tells whether there was
+/// enough of it.
 bool himc_posture_regression_correct(himc_posture_regression *regression,
-                                     const himc_posture_regression_take *take, himc_error *error);
+                                     const himc_posture_regression_take *take, bool *memory,
+                                     himc_error *error);
 
 /// The regression learned from the whole motion database (`make regression-table`). Its player is
 /// empty and must be fitted.

@@ -175,7 +175,8 @@ typedef struct problem {
     double *term;  // (rows x terms)
     double *angle; // the angles to explain (rows x angles)
     int rows, terms, angles;
-    bool moves; // the tips move, so there is something to learn
+    bool moves;     // the tips move, so there is something to learn
+    bool no_memory; // for it, or for its solution
 } problem;
 
 #define PROBLEMS (HIMC_HANDS + 1) // each arm, and the trunk
@@ -247,7 +248,8 @@ static bool solve(problem *p, const char *tips, himc_error *error)
     lapack_int info =
         LAPACKE_dgelsd(LAPACK_ROW_MAJOR, p->rows, p->terms, p->angles, p->term, p->terms, p->angle,
                        p->angles, singular, NEGLIGIBLE_SINGULAR, &rank);
-    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR)
+    p->no_memory = info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR;
+    if (p->no_memory)
         return himc_error_set(error, "posture regression: out of memory for %d frames", p->rows);
     if (info != 0)
         return himc_error_set(error, "posture regression: no singular values for the %s", tips);
@@ -356,7 +358,8 @@ static bool allocate(problem *p, int rows, int terms, int angles, himc_error *er
     *p = (problem){.terms = terms, .angles = angles};
     p->term = malloc((size_t)rows * (size_t)terms * sizeof *p->term);
     p->angle = malloc((size_t)rows * (size_t)angles * sizeof *p->angle);
-    return (p->term && p->angle) ||
+    p->no_memory = !p->term || !p->angle;
+    return !p->no_memory ||
            himc_error_set(error, "posture regression: out of memory for %d frames", rows);
 }
 
@@ -472,13 +475,16 @@ static bool correct(himc_posture_regression *regression, problem p[PROBLEMS],
 }
 
 bool himc_posture_regression_correct(himc_posture_regression *regression,
-                                     const himc_posture_regression_take *take, himc_error *error)
+                                     const himc_posture_regression_take *take, bool *memory,
+                                     himc_error *error)
 {
     problem p[PROBLEMS] = {{0}};
     himc_posture_regression corrected = *regression;
     bool ok = check_take(take, error) &&
               allocate_all(p, himc_posture_regression_known_frames(take) + TRUNK_TERMS, error) &&
               correct(&corrected, p, take, error);
+    if (memory)
+        *memory = !p[HIMC_LEFT].no_memory && !p[HIMC_RIGHT].no_memory && !p[HIMC_HANDS].no_memory;
     free_all(p);
     if (ok)
         *regression = corrected;

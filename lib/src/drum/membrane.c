@@ -35,7 +35,7 @@ static void core_free(core *c)
     free(c->memory);
 }
 
-// takes the next array from the block; 16-byte alignment, as the bank requires
+// takes the next array from the block; its length keeps the alignment that the bank requires
 static double *take(double **memory, int length)
 {
     double *array = *memory;
@@ -46,7 +46,7 @@ static double *take(double **memory, int length)
 static himc_readout take_readout(double **memory, int length)
 {
     double *p = take(memory, length);
-    return (himc_readout){p, take(memory, length)};
+    return (himc_readout){.p = p, .s = take(memory, length)};
 }
 
 static output take_output(double **memory, int length)
@@ -259,7 +259,7 @@ static sounds read_sounds(himc_membrane *m)
 {
     sounds s = {0};
     for (int i = 0; i < m->pickup_count; i++) {
-        const himc_readout *readout = &m->core.pickups[i].readout;
+        himc_readout *readout = &m->core.pickups[i].readout;
         const declick *d = &m->declicks[i];
         s.of[i] = (sound_pair){himc_bank_read(m->core.bank, readout) + declick_at(d, d->at - 1),
                                himc_bank_peek(m->core.bank, readout) + declick_at(d, d->at)};

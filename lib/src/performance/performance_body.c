@@ -38,19 +38,29 @@ static himc_skeleton make_plant(const himc_skeleton *skeleton, const double *wei
     return plant;
 }
 
+bool himc_body_make_parts(body_parts *parts, const performance_settings *s, himc_error *error)
+{
+    if (!himc_skeleton_init(&parts->skeleton, &s->skeleton, error))
+        return false;
+    parts->plant = make_plant(&parts->skeleton, s->weight);
+    parts->character = himc_character_new(&parts->plant, error);
+    return parts->character != NULL;
+}
+
+void himc_body_adopt(performance_body *b, const body_parts *parts)
+{
+    himc_character_free(b->character);
+    b->character = parts->character;
+    b->skeleton = parts->skeleton;
+    b->plant = parts->plant;
+}
+
 bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
 {
-    himc_skeleton skeleton;
-    if (!himc_skeleton_init(&skeleton, &s->skeleton, error))
+    body_parts parts;
+    if (!himc_body_make_parts(&parts, s, error))
         return false;
-    himc_skeleton plant = make_plant(&skeleton, s->weight);
-    himc_character *character = himc_character_new(&plant, error);
-    if (!character)
-        return false;
-    himc_character_free(b->character);
-    b->character = character;
-    b->skeleton = skeleton;
-    b->plant = plant;
+    himc_body_adopt(b, &parts);
     return true;
 }
 

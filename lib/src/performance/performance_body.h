@@ -30,6 +30,16 @@ typedef struct performance_body {
 performance_body *himc_body_new(himc_error *error);
 void himc_body_free(performance_body *body);
 
+/// The segments of a body.
+typedef struct body_parts {
+    himc_skeleton skeleton, plant;
+    himc_character *character; ///< owned until a body has them
+} body_parts;
+/// Makes segments for these settings, for himc_body_adopt or himc_character_free.
+bool himc_body_make_parts(body_parts *parts, const performance_settings *settings,
+                          himc_error *error);
+/// Replaces the body's segments.
+void himc_body_adopt(performance_body *body, const body_parts *parts);
 /// Makes the segments again for these settings. False, and nothing changed, if this fails.
 bool himc_body_build(performance_body *body, const performance_settings *settings,
                      himc_error *error);

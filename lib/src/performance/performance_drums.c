@@ -86,13 +86,19 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     find_room(d, index);
 }
 
+bool himc_drums_have_room(const performance_drums *d, const char *name, himc_error *error)
+{
+    return d->count < HIMC_DRUMS ||
+           himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
+                          HIMC_DRUMS);
+}
+
 bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, int *index,
                     himc_error *error)
 {
     int i = himc_drums_find(d, himc_drum_name(drum));
-    if (i < 0 && d->count == HIMC_DRUMS)
-        return himc_error_set(error, "drum %s: a performer plays on %d drums at most",
-                              himc_drum_name(drum), HIMC_DRUMS);
+    if (i < 0 && !himc_drums_have_room(d, himc_drum_name(drum), error))
+        return false;
     if (i < 0)
         i = d->count++;
     else

@@ -36,6 +36,8 @@ typedef struct performance_drums {
 /// Slot of the drum with that name, -1 if there is none.
 HIMC_RT int himc_drums_find(const performance_drums *drums, const char *name);
 HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, int index);
+/// False with the reason if there are HIMC_DRUMS drums; `name` is of one more.
+bool himc_drums_have_room(const performance_drums *d, const char *name, himc_error *error);
 /// Takes a drum and its reference, in the slot of the same name or a new one. A drum without a
 /// place is placed automatically. False, and nothing changed, if there is no slot left.
 bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source source, int *index,

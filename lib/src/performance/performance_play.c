@@ -24,12 +24,18 @@ static bool check_stroke(const himc_stroke *s, himc_error *error)
 
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
-    int drum;
+    wanted_drum drum;
     himc_motion_replan(p->motion);
-    return check_stroke(stroke, error) &&
-           himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) &&
-           himc_performance_ensure_drum(p, stroke->drum, &drum, error) &&
-           himc_planner_add(p->motion->planner, stroke, drum, error);
+    if (!check_stroke(stroke, error) ||
+        !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
+        !himc_performance_want_drum(p, stroke->drum, &drum, error))
+        return false;
+    if (!himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
+        himc_drum_release(drum.fresh);
+        return false;
+    }
+    himc_performance_keep_drum(p, &drum);
+    return himc_planner_add(p->motion->planner, stroke, drum.index, error);
 }
 
 bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_error *error)

@@ -154,17 +154,25 @@ void himc_performance_adopt(himc_performance *p, const performance_settings *s)
     himc_body_configure(p->body, &s->control);
 }
 
-bool himc_performance_rebuild(himc_performance *p, const performance_settings *wanted,
-                              himc_error *error)
+void himc_performance_embody(himc_performance *p, const performance_settings *wanted,
+                             const body_parts *parts)
 {
     performance_settings s = *wanted;
-    if (!himc_body_build(p->body, &s, error))
-        return false;
+    himc_body_adopt(p->body, parts);
     if (s.control.human_strength)
         himc_controller_set_human_strength(&s.control, s.skeleton.mass);
     p->settings = s;
     put_together(p->motion, p->body, &s, step_time(p));
     himc_performance_renew_limits(p);
+}
+
+bool himc_performance_rebuild(himc_performance *p, const performance_settings *wanted,
+                              himc_error *error)
+{
+    body_parts parts;
+    if (!himc_body_make_parts(&parts, wanted, error))
+        return false;
+    himc_performance_embody(p, wanted, &parts);
     return true;
 }
 
@@ -238,15 +246,36 @@ bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error 
     return himc_performance_adopt_drum(p, himc_drum_retain(drum), DRUM_GIVEN, &index, error);
 }
 
+bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_drum *drum,
+                                himc_error *error)
+{
+    *drum = (wanted_drum){.index = name[0] ? himc_drums_find(&p->drums, name) : 0};
+    if (drum->index >= 0 && drum->index < p->drums.count)
+        return true;
+    name = name[0] ? name : FIRST_DRUM;
+    if (!himc_drums_have_room(&p->drums, name, error))
+        return false;
+    drum->index = p->drums.count;
+    drum->fresh = himc_drum_new(name, USUAL_INCHES, p->clock.sample_rate, error);
+    return drum->fresh != NULL;
+}
+
+void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
+{
+    int index;
+    if (drum->fresh)
+        himc_performance_adopt_drum(p, drum->fresh, DRUM_SILENT, &index, NULL);
+}
+
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
                                   himc_error *error)
 {
-    *index = name[0] ? himc_drums_find(&p->drums, name) : 0;
-    if (*index >= 0 && *index < p->drums.count)
-        return true;
-    himc_drum *drum =
-        himc_drum_new(name[0] ? name : FIRST_DRUM, USUAL_INCHES, p->clock.sample_rate, error);
-    return drum && himc_performance_adopt_drum(p, drum, DRUM_SILENT, index, error);
+    wanted_drum drum;
+    if (!himc_performance_want_drum(p, name, &drum, error))
+        return false;
+    himc_performance_keep_drum(p, &drum);
+    *index = drum.index;
+    return true;
 }
 
 // the command `drum`

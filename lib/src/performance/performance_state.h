@@ -76,6 +76,9 @@ himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_comma
 // performance_setup.c
 /// Sets other settings for the same body.
 HIMC_RT void himc_performance_adopt(himc_performance *p, const performance_settings *settings);
+/// Sets other settings with these segments of a body, which begins at the targets.
+void himc_performance_embody(himc_performance *p, const performance_settings *settings,
+                             const body_parts *parts);
 /// Sets other settings with another body, which begins at the targets. False, and nothing changed,
 /// if it cannot be made.
 bool himc_performance_rebuild(himc_performance *p, const performance_settings *settings,
@@ -89,7 +92,17 @@ HIMC_RT void himc_performance_restart_steps(himc_performance *p);
 HIMC_RT void himc_performance_renew_limits(himc_performance *p);
 /// Gives the drums that have changed to the planner.
 HIMC_RT void himc_performance_notice_drums(himc_performance *p);
-/// The drum of that name ("": the first); a silent one is made if there is none.
+/// A drum that a command needs: one of the performance's, or a new one that it does not have yet.
+typedef struct wanted_drum {
+    int index;        ///< among the performance's, also of the new one
+    himc_drum *fresh; ///< owned until it is kept; NULL if there is one already
+} wanted_drum;
+/// Finds the drum of that name ("": the first), or makes a silent one.
+bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_drum *drum,
+                                himc_error *error);
+/// Adds the new one. To refuse the command instead, release `fresh`.
+void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum);
+/// Both steps.
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
                                   himc_error *error);
 /// Adds a drum and its reference, which is given back if there is no place for it.

@@ -11,7 +11,8 @@
 /// in `himc`, the captured ones bent to the tips in `id`.
 ///
 /// It is a job (base/job.h): the file is read, the player measured and the track made aside; what
-/// is installed is a track, limits, settings and a body of 20 segments.
+/// is installed is a track, limits, settings and a body of 20 segments. All that can fail comes
+/// before anything changes.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 #include "body/limits.h"
@@ -44,8 +45,12 @@ typedef struct take_job {
     himc_take_options options;
     himc_skeleton_config body;
     himc_posture posture;
+    double sample_rate;    ///< (Hz)
+    bool has_drum;         ///< else a silent one is made
+    bool own_regression;   ///< another one than a take's has been set
     himc_head_frame place; ///< of the drum
     // made from the take
+    wanted_drum drum;
     himc_take *take;
     himc_player *player;
     himc_track *track;     ///< after `install` the one that it has replaced
@@ -193,10 +198,14 @@ static captured_player captured_of(const himc_player *player)
     return c;
 }
 
-// counts the strikes of a take, and those that are beside its drum
-static void find_outside(take_job *j)
+// counts the strikes of a take, and those beside the drum as it will stand
+static bool count_strikes(take_job *j, himc_error *error)
 {
+    if (!himc_take_tips(j->take, &j->options, j->tips, error))
+        return false;
     himc_take_strike *strikes = himc_take_find_strikes(j->take, j->tips, &j->strikes);
+    if (!strikes)
+        return himc_error_set(error, "out of memory");
     j->outside = 0;
     for (int i = 0; i < j->strikes; i++) {
         himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(j->track));
@@ -204,6 +213,7 @@ static void find_outside(take_job *j)
         j->outside += hypot(local.x, local.y) > j->frame.radius;
     }
     free(strikes);
+    return true;
 }
 
 // an arm, its hand and stick included
@@ -212,9 +222,10 @@ static bool shows_arm(const himc_player *player, himc_hand hand)
     return player->pose && !player->walks && himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
 }
 
-// the default regression, corrected by this take
-static void fit_regression(take_job *j, const himc_skeleton *skeleton)
+// the default regression, corrected by this take; false without memory
+static bool fit_regression(take_job *j, const himc_skeleton *skeleton, himc_error *error)
 {
+    bool memory = true;
     const himc_player *player = j->player;
     himc_posture_regression_take seen = {
         .skeleton = skeleton,
@@ -223,10 +234,13 @@ static void fit_regression(take_job *j, const himc_skeleton *skeleton)
         .rate = himc_take_rate(j->take),
         .unseen_arm = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
         .unseen_trunk = !player->known[HIMC_TRUNK - 1]};
-    himc_posture_regression_default(&j->regression);
-    bool shown = !seen.unseen_arm[HIMC_LEFT] || !seen.unseen_arm[HIMC_RIGHT];
+    j->fitted = false;
     j->unfitted.text[0] = 0;
-    j->fitted = shown && himc_posture_regression_correct(&j->regression, &seen, &j->unfitted);
+    if (j->own_regression || (seen.unseen_arm[HIMC_LEFT] && seen.unseen_arm[HIMC_RIGHT]))
+        return true;
+    himc_posture_regression_default(&j->regression);
+    j->fitted = himc_posture_regression_correct(&j->regression, &seen, &memory, &j->unfitted);
+    return memory || himc_error_set(error, "%s", j->unfitted.text);
 }
 
 // if left and right are exchanged in a capture, its drum is behind the player
@@ -240,28 +254,40 @@ static bool check_side(const himc_player *player, const himc_head_frame *frame, 
                           -frame->center.x);
 }
 
+// the drum's place, or that of one that is made for the take
+static bool find_place(take_job *j, himc_error *error)
+{
+    himc_drum_release(j->drum.fresh);
+    j->drum = (wanted_drum){.index = 0};
+    j->frame = j->place;
+    if (j->has_drum)
+        return true;
+    j->drum.fresh = himc_drum_new(FIRST_DRUM, USUAL_INCHES, j->sample_rate, error);
+    if (j->drum.fresh)
+        j->frame = j->place = *himc_drum_head_frame(j->drum.fresh);
+    return j->drum.fresh;
+}
+
 // all that is made from take and player
 static bool make_track(take_job *j, himc_error *error)
 {
     himc_skeleton skeleton;
     himc_player *player = j->player;
-    j->frame = j->place;
-    himc_player_sit(player, j->take, &j->options, &j->frame);
-    if (!check_side(player, &j->frame, error))
+    if (!find_place(j, error) || !himc_player_sit(player, j->take, &j->options, &j->frame, error) ||
+        !check_side(player, &j->frame, error))
         return false;
     himc_track_free(j->track);
     j->track = himc_track_new_played(j->take, &j->options, &j->frame, player, error);
     const himc_skeleton_config *body = player->lengths > 0 ? &player->config : &j->body;
     if (!j->track || !learn_limits(player, j->track, &j->frame, &j->learned, error) ||
-        !himc_take_tips(j->take, &j->options, j->tips, error) ||
-        !himc_skeleton_init(&skeleton, body, error))
+        !(same_place(j->frame.center, j->place.center) ||
+          himc_drum_check_place(j->frame.center, error)) ||
+        !himc_skeleton_init(&skeleton, body, error) || !count_strikes(j, error))
         return false;
     captured_player captured = captured_of(player);
     himc_posture posture = posture_of(j, &skeleton, &captured);
     j->reach = find_reach(j->track, &posture);
-    find_outside(j);
-    fit_regression(j, &skeleton);
-    return true;
+    return fit_regression(j, &skeleton, error);
 }
 
 static bool prefix_with(const char *name, himc_error *error)
@@ -287,39 +313,42 @@ static bool prepare(himc_job *job, himc_error *error)
 }
 
 // moves the drum under the take's strikes, or lowers a drum that is in the way
-static bool move_drum(const take_job *j, himc_error *error)
+static void move_drum(const take_job *j)
 {
     himc_performance *p = j->performance;
     himc_vec3 to = j->frame.center;
     bool strikes =
         himc_track_strikes(j->track, HIMC_LEFT) + himc_track_strikes(j->track, HIMC_RIGHT) > 0;
-    if (same_place(to, himc_drums_frame(&p->drums, 0)->center))
-        return true;
-    if (!himc_drums_move(&p->drums, 0, to, error))
-        return false;
+    if (same_place(to, himc_drums_frame(&p->drums, 0)->center) ||
+        !himc_drums_move(&p->drums, 0, to, NULL))
+        return;
     himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", j->name,
                      himc_drum_name(p->drums.slot[0].drum), to.x, to.y, to.z,
                      strikes ? "under the take's strikes" : "out of the take's way");
-    return true;
 }
 
-// the body of the take's player, if the take shows one
-static bool adopt_player(const take_job *j, himc_error *error)
+// the settings with the body of the take's player, if the take shows one
+static performance_settings settings_of(const take_job *j)
+{
+    performance_settings s = j->performance->settings;
+    memset(s.captured.known, 0, sizeof s.captured.known);
+    if (j->player->lengths > 0) {
+        s.skeleton = j->player->config;
+        s.captured = captured_of(j->player);
+    }
+    return s;
+}
+
+static void adopt_player(const take_job *j, const performance_settings *s, const body_parts *parts)
 {
     himc_performance *p = j->performance;
-    performance_settings s = p->settings;
     if (j->player->lengths == 0) {
-        memset(s.captured.known, 0, sizeof s.captured.known);
-        himc_performance_adopt(p, &s);
-        return true;
+        himc_performance_adopt(p, s);
+        return;
     }
-    s.skeleton = j->player->config;
-    s.captured = captured_of(j->player);
-    if (!himc_performance_rebuild(p, &s, error))
-        return false;
+    himc_performance_embody(p, s, parts);
     himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
-                     j->name, j->player->lengths, s.skeleton.height, s.skeleton.mass);
-    return true;
+                     j->name, j->player->lengths, s->skeleton.height, s->skeleton.mass);
 }
 
 // notes on the repairs made while reading the take, and on the parts that cannot be played
@@ -341,11 +370,16 @@ static void note_repairs(const take_job *j)
                          j->outside, j->strikes, himc_drum_name(p->drums.slot[0].drum));
 }
 
+static bool has_own_regression(const himc_performance *p)
+{
+    return p->motion->has_regression && !p->motion->regression_of_take;
+}
+
 // the take's regression, unless another has been set
 static void adopt_regression(const take_job *j)
 {
     himc_performance *p = j->performance;
-    if (p->motion->has_regression && !p->motion->regression_of_take) {
+    if (has_own_regression(p)) {
         himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
         return;
     }
@@ -362,21 +396,41 @@ static void copy_performance(take_job *j)
     j->options = p->host.take_options;
     j->body = p->settings.skeleton;
     j->posture = p->motion->posture;
-    j->place = *himc_drums_frame(&p->drums, 0);
+    j->sample_rate = p->clock.sample_rate;
+    j->own_regression = has_own_regression(p);
+    j->has_drum = p->drums.count > 0;
+    if (j->has_drum)
+        j->place = *himc_drums_frame(&p->drums, 0);
+}
+
+// true if the drum is that for which the track was made
+static bool drum_as_seen(const take_job *j)
+{
+    const himc_performance *p = j->performance;
+    if (!j->has_drum)
+        return p->drums.count == 0 && j->sample_rate == p->clock.sample_rate;
+    return himc_head_frame_equal(himc_drums_frame(&p->drums, 0), &j->place);
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     take_job *j = (take_job *)job;
     himc_performance *p = j->performance;
-    if (!himc_head_frame_equal(himc_drums_frame(&p->drums, 0), &j->place)) {
+    body_parts parts = {.character = NULL};
+    performance_settings s = settings_of(j);
+    if (!drum_as_seen(j)) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
     }
-    if (!move_drum(j, error) || !adopt_player(j, error)) {
+    // in this thread: the engine keeps data for each
+    if (j->player->lengths > 0 && !himc_body_make_parts(&parts, &s, error)) {
         prefix_with(j->name, error);
         return HIMC_JOB_FAILED;
     }
+    himc_performance_keep_drum(p, &j->drum);
+    j->drum.fresh = NULL;
+    move_drum(j);
+    adopt_player(j, &s, &parts);
     himc_performance_notice_drums(p);
     note_repairs(j);
     himc_track *dropped = himc_performance_drop_track(p);
@@ -390,6 +444,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
 static void free_job(himc_job *job)
 {
     take_job *j = (take_job *)job;
+    himc_drum_release(j->drum.fresh);
     himc_track_free(j->track);
     if (!j->given) {
         himc_player_free(j->player);
@@ -400,11 +455,9 @@ static void free_job(himc_job *job)
 
 static take_job *take_job_new(himc_performance *p, const char *name, himc_error *error)
 {
-    int first;
-    take_job *j = himc_performance_ensure_drum(p, "", &first, error) ? calloc(1, sizeof *j) : NULL;
+    take_job *j = calloc(1, sizeof *j);
     if (!j) {
-        if (p->drums.count > 0)
-            himc_error_set(error, "%s: out of memory", name);
+        himc_error_set(error, "%s: out of memory", name);
         return NULL;
     }
     j->job = (himc_job){prepare, install, free_job};

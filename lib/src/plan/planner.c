@@ -112,6 +112,12 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
+bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int drum,
+                          himc_error *error)
+{
+    return himc_planner_score_place(&planner->score, stroke, drum, error) >= 0;
+}
+
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum, himc_error *error)
 {
     planner_score *score = &planner->score;

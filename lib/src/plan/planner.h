@@ -48,6 +48,9 @@ HIMC_RT void himc_planner_clear_units(himc_planner *planner);
 /// Units of this grip (himc_grip) are preferred.
 HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
 
+/// Checks a stroke as himc_planner_add does, and allocates for it, so that it can be added.
+bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int drum,
+                          himc_error *error);
 /// Adds a stroke of the score at its beat, for drum `index`; may allocate. Strokes may come in any
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,

@@ -160,20 +160,24 @@ static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
     int count;
     himc_track *track = calloc(1, sizeof *track);
     himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    bool ok = track && strikes;
+    bool seated = player && player->seated, ok = track && strikes;
     if (ok) {
         track->rate = himc_take_rate(take);
         track->frames = himc_take_frames(take);
         track->head = *head;
         track->stop = INFINITY;
-        track->offset = player && player->seated
-                            ? player->offset
-                            : himc_strike_offset(take, tips, head, mallet_radius);
+        if (seated)
+            track->offset = player->offset;
+        else
+            ok = himc_strike_offset(take, tips, head, mallet_radius, &track->offset);
     }
     for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
         if (tips[hand].present) {
-            track->edge = himc_fit_edge(himc_noise(tips[hand].x, track->frames), track->rate);
-            ok = build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
+            double noise;
+            ok = himc_noise(tips[hand].x, track->frames, &noise);
+            track->edge = ok ? himc_fit_edge(noise, track->rate) : 0;
+            ok = ok &&
+                 build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
         }
     ok = ok && (!player || himc_track_fit_postures(track, player));
     free(strikes);
