@@ -279,6 +279,15 @@ static bool do_coupling(himc_performance *p, const himc_command *c, himc_error *
     return true;
 }
 
+static bool do_engine(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    (void)error;
+    s.engine = (himc_engine)c->choice[0];
+    himc_performance_adopt(p, &s);
+    return true;
+}
+
 // body and instrument
 
 static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
