@@ -103,3 +103,61 @@ himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error
     j->form = himc_drum_form_of(drum);
     return &j->job;
 }
+
+typedef struct follow_job {
+    himc_job job;
+    himc_membrane *follower; ///< borrowed, as the leader
+    const himc_membrane *leader;
+    himc_membrane_form form; ///< of the leader, at the follower's rate
+    himc_membrane *made;     ///< owned
+} follow_job;
+
+static void copy_leader(follow_job *j)
+{
+    himc_membrane_form_free(&j->form);
+    j->form = himc_membrane_form_of(j->leader);
+    j->form.rate = himc_membrane_rate(j->follower);
+}
+
+static bool prepare_follower(himc_job *job, himc_error *error)
+{
+    follow_job *j = (follow_job *)job;
+    himc_membrane_free(j->made);
+    j->made = himc_membrane_new_of(&j->form, error);
+    return j->made;
+}
+
+static himc_job_state install_follower(himc_job *job, himc_error *error)
+{
+    follow_job *j = (follow_job *)job;
+    (void)error;
+    if (himc_membrane_alike(j->made, j->leader) &&
+        himc_membrane_rate(j->made) == himc_membrane_rate(j->follower)) {
+        himc_membrane_exchange(j->follower, j->made);
+        return HIMC_JOB_DONE;
+    }
+    copy_leader(j);
+    return HIMC_JOB_AGAIN;
+}
+
+static void free_follower(himc_job *job)
+{
+    follow_job *j = (follow_job *)job;
+    himc_membrane_form_free(&j->form);
+    himc_membrane_free(j->made);
+    free(j);
+}
+
+himc_job *himc_membrane_job(himc_membrane *follower, const himc_membrane *leader, himc_error *error)
+{
+    follow_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "head: out of memory");
+        return NULL;
+    }
+    j->job = (himc_job){prepare_follower, install_follower, free_follower};
+    j->follower = follower;
+    j->leader = leader;
+    copy_leader(j);
+    return &j->job;
+}

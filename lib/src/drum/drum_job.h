@@ -31,4 +31,8 @@ HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *com
 /// Such a command as a job; the drum must outlive it. NULL without memory.
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error);
 
+/// himc_membrane_follow as a job; both must outlive it. NULL without memory.
+himc_job *himc_membrane_job(himc_membrane *follower, const himc_membrane *leader,
+                            himc_error *error);
+
 #endif

@@ -510,10 +510,9 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
-// the state of a core of the same outline goes on in the new one
-static void go_on(himc_membrane *m, const core *old, int known, double energy)
+// a head of the same outline goes on after a change from `known` modes and that energy
+static void go_on(himc_membrane *m, int known, double energy)
 {
-    himc_bank_continue(m->core.bank, old->bank);
     if (m->film.on || m->head.glide > 0)
         himc_membrane_find_film(m);
     bend_new(m, known);
@@ -526,7 +525,8 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     double energy = himc_membrane_energy(m);
     core old = m->core;
     int known = m->head.modes;
-    bool same = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
+    bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
+    bool head = same_head(&m->head, &made->head);
     m->core = made->core;
     made->core = old;
     memcpy(m->points, made->points, sizeof m->points);
@@ -537,10 +537,12 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
-    if (same)
-        go_on(m, &old, known, energy);
+    if (outline)
+        himc_bank_continue(m->core.bank, old.bank);
     else
         m->film = (film){0};
+    if (outline && !head)
+        go_on(m, known, energy);
     declick_from(m, &before);
 }
 
