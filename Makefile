@@ -151,6 +151,13 @@ FUZZ_TARGETS ?= $(patsubst $(BUILD)/tests/fuzz/fuzz_%,%,$(FUZZ))
 check-fuzz: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
 	@tools/fuzz.sh $(BUILD) $(FUZZ_SECONDS) $^
 
+# how many commands `make torment` sends, and the seed of their order
+COMMANDS ?= 1000000
+SEED     ?= 1
+torment: deps ## a million random and hostile commands to a playing performance; COMMANDS=1000000 SEED=1
+	@$(MAKE) $(BUILD)/tests/test_torment
+	HIMC_TORMENT=$(COMMANDS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_torment
+
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
 
@@ -208,7 +215,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands

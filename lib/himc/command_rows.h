@@ -118,8 +118,9 @@ HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, 0, "usual | VOLUME",
 HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, 0, "AMOUNT",
                  "sets how much the tension rises as the head bows out")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, 0, "AMOUNT", "lays a hand on the head")
-HIMC_COMMAND_ROW(SHAPE, shape, DRUM, NOW, 0, "circle | rectangle LENGTH WIDTH | FILE",
-                 "makes a head of another outline, or one of masses and springs from a file")
+HIMC_COMMAND_ROW(
+    SHAPE, shape, DRUM, NOW, 0, "circle | rectangle LENGTH WIDTH | FILE",
+    "makes a head of another outline, or one of up to 800 masses on springs from a file")
 HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0, "soft|medium|hard|wood | K ALPHA MASS",
                  "chooses the mallet, or its stiffness, exponent and mass")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
