@@ -262,8 +262,8 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
     bool physics = c->form == PHYSICS;
     double hz = c->atom[1].number;
     if (!physics && p->recording.file)
-        return himc_error_set(error, "rate task: %g: not while recording %s", hz,
-                              himc_recording_path(p->recording.file));
+        return himc_error_set(error,
+                              "rate task: %g: not while recording, allowed after record stop", hz);
     *(physics ? &s.physics_rate : &s.task_rate) = hz;
     himc_performance_adopt(p, &s);
     himc_performance_restart_steps(p);

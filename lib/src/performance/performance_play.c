@@ -2,6 +2,7 @@
 /// hits, transport, live targets, units of motion. Scores and takes have files of their own.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
+#include "capture/take.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -131,7 +132,7 @@ static bool cut_units(himc_job *job, himc_error *error)
 {
     units_job *j = (units_job *)job;
     const himc_command *c = &j->command;
-    himc_take *take = himc_take_load(c->atom[0].symbol, &j->options, error);
+    himc_take *take = himc_take_load_in(c->folder, c->atom[0].symbol, &j->options, error);
     j->count = take ? himc_units_cut(take, &j->options, j->unit, HIMC_UNITS, error) : -1;
     if (take && j->count < 0)
         himc_error_prefix(error, "%s", c->atom[0].symbol);

@@ -4,9 +4,13 @@
 /// for drums go to copies of the drums, its lines for the performer are checked, its drums are
 /// counted and those that are missing are made. Only then is it installed: the copies give their
 /// heads to the drums, lines and strokes follow in portions, a line that takes long is a job of its
-/// own. While a score plays, the beats of the next one follow its own. Invariant: a score that is
-/// refused has changed nothing.
+/// own. While a score plays, the beats of the next one follow its own. Invariants: a score that is
+/// refused has changed nothing; a score from the network may do what its sender may do.
 #include "performance/performance_state.h"
+
+#include "base/confine.h"
+#include "capture/take.h"
+#include "plan/score.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,7 +136,7 @@ static bool rehearse_command(score_job *j, const himc_command *c, himc_error *er
     case HIMC_COMMAND_UNITS:
         if (himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true; // `units clear`
-        take = himc_take_load(word, &j->options, error);
+        take = himc_take_load_in(c->folder, word, &j->options, error);
         himc_take_free(take);
         return take;
     case HIMC_COMMAND_RECORD:
@@ -186,9 +190,11 @@ static bool count_drums(score_job *j, himc_error *error)
 static bool rehearse(score_job *j, himc_error *error)
 {
     const himc_score *score = j->score;
+    const char *folder = j->command.folder;
     bool good = true;
     for (int i = 0; i < score->line_count && good; i++) {
-        good = rehearse_line(j, &score->lines[i], error);
+        good = (!folder || himc_confine_command(&score->lines[i].command, folder, error)) &&
+               rehearse_line(j, &score->lines[i], error);
         if (good && score->lines[i].command.id == HIMC_COMMAND_TAKE && score->stroke_count > 0)
             good = himc_error_set(error, "take: a score with strokes cannot play a take");
         good = good || himc_error_prefix(error, "%s:%d", j->path, score->lines[i].line);
@@ -210,8 +216,8 @@ static bool prepare(himc_job *job, himc_error *error)
     if (j->line)
         return j->line->prepare(j->line, error) || prefix_line(j, error);
     free_drums(j);
-    if (!j->score)
-        j->score = himc_score_load(j->path, error);
+    himc_score_free(j->score);
+    j->score = himc_score_load_in(j->command.folder, j->path, error);
     return j->score && rehearse(j, error);
 }
 

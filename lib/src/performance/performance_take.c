@@ -304,7 +304,7 @@ static bool prepare(himc_job *job, himc_error *error)
         himc_player_free(j->player); // it sits before another place
         j->player = NULL;
         if (!j->take)
-            j->take = himc_take_load(j->name, &j->options, error);
+            j->take = himc_take_load_in(j->command.folder, j->name, &j->options, error);
         if (!j->take)
             return false;
         j->player = himc_player_new(j->take, &j->options, &j->body, error);
