@@ -42,7 +42,8 @@ VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
-LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c tests/fuzz/test_*.c))
+LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
+FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
 SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
@@ -122,27 +123,46 @@ viewer: ## the viewer alone, build/bin/himc-viewer
 test: deps ## install, build, run all tests; the last line is `N passed, N failed`
 	@$(MAKE) check
 
-units: $(UNIT)
+units: $(UNIT) $(FUZZ)
 
 check: all units $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
-	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(SCRIPTS)
+	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all $(UNIT) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
-	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(SCRIPTS) $(LONG)
+check-long: all units $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
+	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C under the address and undefined behaviour sanitizers
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
-check-asan: $(UNIT) $(if $(TOOL_O),$(PROGRAM))
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT)
+check-asan: units $(if $(TOOL_O),$(PROGRAM))
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ)
+
+# how long each target runs (s)
+FUZZ_SECONDS ?= 60
+fuzz: deps ## arbitrary bytes to all readers by clang's libFuzzer, FUZZ_SECONDS=60 each; FUZZ_TARGETS="bvh osc" only these
+	@tools/deps.sh tools/deps-fuzz.txt
+	@$(MAKE) check-fuzz BUILD=build/fuzz CC=clang LIBFUZZER=-fsanitize=fuzzer \
+	    SANITIZE="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
+
+FUZZ_TARGETS ?= $(patsubst $(BUILD)/tests/fuzz/fuzz_%,%,$(FUZZ))
+check-fuzz: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
+	@tools/fuzz.sh $(BUILD) $(FUZZ_SECONDS) $^
+
+# how many commands `make torment` sends, and the seed of their order
+COMMANDS ?= 1000000
+SEED     ?= 1
+torment: deps ## a million random and hostile commands to a playing performance; COMMANDS=1000000 SEED=1
+	@$(MAKE) $(BUILD)/tests/test_torment
+	HIMC_TORMENT=$(COMMANDS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_torment
 
 mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
 	@$(MAKE) check-mutants
 
-check-mutants: $(UNIT) ; @HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS)" tests/mutants/run.sh $(MUTANTS)
+check-mutants: $(UNIT)
+	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS)" tests/mutants/run.sh $(MUTANTS)
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
@@ -155,6 +175,12 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 
 check-bench: all
 	@$(PROGRAM) bench
+
+bench-peers: deps $(BUILD)/tools/skeleton/table ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
+	@tools/deps.sh tools/deps-peers.txt
+	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }
+	@$(MAKE) all
+	@$(PROGRAM) bench --peers
 
 ##@ Documentation
 figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
@@ -195,7 +221,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan mutants check-mutants test-realtime check-realtime bench check-bench \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -294,6 +320,15 @@ $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(L
 	$(call say,link)
 	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
+# targets for arbitrary bytes: with clang's libFuzzer, or with a driver that mutates in the same way each time
+$(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/fuzz/driver.o) $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
+
+$(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
+
+$(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/,evaluate_log.o trial.o) $(MOCAP_O)
+
 # Debian has no package of Unity's own; the source package cjson carries it
 build/unity/src/unity.c:
 	@echo "get  $@"
@@ -312,4 +347,4 @@ include tools/figures/figures.mk
 check-figures: $(FIGURES)
 
 -include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
-         $(addsuffix .d,$(UNIT) $(LONG) $(REALTIME))
+         $(addsuffix .d,$(UNIT) $(LONG) $(FUZZ) $(BUILD)/tests/fuzz/driver $(REALTIME))

@@ -4,6 +4,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,8 @@ static himc_bank *bank;
 static himc_oscillator o[COUNT];
 static _Alignas(64) double memory[6][8];
 static double velocities[4096], displacements[4096];
-static himc_readout velocity = {memory[0], memory[1]}, displacement = {memory[2], memory[3]};
+static himc_readout velocity = {.p = memory[0], .s = memory[1]};
+static himc_readout displacement = {.p = memory[2], .s = memory[3]};
 static double *shape = memory[4], *zeros = memory[5];
 
 static void set_readouts(void)
@@ -41,7 +43,7 @@ void tearDown(void)
 
 static void run(int n, int at)
 {
-    const himc_readout *const readouts[] = {&velocity, &displacement};
+    himc_readout *const readouts[] = {&velocity, &displacement};
     double *const out[] = {velocities + at, displacements + at};
     himc_bank_run(bank, n, readouts, 2, out);
 }
@@ -84,19 +86,19 @@ static void test_bank_readouts_are_the_weighted_states(void)
         expected_q += shape[i] * 1e-3 * i;
         expected_v += shape[i] * (1.0 - i);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_displacement(bank, &displacement));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_read(bank, &displacement));
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, expected_q, himc_bank_read(bank, &displacement));
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, expected_v, himc_bank_read(bank, &velocity));
     double next = himc_bank_peek(bank, &velocity);
     run(1, 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, next, velocities[0]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_displacement(bank, &displacement), displacements[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_read(bank, &displacement), displacements[0]);
 }
 
 static void test_bank_response_is_the_change_by_one_newton(void)
 {
     himc_bank_push(bank, shape, 1);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-18, himc_bank_displacement(bank, &displacement),
+    TEST_ASSERT_DOUBLE_WITHIN(1e-18, himc_bank_read(bank, &displacement),
                               himc_bank_response(bank, shape, &displacement));
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_bank_read(bank, &velocity),
                               himc_bank_response(bank, shape, &velocity));
@@ -113,7 +115,7 @@ static void test_bank_work_of_a_force_is_the_energy_gained(void)
         double force = 10 * sin(0.01 * n);
         run(1, 0);
         himc_bank_push(bank, shape, force);
-        double after = himc_bank_displacement(bank, &displacement);
+        double after = himc_bank_read(bank, &displacement);
         work += force * (after - before);
         before = after;
     }
@@ -142,11 +144,83 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
     free(reference);
 }
 
+// a bank of 200 oscillators that is pushed now and then, run in blocks of these sizes in turn
+static void play(const himc_bank_kernel *kernel, const int *sizes, int kinds, double *out)
+{
+    enum { MANY = 200, LENGTH = 3000 };
+    static _Alignas(64) double weight[3][MANY];
+    himc_oscillator many[MANY];
+    himc_bank *large = himc_bank_new(MANY, NULL);
+    himc_readout heard = {.p = weight[0], .s = weight[1]};
+    himc_readout *const readouts[] = {&heard};
+    for (int i = 0; i < MANY; i++) {
+        many[i] = (himc_oscillator){500.0 + 417 * i, 3 + 0.1 * i, 0.01};
+        weight[2][i] = sin(1.0 + i);
+    }
+    himc_bank_use(large, kernel);
+    himc_bank_set(large, many, MANY, RATE);
+    himc_bank_readout(large, weight[2], weight[2], &heard);
+    for (int at = 0, n, k = 0; at < LENGTH; at += n, k++) {
+        static const int pushed[] = {0, 1, 2, 66, 131, 140, 1000, LENGTH};
+        int next = 0;
+        while (pushed[next] < at)
+            next++;
+        if (pushed[next] == at)
+            himc_bank_push(large, weight[2], 1.0 + at);
+        next += pushed[next] == at;
+        n = sizes[k % kinds] < pushed[next] - at ? sizes[k % kinds] : pushed[next] - at;
+        himc_bank_run(large, n, readouts, 1, (double *[]){out + at});
+    }
+    out[LENGTH] = himc_bank_energy(large);
+    himc_bank_free(large);
+}
+
+static void test_bank_gives_the_same_bits_on_every_vector_unit_and_in_any_blocks(void)
+{
+    static const int long_blocks[] = {3000}, short_blocks[] = {1, 5, 4, 13, 64, 100};
+    static double expected[3001], got[3001];
+    play(himc_bank_kernel_version(0), long_blocks, 1, expected);
+    TEST_ASSERT_TRUE(expected[3000] > 0);
+    int count = 0;
+    for (; himc_bank_kernel_version(count); count++) {
+        play(himc_bank_kernel_version(count), short_blocks, 6, got);
+        TEST_ASSERT_EQUAL_MEMORY(expected, got, sizeof got);
+    }
+    printf("%d versions, the fastest %s\n", count, himc_bank_kernel_fastest()->name);
+    TEST_ASSERT_EQUAL_PTR(himc_bank_kernel_version(count - 1), himc_bank_kernel_fastest());
+}
+
+static int passes;
+
+static void counted_ahead(const himc_bank_waves *waves, int length, double *out)
+{
+    passes++;
+    himc_bank_kernel_fastest()->ahead(waves, length, out);
+}
+
+static void test_bank_computes_64_samples_at_a_time_of_what_is_read_alone(void)
+{
+    himc_bank_kernel counting = *himc_bank_kernel_fastest();
+    himc_readout *const readouts[] = {&velocity, &displacement, &velocity};
+    double *const none[] = {NULL, NULL, NULL};
+    counting.ahead = counted_ahead;
+    himc_bank_use(bank, &counting);
+    himc_bank_push(bank, shape, 100);
+    himc_bank_run(bank, 1, readouts, 3, none);
+    for (int i = 0; i < 64; i += 4)
+        run(4, i);
+    TEST_ASSERT_EQUAL_INT(2, passes);
+    himc_bank_run(bank, 640, readouts, 3, none);
+    TEST_ASSERT_EQUAL_INT(2, passes);
+    himc_bank_run(bank, 64, readouts, 3, (double *[]){NULL, NULL, velocities});
+    TEST_ASSERT_EQUAL_INT(3, passes);
+}
+
 static void test_bank_readouts_are_equal_alone_and_together(void)
 {
     static double read[5][500], alone[2][500];
-    const himc_readout *const readouts[] = {&displacement, &velocity, &displacement, &velocity,
-                                            &velocity};
+    himc_readout *const readouts[] = {&displacement, &velocity, &displacement, &velocity,
+                                      &velocity};
     double *const out[] = {read[0], read[1], read[2], read[3], read[4]};
     himc_bank_push(bank, shape, 100);
     himc_bank_run(bank, 500, readouts, 5, out);
@@ -245,6 +319,8 @@ int main(void)
     RUN_TEST(test_bank_response_is_the_change_by_one_newton);
     RUN_TEST(test_bank_work_of_a_force_is_the_energy_gained);
     RUN_TEST(test_bank_runs_give_the_same_bits_in_any_blocks);
+    RUN_TEST(test_bank_gives_the_same_bits_on_every_vector_unit_and_in_any_blocks);
+    RUN_TEST(test_bank_computes_64_samples_at_a_time_of_what_is_read_alone);
     RUN_TEST(test_bank_readouts_are_equal_alone_and_together);
     RUN_TEST(test_bank_coupling_of_a_spring_on_the_sum_of_squares_is_exact);
     RUN_TEST(test_bank_silences_oscillators_that_would_alias);

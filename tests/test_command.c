@@ -404,6 +404,7 @@ static void test_every_form_of_every_command_is_accepted(void)
                                             "rate physics 10000",
                                             "rate task 250",
                                             "coupling one-way",
+                                            "engine ode",
                                             "limits ellipsoid",
                                             "limits euler",
                                             "limits off",

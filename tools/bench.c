@@ -1,11 +1,12 @@
-/// bench.c: `himc bench`: the speed of one core. It measures a step of the whole performance
-/// (control, contact, one drum) and one of the physics engine alone on the same body; the solvers
-/// of inverse kinematics; the modes of a drumhead and the performers with their drums that one core
-/// plays in real time.
+/// bench.c: `himc bench`: the speed of one core. It measures whole steps of a performance (alone,
+/// with a drum that is struck, with joint limits) and the parts of a step; the solvers of inverse
+/// kinematics; drums without a performer; the performers with their drums that one core plays in
+/// real time. With --peers it runs other programs beside it (bench_peers.h).
 ///
 /// It measures processor time, not elapsed time, and each figure is the median of five runs, so
 /// other programs on the machine have little effect.
 #define _POSIX_C_SOURCE 200809L
+#include "bench_peers.h"
 #include "cli.h"
 #include "himc/himc.h"
 #include "body/posture.h"
@@ -14,6 +15,7 @@
 #include "body/character.h"
 #include "himc/membrane.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -22,25 +24,57 @@
 #define RATE 48000         // sample rate (Hz)
 #define PHYSICS 10000      // the default physics rate, and the repetitions of each part (Hz)
 #define BLOCK 64           // Pd's block (samples)
-#define SECONDS 4          // chosen: of each performance (s)
+#define SECONDS 2          // chosen: of each performance and drum (s)
 #define MODES 1024         // chosen: of the drumhead that is measured alone
 #define MODE_SAMPLES 24000 // chosen: half a second of it
 #define PARTS 6
 #define ROWS (PARTS + HIMC_SOLVERS) // the parts of a step, then the solvers
 #define DAMPING 0.01                // chosen: of DLS and Nakamura, in the range of use (m)
 
-enum { JSON };
+enum { JSON, PEERS };
 
 static const cli_option options[] = {
     {"json", 0, NULL, "one JSON object instead of a table"},
+    {"peers", 0, NULL, "other programs beside it, by the scripts of tests/bench/peers"},
     {0},
 };
 
+/// A performance that is measured.
+typedef struct bench_piece {
+    const char *key, *name;
+    int drums;          ///< of the performer, with the default number of modes
+    bool plays;         ///< four strokes a second, on its drums in turn
+    const char *limits; ///< the atom of `limits`
+} bench_piece;
+
+static const bench_piece piece[] = {
+    {"alone_us", "at rest, without a drum", 0, false, "off"},
+    {"step_us", "one drum, four strokes a second", 1, true, "off"},
+    {"limits_us", "at rest, limits ellipsoid", 0, false, "ellipsoid"},
+    {"four_drums_us", "four drums, four strokes a second", 4, true, "off"},
+};
+enum { ALONE, STRUCK, LIMITED, FOUR_DRUMS, PIECES };
+
+/// A drum without a performer that is measured.
+typedef struct bench_drum {
+    const char *key, *name, *settings[2];
+    double strikes; ///< a second
+} bench_drum;
+
+static const bench_drum drum[] = {
+    {"drum_200_ms", "200 modes, air, glide, four strikes a second", {"modes 200", "glide 1"}, 4},
+    {"drum_200_no_glide_ms", "the same without glide", {"modes 200", "glide 0"}, 4},
+    {"drum_1000_ms", "1000 modes, air, glide, four strikes a second", {"modes 1000", "glide 1"}, 4},
+    {"silent_ms", "200 modes, silent", {"modes 200", "glide 1"}, 0},
+};
+enum { DRUM_200, DRUM_NO_GLIDE, DRUM_1000, SILENT, DRUMS };
+
 /// Median of the runs.
 typedef struct figures {
-    double step, engine;      ///< (us)
-    double row[ROWS];         ///< (us)
-    double performers, modes; ///< that one core plays in real time
+    double piece[PIECES]; ///< a step (us)
+    double row[ROWS];     ///< (us)
+    double drum[DRUMS];   ///< processor time for a second of sound (ms)
+    double modes;         ///< that one core plays in real time
 } figures;
 
 static const char *const part_name[PARTS] = {
@@ -67,36 +101,53 @@ static double median(double *value)
     return value[RUNS / 2];
 }
 
-/// Four strokes a second, hands in turn.
-static himc_performance *make_performance(himc_error *error)
+/// Strokes on the drums in turn, hands in turn.
+static bool add_strokes(himc_performance *p, int drums, himc_error *error)
+{
+    for (int i = 0; i < 4 * SECONDS; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "stroke %g %s legato mf normal drum%d", 1 + i / 2.0,
+                 himc_hand_name(i % 2 ? HIMC_LEFT : HIMC_RIGHT), i % drums);
+        if (!cli_tell(p, text, NULL, error))
+            return false;
+    }
+    return true;
+}
+
+static bool add_drums(himc_performance *p, int drums, himc_error *error)
+{
+    static const double left_most = 0.5, apart = 0.35; // of four, within reach (m)
+    himc_performance_make_drums(p, true);
+    for (int i = 0; i < drums; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "drum drum%d 23", i);
+        if (!cli_tell(p, text, NULL, error))
+            return false;
+        himc_command place;
+        snprintf(text, sizeof text, "place 0.5 %g 0.85", left_most - apart * i);
+        if (drums > 1 && (!himc_command_parse_text(&place, HIMC_DRUM, text, error) ||
+                          !himc_drum_command(himc_performance_drum(p, i), &place, error)))
+            return false;
+    }
+    return true;
+}
+
+/// Processor time of a step (us); negative with the reason.
+static double time_piece(const bench_piece *b, himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
     config.sample_rate = RATE;
     config.physics_rate = PHYSICS;
     himc_performance *p = himc_performance_new(&config, error);
-    bool good = p && cli_add_drum(p, RATE, error) && cli_tell(p, "tempo 120", NULL, error);
-    for (int i = 0; good && i < 4 * SECONDS; i++) {
-        char text[64];
-        snprintf(text, sizeof text, "stroke %g %s legato mf", 1 + i / 2.0,
-                 himc_hand_name(i % 2 ? HIMC_LEFT : HIMC_RIGHT));
-        good = cli_tell(p, text, NULL, error);
+    double taken = -1;
+    if (p && cli_tell(p, "tempo 120", NULL, error) && add_drums(p, b->drums, error) &&
+        cli_tell(p, "limits", b->limits, error) &&
+        (!b->plays || (add_strokes(p, b->drums, error) && cli_tell(p, "play", NULL, error)))) {
+        double start = cpu_seconds();
+        for (int done = 0; done < SECONDS * RATE; done += BLOCK)
+            himc_performance_process(p, BLOCK, NULL);
+        taken = 1e6 * (cpu_seconds() - start) / (SECONDS * PHYSICS);
     }
-    if (good && cli_tell(p, "play", NULL, error))
-        return p;
-    himc_performance_free(p);
-    return NULL;
-}
-
-/// Processor time of the performance (s); negative with the reason.
-static double time_performance(himc_error *error)
-{
-    himc_performance *p = make_performance(error);
-    if (!p)
-        return -1;
-    double start = cpu_seconds();
-    for (int done = 0; done < SECONDS * RATE; done += BLOCK)
-        himc_performance_process(p, BLOCK, NULL);
-    double taken = cpu_seconds() - start;
     himc_performance_free(p);
     return taken;
 }
@@ -190,6 +241,7 @@ static double time_modes(himc_error *error)
     head.modes = MODES;
     head.decay_constant = 0.1;
     head.decay_square = 0;
+    head.glide = 0;
     himc_membrane *membrane = himc_membrane_new(&head, RATE, error);
     if (!membrane)
         return -1;
@@ -202,40 +254,103 @@ static double time_modes(himc_error *error)
     return MODES * ((double)MODE_SAMPLES / RATE) / taken;
 }
 
+/// Processor time of a second of a drum's sound (ms); negative with the reason.
+static double time_drum(const bench_drum *b, himc_error *error)
+{
+    static const double at = -0.2, velocity = 3; // chosen: a place near the rim (m), about f (m/s)
+    himc_command command;
+    himc_drum *d = himc_drum_new("drum", 26, RATE, error);
+    bool good = d && himc_command_parse_text(&command, HIMC_DRUM, "air 1", error) &&
+                himc_drum_command(d, &command, error);
+    for (int i = 0; good && i < 2; i++)
+        good = himc_command_parse_text(&command, HIMC_DRUM, b->settings[i], error) &&
+               himc_drum_command(d, &command, error);
+    int period = b->strikes > 0 ? (int)(RATE / b->strikes) / BLOCK * BLOCK : INT_MAX;
+    double start = cpu_seconds();
+    for (int done = 0; good && done < SECONDS * RATE; done += BLOCK) {
+        if (b->strikes > 0 && done % period == 0)
+            good = himc_drum_strike_at(d, 0, at, 0, velocity, error);
+        himc_drum_advance(d, BLOCK, NULL, NULL, NULL);
+    }
+    double taken = 1e3 * (cpu_seconds() - start) / SECONDS;
+    himc_drum_release(d);
+    return good ? taken : -1;
+}
+
+/// One run of everything. False with the reason.
+static bool measure_once(figures *f, himc_error *error)
+{
+    f->modes = time_modes(error);
+    bool good = f->modes >= 0 && time_rows(f->row, error);
+    for (int i = 0; i < PIECES; i++)
+        good = good && (f->piece[i] = time_piece(&piece[i], error)) >= 0;
+    for (int i = 0; i < DRUMS; i++)
+        good = good && (f->drum[i] = time_drum(&drum[i], error)) >= 0;
+    return good;
+}
+
+#define FIGURES ((int)(sizeof(figures) / sizeof(double))) // all members are doubles
+
 static bool measure(figures *out, himc_error *error)
 {
-    double performers[RUNS], modes[RUNS], row[ROWS][RUNS], now[ROWS];
-    for (int i = 0; i < RUNS; i++) {
-        double taken = time_performance(error);
-        modes[i] = time_modes(error);
-        if (taken < 0 || modes[i] < 0 || !time_rows(now, error))
+    union {
+        figures f;
+        double value[FIGURES];
+    } run[RUNS], middle;
+    for (int i = 0; i < RUNS; i++)
+        if (!measure_once(&run[i].f, error))
             return false;
-        performers[i] = SECONDS / taken;
-        for (int k = 0; k < ROWS; k++)
-            row[k][i] = now[k];
+    for (int k = 0; k < FIGURES; k++) {
+        double value[RUNS];
+        for (int i = 0; i < RUNS; i++)
+            value[i] = run[i].value[k];
+        middle.value[k] = median(value);
     }
-    out->performers = median(performers);
-    out->modes = median(modes);
-    out->step = 1e6 / (out->performers * PHYSICS);
-    for (int k = 0; k < ROWS; k++)
-        out->row[k] = median(row[k]);
-    out->engine = out->row[PARTS - 1];
+    *out = middle.f;
     return true;
+}
+
+/// Performers with one struck drum each that a core plays in real time; also the speed of such a
+/// performance offline.
+static double performers(const figures *f)
+{
+    return 1e6 / (f->piece[STRUCK] * PHYSICS);
 }
 
 static void print_table(const figures *f)
 {
-    printf("one step in all                    %8.2f us at %d Hz, with one drum at %d Hz\n",
-           f->step, PHYSICS, RATE);
+    printf("one step at %d Hz in all, with drums at %d Hz\n", PHYSICS, RATE);
+    for (int k = 0; k < PIECES; k++)
+        printf("  %-46s %8.2f us\n", piece[k].name, f->piece[k]);
+    puts("parts of a step");
     for (int k = 0; k < PARTS; k++)
-        printf("  %-32s %8.2f us\n", part_name[k], f->row[k]);
-    printf("step / engine alone                %8.2f\n", f->step / f->engine);
+        printf("  %-46s %8.2f us\n", part_name[k], f->row[k]);
+    printf("  %-46s %8.2f\n", "step with a drum / engine alone",
+           f->piece[STRUCK] / f->row[PARTS - 1]);
     puts("inverse kinematics of one arm, by solver");
     for (int k = 0; k < HIMC_SOLVERS; k++)
-        printf("  %-32s %9.3f us\n", himc_command_word(HIMC_COMMAND_SOLVER, 0, k).text,
+        printf("  %-46s %9.3f us\n", himc_command_word(HIMC_COMMAND_SOLVER, 0, k).text,
                f->row[PARTS + k]);
-    printf("modes per core                     %8.0f\n", f->modes);
-    printf("performers per core                %8.2f (times real time)\n", f->performers);
+    puts("a drum without a performer, for a second of sound");
+    for (int k = 0; k < DRUMS; k++)
+        printf("  %-46s %9.3f ms\n", drum[k].name, f->drum[k]);
+    puts("one core plays in real time");
+    printf("  %-46s %8.0f\n", "modes of a head, without glide and strokes", f->modes);
+    printf("  %-46s %8.2f\n", "performers with one drum", performers(f));
+}
+
+static void print_json(const figures *f)
+{
+    printf("{\"step_us\": %.3f, \"engine_step_us\": %.3f, \"step_ratio\": %.3f, "
+           "\"modes_per_core\": %.0f, \"performers_per_core\": %.3f",
+           f->piece[STRUCK], f->row[PARTS - 1], f->piece[STRUCK] / f->row[PARTS - 1], f->modes,
+           performers(f));
+    for (int k = 0; k < PIECES; k++)
+        if (k != STRUCK)
+            printf(", \"%s\": %.3f", piece[k].key, f->piece[k]);
+    for (int k = 0; k < DRUMS; k++)
+        printf(", \"%s\": %.4f", drum[k].key, f->drum[k]);
+    puts("}");
 }
 
 static int run(const cli_arguments *arguments)
@@ -245,11 +360,12 @@ static int run(const cli_arguments *arguments)
     if (!measure(&f, &error))
         return cli_fail(&cli_bench, "%s", error.text);
     if (arguments->value[JSON])
-        printf("{\"step_us\": %.3f, \"engine_step_us\": %.3f, \"step_ratio\": %.3f, "
-               "\"modes_per_core\": %.0f, \"performers_per_core\": %.3f}\n",
-               f.step, f.engine, f.step / f.engine, f.modes, f.performers);
+        print_json(&f);
     else
         print_table(&f);
+    double ours[BENCH_PEER_ROWS] = {f.piece[ALONE], f.piece[STRUCK], f.modes, f.drum[DRUM_200]};
+    if (arguments->value[PEERS] && !bench_print_peers(ours, &error))
+        return cli_fail(&cli_bench, "%s", error.text);
     return cli_finish(&cli_bench);
 }
 

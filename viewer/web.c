@@ -1,39 +1,46 @@
 /// web.c: one thread, one loop: OSC comes in through an adopted descriptor, pages and news go out.
 ///
-/// The stream is for the page alone: the Origin of a request must equal its Host, and the Host must
-/// be an address or this machine's name, so that neither a foreign page nor a rebound DNS name gets
-/// it. The page never sends data; clients that send anything but control frames are disconnected. A
-/// slow browser gets the newest pose when it is ready for it, so no queue grows here.
+/// The stream is for our page alone (access.h). One gate decides on each request for an upgrade,
+/// whatever its protocol: libwebsockets would otherwise accept h2c, and websockets without a
+/// protocol. The page never sends data; clients that send anything but control frames are
+/// disconnected. A slow browser gets the newest pose when it is ready for it, so no queue grows
+/// here. Invariant: connections are bounded in number, and each that makes no progress in time.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
+#include "access.h"
 #include "receive.h"
 #include "pages.h"
 
-#include <arpa/inet.h>
 #include <errno.h>
 #include <libwebsockets.h>
 #include <netdb.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 // all chosen
 enum {
-    CLIENTS = 32,         // more than one room has screens
-    CHUNK = 32768,        // of a page in one write (bytes)
-    BATCH = 512,          // packets received at once, so that a flood leaves time for the pages
-    CLIENT_TIMEOUT = 20,  // of a client that takes no more of a page (s)
-    PAUSE = 3,            // (ms), a tenth of the time between poses: waking up costs most
-    NAME_MAX_LENGTH = 256 // of a host with its zero; longer ones are refused
+    CLIENTS = 32,        // streams: more than one room has screens
+    CONNECTIONS = 256,   // streams included; a browser opens six to fetch the page
+    CHUNK = 32768,       // of a page in one write (bytes)
+    BATCH = 512,         // packets received at once, so that a flood leaves time for the pages
+    REQUEST_TIMEOUT = 5, // of a connection without a whole request (s)
+    CLIENT_TIMEOUT = 20, // of a client that takes no more of a page or of the stream (s)
+    CLOSE_TIMEOUT = 500, // from the decision to close a stream to its end (ms)
+    PAUSE = 3,           // (ms), a tenth of the time between poses: waking up costs most
+    HEADER_SIZE = 264    // of a host or an origin with its zero; longer ones are refused
 };
 
 /// State of one connection.
 typedef struct session {
     const char *at, *end; // rest of the page being sent
     scene_reader reader;
+    bool counted; // among the clients
+    bool closing; // gets nothing more but the close frame
 } session;
 
 struct web {
@@ -41,7 +48,7 @@ struct web {
     struct lws_vhost *vhost;
     scene *s;
     web_config config;
-    int clients;
+    int clients, connections;
     struct lws *osc; // the OSC socket in the loop
     uint64_t rejected;
     lws_sorted_usec_list_t pause, second;
@@ -74,39 +81,9 @@ static int refuse(struct lws *wsi, unsigned status)
     return -1;
 }
 
-// "name:port", "[::1]:port" or "name" without its port
-static void host_name(const char *host, char name[NAME_MAX_LENGTH])
+static bool header(struct lws *wsi, enum lws_token_indexes token, char out[HEADER_SIZE])
 {
-    const char *from = host[0] == '[' ? host + 1 : host;
-    size_t length = strcspn(from, host[0] == '[' ? "]" : ":");
-    snprintf(name, NAME_MAX_LENGTH, "%.*s", (int)length, from);
-}
-
-// true for a numeric address, localhost and this machine's name
-static bool host_is_local(const char *host)
-{
-    char name[NAME_MAX_LENGTH], own[NAME_MAX_LENGTH] = "";
-    unsigned char address[16];
-    host_name(host, name);
-    gethostname(own, sizeof own - 1);
-    size_t length = strlen(own);
-    return inet_pton(AF_INET, name, address) == 1 || inet_pton(AF_INET6, name, address) == 1 ||
-           strcmp(name, "localhost") == 0 ||
-           (length && strncmp(name, own, length) == 0 &&
-            (!name[length] || strcmp(name + length, ".local") == 0));
-}
-
-static bool header(struct lws *wsi, enum lws_token_indexes token, char out[NAME_MAX_LENGTH])
-{
-    return lws_hdr_copy(wsi, out, NAME_MAX_LENGTH, token) > 0;
-}
-
-static bool from_our_page(struct lws *wsi)
-{
-    char host[NAME_MAX_LENGTH], origin[NAME_MAX_LENGTH];
-    return header(wsi, WSI_TOKEN_HOST, host) && host_is_local(host) &&
-           header(wsi, WSI_TOKEN_ORIGIN, origin) && strncmp(origin, "http://", 7) == 0 &&
-           strcmp(origin + 7, host) == 0;
+    return lws_hdr_copy(wsi, out, HEADER_SIZE, token) > 0;
 }
 
 // the file of that path; false if there is none
@@ -130,12 +107,15 @@ static int begin_page(struct lws *wsi, session *own, const char *path)
 {
     unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start,
                                           *end = buffer + sizeof buffer;
-    char host[NAME_MAX_LENGTH];
+    char host[HEADER_SIZE];
     const char *type;
-    if (!header(wsi, WSI_TOKEN_HOST, host) || !host_is_local(host))
+    if (!header(wsi, WSI_TOKEN_HOST, host) || !access_host_is_local(host))
         return refuse(wsi, HTTP_STATUS_FORBIDDEN);
     if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0)
         return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED);
+    // a body could be sent for ever; without its length it is taken for the next request
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0)
+        return refuse(wsi, HTTP_STATUS_REQ_ENTITY_TOO_LARGE);
     if (!find_file(web_of(wsi), path, own, &type))
         return refuse(wsi, HTTP_STATUS_NOT_FOUND);
     if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, (lws_filepos_t)(own->end - own->at),
@@ -171,6 +151,8 @@ static int send_news(struct lws *wsi, session *own)
 {
     web *w = web_of(wsi);
     size_t size = scene_encode(w->s, &own->reader, wall_clock(), w->out + LWS_PRE);
+    // there is something to send each second, so a stream that is never ready for it is lost
+    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, CLIENT_TIMEOUT);
     if (size && lws_write(wsi, w->out + LWS_PRE, size, LWS_WRITE_BINARY) < 0)
         return -1;
     if (own->reader.events != w->s->events)
@@ -213,16 +195,53 @@ static void on_packet(web *w, struct lws *wsi)
     lws_sul_schedule(w->context, 0, &w->pause, on_pause_over, PAUSE * LWS_US_PER_MS);
 }
 
+// the gate: each request for an upgrade passes here, whatever it wants to become
+static int on_upgrade(struct lws *wsi)
+{
+    char host[HEADER_SIZE], origin[HEADER_SIZE], upgrade[16], protocol[16];
+    bool ours = header(wsi, WSI_TOKEN_HOST, host) && header(wsi, WSI_TOKEN_ORIGIN, origin) &&
+                access_is_our_page(host, origin);
+    bool stream = lws_hdr_copy(wsi, upgrade, sizeof upgrade, WSI_TOKEN_UPGRADE) > 0 &&
+                  strcasecmp(upgrade, "websocket") == 0 &&
+                  lws_hdr_copy(wsi, protocol, sizeof protocol, WSI_TOKEN_PROTOCOL) > 0 &&
+                  strcmp(protocol, protocols[1].name) == 0 &&
+                  lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
+    return !ours || !stream                  ? refuse(wsi, HTTP_STATUS_FORBIDDEN)
+           : web_of(wsi)->clients >= CLIENTS ? refuse(wsi, HTTP_STATUS_SERVICE_UNAVAILABLE)
+                                             : 0;
+}
+
+static int on_connection(web *w)
+{
+    if (w->connections < CONNECTIONS)
+        return 0;
+    w->rejected++;
+    return -1;
+}
+
+// libwebsockets also asks the first protocol about connections without a protocol
 static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                    size_t length)
 {
     (void)length;
     switch (reason) {
+    case LWS_CALLBACK_FILTER_NETWORK_CONNECTION: return on_connection(web_of(wsi));
+    case LWS_CALLBACK_WSI_CREATE: web_of(wsi)->connections++; return 0;
+    case LWS_CALLBACK_WSI_DESTROY: web_of(wsi)->connections--; return 0;
+    case LWS_CALLBACK_RAW_ADOPT: return -1; // the method CONNECT would leave HTTP
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return on_upgrade(wsi);
     case LWS_CALLBACK_HTTP: return begin_page(wsi, user, in);
     case LWS_CALLBACK_HTTP_WRITEABLE: return send_chunk(wsi, user);
     case LWS_CALLBACK_RAW_RX_FILE: on_packet(web_of(wsi), wsi); return 0;
     default: return 0;
     }
+}
+
+static int on_data(struct lws *wsi, const session *own)
+{
+    web_of(wsi)->rejected += !own->closing;
+    lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, NULL, 0);
+    return -1;
 }
 
 static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
@@ -232,20 +251,23 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
     session *own = user;
     (void)in, (void)length;
     switch (reason) {
-    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-        return !from_our_page(wsi)     ? refuse(wsi, HTTP_STATUS_FORBIDDEN)
-               : w->clients >= CLIENTS ? refuse(wsi, HTTP_STATUS_SERVICE_UNAVAILABLE)
-                                       : 0;
     case LWS_CALLBACK_ESTABLISHED:
         w->clients++;
+        own->counted = true;
         own->reader = scene_reader_new(w->s);
         return lws_callback_on_writable(wsi) < 0;
-    case LWS_CALLBACK_SERVER_WRITEABLE: return send_news(wsi, own);
-    case LWS_CALLBACK_RECEIVE:
-        w->rejected++;
-        lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, NULL, 0);
-        return -1;
-    case LWS_CALLBACK_CLOSED: w->clients--; return 0;
+    case LWS_CALLBACK_SERVER_WRITEABLE: return own->closing ? 0 : send_news(wsi, own);
+    case LWS_CALLBACK_RECEIVE: return on_data(wsi, own);
+    // a close begins here, whoever wanted it: the page, libwebsockets or this program
+    case LWS_CALLBACK_WS_SERVER_DROP_PROTOCOL:
+        own->closing = true;
+        lws_set_timer_usecs(wsi, CLOSE_TIMEOUT * LWS_US_PER_MS);
+        return 0;
+    case LWS_CALLBACK_TIMER: return -1;
+    case LWS_CALLBACK_CLOSED:
+        w->clients -= own->counted;
+        own->counted = false;
+        return 0;
     default: return 0;
     }
 }
@@ -324,6 +346,8 @@ static bool listen_to_all(web *w)
                                              .user = w,
                                              .gid = (gid_t)-1,
                                              .uid = (uid_t)-1,
+                                             .timeout_secs_ah_idle = REQUEST_TIMEOUT,
+                                             .keepalive_timeout = REQUEST_TIMEOUT,
                                              .pt_serv_buf_size = SCENE_FRAME_MAX,
                                              .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS |
                                                         LWS_SERVER_OPTION_DISABLE_IPV6 *

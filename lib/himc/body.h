@@ -278,8 +278,12 @@ HIMC_RT void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_bod
 
 /// The articulated inertias of the segments at a state: working memory of forward dynamics.
 typedef struct himc_articulation {
+    himc_vec3 lever[HIMC_SEGMENTS];      ///< from the parent's joint to the segment's (m)
+    himc_vec3 center[HIMC_SEGMENTS];     ///< from the joint to the centre of mass (m)
+    himc_mat3 inertia[HIMC_SEGMENTS];    ///< about the centre of mass, world frame (kg m^2)
     himc_mat3 inverse[HIMC_SEGMENTS];    ///< of the articulated rotational inertia about the joint
-    himc_mat3 coupling[HIMC_SEGMENTS];   ///< moment about the joint for a unit acceleration of it
+    himc_mat3 response[HIMC_SEGMENTS];   ///< minus the angular acceleration per acceleration of the
+                                         ///< joint (1/m)
     himc_mat3 mass[HIMC_SEGMENTS];       ///< apparent mass for the parent at the joint (kg)
     int end;                             ///< segments 1 .. end - 1 take part
     bool resists;                        ///< joints resist their own acceleration; if so:

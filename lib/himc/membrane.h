@@ -106,7 +106,8 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
 void himc_membrane_free(himc_membrane *membrane);
 
 /// Changes the head while it sounds: modes keep energy and phase, the sound of those that no longer
-/// exist ends in 5 ms, and there is no click. Allocates only if the number of modes changes.
+/// exist ends in 5 ms, and there is no click. Pickups at points outside a smaller head move to its
+/// rim. Allocates only if the number of modes changes.
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
 /// Sets a head of another outline, at rest; the old sound ends in 5 ms. Retains a grid. Air is
 /// known for round heads alone.
@@ -150,7 +151,8 @@ HIMC_RT void himc_membrane_watch(himc_membrane *membrane, double x, double y);
 HIMC_RT void himc_membrane_push(himc_membrane *membrane, double x, double y, double force);
 /// Advances by `n` samples without contact: sound[k][i] is the sound of pickup k (1.0 as its kind
 /// says; as many rows as there are pickups), watched[i] the displacement (m, up positive) of the
-/// watched point. Pushed forces act in the first sample.
+/// watched point. A row that is NULL, or `watched`, costs no time; what follows below is then 0.
+/// Pushed forces act in the first sample.
 HIMC_RT void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound,
                                double *watched);
 /// The last sample's sound of pickup 0 .. count - 1 (1.0 as its kind says).

@@ -45,9 +45,11 @@ class Viewer:
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, trouble, *_):
         self.process.terminate()
         self.code = self.process.wait(WAIT)
+        # another status is that of a signal or of a sanitizer
+        assert trouble or self.code == 0, self.code
 
     def send(self, *packets):
         for packet in packets:
@@ -78,8 +80,20 @@ class Viewer:
             int(open(f"/proc/{self.process.pid}/statm").read().split()[1]) * resource.getpagesize()
         )
 
+    def descriptors(self):
+        return len(os.listdir(f"/proc/{self.process.pid}/fd"))
+
+    def connect(self, receive=None):
+        """A connection to the page; `receive` is the size of its buffer (bytes)."""
+        s = socket.socket()
+        if receive:
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive)
+        s.settimeout(WAIT)
+        s.connect(("127.0.0.1", self.http))
+        return s
+
     def get(self, path, host=None, method="GET", extra=""):
-        with socket.create_connection(("127.0.0.1", self.http), WAIT) as s:
+        with self.connect() as s:
             s.sendall(
                 f"{method} {path} HTTP/1.1\r\nHost: {host or f'127.0.0.1:{self.http}'}\r\n"
                 f"Connection: close\r\n{extra}\r\n".encode()
@@ -105,19 +119,24 @@ class Viewer:
 class Stream:
     """A web socket, as a page has it."""
 
-    def __init__(self, viewer, origin="", host=None):
-        self.s = socket.create_connection(("127.0.0.1", viewer.http), WAIT)
+    def __init__(
+        self, viewer, origin="", host=None, protocol="scene", upgrade="websocket", key="AA==", receive=None
+    ):
+        self.s = viewer.connect(receive)
         host = host or f"127.0.0.1:{viewer.http}"
         origin = f"http://{host}" if origin == "" else origin
-        line = f"Origin: {origin}\r\n" if origin else ""
-        self.s.sendall(
-            (
-                f"GET / HTTP/1.1\r\nHost: {host}\r\nUpgrade: websocket\r\n"
-                f"Connection: Upgrade\r\n{line}"
-                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
-                "Sec-WebSocket-Protocol: scene\r\n\r\n"
-            ).encode()
-        )
+        lines = [
+            "GET / HTTP/1.1",
+            f"Host: {host}",
+            f"Upgrade: {upgrade}",
+            "Connection: Upgrade",
+            f"Sec-WebSocket-Key: {key}" if key else None,
+            "Sec-WebSocket-Version: 13",
+            "HTTP2-Settings: AAMAAABkAAQCAAAAAAIAAAAA",
+            f"Origin: {origin}" if origin else None,
+            f"Sec-WebSocket-Protocol: {protocol}" if protocol is not None else None,
+        ]
+        self.s.sendall("".join(f"{line}\r\n" for line in lines if line).encode() + b"\r\n")
         self.rest = b""
         while b"\r\n\r\n" not in self.rest:
             piece = self.s.recv(4096)
@@ -150,6 +169,13 @@ class Stream:
             return None
         payload, self.rest = self.rest[at : at + length], self.rest[at + length :]
         return opcode, payload
+
+    def ended(self):
+        """True when the other side has closed; waits for it."""
+        self.s.settimeout(WAIT)
+        while self.frame():
+            pass
+        return True
 
     def blocks(self, seconds):
         """(kind, bytes) of the next frame; none if nothing comes within that time."""
@@ -202,6 +228,24 @@ class Stream:
 
 def events(blocks):
     return [json.loads(b.decode("utf-8", "replace")) for kind, b in blocks if kind == 3]
+
+
+def clients(blocks):
+    """The counts of streams, one for each second of the bridge."""
+    return [e["clients"] for e in events(blocks) if e["event"] == "bridge"]
+
+
+def at_end(s, say=b""):
+    """True if the other side has closed the connection, on which `say` is sent first."""
+    try:
+        s.sendall(say)
+        while s.recv(65536):
+            pass
+        return True
+    except BlockingIOError:
+        return False
+    except ConnectionError:
+        return True
 
 
 def poses(blocks):
@@ -345,6 +389,40 @@ def test_foreign_origins_and_rebound_names_are_refused():
         assert v.get("/", host="evil.example")[0] == 403
 
 
+def test_an_upgrade_to_anything_but_the_stream_is_refused():
+    with Viewer() as v:
+        for origin in ("http://evil.example", ""):
+            for protocol in ("http", None, "", "other", "http, scene", "scene, http"):
+                stream = Stream(v, origin, protocol=protocol)
+                assert stream.status == 403, (origin, protocol, stream.status)
+                stream.say(b"x" * 300)
+                assert stream.ended(), (origin, protocol)
+            for upgrade in ("h2c", "other", "websocket, h2c"):
+                assert Stream(v, origin, upgrade=upgrade).status == 403, (origin, upgrade)
+        with v.connect() as s:
+            s.sendall(b"CONNECT other:80 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+            assert s.recv(1) == b""
+        assert counts(v)["clients"] == 1
+
+
+def test_refused_upgrades_leave_the_limit_of_streams():
+    with Viewer() as v:
+        streams = [listen(v)]
+        for _ in range(100):
+            assert Stream(v, origin="http://evil.example").status == 403
+            assert Stream(v, key=None).status == 0
+        assert counts(v)["clients"] == 2  # the second is that of counts()
+        streams[0].until(lambda blocks: clients(blocks)[-1:] == [1])
+        streams += [Stream(v) for _ in range(31)]
+        assert all(s.status == 101 for s in streams[1:])
+        for _ in range(100):
+            assert Stream(v).status == 503
+        streams.pop().s.close()
+        streams[0].until(lambda blocks: clients(blocks)[-1:] == [31])
+        streams.append(Stream(v))
+        assert streams[-1].status == 101 and Stream(v).status == 503
+
+
 def test_a_client_that_sends_data_is_disconnected():
     with Viewer() as v:
         for size in (1, 300, 70000, 2000000):
@@ -356,6 +434,81 @@ def test_a_client_that_sends_data_is_disconnected():
                 got = stream.frame()
             assert got is None or got[0] == 8
         assert Stream(v).status == 101
+
+
+def test_after_a_close_frame_nothing_comes_and_the_stream_ends():
+    """A second is two reports of the bridge, which sends one each second by its own clock."""
+    faults = {
+        "data": b"\x82\x81\0\0\0\0x",
+        "empty data": b"\x82\x80\0\0\0\0",
+        "data without a mask": b"\x82\x01x",
+        "reserved bits": b"\xf2\x81\0\0\0\0x",
+        "more than a frame can hold": b"\x82\xff\x7f" + b"\xff" * 7 + b"\0\0\0\0x",
+    }
+    with Viewer() as v:
+        watcher = listen(v)
+        for fault, sent in faults.items():
+            stream = listen(v)
+            stream.s.sendall(sent)
+            codes = []
+            while codes[-1:] != [8]:
+                v.send(bundle(*pose()))
+                codes.append(stream.frame()[0])
+            watcher.until_mark(v)
+            reports = clients(watcher.until(lambda blocks: 1 in clients(blocks)))
+            assert len(reports) <= 2, (fault, reports)
+            v.send(bundle(*pose()))
+            assert stream.frame() is None, fault
+
+
+def test_connections_without_a_request_are_bounded_in_number_and_time():
+    most = 256  # with the sockets of the program itself a few more
+    with Viewer() as v:
+        waiting, ended = [v.connect() for _ in range(most + 44)], []
+        for s in waiting:
+            s.setblocking(False)
+        begin = time.time()
+        while len(ended) < 44 and time.time() < begin + WAIT:
+            assert v.descriptors() < most + 20, v.descriptors()
+            ended += [s for s in waiting if s not in ended and at_end(s)]
+        request = f"GET /icon.svg HTTP/1.1\r\nHost: 127.0.0.1:{v.http}\r\n"
+        starts = {
+            "silence": ("", ""),
+            "a slow first line": ("GET /", "a"),
+            "a slow header": (request + "X: ", "a"),
+            "header after header": (request, "A: b\r\n"),
+            "silence after a request": (request + "\r\n", ""),
+            "a slow second request": (request + "\r\nGET /", "a"),
+            "a slow body": (request + "Content-Length: 100000\r\n\r\n", "a"),
+            "a body without a length": (request + "Transfer-Encoding: chunked\r\n\r\n", "1\r\n"),
+        }
+        while not all(at_end(s) for s in waiting):
+            assert time.time() < begin + WAIT
+            time.sleep(0.05)
+        slow = {what: v.connect() for what in starts}
+        for what, s in slow.items():
+            s.sendall(starts[what][0].encode())
+            s.setblocking(False)
+        while slow:
+            assert time.time() < begin + WAIT, slow.keys()
+            time.sleep(0.1)
+            slow = {what: s for what, s in slow.items() if not at_end(s, starts[what][1].encode())}
+        assert Stream(v).status == 101 and v.get("/")[0] == 200
+
+
+def test_a_stream_that_takes_nothing_ends():
+    if not os.environ.get("HIMC_LONG"):
+        raise report.Ignored("waits for the 20 s that such a stream has: HIMC_LONG=1")
+    with Viewer() as v:
+        watcher, lost = listen(v), Stream(v, receive=4096)
+        assert lost.status == 101
+        shape = osc("/membrane/k/head", *[1e-5] * 64)
+
+        def fill():
+            v.send(bundle(*pose(), shape))
+
+        watcher.until(lambda blocks: clients(blocks)[-1:] == [2])
+        watcher.until(lambda blocks: clients(blocks)[-1:] == [1], fill)
 
 
 def test_a_pose_reaches_the_stream_whole():
@@ -535,10 +688,7 @@ def test_a_slow_client_gets_the_whole_motion():
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as motion:
         motion.write("time_s,x\n" + "1,2\n" * 4000000)
         motion.flush()
-        with Viewer("--play", motion.name) as v, socket.socket() as s:
-            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
-            s.settimeout(WAIT)
-            s.connect(("127.0.0.1", v.http))
+        with Viewer("--play", motion.name) as v, v.connect(65536) as s:
             s.sendall(f"GET /play.csv HTTP/1.1\r\nHost: 127.0.0.1:{v.http}\r\n\r\n".encode())
             want, got = os.path.getsize(motion.name), 0
             while got < want:  # and the headers

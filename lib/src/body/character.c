@@ -1,15 +1,19 @@
-/// character.c: 19 ODE bodies for the segments beyond the pelvis, 19 ball joints, one loop over
-/// the table.
+/// character.c: the state of the simulated body, moved by one of two engines: the tree (tree.c), or
+/// ODE's dWorldStep with 19 bodies and 19 ball joints, one loop over the table.
 ///
-/// The frame of an ODE body is its segment's, moved to the centre of mass, as ODE requires. The
-/// pelvis is ODE's world (body 0), so the trunk and each leg are separate islands and ODE solves
-/// three small systems. dWorldStep is deterministic to the bit (QuickStep draws random numbers).
-/// ODE aborts the process on an invalid mass, so the skeleton is checked before; it accepts NaN
-/// silently, so himc_performance checks the state after each step.
+/// The state here is the body's only one. ODE's bodies receive it when ODE is to step and have not
+/// made it themselves. The frame of an ODE body is its segment's, moved to the centre of mass, as
+/// ODE requires. The pelvis is ODE's world (body 0), so the trunk and each leg are separate islands
+/// and ODE solves three small systems. dWorldStep is deterministic to the bit (QuickStep draws
+/// random numbers). ODE aborts the process on an invalid mass, so the skeleton is checked before;
+/// it accepts NaN silently, so himc_performance checks the state after each step.
 #include "body/character.h"
+
+#include "body/tree.h"
 
 #include <ode/ode.h>
 #include <stdlib.h>
+#include <string.h>
 
 // share of a joint's drift that ODE corrects per step. Chosen: the drift then measures 3e-8 m
 #define JOINT_ERP 0.8
@@ -21,6 +25,12 @@
 
 struct himc_character {
     himc_skeleton skeleton;
+    himc_engine engine;
+    segment_states state;
+    himc_vec3 push[HIMC_SEGMENTS]; // in the next step (N)
+    himc_articulation articulation;
+    bool articulated; // the articulation belongs to this state
+    bool given;       // the engine's bodies have this state
     dWorldID world;
     dBodyID body[HIMC_SEGMENTS]; // [0], the pelvis, is NULL: the world
 };
@@ -44,6 +54,39 @@ static void make_joint(himc_character *c, int i, const himc_body_state *state)
     dJointSetBallAnchor(joint, state->origin[i].x, state->origin[i].y, state->origin[i].z);
 }
 
+static void give_to_ode(himc_character *c)
+{
+    const himc_body_state *s = &c->state.joints;
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 x = c->state.position[i], v = c->state.velocity[i], w = s->spin[i];
+        himc_quat q = s->orientation[i];
+        dBodySetPosition(c->body[i], x.x, x.y, x.z);
+        dBodySetQuaternion(c->body[i], (const dQuaternion){q.w, q.x, q.y, q.z});
+        dBodySetLinearVel(c->body[i], v.x, v.y, v.z);
+        dBodySetAngularVel(c->body[i], w.x, w.y, w.z);
+    }
+}
+
+static himc_vec3 from_ode(const dReal *v)
+{
+    return himc_vec3_make(v[0], v[1], v[2]);
+}
+
+static void take_from_ode(himc_character *c)
+{
+    himc_body_state *s = &c->state.joints;
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const dReal *q = dBodyGetQuaternion(c->body[i]), *r = dBodyGetRotation(c->body[i]);
+        s->orientation[i] = (himc_quat){q[0], q[1], q[2], q[3]};
+        s->rotation[i] = (himc_mat3){{{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, {r[8], r[9], r[10]}}};
+        s->spin[i] = from_ode(dBodyGetAngularVel(c->body[i]));
+        c->state.position[i] = from_ode(dBodyGetPosition(c->body[i]));
+        c->state.velocity[i] = from_ode(dBodyGetLinearVel(c->body[i]));
+        himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
+        s->origin[i] = himc_vec3_sub(c->state.position[i], center);
+    }
+}
+
 himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *error)
 {
     himc_character *c = calloc(1, sizeof *c);
@@ -63,12 +106,12 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     himc_pose zero = himc_pose_zero();
     himc_pose_to_state(skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);
+    give_to_ode(c);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         make_joint(c, i, &state);
     // the engine allocates its working memory in the first step: make it here, not in the audio
     // callback
-    static const himc_vec3 none[HIMC_JOINTS];
-    himc_character_step(c, none, none, FIRST_STEP);
+    dWorldStep(c->world, FIRST_STEP);
     himc_character_place(c, &state);
     return c;
 }
@@ -80,6 +123,16 @@ void himc_character_free(himc_character *c)
     dWorldDestroy(c->world);
     dCloseODE();
     free(c);
+}
+
+void himc_character_use(himc_character *c, himc_engine engine)
+{
+    c->engine = engine;
+}
+
+himc_engine himc_character_engine(const himc_character *c)
+{
+    return c->engine;
 }
 
 // velocity of each joint: the sum of w x r from the pelvis outwards
@@ -94,89 +147,85 @@ static void origin_velocities(const himc_skeleton *skeleton, const himc_body_sta
     }
 }
 
+static void changed(himc_character *c)
+{
+    c->articulated = c->given = false;
+}
+
 void himc_character_place(himc_character *c, const himc_body_state *state)
 {
-    himc_body_state s = *state;
+    himc_body_state *s = &c->state.joints;
     himc_vec3 v[HIMC_SEGMENTS];
-    himc_body_state_complete(&c->skeleton, &s);
-    origin_velocities(&c->skeleton, &s, v);
+    *s = *state;
+    s->orientation[0] = himc_quat_identity();
+    s->spin[0] = himc_vec3_make(0, 0, 0);
+    for (int i = 1; i < HIMC_SEGMENTS; i++)
+        s->orientation[i] = himc_quat_unit(s->orientation[i]);
+    himc_body_state_complete(&c->skeleton, s);
+    origin_velocities(&c->skeleton, s, v);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 center = himc_mat3_apply(&s.rotation[i], c->skeleton.segment[i].center);
-        himc_vec3 x = himc_vec3_add(s.origin[i], center);
-        himc_vec3 u = himc_vec3_add(v[i], himc_vec3_cross(s.spin[i], center));
-        const dQuaternion q = {s.orientation[i].w, s.orientation[i].x, s.orientation[i].y,
-                               s.orientation[i].z};
-        dBodySetPosition(c->body[i], x.x, x.y, x.z);
-        dBodySetQuaternion(c->body[i], q);
-        dBodySetLinearVel(c->body[i], u.x, u.y, u.z);
-        dBodySetAngularVel(c->body[i], s.spin[i].x, s.spin[i].y, s.spin[i].z);
-        dBodySetForce(c->body[i], 0, 0, 0);
-        dBodySetTorque(c->body[i], 0, 0, 0);
+        himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
+        c->state.position[i] = himc_vec3_add(s->origin[i], center);
+        c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
     }
+    memset(c->push, 0, sizeof c->push);
+    changed(c);
 }
 
-static himc_vec3 from_ode(const dReal *v)
-{
-    return himc_vec3_make(v[0], v[1], v[2]);
-}
-
-// the tips from ODE's stick bodies; along the joints their drift would add up
+// the tips from the stick's centre; along the joints their drift would add up
 static void observe_tips(const himc_character *c, himc_body_state *s)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int i = himc_stick_segment((himc_hand)hand);
         himc_vec3 center = c->skeleton.segment[i].center;
         himc_vec3 r = himc_mat3_apply(&s->rotation[i], himc_vec3_sub(c->skeleton.tip, center));
-        s->tip[hand] = himc_vec3_add(from_ode(dBodyGetPosition(c->body[i])), r);
-        s->tip_velocity[hand] =
-            himc_vec3_add(from_ode(dBodyGetLinearVel(c->body[i])), himc_vec3_cross(s->spin[i], r));
+        s->tip[hand] = himc_vec3_add(c->state.position[i], r);
+        s->tip_velocity[hand] = himc_vec3_add(c->state.velocity[i], himc_vec3_cross(s->spin[i], r));
     }
 }
 
 void himc_character_observe(const himc_character *c, himc_body_state *s)
 {
-    s->orientation[0] = himc_quat_identity();
-    s->rotation[0] = himc_mat3_from_quat(s->orientation[0]);
-    s->spin[0] = himc_vec3_make(0, 0, 0);
-    s->origin[0] = c->skeleton.root;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        const dReal *q = dBodyGetQuaternion(c->body[i]), *r = dBodyGetRotation(c->body[i]);
-        s->orientation[i] = (himc_quat){q[0], q[1], q[2], q[3]};
-        s->rotation[i] = (himc_mat3){{{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, {r[8], r[9], r[10]}}};
-        s->spin[i] = from_ode(dBodyGetAngularVel(c->body[i]));
-        himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
-        s->origin[i] = himc_vec3_sub(from_ode(dBodyGetPosition(c->body[i])), center);
-    }
+    *s = c->state.joints;
     observe_tips(c, s);
 }
 
-static void apply_torques(himc_character *c, const himc_vec3 torque[HIMC_JOINTS])
+const himc_articulation *himc_character_articulation(himc_character *c)
 {
-    himc_vec3 sum[HIMC_SEGMENTS] = {{0, 0, 0}};
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        int p = c->skeleton.segment[i].parent;
-        sum[i] = himc_vec3_add(sum[i], torque[i - 1]);
-        sum[p] = himc_vec3_sub(sum[p], torque[i - 1]);
-    }
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
-        dBodyAddTorque(c->body[i], sum[i].x, sum[i].y, sum[i].z);
+    if (!c->articulated)
+        himc_articulate_all(&c->skeleton, &c->state.joints, &c->articulation);
+    c->articulated = true;
+    return &c->articulation;
 }
 
-// false for any input on which the engine's own checks would abort the process
-static bool can_step(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
-                     const himc_vec3 tip_force[HIMC_HANDS])
+static void fill_forces(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
+                        const himc_vec3 tip_force[HIMC_HANDS], segment_forces *f)
+{
+    memcpy(f->force, c->push, sizeof f->force);
+    memset(f->torque, 0, sizeof f->torque);
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        int p = c->skeleton.segment[i].parent;
+        f->torque[i] = himc_vec3_add(f->torque[i], torque[i - 1]);
+        f->torque[p] = himc_vec3_sub(f->torque[p], torque[i - 1]);
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int i = himc_stick_segment((himc_hand)hand);
+        himc_vec3 at = himc_vec3_sub(c->skeleton.tip, c->skeleton.segment[i].center);
+        at = himc_mat3_apply(&c->state.joints.rotation[i], at);
+        f->force[i] = himc_vec3_add(f->force[i], tip_force[hand]);
+        f->torque[i] = himc_vec3_add(f->torque[i], himc_vec3_cross(at, tip_force[hand]));
+    }
+}
+
+// false for any input on which ODE's own checks would abort the process
+static bool can_step(const segment_states *s, const segment_forces *f)
 {
     double sum = 0;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        sum += himc_vec3_dot(torque[j], torque[j]);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        sum += himc_vec3_dot(tip_force[hand], tip_force[hand]);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 w = from_ode(dBodyGetAngularVel(c->body[i]));
-        himc_vec3 x = from_ode(dBodyGetPosition(c->body[i]));
-        himc_vec3 v = from_ode(dBodyGetLinearVel(c->body[i]));
-        himc_vec3 pushed = from_ode(dBodyGetForce(c->body[i]));
-        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v) + himc_vec3_dot(pushed, pushed);
+        himc_vec3 w = s->joints.spin[i], x = s->position[i], v = s->velocity[i];
+        himc_vec3 force = f->force[i], torque = f->torque[i];
+        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v) + himc_vec3_dot(force, force) +
+               himc_vec3_dot(torque, torque);
         if (!(himc_vec3_dot(w, w) < FASTEST_SPIN * FASTEST_SPIN))
             return false;
     }
@@ -186,22 +235,35 @@ static bool can_step(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS
 void himc_character_push(himc_character *c, int segment, himc_vec3 force)
 {
     if (segment > 0 && segment < HIMC_SEGMENTS)
-        dBodyAddForce(c->body[segment], force.x, force.y, force.z);
+        c->push[segment] = himc_vec3_add(c->push[segment], force);
+}
+
+static void step_ode(himc_character *c, const segment_forces *f, double h)
+{
+    if (!c->given)
+        give_to_ode(c);
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        dBodySetForce(c->body[i], f->force[i].x, f->force[i].y, f->force[i].z);
+        dBodySetTorque(c->body[i], f->torque[i].x, f->torque[i].y, f->torque[i].z);
+    }
+    dWorldStep(c->world, h);
+    take_from_ode(c);
 }
 
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
                          const himc_vec3 tip_force[HIMC_HANDS], double h)
 {
-    if (!can_step(c, torque, tip_force))
+    segment_forces forces;
+    fill_forces(c, torque, tip_force, &forces);
+    if (!can_step(&c->state, &forces))
         return false;
-    apply_torques(c, torque);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        int i = himc_stick_segment((himc_hand)hand);
-        himc_vec3 f = tip_force[hand],
-                  at = himc_vec3_sub(c->skeleton.tip, c->skeleton.segment[i].center);
-        if (f.x != 0 || f.y != 0 || f.z != 0)
-            dBodyAddForceAtRelPos(c->body[i], f.x, f.y, f.z, at.x, at.y, at.z);
-    }
-    dWorldStep(c->world, h);
+    if (c->engine == HIMC_ENGINE_ODE)
+        step_ode(c, &forces, h);
+    else
+        himc_tree_step(&c->skeleton, himc_character_articulation(c), &forces, JOINT_ERP, h,
+                       &c->state);
+    memset(c->push, 0, sizeof c->push);
+    changed(c);
+    c->given = c->engine == HIMC_ENGINE_ODE;
     return true;
 }

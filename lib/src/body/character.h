@@ -1,6 +1,6 @@
-/// character.h: the dynamic layer: the body as rigid segments on ball joints in the Open Dynamics
-/// Engine (2012 paper, equation 1: D); private. Joint torques move it, ODE's motors are not used;
-/// the pelvis is fixed to the world.
+/// character.h: the dynamic layer: the body as rigid segments on ball joints (2012 paper, equation
+/// 1: D), moved by the Open Dynamics Engine or by the same equations solved along the tree; private.
+/// Joint torques move it, no motors; the pelvis is fixed to the world.
 #ifndef HIMC_CHARACTER_H
 #define HIMC_CHARACTER_H
 
@@ -13,11 +13,25 @@ typedef struct himc_character himc_character;
 himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *error);
 void himc_character_free(himc_character *character);
 
+/// Who solves the equations of a step. In the order of the words of `engine`.
+typedef enum himc_engine {
+    HIMC_ENGINE_TREE, ///< this library, along the tree (tree.c); the default
+    HIMC_ENGINE_ODE   ///< dWorldStep
+} himc_engine;
+
+/// Chooses the engine, from the next step on. Both make the same motion to rounding.
+HIMC_RT void himc_character_use(himc_character *character, himc_engine engine);
+HIMC_RT himc_engine himc_character_engine(const himc_character *character);
+
 /// Sets the body to a state. Only orientations and spins are used, the rest follows from them.
 HIMC_RT void himc_character_place(himc_character *character, const himc_body_state *state);
 
 /// Reads the body's state: the kinematic layer from the dynamic layer.
 HIMC_RT void himc_character_observe(const himc_character *character, himc_body_state *state);
+
+/// The articulated inertias at the present state, legs included: computed at most once a step, and
+/// valid until the next one.
+HIMC_RT const himc_articulation *himc_character_articulation(himc_character *character);
 
 /// Adds a force (world frame, N) at a segment's centre of mass during the next step only. Several
 /// forces add up; the pelvis is fixed and ignores them.

@@ -12,6 +12,25 @@ HIMC_RT void himc_articulate_resisting(const himc_skeleton *skeleton, const himc
                                        const himc_vec3 resistance[HIMC_JOINTS],
                                        himc_articulation *articulation);
 
+/// The articulated inertias of all segments, legs included.
+HIMC_RT void himc_articulate_all(const himc_skeleton *skeleton, const himc_body_state *state,
+                                 himc_articulation *articulation);
+
+/// What moves a segment on its joint (world frame).
+typedef struct tree_load {
+    himc_vec3 moment; ///< needed about the joint while nothing accelerates (N m)
+    himc_vec3 force;  ///< needed at the joint while nothing accelerates (N)
+    himc_vec3 gap;    ///< acceleration of the joint relative to that point of the parent (m/s^2)
+} tree_load;
+
+/// Solves the tree under loads (HIMC_SEGMENTS; the pelvis' is not read), which are overwritten: the
+/// angular accelerations of the segments (rad/s^2) and the accelerations of their joints (m/s^2).
+/// Only the segments of the articulation are written.
+HIMC_RT void himc_articulation_solve(const himc_skeleton *skeleton,
+                                     const himc_articulation *articulation,
+                                     tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS],
+                                     himc_vec3 acceleration[HIMC_SEGMENTS]);
+
 /// Acceleration of a drumstick tip (m/s^2) under the joints' relative accelerations (rad/s^2)
 /// (HIMC_JOINTS; NULL for zero).
 HIMC_RT himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *state,

@@ -354,7 +354,7 @@ static bool read_all(bvh *r)
 
 bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
-    bvh r = {.take = take, .text = himc_text_open(bytes, size), .error = error};
+    bvh r = {.take = take, .text = himc_text_open(bytes, size), .line = {bytes, 0}, .error = error};
     memcpy(take->format, "BVH", 4);
     take->first_frame = 1;
     take->format_up = himc_vec3_make(0, 1, 0);

@@ -145,7 +145,7 @@ static bool find_label(const c3d *r, int point, const char **text, size_t *lengt
     char name[24] = "LABELS";
     for (int k = 2; k < 256; k++) {
         const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
-        if (!labels || labels->dimensions == 0 || labels->size[0] == 0)
+        if (!labels || labels->type != -1 || labels->dimensions == 0 || labels->size[0] == 0)
             return false;
         if (himc_c3d_string(labels, point, text, length))
             return true;

@@ -10,6 +10,7 @@
 /// nothing outside [bytes, bytes + size) is read; the walk always moves forward.
 #include "capture/c3d_parameters.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -192,6 +193,7 @@ const c3d_parameter *himc_c3d_find(const c3d_parameters *p, const char *group, c
 
 double himc_c3d_number(const c3d_parameters *p, const c3d_parameter *q, int index, double fallback)
 {
+    assert(index >= 0);
     if (!q || index >= q->count || q->type == -1)
         return fallback;
     if (q->type == 1)
@@ -203,6 +205,7 @@ double himc_c3d_number(const c3d_parameters *p, const c3d_parameter *q, int inde
 
 bool himc_c3d_string(const c3d_parameter *q, int index, const char **text, size_t *length)
 {
+    assert(index >= 0);
     if (!q || q->type != -1 || q->dimensions == 0)
         return false;
     int width = q->size[0], rows = width ? q->count / width : 0;

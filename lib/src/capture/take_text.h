@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/// A part of a text; no 0 at its end.
+/// A part of a text; no 0 at its end. An empty one points somewhere too.
 typedef struct himc_span {
     const char *at;
     size_t length;
@@ -27,8 +27,8 @@ bool himc_text_filled_line(himc_text *text, himc_span *line);
 himc_span himc_span_trim(himc_span span);
 /// Takes the first word off `rest`; false if only blanks are left.
 bool himc_span_word(himc_span *rest, himc_span *word);
-/// Takes the cell up to the next `separator` off `rest`, trimmed. Call while `rest->at` is not
-/// NULL.
+/// Takes the cell up to the next `separator` off `rest`, trimmed. After the last one `rest->at` is
+/// NULL, and `rest` is not to be used any more.
 himc_span himc_span_cell(himc_span *rest, char separator);
 /// Compares with a word; upper and lower case are equal.
 bool himc_span_is(himc_span span, const char *word);

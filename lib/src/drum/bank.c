@@ -9,55 +9,69 @@
 /// p and s do not depend on h, so steps of two lengths, a sample and a substep, may follow each
 /// other in any order: the bank keeps a set of coefficients for each length.
 ///
-/// The order of all sums is fixed: four lanes, each in the order of the oscillators. So one run of
-/// n samples and n runs of one sample give the same bits, on any machine. Every 1024 steps the
-/// oscillators at the top that have fallen below 1e-15 m/s are set to rest and skipped until the
-/// next force: high modes die first, and denormal numbers never arise.
+/// After a force, the state makes one step of one sample. Then, as long as none acts, it makes steps
+/// of 64 samples, a pass; a readout's samples within it come from the state at its start. With C_n,
+/// S_n the coefficients of n samples, the readout rp p + rs s is after n samples
+///     y_n = C_n a + S_n b,   a = rp p + rs s,   b = rp s - rs p,
+/// taken from a table for n = 1 .. 16, eight samples at once, and from then on
+///     y_n = 2 C_8 y_(n-8) - (C_8^2 + S_8^2) y_(n-16).
+/// When a force ends the pass early, the state makes the steps of 32, 16, .. samples that lead there.
+/// So the steps hang on the forces alone, not on how many samples are asked for at a time, and a
+/// readout costs only when it is read.
+///
+/// The order of all sums is fixed (bank_kernel.h): the same bits on any machine. About every 1024
+/// samples the oscillators at the top that have fallen below 1e-15 m/s are set to rest and skipped
+/// until the next force: high modes die first, and denormal numbers never arise.
 #include "drum/bank.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LANES 4
-#define RUN_BLOCK 64 // samples per pass, chosen: all sums of a pass stay in the first-level cache
-#define QUIET 1e-15  // (m/s) of p and s; chosen: 300 dB below a stroke
-#define FLUSH_INTERVAL 1024 // steps between two searches for quiet oscillators; chosen: 20 ms
+#define LANES HIMC_BANK_LANES
+#define PASS HIMC_BANK_PASS
+#define POWERS 7            // coefficients are kept for 1, 2, 4, .. 64 samples
+#define QUIET 1e-15         // (m/s) of p and s; chosen: 300 dB below a stroke
+#define FLUSH_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
 #define HIGHEST 0.49        // of the sample rate; chosen: just below half, where aliasing begins
 #define ALIGNMENT 64        // (bytes) a cache line
 
-// two oscillators at once; each compiler turns this into one vector instruction with the same
-// result
-typedef double pair __attribute__((vector_size(2 * sizeof(double)), may_alias));
+// coefficients for a number of samples, or for a substep
+typedef struct rotation {
+    double *c, *s; // C, S
+} rotation;
 
-// a sum in four lanes; total() adds them in a fixed order
-typedef struct lanes {
-    pair a, b;
-} lanes;
-
-// coefficients for steps of one length
-typedef struct coefficients {
-    double *rotate_c, *rotate_s; // C, S
-    double *push_p, *push_s;     // added to p and s by 1 N
-} coefficients;
+// effect of a force during one step
+typedef struct effect {
+    double *p, *s; // added to p and s by 1 N
+} effect;
 
 struct himc_bank {
-    int capacity; // a multiple of LANES
-    int count;    // oscillators that are not silent
-    int live;     // of these, the first `live` (a multiple of LANES) are not at rest
-    int age;      // steps since the last search for quiet oscillators
+    const himc_bank_kernel *loops;
+    int capacity;  // a multiple of LANES
+    int count;     // oscillators that are not silent
+    int live;      // of these, the first `live` (a multiple of LANES) are not at rest
+    int age;       // samples since the last search for quiet oscillators
+    uint64_t pass; // number of the present pass
+    int at;        // samples that have passed in it
+    int length;    // of the present pass; 0 before it begins
+    bool forced;   // a force has acted: the next step is a single sample
     double *memory;
-    double *p, *s;               // state
-    double *rotate_c, *rotate_s; // coefficients of the present step length
-    double *push_p, *push_s;
-    coefficients steps[HIMC_STEP_LENGTHS];
+    double *p, *s;          // state at the start of the pass
+    rotation power[POWERS]; // of 2^k samples
+    rotation part;          // of a substep
+    effect whole, parted;   // in a sample, in a substep
+    rotation present;       // of a step of the present length
+    effect push;            // in it
+    himc_step_length step;
     int substeps;                          // of a sample
     double *omega, *decay, *mass, *damped; // w, d, m, w_d
     double *q_per_p;                       // 1/w_d
-    lanes sum[HIMC_BANK_READOUTS][RUN_BLOCK];
+    double *table, *twice, *fall;          // of himc_bank_waves
+    double *a, *b;
 };
 
-#define ARRAYS (7 + 4 * HIMC_STEP_LENGTHS)
+#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 4 + HIMC_BANK_TABLE)
 
 static size_t round_up(size_t n, size_t multiple)
 {
@@ -70,11 +84,34 @@ static void wake(himc_bank *bank)
     bank->live = (int)round_up((size_t)bank->count, LANES);
 }
 
+// takes the next array from the block
+static double *take(himc_bank *bank, double **free_memory)
+{
+    double *array = *free_memory;
+    *free_memory += bank->capacity;
+    return array;
+}
+
+static void share_memory(himc_bank *bank)
+{
+    double *rest = bank->memory;
+    double **single[] = {&bank->p,       &bank->s,       &bank->omega,   &bank->decay,
+                         &bank->mass,    &bank->damped,  &bank->q_per_p, &bank->twice,
+                         &bank->fall,    &bank->a,       &bank->b,       &bank->part.c,
+                         &bank->part.s,  &bank->whole.p, &bank->whole.s, &bank->parted.p,
+                         &bank->parted.s};
+    for (size_t i = 0; i < sizeof single / sizeof *single; i++)
+        *single[i] = take(bank, &rest);
+    for (int k = 0; k < POWERS; k++)
+        bank->power[k] = (rotation){take(bank, &rest), take(bank, &rest)};
+    bank->table = rest;
+}
+
 himc_bank *himc_bank_new(int capacity, himc_error *error)
 {
     capacity = (int)round_up((size_t)capacity, LANES);
     size_t length = (size_t)capacity, bytes = ARRAYS * length * sizeof(double);
-    himc_bank *bank = aligned_alloc(ALIGNMENT, round_up(sizeof *bank, ALIGNMENT));
+    himc_bank *bank = calloc(1, sizeof *bank);
     double *memory = aligned_alloc(ALIGNMENT, round_up(bytes, ALIGNMENT));
     if (!bank || !memory) {
         free(bank);
@@ -82,19 +119,13 @@ himc_bank *himc_bank_new(int capacity, himc_error *error)
         himc_error_set(error, "modes: no memory for %d modes", capacity);
         return NULL;
     }
-    memset(bank, 0, sizeof *bank);
     memset(memory, 0, bytes);
-    bank->capacity = capacity;
-    bank->memory = memory;
-    coefficients *whole = &bank->steps[HIMC_STEP_SAMPLE];
-    coefficients *part = &bank->steps[HIMC_STEP_SUBSTEP];
-    double **arrays[ARRAYS] = {&bank->p,         &bank->s,       &bank->omega,   &bank->decay,
-                               &bank->mass,      &bank->damped,  &bank->q_per_p, &whole->rotate_c,
-                               &whole->rotate_s, &whole->push_p, &whole->push_s, &part->rotate_c,
-                               &part->rotate_s,  &part->push_p,  &part->push_s};
-    for (int i = 0; i < ARRAYS; i++)
-        *arrays[i] = memory + (size_t)i * length;
-    bank->substeps = 1;
+    *bank = (himc_bank){.loops = himc_bank_kernel_fastest(),
+                        .capacity = capacity,
+                        .pass = 1,
+                        .memory = memory,
+                        .substeps = 1};
+    share_memory(bank);
     himc_bank_set_step(bank, HIMC_STEP_SAMPLE);
     return bank;
 }
@@ -105,6 +136,11 @@ void himc_bank_free(himc_bank *bank)
         return;
     free(bank->memory);
     free(bank);
+}
+
+void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel)
+{
+    bank->loops = kernel;
 }
 
 int himc_bank_padded(const himc_bank *bank)
@@ -124,26 +160,84 @@ void himc_bank_set_substeps(himc_bank *bank, int count)
 
 void himc_bank_set_step(himc_bank *bank, himc_step_length step)
 {
-    const coefficients *c = &bank->steps[step];
-    bank->rotate_c = c->rotate_c;
-    bank->rotate_s = c->rotate_s;
-    bank->push_p = c->push_p;
-    bank->push_s = c->push_s;
+    bank->step = step;
+    bank->present = step == HIMC_STEP_SUBSTEP ? bank->part : bank->power[0];
+    bank->push = step == HIMC_STEP_SUBSTEP ? bank->parted : bank->whole;
 }
 
-// coefficients of one oscillator for steps of length h
-static void find_coefficients(const coefficients *of, int i, const himc_oscillator *o,
-                              double damped, double h)
+// begins a new pass at the present state
+static void restart(himc_bank *bank)
+{
+    bank->pass++;
+    bank->at = bank->length = 0;
+}
+
+static void rotate(himc_bank *bank, const rotation *by)
+{
+    bank->loops->rotate(bank->p, bank->s, by->c, by->s, bank->live);
+}
+
+// brings the state to the present sample, which ends the pass
+static void arrive(himc_bank *bank)
+{
+    for (int k = POWERS - 1; k >= 0; k--)
+        if (bank->at >> k & 1)
+            rotate(bank, &bank->power[k]);
+    restart(bank);
+}
+
+// p and s of one oscillator at the present sample: the same numbers as by arrive
+static void present_state(const himc_bank *bank, int i, double *p, double *s)
+{
+    *p = bank->p[i];
+    *s = bank->s[i];
+    for (int k = POWERS - 1; k >= 0; k--) {
+        if (!(bank->at >> k & 1))
+            continue;
+        double c = bank->power[k].c[i], w = bank->power[k].s[i], before = *p;
+        *p = c * before + w * *s;
+        *s = c * *s - w * before;
+    }
+}
+
+// coefficients of one oscillator for a step of length h, and the effect of 1 N during it
+static void find_step(const rotation *by, const effect *push, int i, const himc_oscillator *o,
+                      double damped, double h)
 {
     double shrink = exp(-o->decay * h), half = sin(0.5 * damped * h);
     double c = shrink * cos(damped * h), s = shrink * sin(damped * h);
     // 1 - a11 = (1 - C) - d S/w_d without the cancellation in 1 - C
     double fall = -expm1(-o->decay * h) + 2 * shrink * half * half - o->decay / damped * s;
     double b1 = fall / (o->mass * o->omega * o->omega), b2 = s / (o->mass * damped);
-    of->rotate_c[i] = c;
-    of->rotate_s[i] = s;
-    of->push_p[i] = damped * b1;
-    of->push_s[i] = b2 + o->decay * b1;
+    by->c[i] = c;
+    by->s[i] = s;
+    push->p[i] = damped * b1;
+    push->s[i] = b2 + o->decay * b1;
+}
+
+// C_n, S_n of a pass from those of one sample
+static void find_powers(himc_bank *bank, int i)
+{
+    double c1 = bank->power[0].c[i], s1 = bank->power[0].s[i], c = c1, s = s1;
+    double *table = bank->table + (size_t)i * HIMC_BANK_TABLE;
+    for (int n = 1; n <= PASS; n = n < 16 ? n + 1 : 2 * n) {
+        if (n <= 16) {
+            double *t = table + (n > LANES ? 2 * LANES : 0) + (n - 1) % LANES;
+            t[0] = c;
+            t[LANES] = s;
+        }
+        for (int k = 1; k < POWERS; k++)
+            if (n == 1 << k) {
+                bank->power[k].c[i] = c;
+                bank->power[k].s[i] = s;
+            }
+        double next = n < 16 ? c * c1 - s * s1 : c * c - s * s;
+        s = n < 16 ? s * c1 + c * s1 : 2 * c * s;
+        c = next;
+    }
+    double c8 = bank->power[3].c[i], s8 = bank->power[3].s[i];
+    bank->twice[i] = 2 * c8;
+    bank->fall[i] = c8 * c8 + s8 * s8;
 }
 
 static void set_oscillator(himc_bank *bank, int i, const himc_oscillator *o, double h)
@@ -154,19 +248,18 @@ static void set_oscillator(himc_bank *bank, int i, const himc_oscillator *o, dou
     bank->mass[i] = o->mass;
     bank->damped[i] = damped;
     bank->q_per_p[i] = 1 / damped;
-    find_coefficients(&bank->steps[HIMC_STEP_SAMPLE], i, o, damped, h);
+    find_step(&bank->power[0], &bank->whole, i, o, damped, h);
+    find_powers(bank, i);
     if (bank->substeps > 1)
-        find_coefficients(&bank->steps[HIMC_STEP_SUBSTEP], i, o, damped, h / bank->substeps);
+        find_step(&bank->part, &bank->parted, i, o, damped, h / bank->substeps);
 }
 
+// brings oscillator i to rest, for good: it has no coefficients
 static void silence(himc_bank *bank, int i)
 {
-    bank->p[i] = bank->s[i] = 0;
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
-        const coefficients *c = &bank->steps[k];
-        c->rotate_c[i] = c->rotate_s[i] = c->push_p[i] = c->push_s[i] = 0;
-    }
-    bank->omega[i] = bank->decay[i] = bank->damped[i] = bank->mass[i] = bank->q_per_p[i] = 0;
+    for (int k = 0; k < ARRAYS - HIMC_BANK_TABLE; k++)
+        bank->memory[k * bank->capacity + i] = 0;
+    memset(bank->table + (size_t)i * HIMC_BANK_TABLE, 0, sizeof(double) * HIMC_BANK_TABLE);
 }
 
 // keeps q sqrt(K) and v sqrt(m): the same energy, the same phase
@@ -183,6 +276,7 @@ static void carry_over(himc_bank *bank, int i, const himc_oscillator *to, double
 void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count, double rate)
 {
     int i = 0;
+    arrive(bank);
     for (; i < count && oscillators[i].omega < 2 * HIMC_PI * HIGHEST * rate; i++) {
         if (i < bank->count)
             carry_over(bank, i, &oscillators[i], 1 / rate);
@@ -193,6 +287,7 @@ void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int coun
     for (; i < bank->capacity; i++)
         silence(bank, i);
     wake(bank);
+    bank->forced = true;
 }
 
 void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
@@ -204,12 +299,13 @@ void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *
         readout->p[i] = q - (v != 0 ? v * bank->decay[i] / bank->damped[i] : 0);
         readout->s[i] = v;
     }
+    readout->pass = 0;
 }
 
 double himc_bank_energy(const himc_bank *bank)
 {
     double sum = 0;
-    for (int i = 0; i < bank->count; i++) {
+    for (int i = 0; i < bank->live && i < bank->count; i++) {
         double q, v;
         himc_bank_state(bank, i, &q, &v);
         double w = bank->omega[i] * q;
@@ -223,82 +319,65 @@ void himc_bank_state(const himc_bank *bank, int index, double *q, double *v)
     *q = *v = 0;
     if (index >= bank->count)
         return;
-    *q = bank->p[index] / bank->damped[index];
-    *v = bank->s[index] - bank->decay[index] * *q;
+    double p, s;
+    present_state(bank, index, &p, &s);
+    *q = p / bank->damped[index];
+    *v = s - bank->decay[index] * *q;
 }
 
 void himc_bank_excite(himc_bank *bank, int index, double q, double v)
 {
     if (index >= bank->count)
         return;
+    arrive(bank);
     bank->p[index] = bank->damped[index] * q;
     bank->s[index] = v + bank->decay[index] * q;
     wake(bank);
+    bank->forced = true;
 }
 
 void himc_bank_rest(himc_bank *bank)
 {
     memset(bank->p, 0, sizeof(double) * (size_t)bank->capacity);
     memset(bank->s, 0, sizeof(double) * (size_t)bank->capacity);
-    bank->live = 0;
+    bank->live = bank->age = 0;
+    restart(bank);
 }
 
-static double total(const lanes *sum)
+// fills readout->ahead for the present pass
+static void look_ahead(const himc_bank *bank, himc_readout *readout)
 {
-    return (sum->a[0] + sum->a[1]) + (sum->b[0] + sum->b[1]);
+    himc_bank_waves waves = {bank->a, bank->b, bank->table, bank->twice, bank->fall};
+    bank->loops->weigh(bank->a, bank->b, readout->p, readout->s, bank->p, bank->s, bank->live);
+    bank->loops->ahead(&waves, bank->live, readout->ahead);
+    readout->pass = bank->pass;
 }
 
-// the readout of the present state
-static lanes read_lanes(const himc_bank *bank, const himc_readout *readout)
+double himc_bank_read(const himc_bank *bank, himc_readout *readout)
 {
-    const pair *p = (const pair *)bank->p, *s = (const pair *)bank->s;
-    const pair *rp = (const pair *)readout->p, *rs = (const pair *)readout->s;
-    lanes sum = {{0}, {0}};
-    for (int i = 0; i < bank->live / 2; i += 2) {
-        sum.a += rp[i] * p[i] + rs[i] * s[i];
-        sum.b += rp[i + 1] * p[i + 1] + rs[i + 1] * s[i + 1];
-    }
-    return sum;
-}
-
-double himc_bank_read(const himc_bank *bank, const himc_readout *readout)
-{
-    lanes sum = read_lanes(bank, readout);
-    return total(&sum);
-}
-
-// sum of x[i] y[i] over the first `length`
-static double dot(const double *x, const double *y, int length)
-{
-    const pair *a = (const pair *)x, *b = (const pair *)y;
-    lanes sum = {{0}, {0}};
-    for (int i = 0; i < length / 2; i += 2) {
-        sum.a += a[i] * b[i];
-        sum.b += a[i + 1] * b[i + 1];
-    }
-    return total(&sum);
+    if (bank->at == 0)
+        return bank->loops->read(readout->p, readout->s, bank->p, bank->s, bank->live);
+    if (readout->pass != bank->pass)
+        look_ahead(bank, readout);
+    return readout->ahead[bank->at - 1];
 }
 
 double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
 {
     double sum = 0;
-    for (int i = 0; i < bank->count; i++) {
-        double p = bank->rotate_c[i] * bank->p[i] + bank->rotate_s[i] * bank->s[i];
-        double s = bank->rotate_c[i] * bank->s[i] - bank->rotate_s[i] * bank->p[i];
-        sum += readout->p[i] * p + readout->s[i] * s;
+    for (int i = 0; i < bank->live; i++) {
+        double p, s, c = bank->present.c[i], w = bank->present.s[i];
+        present_state(bank, i, &p, &s);
+        sum += readout->p[i] * (c * p + w * s) + readout->s[i] * (c * s - w * p);
     }
     return sum;
 }
 
-double himc_bank_displacement(const himc_bank *bank, const himc_readout *readout)
-{
-    return dot(readout->p, bank->p, bank->live);
-}
-
-// Sets the quiet oscillators at the top to rest. Called only at multiples of FLUSH_INTERVAL steps,
-// so the result does not depend on the sizes of blocks.
+// Sets the quiet oscillators at the top to rest, from time to time.
 static void flush_quiet(himc_bank *bank)
 {
+    if (bank->age < FLUSH_INTERVAL)
+        return;
     bank->age = 0;
     int live = bank->live;
     while (live > 0 && fabs(bank->p[live - 1]) < QUIET && fabs(bank->s[live - 1]) < QUIET) {
@@ -308,104 +387,75 @@ static void flush_quiet(himc_bank *bank)
     bank->live = (int)round_up((size_t)live, LANES);
 }
 
-// Runs four oscillators through n samples and adds their part of two readouts. States and
-// coefficients stay in registers; with more than two readouts, only the last call writes the state
-// back.
-static void rotate_block(himc_bank *bank, int at, int n, const himc_readout *first,
-                         const himc_readout *second, lanes *one, lanes *two, bool last)
+// a step of its own: a sample after a force, or a substep
+static void single_step(himc_bank *bank)
 {
-    pair *p = (pair *)(bank->p + at), *s = (pair *)(bank->s + at);
-    const pair *c = (const pair *)(bank->rotate_c + at), *w = (const pair *)(bank->rotate_s + at);
-    const pair *rp = (const pair *)(first->p + at), *rs = (const pair *)(first->s + at);
-    const pair *up = (const pair *)(second->p + at), *us = (const pair *)(second->s + at);
-    pair c0 = c[0], c1 = c[1], w0 = w[0], w1 = w[1];
-    pair rp0 = rp[0], rp1 = rp[1], rs0 = rs[0], rs1 = rs[1];
-    pair up0 = up[0], up1 = up[1], us0 = us[0], us1 = us[1];
-    pair p0 = p[0], p1 = p[1], s0 = s[0], s1 = s[1];
-    for (int i = 0; i < n; i++) {
-        pair next0 = c0 * p0 + w0 * s0, next1 = c1 * p1 + w1 * s1;
-        s0 = c0 * s0 - w0 * p0;
-        s1 = c1 * s1 - w1 * p1;
-        p0 = next0;
-        p1 = next1;
-        one[i].a += rp0 * p0 + rs0 * s0;
-        one[i].b += rp1 * p1 + rs1 * s1;
-        two[i].a += up0 * p0 + us0 * s0;
-        two[i].b += up1 * p1 + us1 * s1;
-    }
-    if (!last)
-        return;
-    p[0] = p0;
-    p[1] = p1;
-    s[0] = s0;
-    s[1] = s1;
+    arrive(bank);
+    rotate(bank, &bank->present);
+    bank->age++;
+    bank->forced = false;
 }
 
-// Runs all oscillators through one sample: here it is faster to keep the sum in registers.
-static void rotate_sample(himc_bank *bank, const himc_readout *const *readouts, int count)
+// samples that the present pass can give, at most n; begins the next one at its end
+static int go_on(himc_bank *bank, int n)
 {
-    pair *p = (pair *)bank->p, *s = (pair *)bank->s;
-    const pair *c = (const pair *)bank->rotate_c, *w = (const pair *)bank->rotate_s;
-    const pair *rp = (const pair *)readouts[0]->p, *rs = (const pair *)readouts[0]->s;
-    lanes sum = {{0}, {0}};
-    for (int i = 0; i < bank->live / 2; i += 2) {
-        pair p0 = c[i] * p[i] + w[i] * s[i], p1 = c[i + 1] * p[i + 1] + w[i + 1] * s[i + 1];
-        pair s0 = c[i] * s[i] - w[i] * p[i], s1 = c[i + 1] * s[i + 1] - w[i + 1] * p[i + 1];
-        p[i] = p0;
-        p[i + 1] = p1;
-        s[i] = s0;
-        s[i + 1] = s1;
-        sum.a += rp[i] * p0 + rs[i] * s0;
-        sum.b += rp[i + 1] * p1 + rs[i + 1] * s1;
-    }
-    bank->sum[0][0] = sum;
-    for (int k = 1; k < count; k++)
-        bank->sum[k][0] = read_lanes(bank, readouts[k]);
-}
-
-static void count_steps(himc_bank *bank, int n)
-{
-    bank->age += n;
-    if (bank->age == FLUSH_INTERVAL)
+    if (bank->at == bank->length) {
+        arrive(bank);
         flush_quiet(bank);
-}
-
-static void run_block(himc_bank *bank, int n, const himc_readout *const *readouts, int count,
-                      double *const *out, int done)
-{
-    if (n == 1) {
-        rotate_sample(bank, readouts, count);
-    } else {
-        memset(bank->sum, 0, sizeof bank->sum[0] * (size_t)(count + count % 2));
-        for (int at = 0; at < bank->live; at += LANES)
-            for (int k = 0; k < count; k += 2)
-                rotate_block(bank, at, n, readouts[k], readouts[k + 1 < count ? k + 1 : k],
-                             bank->sum[k], bank->sum[k + 1], k + 2 >= count);
+        bank->length = PASS;
     }
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < n; i++)
-            out[k][done + i] = total(&bank->sum[k][i]);
-    count_steps(bank, n);
+    int left = bank->length - bank->at;
+    return n < left ? n : left;
 }
 
-void himc_bank_run(himc_bank *bank, int n, const himc_readout *const *readouts, int count,
+// the samples after `at` of the present pass
+static void copy_ahead(const himc_bank *bank, himc_readout *readout, int n, double *out)
+{
+    if (readout->pass != bank->pass)
+        look_ahead(bank, readout);
+    memcpy(out, readout->ahead + bank->at, sizeof *out * (size_t)n);
+}
+
+void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int count,
                    double *const *out)
 {
-    for (int done = 0; done < n;) {
-        int block = n - done < RUN_BLOCK ? n - done : RUN_BLOCK;
-        if (block > FLUSH_INTERVAL - bank->age)
-            block = FLUSH_INTERVAL - bank->age;
-        run_block(bank, block, readouts, count, out, done);
-        done += block;
+    for (int done = 0, run; done < n; done += run) {
+        bool single = bank->forced || bank->step == HIMC_STEP_SUBSTEP;
+        run = single ? 1 : go_on(bank, n - done);
+        if (single)
+            single_step(bank);
+        for (int k = 0; k < count; k++) {
+            if (!out[k])
+                continue;
+            if (bank->live == 0)
+                memset(out[k] + done, 0, sizeof **out * (size_t)run);
+            else if (single)
+                out[k][done] = himc_bank_read(bank, readouts[k]);
+            else
+                copy_ahead(bank, readouts[k], run, out[k] + done);
+        }
+        bank->at += single ? 0 : run;
+        bank->age += single ? 0 : run;
     }
+}
+
+typedef double pair __attribute__((vector_size(2 * sizeof(double)), may_alias));
+typedef struct lanes {
+    pair a, b;
+} lanes;
+static double total(const lanes *sum)
+{
+    return (sum->a[0] + sum->a[1]) + (sum->b[0] + sum->b[1]);
 }
 
 void himc_bank_run_coupled(himc_bank *bank, const double *weight, himc_tension_coupling *coupling)
 {
+    arrive(bank);
+    bank->forced = false;
     pair *p = (pair *)bank->p, *s = (pair *)bank->s, *g = (pair *)coupling->shape;
-    const pair *c = (const pair *)bank->rotate_c, *w = (const pair *)bank->rotate_s;
+    const pair *c = (const pair *)bank->present.c, *w = (const pair *)bank->present.s;
     const pair *a = (const pair *)weight, *b = (const pair *)bank->q_per_p;
-    const pair *push_p = (const pair *)bank->push_p;
+    const pair *push_p = (const pair *)bank->push.p;
     lanes change = {{0}, {0}}, compliance = {{0}, {0}};
     for (int i = 0; i < bank->live / 2; i += 2) {
         pair q0 = p[i], q1 = p[i + 1];
@@ -424,7 +474,8 @@ void himc_bank_run_coupled(himc_bank *bank, const double *weight, himc_tension_c
         g[i] = (pair){0};
     coupling->change = total(&change);
     coupling->compliance = total(&compliance);
-    count_steps(bank, 1);
+    bank->age++;
+    flush_quiet(bank);
 }
 
 void himc_bank_coupling_weights(const himc_bank *bank, const double *on_square, double *weight)
@@ -435,37 +486,25 @@ void himc_bank_coupling_weights(const himc_bank *bank, const double *on_square, 
 
 void himc_bank_push(himc_bank *bank, const double *shape, double force)
 {
-    pair *p = (pair *)bank->p, *s = (pair *)bank->s;
-    const pair *push_p = (const pair *)bank->push_p, *push_s = (const pair *)bank->push_s;
-    const pair *a = (const pair *)shape;
+    arrive(bank);
     wake(bank);
-    for (int i = 0; i < bank->live / 2; i++) {
-        pair f = a[i] * force;
-        p[i] += push_p[i] * f;
-        s[i] += push_s[i] * f;
-    }
-}
-
-double himc_bank_response(const himc_bank *bank, const double *shape, const himc_readout *readout)
-{
-    const pair *push_p = (const pair *)bank->push_p, *push_s = (const pair *)bank->push_s;
-    const pair *rp = (const pair *)readout->p, *rs = (const pair *)readout->s,
-               *a = (const pair *)shape;
-    lanes sum = {{0}, {0}};
-    for (int i = 0; i < bank->capacity / 2; i += 2) {
-        sum.a += a[i] * (rp[i] * push_p[i] + rs[i] * push_s[i]);
-        sum.b += a[i + 1] * (rp[i + 1] * push_p[i + 1] + rs[i + 1] * push_s[i + 1]);
-    }
-    return total(&sum);
+    bank->forced = true;
+    bank->loops->push(bank->p, bank->s, bank->push.p, bank->push.s, shape, force, bank->live);
 }
 
 void himc_bank_step_response(const himc_bank *bank, const himc_readout *readout, double *response)
 {
     for (int i = 0; i < bank->capacity; i++)
-        response[i] = readout->p[i] * bank->push_p[i] + readout->s[i] * bank->push_s[i];
+        response[i] = readout->p[i] * bank->push.p[i] + readout->s[i] * bank->push.s[i];
+}
+
+double himc_bank_response(const himc_bank *bank, const double *shape, const himc_readout *readout)
+{
+    himc_bank_step_response(bank, readout, bank->a);
+    return himc_bank_sum(bank, shape, bank->a);
 }
 
 double himc_bank_sum(const himc_bank *bank, const double *shape, const double *response)
 {
-    return dot(shape, response, bank->capacity);
+    return bank->loops->dot(shape, response, bank->capacity);
 }

@@ -8,6 +8,8 @@
 
 #include "himc/base.h"
 
+#include "drum/bank_kernel.h"
+
 typedef struct himc_oscillator {
     double omega; ///< w, undamped (rad/s)
     double decay; ///< d (1/s), 0 <= d < w
@@ -20,9 +22,12 @@ typedef struct himc_bank himc_bank;
 himc_bank *himc_bank_new(int capacity, himc_error *error);
 void himc_bank_free(himc_bank *bank);
 
-/// Length of every array marked (padded) below: the capacity rounded up to a multiple of 4. The
-/// caller aligns these arrays to 16 bytes; entries past the last oscillator are 0.
+/// Length of every array marked (padded) below: the capacity rounded up to a multiple of 8. The
+/// caller aligns these arrays to 64 bytes; entries past the last oscillator are 0.
 HIMC_RT int himc_bank_padded(const himc_bank *bank);
+/// Replaces the loops that the bank was made with, the fastest of this machine. All give the same
+/// bits; for tests.
+void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel);
 
 /// Sets these `count` oscillators (in order of frequency, at most the capacity) at `rate` (Hz).
 /// Oscillators that were in use keep their phase and energy. From the first one at or above 0.49
@@ -47,23 +52,22 @@ HIMC_RT int himc_bank_count(const himc_bank *bank);
 /// A linear readout of the state, sum_i (weight on q_i) q_i + (weight on q_i') q_i', in the bank's
 /// own coordinates (bank.c). Valid until the next himc_bank_set.
 typedef struct himc_readout {
-    double *p, *s; ///< owned by the caller (padded)
+    double *p, *s;                ///< owned by the caller (padded)
+    uint64_t pass;                ///< to which `ahead` belongs; the caller begins with 0
+    double ahead[HIMC_BANK_PASS]; ///< its values in the samples of that pass
 } himc_readout;
 
 /// Fills `readout` from weights on displacements and on velocities (either may be NULL).
 HIMC_RT void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
                                himc_readout *readout);
 /// Value of the readout now.
-HIMC_RT double himc_bank_read(const himc_bank *bank, const himc_readout *readout);
+HIMC_RT double himc_bank_read(const himc_bank *bank, himc_readout *readout);
 /// Value of the readout one step later if no force acts.
 HIMC_RT double himc_bank_peek(const himc_bank *bank, const himc_readout *readout);
-/// himc_bank_read for a readout of displacements alone.
-HIMC_RT double himc_bank_displacement(const himc_bank *bank, const himc_readout *readout);
 
-/// Runs `n` samples without force: out[k][i] is the value of readouts[k] (1 .. HIMC_BANK_READOUTS)
-/// after sample i.
-#define HIMC_BANK_READOUTS 10 ///< the pickups (8) and the watched point, rounded up to pairs
-HIMC_RT void himc_bank_run(himc_bank *bank, int n, const himc_readout *const *readouts, int count,
+/// Runs `n` samples (or one substep) without force: out[k][i] is the value of readouts[k] after
+/// sample i. What is not wanted (out[k] is NULL) is not computed.
+HIMC_RT void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int count,
                            double *const *out);
 
 /// What a spring on the sum of squares Q = sum_i a_i q_i^2/2 sees in a step.

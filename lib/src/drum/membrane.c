@@ -23,6 +23,7 @@
 // arrays of a core: seven of its own, those of each output, those of each strike point
 #define ARRAYS (7 + (HIMC_PICKUPS + 1) * (2 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
+#define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
 
 static void core_free(core *c)
@@ -33,7 +34,7 @@ static void core_free(core *c)
     free(c->memory);
 }
 
-// takes the next array from the block; 16-byte alignment, as the bank requires
+// takes the next array from the block; its length keeps the alignment that the bank requires
 static double *take(double **memory, int length)
 {
     double *array = *memory;
@@ -44,7 +45,7 @@ static double *take(double **memory, int length)
 static himc_readout take_readout(double **memory, int length)
 {
     double *p = take(memory, length);
-    return (himc_readout){p, take(memory, length)};
+    return (himc_readout){.p = p, .s = take(memory, length)};
 }
 
 static output take_output(double **memory, int length)
@@ -172,10 +173,24 @@ static void find_pickups(himc_membrane *m)
         find_pickup(m, i);
 }
 
+// points of pickups that a smaller head no longer has move to its rim
+static void keep_pickups_on_head(himc_membrane *m)
+{
+    for (int i = 0; i < m->pickup_count; i++) {
+        himc_pickup *p = &m->pickups[i];
+        double r = hypot(p->x, p->y);
+        if (p->kind != HIMC_PICKUP_POINT || r <= m->head.radius)
+            continue;
+        p->x *= (1 - RIM_ROUNDING) * m->head.radius / r;
+        p->y *= (1 - RIM_ROUNDING) * m->head.radius / r;
+    }
+}
+
 // after head, rate or core have changed
 static void retune(himc_membrane *m)
 {
     core *c = &m->core;
+    keep_pickups_on_head(m);
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
@@ -257,7 +272,7 @@ static sounds read_sounds(himc_membrane *m)
 {
     sounds s = {0};
     for (int i = 0; i < m->pickup_count; i++) {
-        const himc_readout *readout = &m->core.pickups[i].readout;
+        himc_readout *readout = &m->core.pickups[i].readout;
         const declick *d = &m->declicks[i];
         s.of[i] = (sound_pair){himc_bank_read(m->core.bank, readout) + declick_at(d, d->at - 1),
                                himc_bank_peek(m->core.bank, readout) + declick_at(d, d->at)};

@@ -83,9 +83,9 @@ strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, doub
     return oldest;
 }
 
-double himc_strike_point_displacement(const himc_membrane *membrane, const strike_point *s)
+double himc_strike_point_displacement(const himc_membrane *membrane, strike_point *s)
 {
-    return himc_bank_displacement(membrane->core.bank, &s->readout);
+    return himc_bank_read(membrane->core.bank, &s->readout);
 }
 
 double himc_strike_point_film_coupling(const himc_membrane *membrane, const strike_point *s)
@@ -149,8 +149,8 @@ double himc_membrane_rise(const himc_membrane *membrane)
 // runs n steps without the film; adds the declicks to the sound
 static void run_free(himc_membrane *m, int n, double *const *sound, double *watched)
 {
-    const core *c = &m->core;
-    const himc_readout *readouts[HIMC_PICKUPS + 1];
+    core *c = &m->core;
+    himc_readout *readouts[HIMC_PICKUPS + 1];
     double *out[HIMC_PICKUPS + 1];
     int count = m->pickup_count;
     for (int k = 0; k < count; k++) {
@@ -163,11 +163,12 @@ static void run_free(himc_membrane *m, int n, double *const *sound, double *watc
     m->applied_count = 0;
     for (int k = 0; k < count; k++) {
         declick *d = &m->declicks[k];
-        for (int i = 0; i < n && m->ends_sample && d->at < d->length; i++)
-            sound[k][i] += declick_at(d, d->at++);
-        m->sound[k] = sound[k][n - 1];
+        for (int i = 0; i < n && m->ends_sample && d->at <= d->length; i++, d->at++)
+            if (sound[k])
+                sound[k][i] += declick_at(d, d->at);
+        m->sound[k] = sound[k] ? sound[k][n - 1] : 0;
     }
-    m->watched = watched[n - 1];
+    m->watched = watched ? watched[n - 1] : 0;
 }
 
 // runs one step of the modes with the film stretched; finds the terms of the film's force
@@ -183,10 +184,10 @@ static void run_stretched(himc_membrane *m)
     for (int k = 0; k < m->pickup_count; k++) {
         declick *d = &m->declicks[k];
         m->sound[k] = himc_bank_read(c->bank, &c->pickups[k].readout);
-        if (m->ends_sample && d->at < d->length)
+        if (m->ends_sample && d->at <= d->length)
             m->sound[k] += declick_at(d, d->at++);
     }
-    m->watched = himc_bank_displacement(c->bank, &c->watched.readout);
+    m->watched = himc_bank_read(c->bank, &c->watched.readout);
 }
 
 // the highest rise of tension that the energy in the head could give, per tension
@@ -242,13 +243,15 @@ void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, dou
     for (; i < n && (membrane->film.on || membrane->push_count > 0); i++) {
         himc_membrane_end_step(membrane, himc_membrane_free_step(membrane));
         for (int k = 0; k < membrane->pickup_count; k++)
-            sound[k][i] = membrane->sound[k];
-        watched[i] = membrane->watched;
+            if (sound[k])
+                sound[k][i] = membrane->sound[k];
+        if (watched)
+            watched[i] = membrane->watched;
     }
     for (int k = 0; k < membrane->pickup_count; k++)
-        rest[k] = sound[k] + i;
+        rest[k] = sound[k] ? sound[k] + i : NULL;
     if (i < n)
-        run_free(membrane, n - i, rest, watched + i);
+        run_free(membrane, n - i, rest, watched ? watched + i : NULL);
 }
 
 void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)

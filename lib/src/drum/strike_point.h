@@ -17,7 +17,7 @@ typedef struct strike_point strike_point;
 /// changes.
 HIMC_RT strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y);
 /// Displacement now (m, up positive).
-HIMC_RT double himc_strike_point_displacement(const himc_membrane *membrane, const strike_point *s);
+HIMC_RT double himc_strike_point_displacement(const himc_membrane *membrane, strike_point *s);
 /// Number of substeps of a sample with a stiff contact: each lasts 5.2 microseconds or less.
 HIMC_RT int himc_membrane_substeps(const himc_membrane *membrane);
 /// The next step is substep `index` (0 .. count - 1) of `count` in a sample. Substep 0 of 1 is a

@@ -77,18 +77,20 @@ void himc_body_take_up(performance_body *b)
     himc_character_place(b->character, &b->state);
 }
 
-void himc_body_init_controller(performance_body *b, const himc_controller_config *config,
+void himc_body_init_controller(performance_body *b, const performance_settings *s,
                                const himc_pose *rest)
 {
     himc_body_state state;
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
-    himc_controller_init(&b->controller, config, &b->skeleton, &state);
+    himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     b->controller.saturation = &b->saturation;
+    himc_character_use(b->character, s->engine);
 }
 
-void himc_body_configure(performance_body *b, const himc_controller_config *config)
+void himc_body_configure(performance_body *b, const performance_settings *s)
 {
-    himc_controller_configure(&b->controller, config);
+    himc_controller_configure(&b->controller, &s->control);
+    himc_character_use(b->character, s->engine);
 }
 
 void himc_body_set_limits(performance_body *b, const himc_limits *limits)

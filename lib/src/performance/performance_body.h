@@ -47,10 +47,11 @@ bool himc_body_build(performance_body *body, const performance_settings *setting
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
 /// Sets the simulated body to the last kinematic pose.
 HIMC_RT void himc_body_take_up(performance_body *body);
-/// A new controller for this body, made for the resting posture.
-void himc_body_init_controller(performance_body *body, const himc_controller_config *config,
+/// A new controller for this body, made for the resting posture; and the engine of the settings.
+void himc_body_init_controller(performance_body *body, const performance_settings *settings,
                                const himc_pose *rest);
-HIMC_RT void himc_body_configure(performance_body *body, const himc_controller_config *config);
+/// Other settings of controller and engine for the same body.
+HIMC_RT void himc_body_configure(performance_body *body, const performance_settings *settings);
 /// Joint limits from now on; NULL for none.
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
 /// Sets the counts of limits to zero.

@@ -235,7 +235,8 @@ typedef struct near_sticks {
     int below[HIMC_HANDS]; // drum, or -1
     himc_vec3 local[HIMC_HANDS];
     double velocity[HIMC_HANDS]; // at the beginning of the step (m/s)
-    himc_articulation art;
+    const himc_articulation *art;
+    himc_articulation kinematic; // in `ik`, where the body is not simulated
     himc_vec3 relative[HIMC_JOINTS];
 } near_sticks;
 
@@ -251,9 +252,13 @@ static void find_near(performance_contacts *c, const contact_scene *s, near_stic
     }
     if (!any)
         return;
-    himc_articulate(&b->plant, &b->state, &near->art);
-    if (!is_kinematic(s))
-        himc_forward_dynamics(&b->plant, &b->state, &near->art, b->torque, NULL, near->relative);
+    if (is_kinematic(s)) {
+        himc_articulate(&b->plant, &b->state, &near->kinematic);
+        near->art = &near->kinematic;
+        return;
+    }
+    near->art = himc_character_articulation(b->character);
+    himc_forward_dynamics(&b->plant, &b->state, near->art, b->torque, NULL, near->relative);
 }
 
 static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int n,
@@ -266,7 +271,7 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
         if (near->below[hand] == drum) {
             stick_contact *contact = &c->hand[hand];
             contact->drum = drum;
-            load_stick(contact, s, (himc_hand)hand, near->local[hand], &near->art, near->relative);
+            load_stick(contact, s, (himc_hand)hand, near->local[hand], near->art, near->relative);
             near->velocity[hand] = contact->stick.velocity;
             sticks[count] = &contact->stick;
             forces[count++] = c->force[hand];

@@ -144,8 +144,9 @@ static void describe_control(const himc_performance *p, reader to)
              word(HIMC_COMMAND_COUPLING, s->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY)
                  .text);
     to.line(to.user, text);
-    snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz",
-             p->clock.physics_rate, p->clock.task_rate, p->clock.sample_rate);
+    snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz, engine %s",
+             p->clock.physics_rate, p->clock.task_rate, p->clock.sample_rate,
+             word(HIMC_COMMAND_ENGINE, (int)s->engine).text);
     to.line(to.user, text);
 }
 

@@ -2,6 +2,7 @@
 #ifndef HIMC_PERFORMANCE_SETTINGS_H
 #define HIMC_PERFORMANCE_SETTINGS_H
 
+#include "body/character.h"
 #include "control/controller.h"
 #include "himc/performance.h"
 
@@ -17,6 +18,7 @@ typedef struct performance_settings {
     himc_skeleton_config skeleton;
     double weight[HIMC_SEGMENTS]; ///< mass of each simulated segment over its assumed mass
     himc_controller_config control;
+    himc_engine engine;
     himc_limits_kind limits;
     himc_grip grip;
     bool one_way; ///< the head's vibration does not push back on the stick

@@ -37,6 +37,7 @@ performance_settings himc_settings_default(const himc_performance_config *config
                               .task_rate = config->task_rate,
                               .skeleton = himc_skeleton_default(),
                               .control = himc_controller_config_default(),
+                              .engine = HIMC_ENGINE_TREE,
                               .limits = HIMC_LIMITS_OFF,
                               .grip = HIMC_GRIP_GERMAN};
     for (int i = 0; i < HIMC_SEGMENTS; i++)
@@ -52,7 +53,7 @@ static void put_together(performance_motion *motion, performance_body *body,
     himc_motion_build(motion, &body->skeleton, s, t);
     himc_body_place(body, &motion->from);
     himc_motion_resting_pose(motion, &rest);
-    himc_body_init_controller(body, &s->control, &rest);
+    himc_body_init_controller(body, s, &rest);
 }
 
 /// The parts that need memory.
@@ -151,7 +152,7 @@ void himc_performance_restart_steps(himc_performance *p)
 void himc_performance_adopt(himc_performance *p, const performance_settings *s)
 {
     p->settings = *s;
-    himc_body_configure(p->body, &s->control);
+    himc_body_configure(p->body, s);
 }
 
 void himc_performance_embody(himc_performance *p, const performance_settings *wanted,

@@ -1,0 +1,95 @@
+/// tree.c: the equations of ODE's dWorldStep, solved along the tree of ball joints.
+///
+/// dWorldStep finds forces at the joints such that, at the end of the step, the two bodies of each
+/// joint approach with a velocity that closes the share ERP of its gap,
+///     v+ + w+ x c - (v_p+ + w_p+ x c_p) = ERP / h gap,
+/// and solves all joints at once. Divided by h this is an acceleration of the joint relative to its
+/// place on the parent,
+///     g = ERP / h^2 gap + 1 / h (velocity of the parent there - velocity of the joint),
+/// so the blocks of fwdyn.c eliminate it in one pass inwards and one outwards. Constraint force
+/// mixing is zero.
+///
+/// The gyroscopic moment is implicit (Lacoursiere, Stabilizing gyroscopic forces in rigid multibody
+/// simulations, 2006): I w+ = L + h L x w+ with the angular momentum L = I w, so the moment is
+/// L x w+. About the segment's axes, with I diagonal,
+///     w+ = (adj(I) L + h (I L) x L + h^2 L |L|^2) / (det I + h^2 L' I L).
+///
+/// Then v+ = v + h a, x+ = x + h v+, and q+ = q + h / 2 w+ q, made a unit quaternion.
+#include "body/tree.h"
+
+// moment of the gyroscopic term (world frame, N m)
+static himc_vec3 gyroscopic(himc_vec3 i, const himc_mat3 *rotation, himc_vec3 spin, double h)
+{
+    himc_vec3 w = himc_mat3_apply_transposed(rotation, spin);
+    himc_vec3 l = {i.x * w.x, i.y * w.y, i.z * w.z};
+    himc_vec3 il = {i.x * l.x, i.y * l.y, i.z * l.z};
+    himc_vec3 adj = {i.y * i.z * l.x, i.z * i.x * l.y, i.x * i.y * l.z};
+    double det = i.x * i.y * i.z + h * h * himc_vec3_dot(l, il);
+    // the part along L has no moment
+    himc_vec3 after = himc_vec3_madd(adj, h, himc_vec3_cross(il, l));
+    return himc_mat3_apply(rotation, himc_vec3_scale(himc_vec3_cross(l, after), 1 / det));
+}
+
+// velocity of a segment's joint
+static himc_vec3 joint_velocity(const himc_articulation *art, const segment_states *s, int i)
+{
+    return himc_vec3_sub(s->velocity[i], himc_vec3_cross(s->joints.spin[i], art->center[i]));
+}
+
+// g
+static himc_vec3 closing(const himc_articulation *art, const segment_states *s,
+                         const himc_vec3 *velocity, int i, int p, double erp, double h)
+{
+    const himc_body_state *b = &s->joints;
+    himc_vec3 r = art->lever[i];
+    himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], r), b->origin[i]);
+    himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], r));
+    himc_vec3 rate = himc_vec3_sub(there, velocity[i]);
+    return himc_vec3_scale(himc_vec3_madd(rate, erp / h, gap), 1 / h);
+}
+
+static void fill_loads(const himc_skeleton *skeleton, const himc_articulation *art,
+                       const segment_forces *f, const segment_states *s, double erp, double h,
+                       tree_load load[HIMC_SEGMENTS])
+{
+    himc_vec3 velocity[HIMC_SEGMENTS];
+    velocity[0] = himc_vec3_make(0, 0, 0);
+    for (int i = 1; i < art->end; i++) {
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 torque =
+            gyroscopic(segment->inertia, &s->joints.rotation[i], s->joints.spin[i], h);
+        torque = himc_vec3_add(torque, f->torque[i]);
+        velocity[i] = joint_velocity(art, s, i);
+        load[i].force = himc_vec3_scale(f->force[i], -1);
+        load[i].force.z += segment->mass * HIMC_GRAVITY;
+        load[i].moment = himc_vec3_sub(himc_vec3_cross(art->center[i], load[i].force), torque);
+        load[i].gap = closing(art, s, velocity, i, segment->parent, erp, h);
+    }
+}
+
+// a segment under its accelerations: that of the joint and the angular one
+static void integrate(const himc_segment *segment, himc_vec3 center, himc_vec3 a, himc_vec3 alpha,
+                      double h, segment_states *s, int i)
+{
+    himc_body_state *b = &s->joints;
+    a = himc_vec3_add(a, himc_vec3_cross(alpha, center));
+    s->velocity[i] = himc_vec3_madd(s->velocity[i], h, a);
+    s->position[i] = himc_vec3_madd(s->position[i], h, s->velocity[i]);
+    b->spin[i] = himc_vec3_madd(b->spin[i], h, alpha);
+    himc_vec3 w = himc_vec3_scale(b->spin[i], 0.5 * h);
+    himc_quat q = b->orientation[i], dq = himc_quat_mul((himc_quat){0, w.x, w.y, w.z}, q);
+    b->orientation[i] = himc_quat_unit((himc_quat){q.w + dq.w, q.x + dq.x, q.y + dq.y, q.z + dq.z});
+    b->rotation[i] = himc_mat3_from_quat(b->orientation[i]);
+    b->origin[i] = himc_vec3_sub(s->position[i], himc_mat3_apply(&b->rotation[i], segment->center));
+}
+
+void himc_tree_step(const himc_skeleton *skeleton, const himc_articulation *art,
+                    const segment_forces *forces, double erp, double h, segment_states *states)
+{
+    tree_load load[HIMC_SEGMENTS];
+    himc_vec3 alpha[HIMC_SEGMENTS], a[HIMC_SEGMENTS];
+    fill_loads(skeleton, art, forces, states, erp, h, load);
+    himc_articulation_solve(skeleton, art, load, alpha, a);
+    for (int i = 1; i < art->end; i++)
+        integrate(&skeleton->segment[i], art->center[i], a[i], alpha[i], h, states, i);
+}

@@ -1,0 +1,27 @@
+/// tree.h: one step of rigid segments on ball joints, as the Open Dynamics Engine's dWorldStep makes
+/// it, solved along the tree; private.
+#ifndef HIMC_TREE_H
+#define HIMC_TREE_H
+
+#include "body/dynamics.h"
+
+/// Segments in the world, each a body of its own: joints may have gaps of rounding's size.
+typedef struct segment_states {
+    himc_body_state joints;            ///< all but the tips, which are not kept
+    himc_vec3 position[HIMC_SEGMENTS]; ///< centres of mass (m)
+    himc_vec3 velocity[HIMC_SEGMENTS]; ///< of the centres of mass (m/s)
+} segment_states;
+
+/// Forces on the segments in one step, without weight (world frame).
+typedef struct segment_forces {
+    himc_vec3 force[HIMC_SEGMENTS];  ///< on the centre of mass (N)
+    himc_vec3 torque[HIMC_SEGMENTS]; ///< about the centre of mass (N m)
+} segment_forces;
+
+/// One step of `h` seconds of the segments of the articulation, which belongs to this state. `erp`
+/// is the share of a joint's gap that a step closes.
+HIMC_RT void himc_tree_step(const himc_skeleton *skeleton, const himc_articulation *articulation,
+                            const segment_forces *forces, double erp, double h,
+                            segment_states *states);
+
+#endif

@@ -1,0 +1,66 @@
+/// bank_kernel.c: the versions of the bank's loops, and which of them this machine can run.
+///
+/// The same source is compiled once for each vector unit; the machine is asked at run time. Other
+/// processors than x86-64 have one version, which each compiler turns into what they have.
+#include "drum/bank_kernel.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+#define ALL_OF(x)                                                         \
+    {                                                                     \
+#x, rotate_##x, weigh_##x, push_##x, dot_##x, read_##x, ahead_##x \
+    }
+
+#define WIDTH 2
+#define TARGET
+#define NAMED(x) x##_base
+#include "drum/bank_loops.h"
+
+#ifdef __x86_64__
+
+#define WIDTH 4
+#define TARGET __attribute__((target("avx2")))
+#define NAMED(x) x##_avx2
+#include "drum/bank_loops.h"
+
+#define WIDTH 8
+#define TARGET __attribute__((target("avx512f")))
+#define NAMED(x) x##_avx512
+#include "drum/bank_loops.h"
+
+static const himc_bank_kernel versions[] = {ALL_OF(base), ALL_OF(avx2), ALL_OF(avx512)};
+
+// whether the processor and the system have the unit of that version
+static bool supported(int index)
+{
+    __builtin_cpu_init();
+    if (index == 2)
+        return __builtin_cpu_supports("avx512f");
+    return index == 0 || (index == 1 && __builtin_cpu_supports("avx2"));
+}
+
+#else
+
+static const himc_bank_kernel versions[] = {ALL_OF(base)};
+
+static bool supported(int index)
+{
+    return index == 0;
+}
+
+#endif
+
+const himc_bank_kernel *himc_bank_kernel_version(int index)
+{
+    return supported(index) ? &versions[index] : NULL;
+}
+
+const himc_bank_kernel *himc_bank_kernel_fastest(void)
+{
+    int index = 0;
+    while (supported(index + 1))
+        index++;
+    return &versions[index];
+}

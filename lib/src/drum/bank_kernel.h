@@ -1,0 +1,47 @@
+/// bank_kernel.h: the loops over all oscillators of a bank, for several vector units.
+///
+/// Every version does the same additions and multiplications in the same order: what a wider unit
+/// does in one instruction, a narrower one does in several. None fuses a product with a sum. So all
+/// versions give the same bits. Sums over oscillators have eight lanes, lane k with the oscillators
+/// k, k + 8, ...; lengths are multiples of 8, and arrays are aligned to 64 bytes.
+#ifndef HIMC_BANK_KERNEL_H
+#define HIMC_BANK_KERNEL_H
+
+#define HIMC_BANK_LANES 8   ///< oscillators at once, samples at once
+#define HIMC_BANK_PASS 64   ///< samples that are computed ahead from one state
+#define HIMC_BANK_TABLE 32  ///< numbers of an oscillator's table
+#define HIMC_BANK_DIRECT 16 ///< samples of a pass that come straight from the table
+
+/// What turns two weights and the state at the start of a pass into samples.
+typedef struct himc_bank_waves {
+    double *a, *b;       ///< sample n is the sum of C_n a + S_n b
+    const double *table; ///< C_1 .. C_8, S_1 .. S_8, C_9 .. C_16, S_9 .. S_16 of each oscillator
+    const double *twice; ///< 2 C_8
+    const double *fall;  ///< C_8^2 + S_8^2
+} himc_bank_waves;
+
+typedef struct himc_bank_kernel {
+    const char *name;
+    /// p, s = c p + w s, c s - w p
+    void (*rotate)(double *p, double *s, const double *c, const double *w, int length);
+    /// a, b = rp p + rs s, rp s - rs p
+    void (*weigh)(double *a, double *b, const double *rp, const double *rs, const double *p,
+                  const double *s, int length);
+    /// p += on_p (shape force), s += on_s (shape force)
+    void (*push)(double *p, double *s, const double *on_p, const double *on_s, const double *shape,
+                 double force, int length);
+    /// sum x y
+    double (*dot)(const double *x, const double *y, int length);
+    /// sum (rp p + rs s)
+    double (*read)(const double *rp, const double *rs, const double *p, const double *s,
+                   int length);
+    /// samples 1 .. HIMC_BANK_PASS
+    void (*ahead)(const himc_bank_waves *waves, int length, double *out);
+} himc_bank_kernel;
+
+/// Version `index` of those this machine can run, the fastest last; NULL past the last.
+const himc_bank_kernel *himc_bank_kernel_version(int index);
+/// The fastest of them.
+const himc_bank_kernel *himc_bank_kernel_fastest(void);
+
+#endif

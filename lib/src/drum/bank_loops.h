@@ -1,0 +1,110 @@
+/// bank_loops.h: the loops of bank_kernel.h for one vector unit. Included by bank_kernel.c once for
+/// each, with WIDTH the doubles of its vectors, TARGET the attribute that lets the compiler use it,
+/// NAMED(x) the name of x in this version.
+///
+/// The arrays may alias as the two loops that change a state in place need it: each element is read
+/// before it is written.
+
+// one vector of the unit
+typedef double NAMED(vec) __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
+#define VEC NAMED(vec)
+#define PARTS (HIMC_BANK_LANES / WIDTH) // vectors of eight lanes
+
+TARGET static double NAMED(total)(const VEC *sum)
+{
+    const double *x = (const double *)sum;
+    return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+}
+
+TARGET static void NAMED(rotate)(double *p, double *s, const double *c, const double *w, int length)
+{
+    for (int i = 0; i < length; i += WIDTH) {
+        VEC *vp = (VEC *)(p + i), *vs = (VEC *)(s + i);
+        VEC vc = *(const VEC *)(c + i), vw = *(const VEC *)(w + i);
+        VEC next = vc * *vp + vw * *vs;
+        *vs = vc * *vs - vw * *vp;
+        *vp = next;
+    }
+}
+
+TARGET static void NAMED(weigh)(double *a, double *b, const double *rp, const double *rs,
+                                const double *p, const double *s, int length)
+{
+    for (int i = 0; i < length; i += WIDTH) {
+        VEC vp = *(const VEC *)(p + i), vs = *(const VEC *)(s + i);
+        VEC up = *(const VEC *)(rp + i), us = *(const VEC *)(rs + i);
+        *(VEC *)(a + i) = up * vp + us * vs;
+        *(VEC *)(b + i) = up * vs - us * vp;
+    }
+}
+
+TARGET static void NAMED(push)(double *p, double *s, const double *on_p, const double *on_s,
+                               const double *shape, double force, int length)
+{
+    for (int i = 0; i < length; i += WIDTH) {
+        VEC f = *(const VEC *)(shape + i) * force;
+        *(VEC *)(p + i) += *(const VEC *)(on_p + i) * f;
+        *(VEC *)(s + i) += *(const VEC *)(on_s + i) * f;
+    }
+}
+
+TARGET static double NAMED(dot)(const double *x, const double *y, int length)
+{
+    VEC sum[PARTS] = {{0}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++)
+            sum[k] += *(const VEC *)(x + i + k * WIDTH) * *(const VEC *)(y + i + k * WIDTH);
+    return NAMED(total)(sum);
+}
+
+TARGET static double NAMED(read)(const double *rp, const double *rs, const double *p,
+                                 const double *s, int length)
+{
+    VEC sum[PARTS] = {{0}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++) {
+            int at = i + k * WIDTH;
+            sum[k] += *(const VEC *)(rp + at) * *(const VEC *)(p + at) +
+                      *(const VEC *)(rs + at) * *(const VEC *)(s + at);
+        }
+    return NAMED(total)(sum);
+}
+
+// Two oscillators at a time, one part of the eight samples after the other: so the sums of a whole
+// pass stay in registers.
+TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, double *out)
+{
+    for (int k = 0; k < PARTS; k++) {
+        VEC sum[HIMC_BANK_PASS / HIMC_BANK_LANES] = {{0}}, before[2], now[2];
+        const VEC *x = (const VEC *)waves->table + k;
+        for (int i = 0; i < length; i += 2) {
+#pragma GCC unroll 2
+            for (int m = 0; m < 2; m++) {
+                double a = waves->a[i + m], b = waves->b[i + m];
+                before[m] = a * x[0] + b * x[PARTS];
+                now[m] = a * x[2 * PARTS] + b * x[3 * PARTS];
+                x += 4 * PARTS;
+            }
+            sum[0] += before[0] + before[1];
+            sum[1] += now[0] + now[1];
+#pragma GCC unroll 8
+            for (int n = 2; n < HIMC_BANK_PASS / HIMC_BANK_LANES; n++) {
+#pragma GCC unroll 2
+                for (int m = 0; m < 2; m++) {
+                    VEC next = waves->twice[i + m] * now[m] - waves->fall[i + m] * before[m];
+                    before[m] = now[m];
+                    now[m] = next;
+                }
+                sum[n] += now[0] + now[1];
+            }
+        }
+        for (int n = 0; n < HIMC_BANK_PASS / HIMC_BANK_LANES; n++)
+            memcpy(out + n * HIMC_BANK_LANES + k * WIDTH, &sum[n], sizeof sum[n]);
+    }
+}
+
+#undef VEC
+#undef PARTS
+#undef WIDTH
+#undef TARGET
+#undef NAMED
