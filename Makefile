@@ -134,11 +134,11 @@ test-long: deps ## all tests at full length, and those too slow for every day
 check-long: all units $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
-test-asan: deps ## the tests in C under the address and undefined behaviour sanitizers
+test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
-check-asan: units $(if $(TOOL_O),$(PROGRAM))
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ)
+check-asan: units $(if $(TOOL_O),$(PROGRAM)) $(if $(WEBSOCKETS),$(VIEWER))
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/test_viewer.sh)
 
 # how long each target runs (s)
 FUZZ_SECONDS ?= 60
@@ -326,6 +326,13 @@ $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/
 	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
+
+# what of the viewer needs neither a socket nor a package of its own, for its tests
+VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o web.o),$(VIEWER_O))
+VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
+$(VIEWER_TESTS): $(VIEWER_PARTS)
+$(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h
+$(VIEWER_TESTS:=.o): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
 
 $(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/,evaluate_log.o trial.o) $(MOCAP_O)
 
