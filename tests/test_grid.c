@@ -170,6 +170,24 @@ static void refuses(const char *file, const char *text, const char *says)
     TEST_ASSERT_EQUAL_INT(HIMC_CIRCLE, himc_membrane_shape(himc_drum_membrane(drum))->kind);
 }
 
+// so many numbers in a row, in one static buffer
+static const char *row_of(int count)
+{
+    static char text[2048];
+    for (int i = 0; i < count; i++)
+        memcpy(text + 2 * i, "1 ", 3);
+    return text;
+}
+
+// so many rows of two numbers, in one static buffer
+static const char *rows_of(int count)
+{
+    static char text[20000];
+    for (int i = 0; i < count; i++)
+        memcpy(text + 4 * i, "1 1\n", 5);
+    return text;
+}
+
 static void test_grid_refuses_bad_files_with_the_reason(void)
 {
     put("p", "0 0\n0.2 0\n0 0.2\n");
@@ -187,7 +205,13 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     refuses("k", "1 2\n2 1 3\n", "k:2: more than 2");
     refuses("k", "1 2\n", "stiffness: 1 rows of 2");
     refuses("k", "%%MatrixMarket matrix coordinate real symmetric\n99999 99999 1\n1 1 1\n",
-            "rows: 99999, allowed 1 .. 4000");
+            "rows: 99999, allowed 1 .. 800");
+    refuses("k", "%%MatrixMarket matrix coordinate real symmetric\n801 801 1\n1 1 1\n",
+            "k:2: rows: 801, allowed 1 .. 800");
+    refuses("k", row_of(801), "k:1: columns: 801, allowed 1 .. 800");
+    put("k", "2 -1\n-1 2\n");
+    refuses("p", rows_of(4001), "p:4001: rows: 4001, allowed 1 .. 4000");
+    put("p", "0 0\n0.2 0\n0 0.2\n");
     refuses("k", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n3 1 1\n",
             "k:4: row or column outside");
     refuses("k", "%%MatrixMarket matrix coordinate complex general\n", "k:1: allowed");

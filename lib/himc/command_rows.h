@@ -47,9 +47,10 @@ HIMC_COMMAND_ROW(PLAY, play, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
 HIMC_COMMAND_ROW(STOP, stop, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
                  "stops the score; the sticks come to rest")
 HIMC_COMMAND_ROW(SEEK, seek, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "BEAT", "goes to a beat")
-HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE, "FILE",
+HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDER, "FILE",
                  "loads a score; while one plays, the new one follows it")
-HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, 0, "FILE", "loads a motion capture and tracks it")
+HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, HIMC_IN_FOLDER, "FILE",
+                 "loads a motion capture and tracks it")
 HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
                  "cuts strokes out of a take and plays them instead of the built-in ones")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",
@@ -118,8 +119,9 @@ HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, 0, "usual | VOLUME",
 HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, 0, "AMOUNT",
                  "sets how much the tension rises as the head bows out")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, 0, "AMOUNT", "lays a hand on the head")
-HIMC_COMMAND_ROW(SHAPE, shape, DRUM, NOW, 0, "circle | rectangle LENGTH WIDTH | FILE",
-                 "makes a head of another outline, or one of masses and springs from a file")
+HIMC_COMMAND_ROW(
+    SHAPE, shape, DRUM, NOW, 0, "circle | rectangle LENGTH WIDTH | FILE",
+    "makes a head of another outline, or one of up to 800 masses on springs from a file")
 HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0, "soft|medium|hard|wood | K ALPHA MASS",
                  "chooses the mallet, or its stiffness, exponent and mass")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",

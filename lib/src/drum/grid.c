@@ -22,8 +22,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE 1200       // longest line of a head's file (characters); chosen: a path fits
-#define READ_SIZE 4096  // least room for the next part of a table's line (bytes)
+#define LINE 1200       // longest file name (characters); chosen: a path fits
+#define TEXT (64 << 20) // longest file (bytes); chosen: the largest matrix takes a quarter of it
+#define POINTS 4000     // most places, moving or not; chosen: bounds the time to look for them
 #define ROWS_AT_ONCE 64 // rows by which memory grows
 #define ASYMMETRY 1e-9  // of the largest entry; chosen: rounding of text files
 #define SINGULAR 1e-9   // of the highest eigenvalue; chosen: rounding of dsygvx
@@ -33,13 +34,13 @@ typedef struct matrix {
     double *value; // (rows, columns), owned
 } matrix;
 
+// a text in memory, read line by line
 typedef struct reader {
-    FILE *file;
     const char *path;
-    int line;
-    char *text; // of the line, owned
-    size_t size;
-    const char *at; // in it
+    int line, most;   // rows and columns allowed
+    char *text;       // owned
+    char *row, *next; // the present line, as a string, and the text after it
+    const char *at;   // in the line
     himc_error *error;
 } reader;
 
@@ -48,31 +49,27 @@ static bool fault(reader *r, const char *what)
     return himc_error_set(r->error, "%s:%d: %s", r->path, r->line, what);
 }
 
-// a whole line, however long; false at the file's end
+static bool open_text(reader *r, const char *path, himc_error *error)
+{
+    size_t size = 0;
+    *r = (reader){.path = path, .error = error, .text = himc_file_load(path, TEXT, &size, error)};
+    r->next = r->text;
+    if (!r->text || !memchr(r->text, 0, size))
+        return r->text;
+    free(r->text);
+    return himc_error_set(error, "%s: not a text file", path);
+}
+
 static bool next_line(reader *r)
 {
-    size_t used = 0;
-    for (;;) {
-        if (r->size - used < READ_SIZE) {
-            char *more = realloc(r->text, r->size * 2 + 2 * READ_SIZE);
-            if (!more)
-                return false;
-            r->text = more;
-            r->size = r->size * 2 + 2 * READ_SIZE;
-        }
-        if (!fgets(r->text + used, (int)(r->size - used < 1 << 30 ? r->size - used : 1 << 30),
-                   r->file))
-            break;
-        size_t got = strlen(r->text + used);
-        used += got;
-        if (got == 0) // a zero byte: not a text file
-            return false;
-        if (used > 0 && r->text[used - 1] == '\n')
-            break;
-    }
-    r->line += used > 0;
-    r->at = r->text;
-    return used > 0;
+    if (!*r->next)
+        return false;
+    r->at = r->row = r->next;
+    r->next += strcspn(r->next, "\n");
+    if (*r->next)
+        *r->next++ = '\0';
+    r->line++;
+    return true;
 }
 
 // the next number of the line; false at its end or before anything else
@@ -96,15 +93,15 @@ static bool at_end(const reader *r)
 static bool next_row(reader *r, char comment)
 {
     while (next_line(r))
-        if (r->text[strspn(r->text, " \t\r\n")] != '\0' && r->text[0] != comment)
+        if (r->row[strspn(r->row, " \t\r")] != '\0' && r->row[0] != comment)
             return true;
     return false;
 }
 
 static bool check_size(reader *r, double rows, double columns, himc_error *error)
 {
-    if (!himc_check_range("rows", rows, 1, HIMC_GRID_PLACES, "", error) ||
-        !himc_check_range("columns", columns, 1, HIMC_GRID_PLACES, "", error))
+    if (!himc_check_range("rows", rows, 1, r->most, "", error) ||
+        !himc_check_range("columns", columns, 1, r->most, "", error))
         return himc_error_prefix(error, "%s:%d", r->path, r->line);
     return true;
 }
@@ -130,7 +127,7 @@ static int count_numbers(reader *r)
     int count = 0;
     while (next_number(r, &value))
         count++;
-    r->at = r->text;
+    r->at = r->row;
     return count;
 }
 
@@ -190,7 +187,7 @@ static bool read_market(reader *r, matrix *m)
 {
     char format[16], field[16], kind[16];
     double rows, columns, entries = 0;
-    if (sscanf(r->text, "%%%%MatrixMarket matrix %15s %15s %15s", format, field, kind) != 3)
+    if (sscanf(r->row, "%%%%MatrixMarket matrix %15s %15s %15s", format, field, kind) != 3)
         return fault(r, "allowed %%MatrixMarket matrix coordinate|array real general|symmetric");
     bool coordinate = strcmp(format, "coordinate") == 0, symmetric = strcmp(kind, "symmetric") == 0;
     if ((!coordinate && strcmp(format, "array") != 0) ||
@@ -210,25 +207,25 @@ static bool read_market(reader *r, matrix *m)
     return coordinate || read_array(r, m, symmetric);
 }
 
-// Reads a table. With `columns` > 0, rows must have so many numbers. At most HIMC_GRID_PLACES rows.
-// False with "file:line: ..." if anything in it is wrong.
-static bool load_matrix(matrix *out, const char *path, int columns, himc_error *error)
+// Reads a table, of at most `most` rows and columns. With `columns` > 0, rows must have so many
+// numbers. False with "file:line: ..." if anything in it is wrong.
+static bool load_matrix(matrix *out, const char *path, int most, int columns, himc_error *error)
 {
-    reader r = {.file = himc_file_read(path, error), .path = path, .error = error};
+    reader r;
     matrix m = {0};
-    if (!r.file)
+    if (!open_text(&r, path, error))
         return false;
+    r.most = most;
     bool good = next_row(&r, '#');
     if (!good)
         himc_error_set(error, "%s: empty", path);
-    else if (r.text[0] == '%')
+    else if (r.row[0] == '%')
         good = read_market(&r, &m);
     else
         good = read_rows(&r, &m, columns);
     if (good && columns > 0 && m.columns != columns)
         good =
             himc_error_set(error, "%s: rows of %d numbers, allowed %d", path, m.columns, columns);
-    fclose(r.file);
     free(r.text);
     if (!good)
         free(m.value);
@@ -283,20 +280,20 @@ static bool read_item(parts *p, const char *path, const char *key, const char *v
                               "%.60s: unknown, allowed tension density places mass stiffness", key);
     if (table->value)
         return himc_error_set(error, "%s: named twice", key);
+    bool places = table == &p->places;
     return beside(path, value, file, sizeof file, error) &&
-           load_matrix(table, file, table == &p->places ? 2 : 0, error);
+           load_matrix(table, file, places ? POINTS : HIMC_GRID_PLACES, places ? 2 : 0, error);
 }
 
-static bool read_parts(parts *p, FILE *file, const char *path, himc_error *error)
+static bool read_parts(parts *p, reader *r)
 {
-    char line[LINE], key[64], value[LINE];
-    for (int number = 1; fgets(line, sizeof line, file); number++) {
-        line[strcspn(line, "#\r\n")] = '\0';
+    char key[64], value[LINE];
+    while (next_line(r)) {
+        r->row[strcspn(r->row, "#")] = '\0';
         value[0] = '\0';
-        if (sscanf(line, "%63s %1199s", key, value) < 1)
-            continue;
-        if (!read_item(p, path, key, value, error))
-            return himc_error_prefix(error, "%s:%d", path, number);
+        if (sscanf(r->row, "%63s %1199s", key, value) >= 1 &&
+            !read_item(p, r->path, key, value, r->error))
+            return himc_error_prefix(r->error, "%s:%d", r->path, r->line);
     }
     return true;
 }
@@ -426,7 +423,7 @@ static himc_grid *make(parts *p, himc_error *error)
     if (!check_parts(p, error))
         return NULL;
     int n = p->mass.rows;
-    himc_grid *g = grid_new(n, p->places.rows, n < HIMC_GRID_MODES ? n : HIMC_GRID_MODES);
+    himc_grid *g = grid_new(n, p->places.rows, n);
     if (!g) {
         himc_error_set(error, "no memory for %d places", n);
         return NULL;
@@ -445,16 +442,16 @@ static himc_grid *make(parts *p, himc_error *error)
 himc_grid *himc_grid_load(const char *path, himc_error *error)
 {
     parts p = {0};
+    reader r;
     himc_grid *grid = NULL;
-    FILE *file = himc_file_read(path, error);
-    if (!file)
+    if (!open_text(&r, path, error))
         return NULL;
-    if (read_parts(&p, file, path, error)) {
+    if (read_parts(&p, &r)) {
         grid = make(&p, error);
         if (!grid)
             himc_error_prefix(error, "%s", path);
     }
-    fclose(file);
+    free(r.text);
     free_parts(&p);
     return grid;
 }

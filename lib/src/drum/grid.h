@@ -4,7 +4,8 @@
 /// line, `#` begins a comment; file names in it are relative to it:
 ///     tension 3528        the tension (N/m) and
 ///     density 0.2653      mass per area (kg/m^2) that the matrices are made for
-///     places places.txt   rows of X Y (m), first the N of the matrices, then any that stand still
+///     places places.txt   rows of X Y (m), first the N of the matrices, then any that stand still;
+///                         N up to 800, all up to 4000
 ///     mass mass.mtx       N x N (kg), symmetric, positive
 ///     stiffness k.mtx     N x N (N/m), symmetric, positive
 /// A matrix is a Matrix Market file (coordinate or array, real or integer, general or symmetric) or
@@ -14,8 +15,7 @@
 
 #include "himc/base.h"
 
-#define HIMC_GRID_PLACES 4000 ///< most places; chosen: bounds time and memory
-#define HIMC_GRID_MODES 1000  ///< most modes that are computed; chosen: bounds memory
+#define HIMC_GRID_PLACES 800 ///< most places that move; chosen: a second of computing
 
 /// Its modes. Constant once made; counts its references.
 typedef struct himc_grid himc_grid;
