@@ -5,8 +5,12 @@
 /// pressure is at most rho/(2 pi R) sqrt(A) |a|, |a| the root of the integral of the acceleration's
 /// square. Modes below w give |a| <= w |v|, twice over as even and odd m are read a quarter of a
 /// period apart; a force in a step of h gives |dv|/h, and each |v| <= sqrt(2 E/sigma). Point
-/// pickup: sqrt(2 E sum phi_i^2/m_i). A declick adds the difference of two sounds, so three times
-/// the sum holds at any time, with the energy of all sticks in E.
+/// pickup: sqrt(2 E sum phi_i^2/m_i). E is the energy of the head and of all sticks on it.
+///
+/// A declick of L samples starts with the difference of two sounds, at most twice the larger scale
+/// S, and of their slopes, at most 4 S per sample. It is a cubic that adds 4/27 L times the slope at
+/// most. A change before its end begins another one at its value and slope, which like an
+/// oscillator with v'' = -6 v/L^2 - 4 v'/L only falls. So (3 + 0.6 L) S bounds the sum.
 #ifndef HIMC_TESTS_SOUND_SCALE_H
 #define HIMC_TESTS_SOUND_SCALE_H
 
@@ -42,7 +46,7 @@ static inline double largest_displacement(const himc_drum *d, double energy)
     return sqrt(2 * energy * point_yield(d, d->outside_x, d->outside_y, &unused));
 }
 
-/// Largest sample of a pickup with `energy` (J) in head and sticks.
+/// Largest sample of a pickup with `energy` (J) in head and sticks, without declicks.
 static inline double largest_sample(const himc_drum *d, int pickup, double energy)
 {
     int count;
@@ -53,10 +57,16 @@ static inline double largest_sample(const himc_drum *d, int pickup, double energ
     double fastest = sqrt(2.0) * 2 * HIMC_PI * 0.49 * d->rate + 2 / step;
     if (at->kind == HIMC_PICKUP_POINT) {
         point_yield(d, at->x, at->y, &inverse_mass);
-        return 3 * sqrt(2 * energy * inverse_mass) / HIMC_PICKUP_VELOCITY;
+        return sqrt(2 * energy * inverse_mass) / HIMC_PICKUP_VELOCITY;
     }
-    return 3 * SOUND_SCALE_RHO / (2 * HIMC_PI * at->distance * HIMC_PICKUP_PRESSURE) *
+    return SOUND_SCALE_RHO / (2 * HIMC_PI * at->distance * HIMC_PICKUP_PRESSURE) *
            sqrt(2 * area * energy / m->head.density) * fastest;
+}
+
+/// The same with declicks, `scale` being the largest before and after the changes.
+static inline double largest_declicked(const himc_drum *d, double scale)
+{
+    return (3 + 0.6 * (DECLICK_TIME * d->rate + 1)) * scale;
 }
 
 /// Energy in the head and in its own mallets (J).

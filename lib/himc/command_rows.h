@@ -47,9 +47,10 @@ HIMC_COMMAND_ROW(PLAY, play, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
 HIMC_COMMAND_ROW(STOP, stop, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
                  "stops the score; the sticks come to rest")
 HIMC_COMMAND_ROW(SEEK, seek, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "BEAT", "goes to a beat")
-HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE, "FILE",
+HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDER, "FILE",
                  "loads a score; while one plays, the new one follows it")
-HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, 0, "FILE", "loads a motion capture and tracks it")
+HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, HIMC_IN_FOLDER, "FILE",
+                 "loads a motion capture and tracks it")
 HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
                  "cuts strokes out of a take and plays them instead of the built-in ones")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",

@@ -106,7 +106,8 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
 void himc_membrane_free(himc_membrane *membrane);
 
 /// Changes the head while it sounds: modes keep energy and phase, the sound of those that no longer
-/// exist ends in 5 ms, and there is no click. Allocates only if the number of modes changes.
+/// exist ends in 5 ms, and there is no click. Pickups at points outside a smaller head move to its
+/// rim. Allocates only if the number of modes changes.
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
 /// Sets a head of another outline, at rest; the old sound ends in 5 ms. Retains a grid. Air is
 /// known for round heads alone.

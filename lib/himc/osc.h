@@ -26,7 +26,8 @@ HIMC_BEGIN
 typedef struct himc_osc_config {
     const char *bind;  ///< numeric address to listen at; NULL is 127.0.0.1
     int port;          ///< 0 .. 65535, 0 any free one; -1 does not listen
-    const char *files; ///< the only folder that `score` and `take` may read; NULL allows no file
+    const char *files; ///< the only folder whose files `score` and `take` may read, also those in a
+                       ///< score that came over the network; NULL allows no file
     const char *allow; ///< hosts, separated by commas, that anyone may subscribe; NULL none
 } himc_osc_config;
 

@@ -292,6 +292,7 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
     size_t used = 0;
     out->count = count;
     out->form = read->form;
+    out->folder = NULL;
     for (int i = 0; i < count; i++) {
         double hz;
         out->choice[i] = read->choice[i];
@@ -391,6 +392,8 @@ void himc_command_copy(himc_command *out, const himc_command *in)
     for (int i = 0; i < out->count; i++)
         if (out->atom[i].kind == HIMC_ATOM_SYMBOL)
             out->atom[i].symbol = out->storage + (in->atom[i].symbol - in->storage);
+    if (in->folder)
+        out->folder = out->storage + (in->folder - in->storage);
 }
 
 himc_word himc_command_word(himc_command_id id, int atom, int choice)

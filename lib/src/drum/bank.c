@@ -340,7 +340,7 @@ void himc_bank_rest(himc_bank *bank)
 {
     memset(bank->p, 0, sizeof(double) * (size_t)bank->capacity);
     memset(bank->s, 0, sizeof(double) * (size_t)bank->capacity);
-    bank->live = 0;
+    bank->live = bank->age = 0;
     restart(bank);
 }
 

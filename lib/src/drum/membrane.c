@@ -23,6 +23,7 @@
 // arrays of a core: seven of its own, those of each output, those of each strike point
 #define ARRAYS (7 + (HIMC_PICKUPS + 1) * (2 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
+#define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
 
 static void core_free(core *c)
@@ -172,10 +173,24 @@ static void find_pickups(himc_membrane *m)
         find_pickup(m, i);
 }
 
+// points of pickups that a smaller head no longer has move to its rim
+static void keep_pickups_on_head(himc_membrane *m)
+{
+    for (int i = 0; i < m->pickup_count; i++) {
+        himc_pickup *p = &m->pickups[i];
+        double r = hypot(p->x, p->y);
+        if (p->kind != HIMC_PICKUP_POINT || r <= m->head.radius)
+            continue;
+        p->x *= (1 - RIM_ROUNDING) * m->head.radius / r;
+        p->y *= (1 - RIM_ROUNDING) * m->head.radius / r;
+    }
+}
+
 // after head, rate or core have changed
 static void retune(himc_membrane *m)
 {
     core *c = &m->core;
+    keep_pickups_on_head(m);
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));

@@ -70,7 +70,7 @@ typedef struct push {
 /// time.
 typedef struct declick {
     double step, slope; ///< at its start: (1.0 as the pickup's), and per sample
-    int at, length;     ///< (samples)
+    int at, length;     ///< (samples); at the end, and after it, at is length + 1
 } declick;
 
 /// What is added to sample `at`, which may lie just before the start.

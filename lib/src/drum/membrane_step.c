@@ -163,7 +163,7 @@ static void run_free(himc_membrane *m, int n, double *const *sound, double *watc
     m->applied_count = 0;
     for (int k = 0; k < count; k++) {
         declick *d = &m->declicks[k];
-        for (int i = 0; i < n && m->ends_sample && d->at < d->length; i++, d->at++)
+        for (int i = 0; i < n && m->ends_sample && d->at <= d->length; i++, d->at++)
             if (sound[k])
                 sound[k][i] += declick_at(d, d->at);
         m->sound[k] = sound[k] ? sound[k][n - 1] : 0;
@@ -184,7 +184,7 @@ static void run_stretched(himc_membrane *m)
     for (int k = 0; k < m->pickup_count; k++) {
         declick *d = &m->declicks[k];
         m->sound[k] = himc_bank_read(c->bank, &c->pickups[k].readout);
-        if (m->ends_sample && d->at < d->length)
+        if (m->ends_sample && d->at <= d->length)
             m->sound[k] += declick_at(d, d->at++);
     }
     m->watched = himc_bank_read(c->bank, &c->watched.readout);

@@ -75,12 +75,12 @@ static bool run_now(himc_performance *p, const himc_command *c, himc_error *erro
 
 static bool do_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return himc_performance_load_score(p, c->atom[0].symbol, run_now, error);
+    return himc_performance_load_score(p, c->atom[0].symbol, c->folder, run_now, error);
 }
 
 static bool do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return himc_performance_load_take(p, c->atom[0].symbol, error);
+    return himc_performance_load_take(p, c->atom[0].symbol, c->folder, error);
 }
 
 static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
@@ -267,8 +267,8 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
     bool physics = c->form == PHYSICS;
     double hz = c->atom[1].number;
     if (!physics && p->recording.file)
-        return himc_error_set(error, "rate task: %g: not while recording %s", hz,
-                              himc_recording_path(p->recording.file));
+        return himc_error_set(error,
+                              "rate task: %g: not while recording, allowed after record stop", hz);
     *(physics ? &s.physics_rate : &s.task_rate) = hz;
     himc_performance_adopt(p, &s);
     himc_performance_restart_steps(p);

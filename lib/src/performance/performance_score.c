@@ -2,9 +2,13 @@
 ///
 /// The file is parsed as a whole (score.c) and then tried: its lines for drums go to copies of the
 /// drums, its lines for the performer are checked, its drums are counted. Only then is it carried
-/// out. While a score plays, the beats of the next one follow its own. Invariant: a score that is
-/// refused has changed nothing.
+/// out. While a score plays, the beats of the next one follow its own. Invariants: a score that is
+/// refused has changed nothing; a score from the network may do what its sender may do.
 #include "performance/performance_state.h"
+
+#include "base/confine.h"
+#include "capture/take.h"
+#include "plan/score.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -78,7 +82,7 @@ static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *er
     case HIMC_COMMAND_UNITS:
         if (himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true; // `units clear`
-        take = himc_take_load(word, &p->host.take_options, error);
+        take = himc_take_load_in(c->folder, word, &p->host.take_options, error);
         himc_take_free(take);
         return take;
     case HIMC_COMMAND_RECORD:
@@ -125,13 +129,14 @@ static bool count_drums(const rehearsal *r, const himc_score *score, himc_error 
     return true;
 }
 
-static bool rehearse(himc_performance *p, const himc_score *score, const char *path,
+static bool rehearse(himc_performance *p, himc_score *score, const char *path, const char *folder,
                      performance_action *run, himc_error *error)
 {
     rehearsal r = {.performance = p, .run = run};
     bool good = true;
     for (int i = 0; i < score->line_count && good; i++) {
-        good = rehearse_line(&r, &score->lines[i], error);
+        good = (!folder || himc_confine_command(&score->lines[i].command, folder, error)) &&
+               rehearse_line(&r, &score->lines[i], error);
         if (good && score->lines[i].command.id == HIMC_COMMAND_TAKE && score->stroke_count > 0)
             good = himc_error_set(error, "take: a score with strokes cannot play a take");
         good = good || himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
@@ -194,13 +199,14 @@ static bool fill_from_score(himc_performance *p, const himc_score *score, const 
     return run_lines(p, score, true, path, run, error);
 }
 
-bool himc_performance_load_score(himc_performance *p, const char *path, performance_action *run,
-                                 himc_error *error)
+bool himc_performance_load_score(himc_performance *p, const char *path, const char *folder,
+                                 performance_action *run, himc_error *error)
 {
-    himc_score *score = himc_score_load(path, error);
+    himc_score *score = himc_score_load_in(folder, path, error);
     if (!score)
         return false;
-    bool ok = rehearse(p, score, path, run, error) && fill_from_score(p, score, path, run, error);
+    bool ok =
+        rehearse(p, score, path, folder, run, error) && fill_from_score(p, score, path, run, error);
     himc_score_free(score);
     himc_motion_replan(p->motion);
     return ok;

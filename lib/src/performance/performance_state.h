@@ -110,15 +110,18 @@ bool himc_performance_add_units(himc_performance *p, const char *path, himc_nuan
                                 const himc_spot *spot, himc_error *error);
 
 // performance_take.c
-bool himc_performance_load_take(himc_performance *p, const char *path, himc_error *error);
+/// `folder`: the only one that a command from the network may read, else NULL.
+bool himc_performance_load_take(himc_performance *p, const char *path, const char *folder,
+                                himc_error *error);
 /// Joint limits of a player with postures, as captured.
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error);
 
 // performance_score.c
-/// Loads a score: all of it, or nothing. `run` carries out its lines for the performer.
-bool himc_performance_load_score(himc_performance *p, const char *path, performance_action *run,
-                                 himc_error *error);
+/// Loads a score: all of it, or nothing. `run` carries out its lines for the performer. With a
+/// `folder`, its lines have no more rights than the same commands from the network.
+bool himc_performance_load_score(himc_performance *p, const char *path, const char *folder,
+                                 performance_action *run, himc_error *error);
 
 // performance_command.c
 /// Commands that are due at the next step.

@@ -375,9 +375,10 @@ static bool play_own_player(himc_performance *p, himc_take *take, const char *na
     return played;
 }
 
-bool himc_performance_load_take(himc_performance *p, const char *path, himc_error *error)
+bool himc_performance_load_take(himc_performance *p, const char *path, const char *folder,
+                                himc_error *error)
 {
-    himc_take *take = himc_take_load(path, &p->host.take_options, error);
+    himc_take *take = himc_take_load_in(folder, path, &p->host.take_options, error);
     bool played = take && play_own_player(p, take, path, error);
     himc_take_free(take);
     return played;

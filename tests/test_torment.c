@@ -1,0 +1,332 @@
+/// test_torment.c: random commands of the whole vocabulary, half of them spoilt, to a performance
+/// that plays: all finite and within the scale of the sound, a refused command answered by one line
+/// and without effect, and `reset` as good as new.
+///
+/// `make torment` sends a million: HIMC_TORMENT is their number, HIMC_SEED the first seed. Rounds
+/// of 500 commands begin with a `reset` and the fixed piece of test_reset.c, compared bit by bit
+/// with that of a new performance. In one round of four the new performance goes on beside the
+/// other and gets only the commands that were not refused: it must stay equal to the last bit.
+#define _GNU_SOURCE
+#include "disc_mesh.h"
+#include "random_commands.h"
+#include "sound_scale.h"
+#include "take_players.h"
+
+#include "heard_piece.h"
+
+#define ROUND 500        // commands
+#define LONGEST_BLOCK 64 // samples between two commands
+#define RATE 16000 // (Hz) of samples; physics at 1000 Hz until `rate` changes it: to save time
+#define SPOILT 0.5 // share of commands
+#define TWINS 4    // one round of so many has a twin
+#define PLAYED 0.3 // (s) of the piece
+#define HELD 0.02  // (s) the scale before a change holds so long: a few declicks
+#define HEAVIEST_BLOW 450 // (J) a mallet of 1 kg, the heaviest, at 30 m/s
+#define LOUDEST_ARM 3600  // (J) a stick that weighs as much as an arm, 2 kg, at 60 m/s
+
+static char folder[] = "/tmp/himc-torment-XXXXXX", files[8][64];
+static const char *file_list[9];
+
+/// The performer under test; its twin, or NULL.
+typedef struct pair {
+    himc_performance *p, *twin;
+} pair;
+
+/// What was seen of all commands.
+typedef struct counts {
+    long said, accepted, refused, spoilt[SPOILINGS], answered[SPOILINGS], notes;
+    double loudest, share, energy; // sample, per its scale; (J) in a head
+} counts;
+
+static counts seen;
+static char story[600]; // round and command, for a failure
+static heard_piece expected, played;
+
+static void write_file(const char *name, const char *text)
+{
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    TEST_ASSERT_TRUE(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+// files that commands name: good ones, strange ones, and one that is not there
+static void write_files(void)
+{
+    static const char *const names[] = {"take.bvh", "score.txt", "head.txt",  "broken.bvh",
+                                        "bad.txt",  "gone.txt",  "record.bvh"};
+    himc_skeleton body;
+    himc_skeleton_config config = himc_skeleton_default();
+    TEST_ASSERT_TRUE(mkdtemp(folder) && himc_skeleton_init(&body, &config, &error));
+    for (int i = 0; i < 7; i++) {
+        snprintf(files[i], sizeof files[i], "%s/%s", folder, names[i]);
+        file_list[i] = files[i];
+    }
+    himc_take *take = beaten_take(&body, 100, 1.2, &error);
+    TEST_ASSERT_TRUE(take && himc_take_save(take, files[0], &error));
+    himc_take_free(take);
+    disc_mesh disc = disc_mesh_new(4, 0.3, 4000, 0.3);
+    disc_mesh_write(&disc, folder, 4000, 0.3);
+    disc_mesh_free(&disc);
+    write_file("score.txt", "tempo 140; drum tom 26; tom tune 110; stroke 0 left legato f;\n"
+                            "kettle mallet wood; stroke 0.5 right accent ff normal tom; play;\n");
+    write_file("broken.bvh", "HIERARCHY\nROOT a\n{\nOFFSET 0 0 nan\n\x1b[31m");
+    write_file("bad.txt", "stroke 1 left \x1b[31m\n f;");
+    random_files = file_list;
+}
+
+static void remove_files(void)
+{
+    char all[80];
+    snprintf(all, sizeof all, "rm -rf %s", folder);
+    TEST_ASSERT_EQUAL_INT(0, system(all));
+}
+
+static void fail(const char *what)
+{
+    char text[1200];
+    snprintf(text, sizeof text, "%s: %s", story, what);
+    TEST_FAIL_MESSAGE(text);
+}
+
+// a line for a person: some text, no control characters
+static bool is_one_line(const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
+        if (*c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0))
+            return false;
+    return text[0] != 0;
+}
+
+// carries out a parsed command; `drum` is the slot, if it is for a drum
+static bool carry_out(himc_performance *p, const himc_command *c, himc_receiver receiver, int drum,
+                      int delay, himc_error *out)
+{
+    if (receiver == HIMC_PERFORMER)
+        return himc_performance_command(p, c, delay, out);
+    return himc_drum_command(himc_performance_drum(p, drum), c, out);
+}
+
+static void remember(const spoken *s, int drum, int delay)
+{
+    size_t used = (size_t)snprintf(story, sizeof story, "command %ld, drum %d, delay %d: %.30s",
+                                   seen.said, drum, delay, s->name);
+    for (int i = 0; i < s->count && used < sizeof story - 80; i++)
+        used += (size_t)(s->atom[i].kind == HIMC_ATOM_NUMBER
+                             ? snprintf(story + used, 60, " %g", s->atom[i].number)
+                             : snprintf(story + used, 60, " %.50s", s->atom[i].symbol));
+}
+
+// says one command, half of the time spoilt; what is refused is answered by one line
+static void say_one(pair *of, random_seed *seed)
+{
+    spoken s;
+    himc_command c;
+    himc_error answer = {""};
+    const himc_command_row *row = himc_command_table(any_of(seed, HIMC_COMMANDS));
+    random_command(&s, row, seed);
+    bool hostile = any(seed) < SPOILT, must = false;
+    spoiling how = hostile ? (spoiling)any_of(seed, SPOILINGS) : SPOILINGS;
+    if (hostile)
+        must = spoil(&s, how, seed);
+    int drum = of->p->drums.count > 0 ? any_of(seed, of->p->drums.count) : -1;
+    int delay = hostile || any(seed) < 0.5 ? 0 : any_of(seed, 2000);
+    remember(&s, drum, delay);
+    if (s.receiver == HIMC_DRUM && drum < 0)
+        return;
+    bool parsed = himc_command_parse(&c, s.receiver, s.name, s.atom, s.count, &answer);
+    bool done = parsed && carry_out(of->p, &c, s.receiver, drum, delay, &answer);
+    seen.said++;
+    seen.accepted += done;
+    seen.refused += !done;
+    if (hostile) {
+        seen.spoilt[how]++;
+        seen.answered[how] += !done;
+    }
+    if (done && must)
+        fail("accepted");
+    if (done ? answer.text[0] != 0 : !is_one_line(answer.text))
+        fail(done ? "carried out, and an error besides" : "not one line");
+    if (done && of->twin && !carry_out(of->twin, &c, s.receiver, drum, delay, &answer))
+        fail("refused by the twin");
+}
+
+// notes are single lines too; all other figures of events are finite
+static void take_notes(himc_performance *p)
+{
+    himc_event e;
+    while (himc_performance_event(p, &e)) {
+        const himc_strike *s = &e.strike;
+        if (e.kind == HIMC_EVENT_NOTE && ++seen.notes && !is_one_line(e.text))
+            fail("a note of more than one line");
+        if (e.kind == HIMC_EVENT_STRIKE &&
+            !isfinite(s->time + s->x + s->y + s->velocity + s->force + s->impulse + s->duration))
+            fail("a strike that is not finite");
+    }
+}
+
+// The scale of a pickup with `energy` (J), which falls slowly: a declick continues the sound before
+// a change.
+static double held_scale(const himc_drum *d, int slot, int pickup, int n, double energy)
+{
+    static double held[HIMC_DRUMS][HIMC_PICKUPS];
+    double *scale = &held[slot][pickup];
+    *scale = fmax(*scale * exp(-n / (HELD * d->rate)), largest_sample(d, pickup, energy));
+    return largest_declicked(d, *scale);
+}
+
+// samples of a drum's pickup within the scale that `energy` (J) gives
+static void check_sound(const himc_drum *d, int slot, int pickup, int n, double energy)
+{
+    double sound[LONGEST_BLOCK], scale = held_scale(d, slot, pickup, n, energy);
+    himc_drum_read_channel(d, pickup, himc_drum_time(d) - (uint64_t)n, n, sound);
+    for (int i = 0; i < n; i++) {
+        seen.loudest = fmax(seen.loudest, fabs(sound[i]));
+        seen.share = fmax(seen.share, fabs(sound[i]) / scale);
+        if (!(fabs(sound[i]) <= scale))
+            fail("a sample beyond the scale of the sound");
+    }
+}
+
+static void check_drum(const himc_drum *d, int slot, int n, double before)
+{
+    int pickups;
+    double after = drum_energy(d), most = before + 2 * LOUDEST_ARM + HEAVIEST_BLOW * HIMC_STICKS;
+    himc_membrane_pickups(d->membrane, &pickups);
+    seen.energy = fmax(seen.energy, after);
+    if (!(after <= most))
+        fail("more energy than sticks can bring");
+    for (int k = 0; k < pickups; k++)
+        check_sound(d, slot, k, n, most);
+}
+
+static void check_twin(const pair *of, int n, double *const a[2], double *const b[2])
+{
+    double ours[LONGEST_BLOCK], theirs[LONGEST_BLOCK];
+    size_t bytes = (size_t)n * sizeof(double);
+    bool equal = of->p->drums.count == of->twin->drums.count && memcmp(a[0], b[0], bytes) == 0 &&
+                 memcmp(a[1], b[1], bytes) == 0;
+    for (int i = 0; equal && i < of->p->drums.count; i++) {
+        const himc_drum *d = of->p->drums.slot[i].drum, *t = of->twin->drums.slot[i].drum;
+        himc_drum_read(d, himc_drum_time(d) - (uint64_t)n, n, ours, NULL);
+        himc_drum_read(t, himc_drum_time(t) - (uint64_t)n, n, theirs, NULL);
+        equal = memcmp(ours, theirs, bytes) == 0;
+    }
+    if (!equal)
+        fail("a refused command changed something");
+}
+
+// plays up to LONGEST_BLOCK samples
+static void play_on(pair *of, random_seed *seed)
+{
+    double force[2][HIMC_HANDS][LONGEST_BLOCK], before[HIMC_DRUMS];
+    double *ours[] = {force[0][0], force[0][1]}, *theirs[] = {force[1][0], force[1][1]};
+    int n = any_of(seed, LONGEST_BLOCK), count = of->p->drums.count;
+    for (int i = 0; i < count; i++)
+        before[i] = drum_energy(of->p->drums.slot[i].drum);
+    himc_performance_process(of->p, n, ours);
+    for (int i = 0; i < count && n > 0; i++)
+        check_drum(of->p->drums.slot[i].drum, i, n, before[i]);
+    for (int i = 0; i < n; i++)
+        if (!isfinite(ours[0][i] + ours[1][i]))
+            fail("a force that is not finite");
+    if (of->twin) {
+        himc_performance_process(of->twin, n, theirs);
+        check_twin(of, n, ours, theirs);
+        take_notes(of->twin);
+    }
+    take_notes(of->p);
+}
+
+static himc_performance *performer(himc_drum *drum)
+{
+    himc_performance_config config = {RATE, 1000, 250};
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_TRUE_MESSAGE(p && himc_performance_add_drum(p, drum, &error), error.text);
+    himc_drum_release(drum);
+    himc_performance_make_drums(p, true);
+    return p;
+}
+
+// a new drum with the same settings
+static himc_drum *drum_like(const himc_drum *d)
+{
+    himc_drum *c = himc_drum_new(d->name, 23, d->rate, &error);
+    TEST_ASSERT_TRUE_MESSAGE(c && himc_membrane_follow(c->membrane, d->membrane, &error),
+                             error.text);
+    c->mallet = d->mallet;
+    c->mallet_name = d->mallet_name;
+    c->place = d->place;
+    c->placed = d->placed;
+    c->technique = d->technique;
+    return c;
+}
+
+// `reset`, then the piece by this performance and by a new one; returns that
+static himc_performance *reset_and_compare(himc_performance *p)
+{
+    session_do(p, "reset");
+    himc_performance *fresh = performer(drum_like(himc_performance_drum(p, 0)));
+    play_piece(fresh, PLAYED, &expected);
+    play_piece(p, PLAYED, &played);
+    check_piece(&expected, &played, story);
+    session_do(p, "reset");
+    session_do(fresh, "reset");
+    himc_performance_process(p, (int)(DECLICK * RATE), NULL); // of how the piece has ended
+    himc_performance_process(fresh, (int)(DECLICK * RATE), NULL);
+    return fresh;
+}
+
+static void print_counts(void)
+{
+    printf("%ld commands: %ld carried out, %ld refused; %ld notes; largest sample %.3g, %.2g of "
+           "its scale; most energy %.3g J\n",
+           seen.said, seen.accepted, seen.refused, seen.notes, seen.loudest, seen.share,
+           seen.energy);
+    for (int k = 0; k < SPOILINGS; k++)
+        printf("  %-14s %8ld tried, %8ld refused in one line\n", spoiling_name[k], seen.spoilt[k],
+               seen.answered[k]);
+}
+
+static long from_environment(const char *name, long usual)
+{
+    const char *text = getenv(name);
+    return text ? atol(text) : usual;
+}
+
+static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good_as_new(void)
+{
+    long commands = from_environment("HIMC_TORMENT", 4000);
+    random_seed seed = (random_seed)from_environment("HIMC_SEED", 1);
+    pair of = {.p = performer(himc_drum_new("kettle", 23, RATE, &error))};
+    printf("seed %llu\n", seed);
+    for (int round = 0; seen.said < commands; round++) {
+        himc_performance *fresh = reset_and_compare(of.p);
+        if (round % TWINS == 0)
+            of.twin = fresh;
+        else
+            himc_performance_free(fresh);
+        for (int i = 0; i < ROUND; i++) {
+            say_one(&of, &seed);
+            play_on(&of, &seed);
+        }
+        himc_performance_free(of.twin);
+        of.twin = NULL;
+        if (commands > 100000 && round % 50 == 49)
+            print_counts();
+    }
+    himc_performance_free(reset_and_compare(of.p));
+    himc_performance_free(of.p);
+    print_counts();
+    for (int k = 0; k < SPOILINGS; k++)
+        TEST_ASSERT_TRUE(seen.spoilt[k] > 0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    write_files();
+    RUN_TEST(test_hostile_commands_leave_a_performance_finite_bounded_and_as_good_as_new);
+    remove_files();
+    return UNITY_END();
+}
