@@ -86,9 +86,13 @@ typedef struct osc_host {
     double published;            // wall clock of the last block (s)
     double busy;                 // computing since the last status (s)
     bool status_sent;
-    long strikes;                  // so far
-    osc_bucket work;               // time of commands (s)
-    unsigned revision[HIMC_DRUMS]; // of the drums, as last sent
+    long strikes;                      // so far
+    osc_bucket work;                   // time of commands (s)
+    himc_loader *loader;               // borrowed, or NULL
+    bool loading;                      // a command waits in the loader ...
+    osc_address loading_for;           // ... for this sender
+    char loading_drum[HIMC_NAME_SIZE]; // and this drum, or ""
+    unsigned revision[HIMC_DRUMS];     // of the drums, as last sent
 } osc_host;
 
 struct himc_osc {
@@ -319,45 +323,85 @@ static void answer(void *object, const char *line)
     end(s->osc);
 }
 
-static bool carry_out(himc_performance *performance, const osc_request *request, himc_error *error)
+static void refuse_to(himc_osc *osc, const osc_address *to, const char *error)
+{
+    himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
+    answer(&(sender){osc, to, true}, error);
+}
+
+// the loader has carried out a command, or refused it
+static void loaded(void *object, const char *error)
+{
+    himc_osc *osc = object;
+    const osc_host *h = &osc->host;
+    himc_error line;
+    osc->host.loading = false;
+    if (!error)
+        return;
+    himc_error_set(&line, "%s%s%s", h->loading_drum, h->loading_drum[0] ? ": " : "", error);
+    refuse_to(osc, &h->loading_for, line.text);
+}
+
+static himc_drum *find_drum(himc_performance *performance, const char *name, himc_error *error)
 {
     himc_drum *drum;
     char names[120] = "";
-    if (request->receiver == HIMC_PERFORMER)
-        return himc_performance_command(performance, &request->command, 0, error);
     for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
-        if (strcmp(himc_drum_name(drum), request->drum) == 0)
-            return himc_drum_command(drum, &request->command, error) ||
-                   himc_error_prefix(error, "%s", request->drum);
+        if (strcmp(himc_drum_name(drum), name) == 0)
+            return drum;
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, " %s", himc_drum_name(drum));
     }
-    return himc_error_set(error, "%s: no drum of that name, allowed:%s", request->drum,
-                          names[0] ? names : " none, make one with drum");
+    himc_error_set(error, "%s: no drum of that name, allowed:%s", name,
+                   names[0] ? names : " none, make one with drum");
+    return NULL;
+}
+
+static bool load(himc_osc *osc, const himc_load_target *to, const osc_order *order,
+                 himc_error *error)
+{
+    osc_host *h = &osc->host;
+    bool good = himc_loader_command(h->loader, to, &order->request.command, error);
+    h->loading = good && himc_loader_busy(h->loader);
+    h->loading_for = order->from;
+    snprintf(h->loading_drum, sizeof h->loading_drum, "%s", to->drum ? order->request.drum : "");
+    return good;
+}
+
+static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_order *order,
+                      himc_error *error)
+{
+    const osc_request *request = &order->request;
+    himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
+    if (request->receiver != HIMC_PERFORMER) {
+        to.drum = find_drum(performance, request->drum, error);
+        if (!to.drum)
+            return false;
+    }
+    bool good = osc->host.loader ? load(osc, &to, order, error)
+                : to.drum        ? himc_drum_command(to.drum, &request->command, error)
+                          : himc_performance_command(performance, &request->command, 0, error);
+    return good || (to.drum && himc_error_prefix(error, "%s", request->drum));
 }
 
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
-    sender from = {osc, &order->from, false};
     himc_error error = {""};
     const osc_request *request = &order->request;
-    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_INFO) {
-        himc_performance_describe(performance, answer, &from);
-    } else if (!carry_out(performance, request, &error)) {
-        from.error = true;
-        himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
-        answer(&from, error.text);
-    }
+    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_INFO)
+        himc_performance_describe(performance, answer, &(sender){osc, &order->from, false});
+    else if (!carry_out(osc, performance, order, &error))
+        refuse_to(osc, &order->from, error.text);
 }
 
-// a head of 2000 modes takes 25 ms to make anew; a sender of such commands one after the other must
-// not take the time of the sound, so their time is paid for from a bucket of seconds
+// without a loader a head of 2000 modes takes 25 ms; a sender of such commands one after the other
+// must not take the time of the sound, so their time is paid for from a bucket of seconds
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 {
     const osc_order *order;
     double spent = 0;
     for (int i = 0; i < most && (order = himc_osc_ring_peek(&osc->orders)); i++) {
-        if (spent > BLOCK_WORK || !afford(&osc->host.work, monotonic(osc), 0))
+        if (osc->host.loading || spent > BLOCK_WORK || !afford(&osc->host.work, monotonic(osc), 0))
             return;
         double start = monotonic(osc);
         obey(osc, performance, order);
@@ -590,6 +634,7 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
         !himc_osc_ring_init(&osc->orders, sizeof(osc_order), COMMANDS_WAITING) ||
         !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))
         return himc_error_set(error, "osc: out of memory");
+    osc->host.loader = config->loader;
     if (!set_files(osc, config->files, error) ||
         !himc_osc_network_open(&osc->network, config->bind, config->port, &osc->counts, error) ||
         !himc_osc_allow(s, config->allow, error))
@@ -679,6 +724,8 @@ void himc_osc_free(himc_osc *osc)
     if (!osc)
         return;
     stop_thread(osc);
+    if (osc->host.loading) // for this
+        himc_loader_finish(osc->host.loader);
     himc_osc_subscriptions_free(&osc->subscriptions);
     himc_osc_network_close(&osc->network);
     himc_osc_ring_free(&osc->records);
