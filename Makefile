@@ -158,6 +158,12 @@ torment: deps ## a million random and hostile commands to a playing performance;
 	@$(MAKE) $(BUILD)/tests/test_torment
 	HIMC_TORMENT=$(COMMANDS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_torment
 
+mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
+	@$(MAKE) check-mutants
+
+check-mutants: $(UNIT)
+	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS)" tests/mutants/run.sh $(MUTANTS)
+
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
 
@@ -215,7 +221,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
