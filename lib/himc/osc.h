@@ -78,8 +78,8 @@ typedef struct himc_osc_counts {
     long malformed;    ///< not OSC, or an atom that is neither number nor word
     long foreign;      ///< an OSC address that is none of ours
     long refused;      ///< a command with an error, a file or a host that is not allowed
-    long frequent;     ///< beyond the limits of a second, or waiting too long
-    long overrun;      ///< lost in the system before they were read
+    long frequent;     ///< commands beyond the limits of a second, or waiting too long
+    long overrun;      ///< packets dropped by the system, not read in time
     long sent;         ///< packets out
     long unsent;       ///< packets that the system refused to send
     long lost;         ///< records dropped because a ring was full

@@ -8,8 +8,9 @@
 /// The network thread waits at the sockets for 2 ms at most while there are subscriptions (20 ms
 /// otherwise), takes the packets that arrived, and sends the states that the host left in the ring.
 /// The host makes no system call to wake it: a strike leaves within 2 ms. All that arrives is paid
-/// for from buckets (so much a second, so much at once); packets beyond that are counted and not
-/// read, and the thread then rests a millisecond, so that a flood costs the machine little.
+/// for from buckets (so much a second, so much at once). When the thread has read its share of
+/// packets it rests a millisecond and leaves the others in the socket, where the system drops and
+/// counts what does not fit; so a flood costs this thread no more than its share.
 #define _GNU_SOURCE // setpriority of one thread is Linux's own
 #include "drum/drum_performer.h"
 #include "himc/osc.h"
@@ -36,7 +37,7 @@
 #define PACKET_SIZE 65536    // largest of UDP (bytes)
 #define WAIT_SUBSCRIBED 2    // (ms) chosen: a strike leaves within it
 #define WAIT_IDLE 20         // (ms) chosen: a packet ends the wait, only a local subscription waits
-#define REST 1000000         // in a flood (ns) chosen: the socket holds more than arrives in it
+#define REST 1000000         // after the share of packets (ns) chosen: a strike leaves within 2 ms
 
 #define PACKETS_PER_SECOND 8000.0 // chosen: far more than players send
 #define POINTS_PER_SECOND 1000.0  // of commands; chosen: 4 targets at 250 Hz
@@ -508,25 +509,30 @@ static void take_message(void *object, osc_verdict verdict, osc_request *request
     }
 }
 
-// true if more packets arrive than are accepted
-static bool take_packets(himc_osc *osc)
+// false if none waits
+static bool take_packet(himc_osc *osc)
 {
     _Alignas(8) char data[PACKET_SIZE];
-    bool flood = false;
     osc_address from;
-    long size;
+    long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
+    if (size < 0)
+        return himc_osc_network_discard(&osc->network);
+    himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false});
+    return true;
+}
+
+// true if the share of packets is used up; the others wait in the sockets
+static bool take_packets(himc_osc *osc)
+{
     for (int i = 0; i < PACKETS_AT_ONCE; i++) {
-        if ((size = himc_osc_network_receive(&osc->network, &from, data, sizeof data)) < 0)
-            break;
-        if (afford(&osc->packets, monotonic(osc), 1)) {
-            himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false});
-        } else {
-            himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
-            flood = true;
-        }
+        if (!afford(&osc->packets, monotonic(osc), 1))
+            return true;
+        if (take_packet(osc))
+            continue;
+        osc->packets.level += 1; // none was read
+        return false;
     }
-    himc_osc_network_discard(&osc->network);
-    return flood;
+    return false;
 }
 
 static void send_record(himc_osc *osc, const osc_record *r)
