@@ -134,11 +134,11 @@ test-long: deps ## all tests at full length, and those too slow for every day
 check-long: all units $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
-test-asan: deps ## the tests in C under the address and undefined behaviour sanitizers
+test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
-check-asan: units $(if $(TOOL_O),$(PROGRAM))
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ)
+check-asan: units $(if $(TOOL_O),$(PROGRAM)) $(if $(WEBSOCKETS),$(VIEWER))
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/test_viewer.sh)
 
 # how long each target runs (s)
 FUZZ_SECONDS ?= 60
@@ -163,6 +163,12 @@ HOURS ?= 24
 soak: deps ## a session of HOURS=24 simulated hours (SEED=1): no drift, no growth, every stroke played; a line per hour
 	@$(MAKE) $(BUILD)/tests/test_soak
 	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_soak
+
+mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
+	@$(MAKE) check-mutants
+
+check-mutants: $(UNIT)
+	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS)" tests/mutants/run.sh $(MUTANTS)
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
@@ -221,7 +227,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment soak test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -264,9 +270,9 @@ $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs three
-# files of the library and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o $(BUILD)/lib/base/line.o
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
+# room base, the skeleton and no other package, so that `make viewer` needs none either
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter $(BUILD)/lib/base/%,$(LIB_O))
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
@@ -326,6 +332,13 @@ $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/
 	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
+
+# what of the viewer needs neither a socket nor a package of its own, for its tests
+VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o web.o),$(VIEWER_O))
+VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
+$(VIEWER_TESTS): $(VIEWER_PARTS)
+$(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h
+$(VIEWER_TESTS:=.o): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
 
 $(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/,evaluate_log.o trial.o) $(MOCAP_O)
 

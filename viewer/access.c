@@ -15,31 +15,30 @@ static bool is_port(const char *text)
     return !*text || (text[0] == ':' && text[1] && !text[1 + strspn(text + 1, "0123456789")]);
 }
 
-// the name of "name:port" or "[address]:port"; false if it is neither
-static bool host_name(const char *host, char name[NAME_SIZE])
+// this machine's name, alone or as a neighbour calls it
+static bool is_own(const char *name)
 {
-    bool bracket = host[0] == '[';
-    size_t length = strcspn(host += bracket, bracket ? "]" : ":");
-    const char *rest = host + length;
-    if (length == 0 || length >= NAME_SIZE || (bracket && !*rest) || !is_port(rest + bracket))
-        return false;
-    memcpy(name, host, length);
-    name[length] = 0;
-    return true;
+    char own[NAME_SIZE] = "";
+    gethostname(own, sizeof own - 1);
+    size_t length = strlen(own);
+    return length && strncmp(name, own, length) == 0 &&
+           (!name[length] || strcmp(name + length, ".local") == 0);
 }
 
 bool access_host_is_local(const char *host)
 {
-    char name[NAME_SIZE], own[NAME_SIZE] = "";
+    char name[NAME_SIZE];
     unsigned char address[16];
-    if (!host_name(host, name))
+    bool bracket = host[0] == '[';
+    size_t length = strcspn(host += bracket, bracket ? "]" : ":");
+    const char *rest = host + length;
+    if (length >= NAME_SIZE || (bracket && !*rest) || !is_port(rest + bracket))
         return false;
-    gethostname(own, sizeof own - 1);
-    size_t length = strlen(own);
-    return inet_pton(AF_INET, name, address) == 1 || inet_pton(AF_INET6, name, address) == 1 ||
-           strcmp(name, "localhost") == 0 ||
-           (length && strncmp(name, own, length) == 0 &&
-            (!name[length] || strcmp(name + length, ".local") == 0));
+    memcpy(name, host, length);
+    name[length] = 0;
+    return bracket ? inet_pton(AF_INET6, name, address) == 1
+                   : inet_pton(AF_INET, name, address) == 1 || strcmp(name, "localhost") == 0 ||
+                         is_own(name);
 }
 
 bool access_is_our_page(const char *host, const char *origin)

@@ -14,6 +14,7 @@
 /// Numbers may have any numeric OSC type but must be finite. Types are written n for a number, s
 /// for a word, * for any further atoms.
 #include "addresses.h"
+#include "base/line.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -62,13 +63,14 @@ static bool is_string(char type)
     return type == LO_STRING || type == LO_SYMBOL;
 }
 
-// copies a word for JSON, cut to `size`; '?' replaces characters that JSON would have to escape
+// copies a word for JSON, cut to `size`; '?' replaces what is not UTF-8, and characters that JSON
+// would have to escape
 static void json_word(char *out, size_t size, const char *from)
 {
-    size_t i = 0;
-    for (; i + 1 < size && from[i]; i++)
-        out[i] = (unsigned char)from[i] < 0x20 || strchr("\"\\\x7f", from[i]) ? '?' : from[i];
-    out[i] = 0;
+    snprintf(out, size, "%s", from);
+    himc_line_clean(out);
+    for (; (out += strcspn(out, "\"\\"))[0]; out++)
+        *out = '?';
 }
 
 // types as in the table, numbers finite

@@ -1,7 +1,6 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
-#include "base/file.h"
-#include "base/line.h"
+#include "motion.h"
 #include "receive.h"
 #include "web.h"
 
@@ -13,7 +12,6 @@
 
 #define OSC_PORT 9001
 #define HTTP_PORT 8080
-#define PLAY_MAX ((size_t)512 << 20) // largest motion (bytes); chosen: half an hour
 
 static const char help[] =
     "usage: himc-viewer [OPTION...]\n\n"
@@ -39,36 +37,31 @@ static void on_signal(int number)
     stop = 1;
 }
 
-static int fail(char *text)
+static int fail(const himc_error *error)
 {
-    himc_line_clean(text);
-    fprintf(stderr, "himc-viewer: %s\n", text);
+    fprintf(stderr, "himc-viewer: %s\n", error->text);
     return 1;
 }
 
-static bool parse_port(const char *name, const char *text, int *port, char error[256])
+static bool parse_port(const char *name, const char *text, int *port, himc_error *error)
 {
     char *end;
     long value = strtol(text, &end, 10);
-    if (!*text || *end || value < 0 || value > 65535) {
-        snprintf(error, 256, "%s %.40s: allowed 0 .. 65535", name, text);
-        return false;
-    }
+    if (!*text || *end || value < 0 || value > 65535)
+        return himc_error_set(error, "%s %.40s: allowed 0 .. 65535", name, text);
     *port = (int)value;
     return true;
 }
 
 // an option with a value; false with a line in `error` if it is not one
-static bool parse_option(options *o, const char *name, const char *value, char error[256])
+static bool parse_option(options *o, const char *name, const char *value, himc_error *error)
 {
     bool known = !strcmp(name, "--osc") || !strcmp(name, "--http") || !strcmp(name, "--bind") ||
                  !strcmp(name, "--play");
     if (!known)
-        snprintf(error, 256, "%.60s: unknown option; himc-viewer --help lists them", name);
-    else if (!value)
-        snprintf(error, 256, "%s: wants a value; himc-viewer --help explains", name);
-    if (!known || !value)
-        return false;
+        return himc_error_set(error, "%.60s: unknown option; himc-viewer --help lists them", name);
+    if (!value)
+        return himc_error_set(error, "%s: wants a value; himc-viewer --help explains", name);
     if (!strcmp(name, "--osc"))
         return parse_port(name, value, &o->osc, error);
     if (!strcmp(name, "--http"))
@@ -77,7 +70,7 @@ static bool parse_option(options *o, const char *name, const char *value, char e
     return true;
 }
 
-static bool parse(options *o, char **argv, char error[256])
+static bool parse(options *o, char **argv, himc_error *error)
 {
     for (char **arg = argv + 1; *arg; arg++) {
         if (!strcmp(*arg, "--no-browser")) {
@@ -89,24 +82,6 @@ static bool parse(options *o, char **argv, char error[256])
         arg++;
     }
     return true;
-}
-
-// the text of a motion; NULL with a line in `error`
-static char *read_motion(const char *path, size_t *size, char error[256])
-{
-    static const char first[] = "time_s,";
-    himc_error fault;
-    char *text = himc_file_load(path, PLAY_MAX, size, &fault);
-    if (!text)
-        snprintf(error, 256, "%.255s", fault.text);
-    if (text && (*size < sizeof first || strncmp(text, first, sizeof first - 1) != 0)) {
-        snprintf(error, 256,
-                 "%.180s:1: not a motion: its first column must be time_s (himc render --motion)",
-                 path);
-        free(text);
-        return NULL;
-    }
-    return text;
 }
 
 // a browser cannot open 0.0.0.0
@@ -136,11 +111,11 @@ static void handle_signals(void)
     signal(SIGPIPE, SIG_IGN);
 }
 
-static int serve(const options *o, char error[256])
+static int serve(const options *o, himc_error *error)
 {
     static scene s;
     web_config config = {.address = o->address, .port = o->http};
-    char *motion = o->play ? read_motion(o->play, &config.play_size, error) : NULL, url[128];
+    char *motion = o->play ? motion_load(o->play, &config.play_size, error) : NULL, url[128];
     if (o->play && !motion)
         return fail(error);
     config.play = motion;
@@ -167,12 +142,12 @@ static int serve(const options *o, char error[256])
 int main(int argc, char **argv)
 {
     options o = {.address = "127.0.0.1", .osc = OSC_PORT, .http = HTTP_PORT, .browser = true};
-    char error[256] = "";
+    himc_error error;
     if (argc == 2 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))) {
         fputs(help, stdout);
         return 0;
     }
-    if (!parse(&o, argv, error))
-        return fail(error);
-    return serve(&o, error);
+    if (!parse(&o, argv, &error))
+        return fail(&error);
+    return serve(&o, &error);
 }

@@ -312,26 +312,24 @@ static void on_second(lws_sorted_usec_list_t *list)
 }
 
 // libwebsockets gives the reason for a refused port only in its log, so the port is tried first
-static bool port_free(const web_config *c, char error[256])
+static bool port_free(const web_config *c, himc_error *error)
 {
     char service[16];
     struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICHOST | AI_PASSIVE},
                     *found;
     snprintf(service, sizeof service, "%d", c->port);
-    if (getaddrinfo(c->address, service, &hints, &found) != 0) {
-        snprintf(error, 256, "--bind %s: not a numeric address", c->address);
-        return false;
-    }
+    if (getaddrinfo(c->address, service, &hints, &found) != 0)
+        return himc_error_set(error, "--bind %s: not a numeric address", c->address);
     int fd = socket(found->ai_family, SOCK_STREAM, 0), yes = 1;
     bool bound = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
                  bind(fd, found->ai_addr, found->ai_addrlen) == 0 && listen(fd, 1) == 0;
     if (!bound && errno == EADDRINUSE)
-        snprintf(error, 256,
-                 "port %d is taken: perhaps by another viewer; choose one with --http PORT",
-                 c->port);
+        himc_error_set(error,
+                       "port %d is taken: perhaps by another viewer; choose one with --http PORT",
+                       c->port);
     else if (!bound)
-        snprintf(error, 256, "cannot serve the page on %s port %d: %s", c->address, c->port,
-                 strerror(errno));
+        himc_error_set(error, "cannot serve the page on %s port %d: %s", c->address, c->port,
+                       strerror(errno));
     freeaddrinfo(found);
     if (fd >= 0)
         close(fd);
@@ -359,20 +357,20 @@ static bool listen_to_all(web *w)
                                                   protocols[0].name, NULL);
 }
 
-web *web_new(const web_config *config, scene *s, char error[256])
+web *web_new(const web_config *config, scene *s, himc_error *error)
 {
     lws_set_log_level(0, NULL);
     if (!port_free(config, error))
         return NULL;
     web *w = calloc(1, sizeof *w);
     if (!w) {
-        snprintf(error, 256, "out of memory");
+        himc_error_set(error, "out of memory");
         return NULL;
     }
     w->s = s;
     w->config = *config;
     if (!listen_to_all(w)) {
-        snprintf(error, 256, "cannot serve the page on %s port %d", config->address, config->port);
+        himc_error_set(error, "cannot serve the page on %s port %d", config->address, config->port);
         web_free(w);
         return NULL;
     }

@@ -2,6 +2,7 @@
 #ifndef VIEWER_WEB_H
 #define VIEWER_WEB_H
 
+#include "himc/base.h"
 #include "scene.h"
 
 typedef struct web_config {
@@ -15,7 +16,7 @@ typedef struct web_config {
 typedef struct web web;
 
 /// Opens the port; NULL with a line in `error` on failure. `s` must live as long.
-web *web_new(const web_config *config, scene *s, char error[256]);
+web *web_new(const web_config *config, scene *s, himc_error *error);
 int web_port(const web *w);
 /// Serves until `*stop` is set (by a signal).
 void web_run(web *w, const volatile int *stop);

@@ -84,7 +84,9 @@ typedef enum himc_command_when {
 typedef enum himc_command_marks {
     HIMC_AFTER_STROKES = 1, ///< in a score it acts after the strokes are there, others before
     HIMC_NOT_IN_SCORE = 2,  ///< a score cannot hold it
-    HIMC_WRITES_FILE = 4    ///< its FILE is written; without this mark it is read
+    HIMC_WRITES_FILE = 4,   ///< its FILE is written; without this mark it is read
+    HIMC_IN_FOLDER = 8,     ///< from the network it may read a FILE in the shared folder (osc.h)
+    HIMC_CHANGES_HEAD = 16  ///< of a drum: its head is computed anew, mode by mode
 } himc_command_marks;
 
 /// One id for each row of command_rows.h: HIMC_COMMAND_STROKE, HIMC_COMMAND_HIT, ...
@@ -109,7 +111,9 @@ typedef struct himc_command {
     himc_atom atom[HIMC_COMMAND_ATOMS]; ///< symbols point into `storage`
     int choice[HIMC_COMMAND_ATOMS]; ///< index of the atom among its allowed words; -1 for a number
                                     ///< and a free word
-    char storage[HIMC_PATH_SIZE + 256]; ///< the text of all symbols
+    const char *folder; ///< NULL, or of a command from the network the only folder that its FILE
+                        ///< is read in; points into `storage`
+    char storage[HIMC_PATH_SIZE + 256]; ///< the text of all symbols and of `folder`
 } himc_command;
 
 /// One row of command_rows.h.

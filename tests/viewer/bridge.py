@@ -34,6 +34,8 @@ class Viewer:
             [VIEWER, "--no-browser", "--osc", "0", "--http", "0", *options],
             stdout=subprocess.PIPE,
             text=True,
+            # memory is measured: the address sanitizer, if there, keeps less of what was freed
+            env=dict(os.environ, ASAN_OPTIONS="quarantine_size_mb=1"),
         )
         line = self.process.stdout.readline()
         self.http = int(line.split("/")[2].split(":")[1])
@@ -120,7 +122,14 @@ class Stream:
     """A web socket, as a page has it."""
 
     def __init__(
-        self, viewer, origin="", host=None, protocol="scene", upgrade="websocket", key="AA==", receive=None
+        self,
+        viewer,
+        origin="",
+        host=None,
+        protocol="scene",
+        upgrade="websocket",
+        key="AA==",
+        receive=None,
     ):
         self.s = viewer.connect(receive)
         host = host or f"127.0.0.1:{viewer.http}"
@@ -227,7 +236,7 @@ class Stream:
 
 
 def events(blocks):
-    return [json.loads(b.decode("utf-8", "replace")) for kind, b in blocks if kind == 3]
+    return [json.loads(b.decode()) for kind, b in blocks if kind == 3]
 
 
 def clients(blocks):
@@ -264,7 +273,8 @@ def listen(viewer):
 
 
 def string(s):
-    b = s.encode() + b"\0"
+    """An OSC string; a byte 0xNN that is not UTF-8 is written \\udcNN."""
+    b = s.encode(errors="surrogateescape") + b"\0"
     return b + b"\0" * (-len(b) % 4)
 
 
@@ -575,11 +585,11 @@ def test_text_from_the_network_stays_text():
                 2.0,
                 25.0,
                 0.007,
-                "\x01\x7f",
+                "\x01\x7f\udcffé\u2028",
             )
         )
         strike = [e for e in events(stream.until_mark(v)) if e["event"] == "strike"][0]
-        assert strike["drum"] == "a?b?c?<script>" and strike["nuance"] == "??"
+        assert strike["drum"] == "a?b?c?<script>" and strike["nuance"] == "???é?"
 
 
 def test_malformed_osc_is_counted_and_changes_nothing():
@@ -686,7 +696,8 @@ def test_a_slow_client_gets_the_whole_motion():
     """At full length it takes longer than the 20 s after which an idle client is dropped."""
     seconds = 45 if os.environ.get("HIMC_LONG") else 1
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as motion:
-        motion.write("time_s,x\n" + "1,2\n" * 4000000)
+        motion.write("time_s" + ",x" * 9999 + "\n")
+        motion.writelines(f"{i}" + ",2" * 9999 + "\n" for i in range(800))
         motion.flush()
         with Viewer("--play", motion.name) as v, v.connect(65536) as s:
             s.sendall(f"GET /play.csv HTTP/1.1\r\nHost: 127.0.0.1:{v.http}\r\n\r\n".encode())
@@ -723,6 +734,13 @@ def test_trouble_is_one_clear_line():
         os.mkfifo(folder + "/fifo.csv")
         assert "a FIFO, allowed a regular file" in error_line("--play", folder + "/fifo.csv")
     assert "Makefile:1: not a motion" in error_line("--play", "Makefile")
+    assert "allowed a regular file" in error_line("--play", "viewer")
+    faults = {"0,1\n1\n": ":3: 1 numbers, wanted 2", "0,1\n1,\x1b[2J\n": ":3: ?[2J: not a number"}
+    for text, why in faults.items():
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as motion:
+            motion.write("time_s,x\n" + text)
+            motion.flush()
+            assert motion.name + why in error_line("--play", motion.name)
 
 
 def test_it_ends_cleanly_when_told():

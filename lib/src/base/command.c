@@ -4,6 +4,7 @@
 /// line is about the form that came closest. Numbers are held in single precision, as Pure Data and
 /// OSC send them, so that a command is the same to the last bit wherever it comes from. Invariant:
 /// a refused command changes nothing.
+#include "base/format.h"
 #include "himc/command.h"
 
 #include "base/argument.h"
@@ -48,7 +49,7 @@ static const char *next_token(const char *grammar, char token[WORD_SIZE], bool *
 {
     size_t n = strcspn(grammar, " ");
     *optional = grammar[0] == '[';
-    snprintf(token, WORD_SIZE, "%.*s", (int)(n - 2 * (size_t)*optional), grammar + *optional);
+    himc_format(token, WORD_SIZE, "%.*s", (int)(n - 2 * (size_t)*optional), grammar + *optional);
     grammar += n;
     return grammar + strspn(grammar, " ");
 }
@@ -62,7 +63,7 @@ static himc_word cut_word(const char *token, int index)
         token += *token == '|';
     }
     if (index == 0)
-        snprintf(word.text, sizeof word.text, "%.*s", (int)strcspn(token, "|"), token);
+        himc_format(word.text, sizeof word.text, "%.*s", (int)strcspn(token, "|"), token);
     return word;
 }
 
@@ -292,6 +293,7 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
     size_t used = 0;
     out->count = count;
     out->form = read->form;
+    out->folder = NULL;
     for (int i = 0; i < count; i++) {
         double hz;
         out->choice[i] = read->choice[i];
@@ -391,6 +393,8 @@ void himc_command_copy(himc_command *out, const himc_command *in)
     for (int i = 0; i < out->count; i++)
         if (out->atom[i].kind == HIMC_ATOM_SYMBOL)
             out->atom[i].symbol = out->storage + (in->atom[i].symbol - in->storage);
+    if (in->folder)
+        out->folder = out->storage + (in->folder - in->storage);
 }
 
 himc_word himc_command_word(himc_command_id id, int atom, int choice)

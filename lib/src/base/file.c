@@ -4,11 +4,16 @@
 /// time. So a name is opened without waiting (O_NONBLOCK, which has no effect on a regular file),
 /// and the opened descriptor is asked for its kind, not the name. Invariant: a file is cut only
 /// after it is known to be regular.
-#define _POSIX_C_SOURCE 200809L
+///
+/// A name from the network is resolved with all its links, and the result must lie in a folder.
+/// Then it is opened from the folder down, part by part, and no link is followed any more: if one
+/// has been put there in between, the file is refused. Invariant: the opened file lies inside.
+#define _GNU_SOURCE // O_PATH
 #include "base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -65,6 +70,50 @@ FILE *himc_file_read(const char *path, himc_error *error)
     return stream_of(path, open_regular(path, O_RDONLY, error), "rb", error);
 }
 
+// the part of a real path below the folder, with its first slash; NULL if it is not inside
+static const char *below(const char *real, const char *folder)
+{
+    size_t length = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
+    bool inside = strncmp(real, folder, length) == 0 && real[length] == '/';
+    return inside ? real + length : NULL;
+}
+
+// opens "/a/b/c" from the folder down, without following a link
+static int descend(const char *folder, const char *path)
+{
+    char part[NAME_MAX + 1];
+    int at = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    while (at >= 0 && *path) {
+        size_t n = strcspn(++path, "/");
+        snprintf(part, sizeof part, "%.*s", (int)n, path);
+        path += n;
+        int how = *path ? O_PATH | O_DIRECTORY : O_RDONLY | O_NONBLOCK | O_NOCTTY;
+        int next = openat(at, part, how | O_NOFOLLOW | O_CLOEXEC);
+        close(at);
+        at = next;
+    }
+    return at;
+}
+
+// opens a regular file inside the folder, links followed as long as they stay inside. -1 with one
+// line, the same whatever stands there, so that it tells nothing about the disk
+static int open_inside(const char *folder, const char *name, himc_error *error)
+{
+    char wanted[PATH_MAX];
+    struct stat status;
+    int length = snprintf(wanted, sizeof wanted, "%s/%s", folder, name);
+    char *real = (size_t)length < sizeof wanted ? realpath(wanted, NULL) : NULL;
+    const char *path = real ? below(real, folder) : NULL;
+    int file = path ? descend(folder, path) : -1;
+    free(real);
+    if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode))
+        return file;
+    if (file >= 0)
+        close(file);
+    himc_error_set(error, "%.200s: no such file in the folder given by --files", name);
+    return -1;
+}
+
 FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *error)
 {
     bool replace = mode == HIMC_FILE_REPLACE;
@@ -108,9 +157,11 @@ static char *read_all(FILE *stream, size_t most, size_t *size)
     return bytes;
 }
 
-char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *error)
+char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
+                        himc_error *error)
 {
-    FILE *stream = himc_file_read(path, error);
+    int file = folder ? open_inside(folder, path, error) : open_regular(path, O_RDONLY, error);
+    FILE *stream = stream_of(path, file, "rb", error);
     if (!stream)
         return NULL;
     char *bytes = read_all(stream, most, size);
@@ -124,4 +175,9 @@ char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *er
         himc_error_set(error, "%s: cannot be read: %s", path, strerror(why));
     free(bytes);
     return NULL;
+}
+
+char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *error)
+{
+    return himc_file_load_in(NULL, path, most, size, error);
 }

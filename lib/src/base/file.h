@@ -24,4 +24,9 @@ FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *e
 /// that 0). NULL with one line. The caller frees it.
 char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *error);
 
+/// The same, but with a `folder` (a real path, not NULL) only of a file inside it, links followed;
+/// if there is none, the line is the same whatever stands there, and tells nothing about the disk.
+char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
+                        himc_error *error);
+
 #endif

@@ -148,6 +148,9 @@ bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error);
 /// kept.
 himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
                           const himc_take_options *options, himc_error *error);
+/// As himc_take_load; with a `folder` (not NULL) only a file inside it (himc_file_load_in).
+himc_take *himc_take_load_in(const char *folder, const char *path, const himc_take_options *options,
+                             himc_error *error);
 /// True if the suffix is that of a format; else the error line lists the formats.
 bool himc_take_is_format(const char *path, himc_error *error);
 

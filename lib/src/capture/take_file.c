@@ -78,15 +78,21 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
     return NULL;
 }
 
-himc_take *himc_take_load(const char *path, const himc_take_options *options, himc_error *error)
+himc_take *himc_take_load_in(const char *folder, const char *path, const himc_take_options *options,
+                             himc_error *error)
 {
     if (!himc_take_is_format(path, error))
         return NULL;
     size_t size = 0;
-    char *bytes = himc_file_load(path, MOST_BYTES, &size, error);
+    char *bytes = himc_file_load_in(folder, path, MOST_BYTES, &size, error);
     himc_take *take = bytes ? himc_take_read(bytes, size, path, options, error) : NULL;
     free(bytes);
     return take;
+}
+
+himc_take *himc_take_load(const char *path, const himc_take_options *options, himc_error *error)
+{
+    return himc_take_load_in(NULL, path, options, error);
 }
 
 bool himc_take_save(const himc_take *take, const char *path, himc_error *error)

@@ -3,19 +3,16 @@
 /// audio thread gets only commands that fit the table.
 ///
 /// The time tag of a bundle is ignored: commands act when they arrive, so that nobody can pile up
-/// commands for later. `score` and `take` read only a regular file that lies in the given folder
-/// after all links are followed; in every other case the error is the same, so that it tells
-/// nothing about the disk. Messages that we send ourselves are not answered, so that two servers
-/// never answer each other forever.
-#define _GNU_SOURCE // realpath
+/// commands for later. Messages that we send ourselves are not answered, so that two servers never
+/// answer each other forever.
 #include "osc/decode.h"
+
+#include "base/confine.h"
 
 #include <lo/lo.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define BUNDLE_DEPTH 4                 // chosen: bundles in bundles; nobody needs more than one
 #define ATOMS (2 * HIMC_COMMAND_ATOMS) // read; more than any command has, and the parser says so
@@ -159,49 +156,9 @@ double himc_osc_request_cost(const osc_request *request)
     }
 }
 
-// over the network only scores and takes are read, in the folder of `files`
-static bool is_confined(const himc_command *c)
-{
-    return c->id == HIMC_COMMAND_SCORE || c->id == HIMC_COMMAND_TAKE;
-}
-
-static bool lies_in(const char *real, const char *folder)
-{
-    size_t length = strlen(folder);
-    struct stat about;
-    return strncmp(real, folder, length) == 0 && (real[length] == '/' || length == 1) &&
-           strlen(real) < HIMC_PATH_SIZE && stat(real, &about) == 0 && S_ISREG(about.st_mode);
-}
-
-// looks for the file of `score` or `take` in the folder, and names it by its real path
-static bool confine(himc_command *command, const char *folder, himc_error *error)
-{
-    char wanted[2 * HIMC_PATH_SIZE];
-    const char *name = himc_command_table((int)command->id)->name;
-    if (!folder)
-        return himc_error_set(error, "%s: no file over the network, allowed with --files", name);
-    snprintf(wanted, sizeof wanted, "%s/%s", folder, command->atom[0].symbol);
-    char *real = realpath(wanted, NULL);
-    if (!real || !lies_in(real, folder)) {
-        free(real);
-        return himc_error_set(error, "%s: no such file in the folder given by --files", name);
-    }
-    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, real};
-    himc_command found;
-    bool good = himc_command_parse(&found, HIMC_PERFORMER, name, &atom, 1, error);
-    if (good)
-        himc_command_copy(command, &found);
-    free(real);
-    return good;
-}
-
 bool himc_osc_request_admit(osc_request *request, const char *folder, himc_error *error)
 {
-    himc_command *c = &request->command;
-    int atom;
-    if (request->receiver == HIMC_PERFORMER && c->id == HIMC_COMMAND_LISTEN)
+    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_LISTEN)
         return himc_error_set(error, "listen: not over the network");
-    if (himc_command_file(c, &atom) != HIMC_FILE_NONE && !is_confined(c))
-        return himc_error_set(error, "record, units and shapes from files: not over the network");
-    return !is_confined(c) || confine(c, folder, error);
+    return himc_confine_command(&request->command, folder, error);
 }

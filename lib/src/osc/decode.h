@@ -32,7 +32,7 @@ void himc_osc_request_copy(osc_request *out, const osc_request *in);
 double himc_osc_request_cost(const osc_request *request);
 
 /// True if a stranger may give this command. A file is looked for in `folder` (a real path, or
-/// NULL: no file) and its name replaced by its real path.
+/// NULL: no file) when the command is carried out.
 bool himc_osc_request_admit(osc_request *request, const char *folder, himc_error *error);
 
 #endif

@@ -292,17 +292,22 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
     return NULL;
 }
 
-himc_score *himc_score_load(const char *path, himc_error *error)
+himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
 {
     size_t size;
     himc_score *score = NULL;
-    char *text = himc_file_load(path, SCORE_BYTES_MAX, &size, error);
+    char *text = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
     if (text && memchr(text, 0, size))
         himc_error_set(error, "%s: not a text file", path);
     else if (text)
         score = himc_score_parse(text, path, error);
     free(text);
     return score;
+}
+
+himc_score *himc_score_load(const char *path, himc_error *error)
+{
+    return himc_score_load_in(NULL, path, error);
 }
 
 void himc_score_free(himc_score *score)

@@ -8,4 +8,7 @@
 /// errors. Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
 
+/// As himc_score_load; with a `folder` (not NULL) only a file inside it (himc_file_load_in).
+himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error);
+
 #endif

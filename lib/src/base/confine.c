@@ -1,0 +1,34 @@
+/// confine.c: commands from the network, and the one folder whose files they may read (file.c).
+#include "base/confine.h"
+
+#include <string.h>
+
+// bytes of `storage` that the command's symbols take; they lie one after the other
+static size_t used_storage(const himc_command *c)
+{
+    size_t used = 0;
+    for (int i = 0; i < c->count; i++)
+        if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
+            used += strlen(c->atom[i].symbol) + 1;
+    return used;
+}
+
+bool himc_confine_command(himc_command *c, const char *folder, himc_error *error)
+{
+    const himc_command_row *row = himc_command_table((int)c->id);
+    size_t used = used_storage(c), size = folder ? strlen(folder) + 1 : 0;
+    int atom;
+    bool names_file = himc_command_file(c, &atom) != HIMC_FILE_NONE;
+    if (row->marks & HIMC_WRITES_FILE || (names_file && !(row->marks & HIMC_IN_FOLDER)))
+        return himc_error_set(error, "record, units and shapes from files: not over the network");
+    if (!names_file)
+        return true;
+    if (!folder)
+        return himc_error_set(error, "%s: no file over the network, allowed with --files",
+                              row->name);
+    if (size > sizeof c->storage - used)
+        return himc_error_set(error, "%s: a name of %zu characters, allowed %zu in that folder",
+                              row->name, used - 1, sizeof c->storage - size - 1);
+    c->folder = memcpy(c->storage + used, folder, size);
+    return true;
+}

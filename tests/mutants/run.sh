@@ -1,0 +1,77 @@
+#!/bin/sh
+# Faults put into the library one at a time, to see that a test notices each (make mutants).
+#   tests/mutants/run.sh [NUMBER...]     of mutants in tests/mutants/table.txt; all without one
+# A mutant is one object compiled anew and linked before the library. The tests of its heading run one after the other, in a
+# folder of its own, until one fails: then it is killed. What no test notices has survived. JOBS mutants run at a time. The
+# environment has COMPILE, LINK and LIBS of the Makefile. Fails if less than 95 of 100 are killed, or if the table is wrong.
+: "${JOBS:=$(nproc 2>/dev/null || echo 1)}" "${HIMC_BUILD:=build}" "${MUTANT_TIMEOUT:=300}"
+export HIMC_BUILD MUTANT_TIMEOUT COMPILE LINK LIBS
+table=tests/mutants/table.txt
+out=$HIMC_BUILD/mutants
+
+# prints FILE, TESTS and the mutated source of one mutant, or fails if its old text is not there exactly once
+mutate() {
+    awk -v wanted="$1" -v source="$2/source.c" -v heading="$2/heading" '
+        /^# / || /^$/ { next }
+        /^\[.*\]$/ { split(substr($0, 2, length($0) - 2), part, / *\| */); next }
+        ++n == wanted {
+            at = index($0, " ==> ")
+            if (!at || !(1 in part)) exit 1
+            old = substr($0, 1, at - 1)
+            new = substr($0, at + 5)
+            while ((getline line < part[1]) > 0) text = text line "\n"
+            where = index(text, old)
+            if (!where || index(substr(text, where + 1), old)) exit 1
+            printf "%s%s%s", substr(text, 1, where - 1), new, substr(text, where + length(old)) >source
+            print part[1], part[2] >heading
+            print part[1] ": " $0
+            found = 1
+        }
+        END { exit !found }' $table
+}
+
+# says what became of one mutant: killed, survived, or wrong in the table
+one() {
+    dir=$out/$1
+    rm -rf "$dir"
+    mkdir -p "$dir/run/build"
+    if ! name=$(mutate "$1" "$dir"); then
+        echo "wrong    $1 the old text is not in its file exactly once"
+        return
+    fi
+    read -r file tests <"$dir/heading"
+    if ! $COMPILE -w -I"$(dirname "$file")" -c "$dir/source.c" -o "$dir/source.o" 2>"$dir/log"; then
+        echo "wrong    $1 $name: does not compile"
+        return
+    fi
+    for folder in *; do
+        test "$folder" = build || ln -s "$PWD/$folder" "$dir/run/$folder"
+    done
+    for test in $tests; do
+        $LINK $HIMC_BUILD/tests/$test.o $HIMC_BUILD/tests/unity.o "$dir/source.o" $HIMC_BUILD/libhimc.a $LIBS -o "$dir/$test"
+        (cd "$dir/run" && HIMC_SHARED=$OLDPWD/../shared timeout -k 5 "$MUTANT_TIMEOUT" "../$test" >../log 2>&1 </dev/null)
+        if [ $? -ne 0 ]; then
+            echo "killed   $1 $name ($test)"
+            rm -rf "$dir"
+            return
+        fi
+    done
+    echo "survived $1 $name"
+    rm -rf "$dir"
+}
+
+if [ "$1" = --one ]; then
+    one "$2"
+    exit 0
+fi
+
+count=$(grep -cv '^# \|^\[\|^$' $table)
+mkdir -p "$out"
+if [ $# -gt 0 ]; then printf '%s\n' "$@"; else seq "$count"; fi | xargs -n 1 -P "$JOBS" "$0" --one | tee "$out/log"
+awk '{ n[$1]++ }
+    END {
+        printf "%d killed, %d survived", n["killed"], n["survived"]
+        if (n["wrong"]) printf ", %d wrong", n["wrong"]
+        print ""
+        exit n["wrong"] > 0 || n["killed"] < 0.95 * NR
+    }' "$out/log"

@@ -1,0 +1,225 @@
+/// test_planner_changes.c: the score, the units and the hits of a planner change while it plays,
+/// and each stroke is still played once, at its time, or given up and counted.
+#include "planners.h"
+
+#include "plan/gesture.h"
+
+#include <string.h>
+
+static void advance_to(double t)
+{
+    for (double now = 0; now < t; now += 0.01)
+        himc_planner_advance(planner, now);
+    himc_planner_advance(planner, t);
+}
+
+// time of the touch that is next for a hand at t; -1 if there is none
+static double touch_at(himc_hand hand, double t)
+{
+    himc_stroke s;
+    int drum;
+    double touch;
+    return himc_planner_current(planner, hand, t, &s, &drum, &touch) ? touch : -1;
+}
+
+static void expect_note(const char *text)
+{
+    himc_planner_note note = {""};
+    TEST_ASSERT_TRUE_MESSAGE(himc_planner_note_next(planner, &note), text);
+    TEST_ASSERT_EQUAL_STRING(text, note.text);
+}
+
+// largest height of a tip over the plane of touches in a time
+static double highest(himc_hand hand, double from, double to)
+{
+    double high = 0;
+    for (double t = from; t < to; t += 0.002)
+        high = fmax(high, at(planner, hand, t).x.z - PLANE);
+    return high;
+}
+
+static himc_unit unit_of(double height, int grip, himc_spot spot, double speed)
+{
+    return (himc_unit){.nuance = HIMC_LEGATO,
+                       .hand = HIMC_LEFT,
+                       .spot = spot,
+                       .grip = grip,
+                       .height = height,
+                       .speed = speed,
+                       .down = 2 * height / speed,
+                       .lift = 0.3,
+                       .rebound = 0.5,
+                       .pull = 2};
+}
+
+// height of a legato stroke that may choose among these units
+static double height_with(const himc_unit *units, int count, int grip)
+{
+    use(120);
+    TEST_ASSERT_TRUE(himc_planner_add_units(planner, units, count, &error));
+    himc_planner_set_grip(planner, grip);
+    add(planner, 4, HIMC_LEFT, HIMC_LEGATO, 5.0 / 7);
+    himc_planner_play(planner, 0);
+    return highest(HIMC_LEFT, 1.4, 2);
+}
+
+static void test_unit_of_the_grip_then_of_the_spot_then_of_the_speed_is_played(void)
+{
+    double f = himc_gesture_of(HIMC_LEGATO, 5.0 / 7).speed;
+    himc_unit grips[] = {unit_of(0.2, 0, HIMC_SPOT_XY, f), unit_of(0.4, 1, HIMC_SPOT_XY, f)};
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.2, height_with(grips, 2, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.4, height_with(grips, 2, 1));
+    himc_unit spots[] = {unit_of(0.2, 0, HIMC_SPOT_RIM, f),
+                         unit_of(0.4, 0, HIMC_SPOT_NORMAL, 0.9 * f)};
+    TEST_ASSERT_TRUE(height_with(spots, 2, 0) > 0.35);
+    himc_unit speeds[] = {unit_of(0.2, 0, HIMC_SPOT_XY, 0.5 * f),
+                          unit_of(0.4, 0, HIMC_SPOT_XY, 1.1 * f)};
+    TEST_ASSERT_TRUE(height_with(speeds, 2, 0) > 0.3);
+    himc_unit other[] = {unit_of(0.2, 0, HIMC_SPOT_RIM, f), unit_of(0.4, 1, HIMC_SPOT_XY, f)};
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.2, height_with(other, 2, 0)); // the grip goes first
+}
+
+static void test_hits_at_once_are_played_one_after_the_other(void)
+{
+    himc_stroke s = {
+        .hand = HIMC_LEFT, .nuance = HIMC_LEGATO, .dynamic = 4 / 7.0, .spot = HIMC_SPOT_NORMAL};
+    double last = 0;
+    himc_planner_advance(planner, 1);
+    for (int i = 0; i < 4; i++) {
+        double touch = himc_planner_hit(planner, 1, &s, 0);
+        TEST_ASSERT_TRUE(touch > last + 0.12 && touch < last + (i ? 0.13 : 2));
+        last = touch;
+    }
+}
+
+static void test_stroke_added_before_the_present_beat_is_given_up_once(void)
+{
+    add(planner, 4.5, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    add(planner, 5, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    advance_to(1.95);
+    add(planner, 3.2, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    expect_note("stroke at beat 3.2 left: given up, that beat is past");
+    TEST_ASSERT_EQUAL_INT(1, himc_planner_given_up(planner));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.25, touch_at(HIMC_LEFT, 1.95));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, 2.25).x.z);
+}
+
+static void test_stroke_added_before_a_committed_one_does_not_repeat_it(void)
+{
+    add(planner, 4, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    add(planner, 20, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    advance_to(1.95);
+    add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    for (double t = 1.95; t < 3; t += 0.01)
+        himc_planner_advance(planner, t);
+    TEST_ASSERT_EQUAL_INT(1, himc_planner_given_up(planner));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10, touch_at(HIMC_LEFT, 3));
+}
+
+static void test_new_score_is_played_after_a_stroke_of_the_old_one_came_early(void)
+{
+    for (int i = 1; i <= 4; i++)
+        add(planner, i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    advance_to(1.95);
+    himc_planner_clear(planner);
+    add(planner, 2, HIMC_LEFT, HIMC_ACCENT, 0.5);
+    himc_planner_play(planner, 1.95);
+    himc_target here = himc_planner_target(planner, HIMC_LEFT, 1.96);
+    himc_planner_separated(planner, HIMC_LEFT, 1.96, &here);
+    himc_planner_advance(planner, 2.3);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.95, touch_at(HIMC_LEFT, 2.4));
+}
+
+// four strokes in a loop of 2 s; the tempo is set again, as it is, at that time of the third round
+static void check_round(double at)
+{
+    use(120);
+    for (int i = 0; i < 4; i++)
+        add(planner, i + 0.5, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_loop(planner, 0, true);
+    himc_planner_play(planner, 0);
+    double late = first_touch(HIMC_LEFT) - 0.25;
+    advance_to(at + late);
+    himc_planner_tempo(planner, at + late, 120);
+    for (double t = at; t < at + 1.8; t += 0.01) {
+        himc_planner_advance(planner, t + late);
+        double touch = touch_at(HIMC_LEFT, t + late) - late;
+        TEST_ASSERT_DOUBLE_WITHIN(0.31, t + 0.25, touch);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.25, fmod(touch, 0.5));
+    }
+}
+
+static void test_tempo_in_a_later_round_of_a_loop_keeps_every_stroke(void)
+{
+    check_round(5.1); // before the next stroke can no longer be changed ...
+    check_round(5.2); // ... and after
+}
+
+static void test_tempi_of_a_score_that_follows_count_from_its_beginning(void)
+{
+    static const himc_tempo_change next[] = {{0, 60}, {2, 240}};
+    static const double beat[] = {1, 3, 5, 7}, touch[] = {0.5, 1.5, 3, 4.25};
+    TEST_ASSERT_TRUE(himc_planner_append_tempi(planner, next, 2, 4, &error));
+    for (int i = 0; i < 4; i++)
+        add(planner, beat[i], HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    for (int i = 0; i < 4; i++) {
+        double before = touch[i] - 0.1;
+        himc_planner_advance(planner, before);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, touch[i], touch_at(HIMC_LEFT, before));
+    }
+}
+
+static void test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_so(void)
+{
+    himc_stroke s = {.beat = 2, .hand = HIMC_LEFT, .dynamic = 0.5, .spot = HIMC_SPOT_XY, .y = 0.4};
+    TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 0, &error));
+    himc_planner_play(planner, 0);
+    himc_vec3 x = at(planner, HIMC_LEFT, 1).x;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, x.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.75, x.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.97 * 0.3, x.y);
+    expect_note("left hand: 0 0.4 is beyond the rim, struck inside it");
+}
+
+static void test_play_past_the_end_begins_at_beat_0(void)
+{
+    add(planner, 4, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_seek(planner, 0, 10);
+    himc_planner_play(planner, 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3, touch_at(HIMC_LEFT, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1, himc_planner_beat(planner, 1.5));
+}
+
+static void test_seek_to_the_beat_of_a_stroke_plays_it(void)
+{
+    add(planner, 4, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    add(planner, 8, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_seek(planner, 0, 4);
+    himc_planner_play(planner, 1);
+    himc_stroke s;
+    int drum;
+    double touch;
+    TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1, &s, &drum, &touch));
+    TEST_ASSERT_EQUAL_DOUBLE(4, s.beat);
+    TEST_ASSERT_TRUE(touch < 1.8);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_unit_of_the_grip_then_of_the_spot_then_of_the_speed_is_played);
+    RUN_TEST(test_hits_at_once_are_played_one_after_the_other);
+    RUN_TEST(test_stroke_added_before_the_present_beat_is_given_up_once);
+    RUN_TEST(test_stroke_added_before_a_committed_one_does_not_repeat_it);
+    RUN_TEST(test_new_score_is_played_after_a_stroke_of_the_old_one_came_early);
+    RUN_TEST(test_tempo_in_a_later_round_of_a_loop_keeps_every_stroke);
+    RUN_TEST(test_tempi_of_a_score_that_follows_count_from_its_beginning);
+    RUN_TEST(test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_so);
+    RUN_TEST(test_play_past_the_end_begins_at_beat_0);
+    RUN_TEST(test_seek_to_the_beat_of_a_stroke_plays_it);
+    return UNITY_END();
+}
