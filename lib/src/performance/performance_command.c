@@ -5,6 +5,7 @@
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
 #include "performance/performance_job.h"
+#include "base/format.h"
 #include "performance/performance_state.h"
 
 #include <stdio.h>
@@ -323,8 +324,8 @@ static bool unknown_segment(const char *name, himc_error *error)
     himc_error_set(error, "push: SEGMENT: %s, allowed", name);
     size_t used = error ? strlen(error->text) : 0;
     for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
-        used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
-                                 himc_segment_name(i));
+        used +=
+            himc_format(error->text + used, sizeof error->text - used, " %s", himc_segment_name(i));
     return false;
 }
 
