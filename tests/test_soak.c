@@ -292,7 +292,9 @@ static memory measure_memory(void)
     FILE *f = fopen("/proc/self/statm", "r");
     TEST_ASSERT_TRUE(f && fscanf(f, "%ld %ld", &unused, &pages) == 2);
     fclose(f);
-    return (memory){(double)mallinfo2().uordblks, (double)pages * (double)sysconf(_SC_PAGESIZE)};
+    struct mallinfo2 heap = mallinfo2();
+    return (memory){(double)(heap.uordblks + heap.hblkhd),
+                    (double)pages * (double)sysconf(_SC_PAGESIZE)};
 }
 
 static void print_counts(const char *name, const strokes *c)
