@@ -6,6 +6,7 @@
 /// a stick counts at its surface: about that axis it has 1e-6 kg m^2, so a rounding of 1e-14 N m
 /// moves it. With HIMC_LONG (make test-long) 1000 cases, else a few.
 #include "body/character.h"
+#include "body/dynamics.h"
 #include "performance/performance_state.h"
 
 #include "session.h"
@@ -313,6 +314,71 @@ static void test_a_piece_is_the_same_by_both_engines(void)
     }
 }
 
+typedef struct leg_rows {
+    himc_vec3 joint[2000][HIMC_SEGMENTS - HIMC_LEGS];
+    int rows;
+} leg_rows;
+
+static void keep_legs(void *user, const himc_motion_row *row)
+{
+    leg_rows *l = user;
+    memcpy(l->joint[l->rows++ % 2000], &row->joint[HIMC_LEGS - 1], sizeof l->joint[0]);
+}
+
+// the right hand plays while the left knee is kicked at 1.5 s
+static void play_kick(const char *engine, leg_rows *l)
+{
+    himc_performance *p = session_new();
+    l->rows = 0;
+    session_do(p, "engine %s", engine);
+    session_do(p, "drum kettle");
+    session_do(p, "stroke 1 right accent f");
+    session_do(p, "play");
+    himc_performance_on_motion(p, keep_legs, l);
+    session_play(p, 1.5, NULL);
+    session_do(p, "push left-lower-leg 200 60 0 0.05");
+    session_play(p, 1.5, NULL);
+    himc_performance_free(p);
+}
+
+// rows in which the legs have the bits of the row before
+static int rows_at_rest(const leg_rows *l, int from, int to)
+{
+    int equal = 0;
+    for (int i = from + 1; i < to; i++)
+        equal += memcmp(l->joint[i], l->joint[i - 1], sizeof l->joint[i]) == 0;
+    return equal;
+}
+
+static double farthest(const leg_rows *a, int i, const leg_rows *b, int k)
+{
+    double most = 0;
+    for (int j = 0; j < HIMC_SEGMENTS - HIMC_LEGS; j++)
+        most = fmax(most,
+                    himc_vec3_length(himc_vec3_sub(a->joint[i % 2000][j], b->joint[k % 2000][j])));
+    return most;
+}
+
+static void test_legs_at_rest_are_not_computed_and_wake_as_if_they_had_been(void)
+{
+    static leg_rows tree, ode;
+    double apart = 0, moved = 0;
+    play_kick("tree", &tree);
+    play_kick("ode", &ode);
+    TEST_ASSERT_EQUAL_INT(ode.rows, tree.rows);
+    TEST_ASSERT_EQUAL_INT(750, tree.rows); // 250 a second
+    for (int i = 0; i < tree.rows; i++) {
+        apart = fmax(apart, farthest(&tree, i, &ode, i));
+        moved = fmax(moved, farthest(&tree, i, &tree, 0));
+    }
+    TEST_ASSERT_TRUE(apart <= AGREED);
+    TEST_ASSERT_TRUE(moved > 0.01);
+    TEST_ASSERT_EQUAL_INT(349, rows_at_rest(&tree, 20, 370));
+    TEST_ASSERT_EQUAL_INT(0, rows_at_rest(&tree, 376, 420));
+    TEST_ASSERT_EQUAL_INT(99, rows_at_rest(&tree, 650, 750));
+    TEST_ASSERT_TRUE(rows_at_rest(&ode, 20, 370) < 300); // its rounding goes on
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -322,5 +388,6 @@ int main(void)
     RUN_TEST(test_engines_can_change_in_the_middle_of_a_motion);
     RUN_TEST(test_another_body_keeps_the_engine);
     RUN_TEST(test_a_piece_is_the_same_by_both_engines);
+    RUN_TEST(test_legs_at_rest_are_not_computed_and_wake_as_if_they_had_been);
     return UNITY_END();
 }

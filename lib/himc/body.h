@@ -276,15 +276,21 @@ HIMC_RT void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_bod
                                    const himc_vec3 *relative, bool still,
                                    himc_vec3 torque[HIMC_JOINTS]);
 
+/// A symmetric 3x3 matrix.
+typedef struct himc_symmetric {
+    double xx, xy, xz, yy, yz, zz; ///< the upper triangle
+} himc_symmetric;
+
 /// The articulated inertias of the segments at a state: working memory of forward dynamics.
 typedef struct himc_articulation {
-    himc_vec3 lever[HIMC_SEGMENTS];      ///< from the parent's joint to the segment's (m)
-    himc_vec3 center[HIMC_SEGMENTS];     ///< from the joint to the centre of mass (m)
-    himc_mat3 inertia[HIMC_SEGMENTS];    ///< about the centre of mass, world frame (kg m^2)
-    himc_mat3 inverse[HIMC_SEGMENTS];    ///< of the articulated rotational inertia about the joint
+    himc_vec3 lever[HIMC_SEGMENTS];        ///< from the parent's joint to the segment's (m)
+    himc_vec3 center[HIMC_SEGMENTS];       ///< from the joint to the centre of mass (m)
+    himc_symmetric inertia[HIMC_SEGMENTS]; ///< about the centre of mass, world frame (kg m^2)
+    himc_symmetric
+        inverse[HIMC_SEGMENTS];          ///< of the articulated rotational inertia about the joint
     himc_mat3 response[HIMC_SEGMENTS];   ///< minus the angular acceleration per acceleration of the
                                          ///< joint (1/m)
-    himc_mat3 mass[HIMC_SEGMENTS];       ///< apparent mass for the parent at the joint (kg)
+    himc_symmetric mass[HIMC_SEGMENTS];  ///< apparent mass for the parent at the joint (kg)
     int end;                             ///< segments 1 .. end - 1 take part
     bool resists;                        ///< joints resist their own acceleration; if so:
     himc_mat3 resistance[HIMC_SEGMENTS]; ///< D (kg m^2)

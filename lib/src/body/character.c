@@ -5,7 +5,8 @@
 /// made it themselves. The frame of an ODE body is its segment's, moved to the centre of mass, as
 /// ODE requires. The pelvis is ODE's world (body 0), so the trunk and each leg are separate islands
 /// and ODE solves three small systems. dWorldStep is deterministic to the bit (QuickStep draws
-/// random numbers). ODE aborts the process on an invalid mass, so the skeleton is checked before;
+/// random numbers). Legs at rest keep their state to the bit until a force on them changes: the
+/// pelvis is fixed, so nothing else moves them. ODE aborts the process on an invalid mass, so the skeleton is checked before;
 /// it accepts NaN silently, so himc_performance checks the state after each step.
 #include "body/character.h"
 
@@ -21,7 +22,14 @@
 #define FASTEST_SPIN 3000 // (rad/s)
 // chosen: far above any real value, and its square is still finite
 #define LARGEST_SUM 1e30 // of the squares of all torques, forces, positions and velocities
-#define FIRST_STEP 1e-4  // chosen: any valid step makes the engine allocate (s)
+// legs at rest. Chosen: above the noise of rounding, 1e-11 rad/s, and long enough that the turning
+// point of a swing is none
+#define STILL_SPIN 1e-9   // a leg that spins slower is still (rad/s)
+#define STILL_STEPS 100   // steps after which still legs are at rest ...
+#define STILL_TORQUE 1e-8 // ... while no torque on them changes by more (N m)
+#define FIRST_STEP 1e-4   // chosen: any valid step makes the engine allocate (s)
+
+#define LEGS_SIZE ((HIMC_SEGMENTS - HIMC_LEGS) * sizeof(himc_vec3))
 
 struct himc_character {
     himc_skeleton skeleton;
@@ -29,8 +37,10 @@ struct himc_character {
     segment_states state;
     himc_vec3 push[HIMC_SEGMENTS]; // in the next step (N)
     himc_articulation articulation;
-    bool articulated; // the articulation belongs to this state
-    bool given;       // the engine's bodies have this state
+    bool articulated;       // the articulation belongs to this state
+    bool given;             // ODE's bodies have this state
+    int still;              // steps in which no leg moved
+    segment_forces resting; // on the legs, in the last of these steps
     dWorldID world;
     dBodyID body[HIMC_SEGMENTS]; // [0], the pelvis, is NULL: the world
 };
@@ -169,6 +179,7 @@ void himc_character_place(himc_character *c, const himc_body_state *state)
         c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
     }
     memset(c->push, 0, sizeof c->push);
+    c->still = 0;
     changed(c);
 }
 
@@ -193,7 +204,7 @@ void himc_character_observe(const himc_character *c, himc_body_state *s)
 const himc_articulation *himc_character_articulation(himc_character *c)
 {
     if (!c->articulated)
-        himc_articulate_all(&c->skeleton, &c->state.joints, &c->articulation);
+        himc_articulate(&c->skeleton, &c->state.joints, &c->articulation);
     c->articulated = true;
     return &c->articulation;
 }
@@ -248,6 +259,42 @@ static void step_ode(himc_character *c, const segment_forces *f, double h)
     }
     dWorldStep(c->world, h);
     take_from_ode(c);
+    c->still = 0;
+}
+
+// true if the legs are at rest and no force on them has changed: then nothing moves them
+static bool legs_rest(const himc_character *c, const segment_forces *f)
+{
+    bool same = c->still >= STILL_STEPS &&
+                memcmp(&f->force[HIMC_LEGS], &c->resting.force[HIMC_LEGS], LEGS_SIZE) == 0;
+    for (int i = HIMC_LEGS; same && i < HIMC_SEGMENTS; i++) {
+        himc_vec3 more = himc_vec3_sub(f->torque[i], c->resting.torque[i]);
+        same = himc_vec3_dot(more, more) < STILL_TORQUE * STILL_TORQUE;
+    }
+    return same;
+}
+
+static void note_legs(himc_character *c, const segment_forces *f)
+{
+    bool still = true;
+    for (int i = HIMC_LEGS; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 w = c->state.joints.spin[i];
+        still = still && himc_vec3_dot(w, w) < STILL_SPIN * STILL_SPIN;
+    }
+    c->still = still ? c->still + (c->still < STILL_STEPS) : 0;
+    memcpy(&c->resting.force[HIMC_LEGS], &f->force[HIMC_LEGS], LEGS_SIZE);
+    memcpy(&c->resting.torque[HIMC_LEGS], &f->torque[HIMC_LEGS], LEGS_SIZE);
+}
+
+static void step_tree(himc_character *c, const segment_forces *f, double h)
+{
+    bool rest = legs_rest(c, f);
+    himc_character_articulation(c);
+    if (!rest)
+        himc_articulate_legs(&c->skeleton, &c->state.joints, &c->articulation);
+    himc_tree_step(&c->skeleton, &c->articulation, f, JOINT_ERP, h, &c->state);
+    if (!rest)
+        note_legs(c, f);
 }
 
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
@@ -260,8 +307,7 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
     if (c->engine == HIMC_ENGINE_ODE)
         step_ode(c, &forces, h);
     else
-        himc_tree_step(&c->skeleton, himc_character_articulation(c), &forces, JOINT_ERP, h,
-                       &c->state);
+        step_tree(c, &forces, h);
     memset(c->push, 0, sizeof c->push);
     changed(c);
     c->given = c->engine == HIMC_ENGINE_ODE;

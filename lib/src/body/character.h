@@ -29,8 +29,8 @@ HIMC_RT void himc_character_place(himc_character *character, const himc_body_sta
 /// Reads the body's state: the kinematic layer from the dynamic layer.
 HIMC_RT void himc_character_observe(const himc_character *character, himc_body_state *state);
 
-/// The articulated inertias at the present state, legs included: computed at most once a step, and
-/// valid until the next one.
+/// The articulated inertias at the present state, without the legs: computed at most once a step,
+/// and valid until the next one.
 HIMC_RT const himc_articulation *himc_character_articulation(himc_character *character);
 
 /// Adds a force (world frame, N) at a segment's centre of mass during the next step only. Several

@@ -12,9 +12,11 @@ HIMC_RT void himc_articulate_resisting(const himc_skeleton *skeleton, const himc
                                        const himc_vec3 resistance[HIMC_JOINTS],
                                        himc_articulation *articulation);
 
-/// The articulated inertias of all segments, legs included.
-HIMC_RT void himc_articulate_all(const himc_skeleton *skeleton, const himc_body_state *state,
-                                 himc_articulation *articulation);
+#define HIMC_LEGS HIMC_LEFT_UPPER_LEG ///< segments 1 .. HIMC_LEGS - 1 are trunk, neck, head, arms
+
+/// Adds the legs to what himc_articulate has made of this state.
+HIMC_RT void himc_articulate_legs(const himc_skeleton *skeleton, const himc_body_state *state,
+                                  himc_articulation *articulation);
 
 /// What moves a segment on its joint (world frame).
 typedef struct tree_load {

@@ -16,18 +16,6 @@
 /// and the moment D K n. Then all segments take part, since the legs have servos as well.
 #include "body/dynamics.h"
 
-#define UPPER_END HIMC_LEFT_UPPER_LEG // segments 1 .. UPPER_END - 1 are trunk, neck, head and arms
-
-static himc_mat3 cross_matrix(himc_vec3 v)
-{
-    return (himc_mat3){{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}}};
-}
-
-static himc_vec3 row(const himc_mat3 *a, int i)
-{
-    return himc_vec3_make(a->m[i][0], a->m[i][1], a->m[i][2]);
-}
-
 static himc_vec3 column(const himc_mat3 *a, int i)
 {
     return himc_vec3_make(a->m[0][i], a->m[1][i], a->m[2][i]);
@@ -36,25 +24,108 @@ static himc_vec3 column(const himc_mat3 *a, int i)
 // a += scale b
 static void add_to(himc_mat3 *a, const himc_mat3 *b, double scale)
 {
-    double *to = a->m[0];
-    const double *from = b->m[0];
-    for (int i = 0; i < 9; i++)
-        to[i] += scale * from[i];
-}
-
-// a b', if symmetric
-static himc_mat3 symmetric_product(const himc_mat3 *a, const himc_mat3 *b)
-{
-    himc_vec3 x = row(a, 0), y = row(a, 1), u = row(b, 0), v = row(b, 1), w = row(b, 2);
-    double xy = himc_vec3_dot(x, v), xz = himc_vec3_dot(x, w), yz = himc_vec3_dot(y, w);
-    return (himc_mat3){{{himc_vec3_dot(x, u), xy, xz},
-                        {xy, himc_vec3_dot(y, v), yz},
-                        {xz, yz, himc_vec3_dot(row(a, 2), w)}}};
+    for (int i = 0; i < 3; i++) {
+        a->m[i][0] += scale * b->m[i][0];
+        a->m[i][1] += scale * b->m[i][1];
+        a->m[i][2] += scale * b->m[i][2];
+    }
 }
 
 static himc_mat3 transpose(const himc_mat3 *a)
 {
-    return himc_mat3_from_axes(row(a, 0), row(a, 1), row(a, 2));
+    return himc_mat3_from_axes(himc_vec3_make(a->m[0][0], a->m[0][1], a->m[0][2]),
+                               himc_vec3_make(a->m[1][0], a->m[1][1], a->m[1][2]),
+                               himc_vec3_make(a->m[2][0], a->m[2][1], a->m[2][2]));
+}
+
+static himc_mat3 full(const himc_symmetric *a)
+{
+    return (himc_mat3){{{a->xx, a->xy, a->xz}, {a->xy, a->yy, a->yz}, {a->xz, a->yz, a->zz}}};
+}
+
+static himc_vec3 apply(const himc_symmetric *a, himc_vec3 v)
+{
+    return himc_vec3_make(a->xx * v.x + a->xy * v.y + a->xz * v.z,
+                          a->xy * v.x + a->yy * v.y + a->yz * v.z,
+                          a->xz * v.x + a->yz * v.y + a->zz * v.z);
+}
+
+// a += scale v v'
+static void add_square(himc_symmetric *a, double scale, himc_vec3 v)
+{
+    himc_vec3 u = himc_vec3_scale(v, scale);
+    a->xx += u.x * v.x;
+    a->xy += u.x * v.y;
+    a->xz += u.x * v.z;
+    a->yy += u.y * v.y;
+    a->yz += u.y * v.z;
+    a->zz += u.z * v.z;
+}
+
+static himc_symmetric sum(const himc_symmetric *a, const himc_symmetric *b)
+{
+    return (himc_symmetric){a->xx + b->xx, a->xy + b->xy, a->xz + b->xz,
+                            a->yy + b->yy, a->yz + b->yz, a->zz + b->zz};
+}
+
+// the inverse of a positive definite matrix, by cofactors
+static himc_symmetric inverse(const himc_symmetric *a)
+{
+    double xx = a->yy * a->zz - a->yz * a->yz, xy = a->xz * a->yz - a->xy * a->zz,
+           xz = a->xy * a->yz - a->xz * a->yy;
+    double s = 1 / (a->xx * xx + a->xy * xy + a->xz * xz);
+    return (himc_symmetric){xx * s,
+                            xy * s,
+                            xz * s,
+                            (a->xx * a->zz - a->xz * a->xz) * s,
+                            (a->xy * a->xz - a->xx * a->yz) * s,
+                            (a->xx * a->yy - a->xy * a->xy) * s};
+}
+
+// a tensor given about a segment's axes, in the world frame: R diag(d) R' = d.z 1 + the excess of
+// d.x and d.y along their axes
+static himc_symmetric world_tensor(const himc_mat3 *rotation, himc_vec3 d)
+{
+    himc_symmetric t = {.xx = d.z, .yy = d.z, .zz = d.z};
+    add_square(&t, d.x - d.z, column(rotation, 0));
+    add_square(&t, d.y - d.z, column(rotation, 1));
+    return t;
+}
+
+// J, H and M of a segment and, later, of its children
+typedef struct block {
+    himc_symmetric j, m;
+    himc_mat3 h;
+} block;
+
+// a segment's own, with its place in the world
+static void place_segment(const himc_skeleton *skeleton, const himc_body_state *s, int i,
+                          himc_articulation *art, block *own)
+{
+    const himc_segment *segment = &skeleton->segment[i];
+    double m = segment->mass;
+    himc_vec3 c = himc_mat3_apply(&s->rotation[i], segment->center), mc = himc_vec3_scale(c, m);
+    double steiner = himc_vec3_dot(c, mc);
+    art->center[i] = c;
+    art->lever[i] = himc_mat3_apply(&s->rotation[segment->parent], segment->origin);
+    art->inertia[i] = own->j = world_tensor(&s->rotation[i], segment->inertia);
+    own->j.xx += steiner;
+    own->j.yy += steiner;
+    own->j.zz += steiner;
+    add_square(&own->j, -m, c);
+    own->h = (himc_mat3){{{0, -mc.z, mc.y}, {mc.z, 0, -mc.x}, {-mc.y, mc.x, 0}}};
+    own->m = (himc_symmetric){.xx = m, .yy = m, .zz = m};
+}
+
+// the matrices of a joint that resists its acceleration; J becomes J + D
+static void add_resistance(himc_articulation *art, int i, const himc_symmetric *d, block *own)
+{
+    own->j = sum(&own->j, d);
+    art->inverse[i] = inverse(&own->j);
+    himc_mat3 k = full(&art->inverse[i]);
+    art->resistance[i] = full(d);
+    art->transfer[i] = himc_mat3_mul(&art->resistance[i], &k);
+    art->parent_coupling[i] = himc_mat3_mul(&art->transfer[i], &own->h);
 }
 
 // [v]x a
@@ -64,105 +135,70 @@ static himc_mat3 cross_columns(himc_vec3 v, const himc_mat3 *a)
                                himc_vec3_cross(v, column(a, 2)));
 }
 
-// a b, column by column
-static himc_mat3 product(const himc_mat3 *a, const himc_mat3 *b)
+static void add_symmetric(himc_symmetric *a, const himc_mat3 *b)
 {
-    return himc_mat3_from_axes(himc_mat3_apply(a, column(b, 0)), himc_mat3_apply(a, column(b, 1)),
-                               himc_mat3_apply(a, column(b, 2)));
-}
-
-// a tensor given about a segment's axes, in the world frame
-static himc_mat3 world_tensor(const himc_mat3 *rotation, himc_vec3 axes)
-{
-    himc_mat3 scaled = himc_mat3_from_axes(himc_vec3_scale(column(rotation, 0), axes.x),
-                                           himc_vec3_scale(column(rotation, 1), axes.y),
-                                           himc_vec3_scale(column(rotation, 2), axes.z));
-    return symmetric_product(&scaled, rotation);
-}
-
-// J, H and M of a segment and, later, of its children
-typedef struct block {
-    himc_mat3 j, h, m;
-} block;
-
-// a segment's own, with its place in the world
-static void place_segment(const himc_skeleton *skeleton, const himc_body_state *s, int i,
-                          himc_articulation *art, block *own)
-{
-    const himc_segment *segment = &skeleton->segment[i];
-    const himc_mat3 *rotation = &s->rotation[i];
-    himc_vec3 c = himc_mat3_apply(rotation, segment->center);
-    double m = segment->mass;
-    himc_mat3 cx = cross_matrix(c), steiner = cross_columns(himc_vec3_scale(c, -m), &cx);
-    art->center[i] = c;
-    art->lever[i] = himc_mat3_apply(&s->rotation[segment->parent], segment->origin);
-    art->inertia[i] = world_tensor(rotation, segment->inertia);
-    own->j = art->inertia[i];
-    add_to(&own->j, &steiner, 1);
-    own->h = cross_matrix(himc_vec3_scale(c, m));
-    own->m = (himc_mat3){{{m, 0, 0}, {0, m, 0}, {0, 0, m}}};
-}
-
-// the matrices of a joint that resists its acceleration; J becomes J + D
-static void add_resistance(himc_articulation *art, int i, const himc_mat3 *d, block *own)
-{
-    add_to(&own->j, d, 1);
-    art->inverse[i] = himc_mat3_inverse_symmetric(&own->j);
-    art->resistance[i] = *d;
-    art->transfer[i] = himc_mat3_mul(d, &art->inverse[i]);
-    art->parent_coupling[i] = himc_mat3_mul(&art->transfer[i], &own->h);
+    *a = sum(a, &(himc_symmetric){b->m[0][0], b->m[0][1], b->m[0][2], b->m[1][1], b->m[1][2],
+                                  b->m[2][2]});
 }
 
 // adds E and G of segment `i`, moved to its parent's joint, to the parent's J and H
 static void add_parent_moments(const himc_articulation *art, int i, block *parent)
 {
     himc_mat3 e = himc_mat3_mul(&art->transfer[i], &art->resistance[i]);
-    himc_mat3 g = transpose(&art->parent_coupling[i]);
+    himc_mat3 g = transpose(&art->parent_coupling[i]), all = art->resistance[i];
     himc_mat3 back = cross_columns(art->lever[i], &g), moved = transpose(&back);
-    add_to(&parent->j, &art->resistance[i], 1);
-    add_to(&parent->j, &e, -1);
-    add_to(&parent->j, &moved, 1);
-    add_to(&parent->j, &back, 1);
+    add_to(&all, &e, -1);
+    add_to(&all, &moved, 1);
+    add_to(&all, &back, 1);
+    add_symmetric(&parent->j, &all);
     add_to(&parent->h, &art->parent_coupling[i], 1);
 }
 
 // what a segment with its children is for its parent: J^-1 H and A = M - H' J^-1 H
 static void eliminate(himc_articulation *art, int i, const block *own)
 {
-    himc_mat3 ht = transpose(&own->h), kt;
-    art->response[i] = product(&art->inverse[i], &own->h);
-    kt = transpose(&art->response[i]);
-    kt = symmetric_product(&ht, &kt);
-    art->mass[i] = own->m;
-    add_to(&art->mass[i], &kt, -1);
+    himc_vec3 h0 = column(&own->h, 0), h1 = column(&own->h, 1), h2 = column(&own->h, 2);
+    const himc_symmetric *k = &art->inverse[i], *m = &own->m;
+    himc_vec3 k0 = apply(k, h0), k1 = apply(k, h1), k2 = apply(k, h2);
+    art->response[i] = himc_mat3_from_axes(k0, k1, k2);
+    art->mass[i] = (himc_symmetric){m->xx - himc_vec3_dot(h0, k0), m->xy - himc_vec3_dot(h0, k1),
+                                    m->xz - himc_vec3_dot(h0, k2), m->yy - himc_vec3_dot(h1, k1),
+                                    m->yz - himc_vec3_dot(h1, k2), m->zz - himc_vec3_dot(h2, k2)};
 }
 
-// adds A, moved to the parent's joint
+// adds A, moved to the parent's joint: M += A, H += [r]x A, J += [r]x A [r]x'
 static void add_to_parent(const himc_articulation *art, int i, block *parent)
 {
     himc_vec3 r = art->lever[i];
-    himc_mat3 ra = cross_columns(r, &art->mass[i]), rat = transpose(&ra);
-    himc_mat3 rar = cross_columns(r, &rat); // r A r' is symmetric
-    add_to(&parent->m, &art->mass[i], 1);
+    const himc_symmetric *a = &art->mass[i];
+    himc_mat3 ra = himc_mat3_from_axes(himc_vec3_cross(r, himc_vec3_make(a->xx, a->xy, a->xz)),
+                                       himc_vec3_cross(r, himc_vec3_make(a->xy, a->yy, a->yz)),
+                                       himc_vec3_cross(r, himc_vec3_make(a->xz, a->yz, a->zz)));
+    const double *x = ra.m[0], *y = ra.m[1], *z = ra.m[2]; // its rows, times [r]x' from the right
+    himc_symmetric rar = {r.y * x[2] - r.z * x[1], r.z * x[0] - r.x * x[2],
+                          r.x * x[1] - r.y * x[0], r.z * y[0] - r.x * y[2],
+                          r.x * y[1] - r.y * y[0], r.x * z[1] - r.y * z[0]};
+    parent->m = sum(&parent->m, a);
+    parent->j = sum(&parent->j, &rar);
     add_to(&parent->h, &ra, 1);
-    add_to(&parent->j, &rar, 1);
 }
 
-static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, int end,
+// segments begin .. end - 1, with all their children
+static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, int begin, int end,
                        const himc_vec3 *resistance, himc_articulation *art)
 {
     block own[HIMC_SEGMENTS];
     art->end = end;
     art->resists = resistance;
-    for (int i = 1; i < end; i++)
+    for (int i = begin; i < end; i++)
         place_segment(skeleton, s, i, art, &own[i]);
-    for (int i = end - 1; i > 0; i--) {
+    for (int i = end - 1; i >= begin; i--) {
         int p = skeleton->segment[i].parent;
         if (resistance) {
-            himc_mat3 d = world_tensor(&s->rotation[i], resistance[i - 1]);
+            himc_symmetric d = world_tensor(&s->rotation[i], resistance[i - 1]);
             add_resistance(art, i, &d, &own[i]);
         } else {
-            art->inverse[i] = himc_mat3_inverse_symmetric(&own[i].j);
+            art->inverse[i] = inverse(&own[i].j);
         }
         eliminate(art, i, &own[i]);
         if (p == HIMC_PELVIS)
@@ -176,19 +212,19 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
 void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *s,
                      himc_articulation *art)
 {
-    articulate(skeleton, s, UPPER_END, NULL, art);
+    articulate(skeleton, s, 1, HIMC_LEGS, NULL, art);
 }
 
-void himc_articulate_all(const himc_skeleton *skeleton, const himc_body_state *s,
-                         himc_articulation *art)
+void himc_articulate_legs(const himc_skeleton *skeleton, const himc_body_state *s,
+                          himc_articulation *art)
 {
-    articulate(skeleton, s, HIMC_SEGMENTS, NULL, art);
+    articulate(skeleton, s, HIMC_LEGS, HIMC_SEGMENTS, NULL, art);
 }
 
 void himc_articulate_resisting(const himc_skeleton *skeleton, const himc_body_state *s,
                                const himc_vec3 resistance[HIMC_JOINTS], himc_articulation *art)
 {
-    articulate(skeleton, s, HIMC_SEGMENTS, resistance, art);
+    articulate(skeleton, s, 1, HIMC_SEGMENTS, resistance, art);
 }
 
 // inwards: n and p of all segments further out; alpha is that of a joint at rest
@@ -198,10 +234,10 @@ static void sum_loads(const himc_skeleton *skeleton, const himc_articulation *ar
     for (int i = art->end - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
         himc_vec3 n = load[i].moment, gap = load[i].gap;
-        alpha[i] = himc_vec3_scale(himc_mat3_apply(&art->inverse[i], n), -1);
+        alpha[i] = himc_vec3_scale(apply(&art->inverse[i], n), -1);
         if (p == HIMC_PELVIS)
             continue;
-        himc_vec3 force = himc_vec3_add(load[i].force, himc_mat3_apply(&art->mass[i], gap));
+        himc_vec3 force = himc_vec3_add(load[i].force, apply(&art->mass[i], gap));
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[i], n));
         load[p].force = himc_vec3_add(load[p].force, force);
         load[p].moment = himc_vec3_add(load[p].moment, himc_vec3_cross(art->lever[i], force));
@@ -245,7 +281,7 @@ static tree_load own_load(const himc_skeleton *skeleton, const himc_articulation
                      .gap = centripetal(spin[segment->parent], art->lever[i])};
     own.force.z += HIMC_GRAVITY;
     own.force = himc_vec3_scale(own.force, segment->mass);
-    own.moment = himc_vec3_cross(spin[i], himc_mat3_apply(&art->inertia[i], spin[i]));
+    own.moment = himc_vec3_cross(spin[i], apply(&art->inertia[i], spin[i]));
     own.moment = himc_vec3_add(own.moment, himc_vec3_cross(art->center[i], own.force));
     return own;
 }
@@ -284,7 +320,7 @@ double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state 
         // `force` acts at `end` and rotates the segment about its joint; the rest acts on the
         // parent
         moment = himc_vec3_cross(himc_vec3_sub(end, s->origin[i]), force);
-        alpha[i] = himc_mat3_apply(&art->inverse[i], moment);
+        alpha[i] = apply(&art->inverse[i], moment);
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[i], moment));
         end = s->origin[i];
         chain[count++] = i;
