@@ -264,9 +264,9 @@ $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs three
-# files of the library and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o $(BUILD)/lib/base/line.o
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
+# room base, the skeleton and no other package, so that `make viewer` needs none either
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter $(BUILD)/lib/base/%,$(LIB_O))
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@

@@ -1,9 +1,12 @@
 /// test_c3d.c: C3D files of all three processors, floats and integers, written here byte by byte
 /// from the format's description, and a real file compared with its export as text.
+#define _POSIX_C_SOURCE 200809L // alarm
 #include "c3d_files.h"
 #include "capture/take.h"
 #include "take_files.h"
 #include "unity.h"
+
+#include <unistd.h>
 
 static himc_error error;
 
@@ -402,6 +405,48 @@ static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
     himc_take_free(take);
 }
 
+// 65025 labels of one character each
+static unsigned char *put_labels(const maker *m, unsigned char *at, const char *name, int character)
+{
+    at = put_name(at, 1, name);
+    put_word(m, at, 2 + 2 + 3 + 255 * 255 + 1);
+    memcpy(at + 2, (unsigned char[]){0xFF, 3, 1, 255, 255}, 5);
+    memset(at + 7, character, 255 * 255);
+    at[7 + 255 * 255] = 0;
+    return at + 7 + 255 * 255 + 1;
+}
+
+// compared one by one, 2e10 times, they took minutes: the alarm ends them
+static void test_thousands_of_labels_and_of_model_outputs_take_no_time(void)
+{
+    static const char *const lists[] = {"ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS"};
+    maker m = maker_default(C3D_INTEL, false);
+    m.points = 65535;
+    m.analog = 0;
+    m.frames = 1;
+    size_t parameters = 800 * 512;
+    m.size = 512 + parameters + 8 * (size_t)m.points;
+    m.bytes = calloc(1, m.size);
+    put_header(&m, m.bytes);
+    put_word(&m, m.bytes + 16, 802);
+    unsigned char *at = m.bytes + 512;
+    at[3] = C3D_INTEL;
+    at = put_group(&m, at + 4, 1, "POINT");
+    at = put_text(&m, at, 1, "UNITS", "mm");
+    at = put_labels(&m, at, "LABELS", 'a');
+    for (int k = 0; k < 5; k++)
+        at = put_labels(&m, at, lists[k], 'b' + k);
+    alarm(60);
+    himc_take *take = read_made(&m);
+    alarm(0);
+    free(m.bytes);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(65535, himc_take_points(take));
+    TEST_ASSERT_EQUAL_STRING("a", himc_take_point_name(take, 65024));
+    TEST_ASSERT_EQUAL_STRING("P65026", himc_take_point_name(take, 65025));
+    himc_take_free(take);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -423,6 +468,7 @@ int main(void)
     RUN_TEST(test_units_in_metres_and_unknown_units);
     RUN_TEST(test_non_finite_coordinates_are_gaps);
     RUN_TEST(test_every_prefix_and_every_changed_byte_is_survived);
+    RUN_TEST(test_thousands_of_labels_and_of_model_outputs_take_no_time);
     RUN_TEST(test_real_file_has_as_many_gaps_as_its_source_says);
     RUN_TEST(test_real_file_equals_its_export_as_text_to_a_micrometre);
     return UNITY_END();

@@ -13,6 +13,7 @@ for target; do
     name=$(basename "$target")
     name=${name#fuzz_}
     mkdir -p "$build/corpus/$name" "tests/fuzz/corpus/$name"
+    times >"$build/before" # processor time of all children so far
     "$target" -max_total_time="$seconds" -max_len=32768 -timeout=25 -rss_limit_mb=3000 -print_final_stats=1 \
         -artifact_prefix="$build/failed/$name-" "$build/corpus/$name" "tests/fuzz/corpus/$name" >"$build/logs/$name.txt" 2>&1
     if [ $? = 0 ]; then
@@ -23,7 +24,11 @@ for target; do
     fi
     count=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/logs/$name.txt")
     echo "$(date -u +%F) $commit $name $seconds ${count:-0} $end" >>"$build/executions.txt"
-    printf '%-16s %9d executions, %7d a second  %s\n' "$name" "${count:-0}" $((${count:-0} / seconds)) $end
+    times >"$build/after"
+    awk -v name="$name" -v count="${count:-0}" -v end="$end" '
+        FNR % 2 == 0 { gsub(/[ms]/, " "); before = now; now = 60 * $1 + $2 + 60 * $3 + $4 }
+        END { printf "%-16s %9d executions, %6d a second of processor time  %s\n", name, count, count / (now - before + 1e-3), end }
+    ' "$build/before" "$build/after"
     [ $end = ok ] || grep -m1 -E 'ERROR:|runtime error:|broken promise:' "$build/logs/$name.txt"
     rmdir "tests/fuzz/corpus/$name" 2>/dev/null
 done

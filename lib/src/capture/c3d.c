@@ -34,6 +34,7 @@ typedef struct c3d {
     bool is_float;
     size_t data, stride; // where frames begin, bytes of one
     int *kept;           // (points) index in the take, or -1
+    himc_span *label;    // (points) empty if a point has none
     himc_error *error;
 } c3d;
 
@@ -119,54 +120,68 @@ static bool count_frames(const c3d *r, int *frames)
                           r->take->file, most, r->stride, there);
 }
 
-static bool same(const char *a, size_t n, const char *b, size_t m)
+static int by_text(const void *a, const void *b)
 {
-    himc_span x = himc_span_trim((himc_span){a, n}), y = himc_span_trim((himc_span){b, m});
-    return x.length > 0 && x.length == y.length && memcmp(x.at, y.at, x.length) == 0;
+    const himc_span *x = a, *y = b;
+    if (x->length != y->length)
+        return x->length < y->length ? -1 : 1;
+    return x->length ? memcmp(x->at, y->at, x->length) : 0;
 }
 
-static bool is_model_output(const c3d *r, const char *label, size_t length)
+// the trimmed labels of a model's values, sorted; `*count` of them, to be freed
+static himc_span *model_labels(const c3d *r, size_t *count)
 {
     static const char *const lists[] = {"ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS"};
+    const c3d_parameter *list[5];
+    size_t most = 1;
     for (int k = 0; k < 5; k++) {
-        const c3d_parameter *list = himc_c3d_find(&r->parameters, "POINT", lists[k]);
-        const char *other;
-        size_t n;
-        for (int i = 0; himc_c3d_string(list, i, &other, &n); i++)
-            if (same(label, length, other, n))
-                return true;
+        list[k] = himc_c3d_find(&r->parameters, "POINT", lists[k]);
+        most += list[k] ? (size_t)list[k]->count : 0; // a label has a byte at least
     }
-    return false;
+    himc_span *found = malloc(most * sizeof *found), label;
+    *count = 0;
+    for (int k = 0; k < 5 && found; k++)
+        for (int i = 0; himc_c3d_string(list[k], i, &label.at, &label.length); i++)
+            found[(*count)++] = himc_span_trim(label);
+    if (found)
+        qsort(found, *count, sizeof *found, by_text);
+    return found;
 }
 
-// label of a point from POINT:LABELS, LABELS2, ...; false if it has none
-static bool find_label(const c3d *r, int point, const char **text, size_t *length)
+// the points' labels from POINT:LABELS, LABELS2, ...; those that have none stay empty
+static void read_labels(c3d *r)
 {
     char name[24] = "LABELS";
+    int point = 0;
     for (int k = 2; k < 256; k++) {
         const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
         if (!labels || labels->type != -1 || labels->dimensions == 0 || labels->size[0] == 0)
-            return false;
-        if (himc_c3d_string(labels, point, text, length))
-            return true;
-        point -= labels->count / labels->size[0];
+            return;
+        for (int i = 0; point < r->points; i++, point++)
+            if (!himc_c3d_string(labels, i, &r->label[point].at, &r->label[point].length))
+                break;
         snprintf(name, sizeof name, "LABELS%d", k);
     }
-    return false;
 }
 
 static bool choose_points(c3d *r, int *count)
 {
-    const char *label;
-    size_t length;
+    size_t models;
+    himc_span *model = model_labels(r, &models);
     r->kept = malloc((size_t)r->points * sizeof *r->kept);
-    if (!r->kept)
+    r->label = calloc((size_t)r->points, sizeof *r->label);
+    if (!model || !r->kept || !r->label) {
+        free(model);
         return himc_error_set(r->error, "%s: no memory", r->take->file);
+    }
+    read_labels(r);
     *count = 0;
-    for (int i = 0; i < r->points; i++)
-        r->kept[i] = find_label(r, i, &label, &length) && is_model_output(r, label, length)
-                         ? -1
-                         : (*count)++;
+    for (int i = 0; i < r->points; i++) {
+        himc_span label = himc_span_trim(r->label[i]);
+        bool is_model = label.length && bsearch(&label, model, models, sizeof label, by_text);
+        r->kept[i] = is_model ? -1 : (*count)++;
+    }
+    free(model);
     if (*count < r->points)
         himc_take_note(
             r->take, "points: %d of them are values of a model (angles, forces, ...) and left out",
@@ -180,13 +195,9 @@ static bool choose_points(c3d *r, int *count)
 
 static void name_points(const c3d *r)
 {
-    const char *label;
-    size_t length;
     for (int i = 0; i < r->points; i++)
-        if (r->kept[i] >= 0) {
-            bool labelled = find_label(r, i, &label, &length);
-            himc_take_set_name(r->take, r->kept[i], labelled ? label : "", labelled ? length : 0);
-        }
+        if (r->kept[i] >= 0)
+            himc_take_set_name(r->take, r->kept[i], r->label[i].at, r->label[i].length);
 }
 
 static himc_vec3 read_point(const c3d *r, const unsigned char *at)
@@ -348,6 +359,7 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
                               take->file, bytes[0], bytes[1]);
     bool ok = read_all(&r);
     free(r.kept);
+    free(r.label);
     himc_c3d_parameters_free(&r.parameters);
     return ok;
 }
