@@ -158,6 +158,12 @@ torment: deps ## a million random and hostile commands to a playing performance;
 	@$(MAKE) $(BUILD)/tests/test_torment
 	HIMC_TORMENT=$(COMMANDS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_torment
 
+# how many hours `make soak` plays
+HOURS ?= 24
+soak: deps ## a session of HOURS=24 simulated hours (SEED=1): no drift, no growth, every stroke played; a line per hour
+	@$(MAKE) $(BUILD)/tests/test_soak
+	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_soak
+
 mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
 	@$(MAKE) check-mutants
 
@@ -221,7 +227,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands

@@ -126,7 +126,7 @@ between blocks but have a time of their own. An engine that a longer block has p
 take it at once. */
 static inline int stream_delay(const t_stream *s, uint64_t engine)
 {
-    double delay = (double)s->s_count + stream_offset(s) - (double)engine;
+    double delay = (double)(int64_t)(s->s_count - engine) + stream_offset(s);
     return (int)lround(fmin(fmax(delay, 0), STREAM_LONGEST_DELAY));
 }
 

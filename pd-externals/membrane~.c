@@ -120,7 +120,7 @@ static void membrane_await_touch(t_membrane *x)
     if (x->x_touching || !himc_drum_contact_next(x->x_link.l_drum, &x->x_touch))
         return;
     x->x_touching = true;
-    double samples = (double)x->x_touch.at + x->x_stream.s_length - (double)x->x_stream.s_count;
+    double samples = (double)(x->x_touch.at - (int64_t)x->x_stream.s_count) + x->x_stream.s_length;
     double passed = clock_gettimesince(x->x_stream.s_start);
     clock_delay(x->x_touch_clock, fmax(samples * 1000 / x->x_stream.s_rate - passed, 0));
 }

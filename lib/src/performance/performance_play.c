@@ -26,7 +26,6 @@ static bool check_stroke(const himc_stroke *s, himc_error *error)
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
-    himc_motion_replan(p->motion);
     if (!check_stroke(stroke, error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
@@ -36,6 +35,7 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
         return false;
     }
     himc_performance_keep_drum(p, &drum);
+    himc_motion_replan(p->motion);
     return himc_planner_add(p->motion->planner, stroke, drum.index, error);
 }
 
@@ -151,11 +151,11 @@ static himc_job_state add_units(himc_job *job, himc_error *error)
     units_job *j = (units_job *)job;
     himc_performance *p = j->performance;
     const char *path = j->command.atom[0].symbol;
-    himc_motion_replan(p->motion);
     if (!himc_planner_add_units(p->motion->planner, j->unit, j->count, error)) {
         himc_error_prefix(error, "%s", path);
         return HIMC_JOB_FAILED;
     }
+    himc_motion_replan(p->motion);
     himc_events_note(&p->events, "%s: %d motion units of %s", path, j->count,
                      himc_nuance_name((himc_nuance)j->command.choice[1]));
     return HIMC_JOB_DONE;
