@@ -158,6 +158,12 @@ torment: deps ## a million random and hostile commands to a playing performance;
 	@$(MAKE) $(BUILD)/tests/test_torment
 	HIMC_TORMENT=$(COMMANDS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_torment
 
+# how many hours `make soak` plays
+HOURS ?= 24
+soak: deps ## a session of HOURS=24 simulated hours (SEED=1): no drift, no growth, every stroke played; a line per hour
+	@$(MAKE) $(BUILD)/tests/test_soak
+	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_soak
+
 mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
 	@$(MAKE) check-mutants
 
@@ -221,7 +227,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -264,9 +270,9 @@ $(BUILD)/viewer/%.o: viewer/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
-# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs three
-# files of the library and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(BUILD)/lib/base/base.o $(BUILD)/lib/base/line.o
+# names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
+# room base, the skeleton and no other package, so that `make viewer` needs none either
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter $(BUILD)/lib/base/%,$(LIB_O))
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@

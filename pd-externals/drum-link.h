@@ -13,6 +13,7 @@ other reads its ring. */
 #define DRUM_LINK_H
 
 #include "himc/himc.h"
+#include "himc/loader.h"
 #include "m_pd.h"
 
 #include <math.h>
@@ -22,6 +23,7 @@ other reads its ring. */
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
 #define DRUM_LINK_CLASS "membrane~"
 #define DRUM_LINK_ID_SIZE 32 /* chosen: room for two numbers of ten digits */
+#define LOAD_PERIOD 1.0 /* between two looks for what is loaded (ms); chosen: less than a block */
 
 /* Follows the t_object of a [membrane~]. */
 typedef struct t_drum_link {
@@ -124,8 +126,34 @@ between blocks but have a time of their own. An engine that a longer block has p
 take it at once. */
 static inline int stream_delay(const t_stream *s, uint64_t engine)
 {
-    double delay = (double)s->s_count + stream_offset(s) - (double)engine;
+    double delay = (double)(int64_t)(s->s_count - engine) + stream_offset(s);
     return (int)lround(fmin(fmax(delay, 0), STREAM_LONGEST_DELAY));
+}
+
+/* True if the word is on Pd's command line; only Linux tells. */
+static inline bool pd_was_given(const char *word)
+{
+    char text[4096];
+    FILE *file = fopen("/proc/self/cmdline", "rb");
+    size_t count = file ? fread(text, 1, sizeof text - 1, file) : 0;
+    bool given = false;
+    if (file)
+        fclose(file);
+    text[count] = 0;
+    for (size_t at = 0; at < count && !given; at += strlen(text + at) + 1)
+        given = strcmp(text + at, word) == 0;
+    return given;
+}
+
+/* True while a command that takes long would hold up the sound: then a loader carries it out. While
+DSP is off, and in `pd -batch`, which knows no clock, it acts at once, so that a batch gives the
+same sound every time. */
+static inline bool pd_in_real_time(void)
+{
+    static int batch = -1;
+    if (batch < 0)
+        batch = pd_was_given("-batch");
+    return !batch && pd_getdspstate();
 }
 
 /* A Pd message as a checked command. `list stroke ...` is taken as `stroke ...`. */

@@ -83,6 +83,7 @@ void himc_tilde_network(t_himc *x)
 {
     char line[HIMC_OSC_LINE];
     himc_osc_receive(x->x_osc, x->x_performance, NETWORK_COMMANDS);
+    himc_tilde_load(x);
     while (himc_osc_line(x->x_osc, line))
         pd_error(x, "himc~: %s", line);
     if (x->x_osc)
@@ -93,6 +94,7 @@ static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
 {
     himc_osc_config config = himc_osc_default();
     config.port = port;
+    config.loader = x->x_loader;
     himc_osc *osc = himc_osc_reopen(x->x_osc, &config, error);
     if (!osc)
         return false;
@@ -113,6 +115,35 @@ static bool himc_tilde_osc(t_himc *x, const himc_command *command, himc_error *e
            himc_osc_command(x->x_osc, command, error);
 }
 
+void himc_tilde_load(t_himc *x)
+{
+    if (!pd_in_real_time())
+        himc_loader_finish(x->x_loader);
+    else if (himc_loader_run(x->x_loader))
+        clock_delay(x->x_load, LOAD_PERIOD);
+}
+
+static void himc_tilde_loaded(void *object, const char *error)
+{
+    if (error)
+        pd_error(object, "himc~: %s", error);
+}
+
+/* What takes long, and what comes behind it, waits for the loader. */
+static bool himc_tilde_perform_command(t_himc *x, const himc_command *command, himc_error *error)
+{
+    int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
+    himc_load_target target = {
+        .performance = x->x_performance, .delay = delay, .done = himc_tilde_loaded, .user = x};
+    if (pd_in_real_time()) {
+        bool good = himc_loader_command(x->x_loader, &target, command, error);
+        himc_tilde_load(x);
+        return good;
+    }
+    himc_loader_finish(x->x_loader);
+    return himc_performance_command(x->x_performance, command, delay, error);
+}
+
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
@@ -129,8 +160,7 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return himc_error_prefix(error, "%s", s->s_name);
     /* a command may come before DSP is on, and needs its drums */
     himc_tilde_resolve(x, false);
-    int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
-    return himc_performance_command(x->x_performance, &command, delay, error);
+    return himc_tilde_perform_command(x, &command, error);
 }
 
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)

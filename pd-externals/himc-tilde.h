@@ -35,6 +35,9 @@ typedef struct t_himc {
     t_sample *x_out[HIMC_HANDS];
     double x_force[HIMC_HANDS][FORCE_RING];
 
+    himc_loader *x_loader; /* for commands that take long, of messages and of the network */
+    t_clock *x_load;       /* looks for what it has loaded */
+
     himc_osc *x_osc;    /* NULL until `subscribe` or `listen` */
     t_clock *x_network; /* looks for commands from there */
 
@@ -55,6 +58,8 @@ void himc_tilde_advance(void *player, uint64_t time);
 
 /* Any message to the inlet. */
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv);
+/* Installs what has been loaded. */
+void himc_tilde_load(t_himc *x);
 /* Carries out commands from OSC, in Pd's own time, also while DSP is off. */
 void himc_tilde_network(t_himc *x);
 

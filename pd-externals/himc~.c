@@ -8,7 +8,8 @@ outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          beat N   done   info ...
 
-Glue only: commands go to a himc_performance with the sample on which they arrived; each block
+Glue only: commands go to a himc_performance with the sample on which they arrived; those that take
+long, by a file, are loaded in another thread while the sound goes on (himc/loader.h). Each block
 advances it and puts out the forces of the sticks. A [membrane~] that comes earlier in the tick asks
 for its sound first and so advances the performance itself (himc_tilde_advance); the forces wait in
 a ring. Nothing is sent from perform: a clock sends it at the start of the next tick. */
@@ -150,7 +151,9 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     argc -= signals, argv += signals;
     if (himc_tilde_arguments(argc, argv, &error))
         performance = himc_performance_new(&config, &error);
-    if (!performance) {
+    himc_loader *loader = performance ? himc_loader_new(&error) : NULL;
+    if (!loader) {
+        himc_performance_free(performance);
         pd_error(NULL, "himc~: %s", error.text);
         return NULL;
     }
@@ -158,6 +161,8 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_canvas = canvas_getcurrent();
     x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
     x->x_network = clock_new(x, (t_method)himc_tilde_network);
+    x->x_load = clock_new(x, (t_method)himc_tilde_load);
+    x->x_loader = loader;
     x->x_performance = performance;
     x->x_player.p_himc = x;
     x->x_rate = config.sample_rate;
@@ -177,8 +182,10 @@ static void himc_tilde_free(t_himc *x)
 {
     himc_tilde_leave(x);
     himc_osc_free(x->x_osc);
+    himc_loader_free(x->x_loader);
     himc_performance_free(x->x_performance);
     clock_free(x->x_network);
+    clock_free(x->x_load);
     clock_free(x->x_clock);
 }
 

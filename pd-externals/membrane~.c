@@ -31,6 +31,9 @@ typedef struct t_membrane {
     t_outlet *x_messages;
     int x_channels;
 
+    himc_loader *x_loader; /* for heads that take long to compute */
+    t_clock *x_load;       /* looks for what it has loaded */
+
     t_layer x_layer; /* plays the inlet's force while a performer plays the drum */
 
     t_stream x_stream;
@@ -59,11 +62,19 @@ static double membrane_number(t_membrane *x, t_sample value)
     return 0;
 }
 
-/* Setting the layer may allocate: never from perform. */
+/* Setting the layer may allocate and take long: never from perform. */
 static void membrane_fit_layer(t_membrane *x)
 {
     himc_error error;
-    if (!layer_fit(&x->x_layer, himc_drum_membrane(x->x_link.l_drum), &error))
+    const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    if (layer_fits(&x->x_layer, drum))
+        return;
+    bool good = pd_in_real_time()
+                    ? himc_loader_follow(x->x_loader, x->x_layer.l_membrane, drum, &error)
+                    : layer_fit(&x->x_layer, drum, &error);
+    if (himc_loader_busy(x->x_loader))
+        clock_delay(x->x_load, LOAD_PERIOD);
+    if (!good)
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
@@ -109,7 +120,7 @@ static void membrane_await_touch(t_membrane *x)
     if (x->x_touching || !himc_drum_contact_next(x->x_link.l_drum, &x->x_touch))
         return;
     x->x_touching = true;
-    double samples = (double)x->x_touch.at + x->x_stream.s_length - (double)x->x_stream.s_count;
+    double samples = (double)(x->x_touch.at - (int64_t)x->x_stream.s_count) + x->x_stream.s_length;
     double passed = clock_gettimesince(x->x_stream.s_start);
     clock_delay(x->x_touch_clock, fmax(samples * 1000 / x->x_stream.s_rate - passed, 0));
 }
@@ -237,22 +248,45 @@ static void membrane_info(t_membrane *x)
     }
 }
 
+static void membrane_load(t_membrane *x)
+{
+    if (!pd_in_real_time())
+        himc_loader_finish(x->x_loader);
+    else if (himc_loader_run(x->x_loader))
+        clock_delay(x->x_load, LOAD_PERIOD);
+}
+
+/* After a command: what follows from it. */
+static void membrane_changed(void *object, const char *refusal)
+{
+    t_membrane *x = object;
+    if (refusal)
+        pd_error(x, "membrane~: %s", refusal);
+    membrane_fit_layer(x);
+    membrane_tell_technique(x);
+}
+
 static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
     himc_drum *drum = x->x_link.l_drum;
+    himc_load_target target = {.drum = drum, .done = membrane_changed, .user = x};
     if (!command_from_pd(&command, HIMC_DRUM, s, argc, argv, error))
         return false;
-    if (command.id == HIMC_COMMAND_STRIKE) {
+    if (!pd_in_real_time())
+        himc_loader_finish(x->x_loader);
+    if (command.id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader)) {
         int delay = stream_delay(&x->x_stream, himc_drum_time(drum));
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
                                    command.atom[2].number, error);
     }
-    if (!himc_drum_command(drum, &command, error))
-        return false;
-    membrane_fit_layer(x);
-    membrane_tell_technique(x);
-    return true;
+    bool good = pd_in_real_time() ? himc_loader_command(x->x_loader, &target, &command, error)
+                                  : himc_drum_command(drum, &command, error);
+    if (himc_loader_busy(x->x_loader))
+        membrane_load(x);
+    else if (good)
+        membrane_changed(x, NULL);
+    return good;
 }
 
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
@@ -345,15 +379,19 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     double rate = sys_getsr();
     t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;
-    if (membrane_arguments(argc, argv, &wish, &error))
+    himc_loader *loader = himc_loader_new(&error);
+    if (loader && membrane_arguments(argc, argv, &wish, &error))
         drum = membrane_make(&wish, rate, &layer, &error);
     if (!drum) {
+        himc_loader_free(loader);
         pd_error(NULL, "membrane~: %s", error.text);
         return NULL;
     }
     t_membrane *x = (t_membrane *)pd_new(membrane_class);
     x->x_link = drum_link(drum, rate);
     x->x_layer = layer;
+    x->x_loader = loader;
+    x->x_load = clock_new(x, (t_method)membrane_load);
     x->x_channels = (int)wish.w_channels;
     x->x_clock = clock_new(x, (t_method)membrane_tick);
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
@@ -374,10 +412,12 @@ static void membrane_free(t_membrane *x)
 {
     if (x->x_symbol)
         pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
+    himc_loader_free(x->x_loader);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
     himc_membrane_free(x->x_layer.l_membrane);
     clock_free(x->x_clock);
+    clock_free(x->x_load);
     clock_free(x->x_touch_clock);
 }
 

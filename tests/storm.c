@@ -1,6 +1,7 @@
 /// storm.c: packets for test_storm.sh: valid, malformed and random ones in turn, at a steady rate.
 ///
 ///     storm PORT COUNT RATE BEFORE
+///     storm burn SECONDS SHARE
 ///
 /// to 127.0.0.1, from two sockets. Valid are commands of all costs to performer and drum, in range,
 /// also such as make a head of 200 modes anew; malformed are such packets with some bytes changed
@@ -10,10 +11,15 @@
 /// has come. The program ends when the counters in a status know every packet: those of this storm
 /// and the BEFORE ones sent to the port earlier; each is taken, lost at the socket (overrun), or
 /// lost in the system's queue of packets. Prints one line, NAME VALUE ...: `sent`, `pace`
-/// (packets/s), `dropped` (in the system's queue), and the counters. Status 1 after a minute.
+/// (packets/s), `share` (of one core that sending took, the system's work for it included),
+/// `dropped` (in the system's queue), and the counters. Status 1 after a minute.
+///
+/// `burn` sends nothing and takes that share of a core for so long, in the same steps of time: what
+/// is late beside it is late for lack of a core, not because of the packets.
 #define _GNU_SOURCE // sendmmsg
 #include <arpa/inet.h>
 #include <lo/lo.h>
+#include <math.h>
 #include <poll.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,10 +28,12 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <time.h>
+#include <unistd.h>
 
 #define SIZE 256
 #define BURST 100
-#define PATIENCE 60 // (s)
+#define BURN_RATE 1e5 // packets that are not sent (1/s)
+#define PATIENCE 60   // (s)
 #define COMMANDS ((int)(sizeof commands / sizeof *commands))
 
 typedef struct packet {
@@ -117,11 +125,45 @@ static packet noise(void)
     return p;
 }
 
-static double now(void)
+static double read_clock(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double now(void)
+{
+    return read_clock(CLOCK_MONOTONIC);
+}
+
+static void sleep_until(double t)
+{
+    double early = t - now();
+    if (early > 0)
+        nanosleep(&(struct timespec){(time_t)early, (long)(1e9 * (early - floor(early)))}, NULL);
+}
+
+// seconds that all cores have spent on packets outside of processes
+static double interrupts(void)
+{
+    unsigned long ticks = 0;
+    FILE *file = fopen("/proc/stat", "r");
+    if (file && fscanf(file, "cpu %*u %*u %*u %*u %*u %*u %lu", &ticks) != 1)
+        ticks = 0;
+    if (file)
+        fclose(file);
+    return (double)ticks / (double)sysconf(_SC_CLK_TCK);
+}
+
+static void burn(double seconds, double share)
+{
+    double begun = now(), used = read_clock(CLOCK_PROCESS_CPUTIME_ID);
+    for (double t = BURST / BURN_RATE; t < seconds; t += BURST / BURN_RATE) {
+        while (read_clock(CLOCK_PROCESS_CPUTIME_ID) - used < share * t && now() - begun < seconds)
+            ;
+        sleep_until(begun + t);
+    }
 }
 
 static long send_burst(int fd, packet *burst, int count)
@@ -164,9 +206,7 @@ static long send_storm(const int fd[2], const packet valid[COMMANDS], long count
         }
         sent += send_burst(fd[n % 2], burst, BURST);
         next += BURST / rate;
-        double early = next - now();
-        if (early > 0)
-            nanosleep(&(struct timespec){0, (long)(1e9 * early)}, NULL);
+        sleep_until(next);
     }
     return sent;
 }
@@ -208,11 +248,11 @@ static long subscribe(int ear)
     return send_burst(ear, &p, 1);
 }
 
-static void report(lo_message status, long sent, double pace, long dropped)
+static void report(lo_message status, long sent, double pace, double share, long dropped)
 {
     static const char *const counters[] = {"packets", "overrun",  "malformed", "foreign",
                                            "refused", "frequent", "commands"};
-    printf("sent %ld pace %.0f dropped %ld", sent, pace, dropped);
+    printf("sent %ld pace %.0f share %.3f dropped %ld", sent, pace, share, dropped);
     for (size_t i = 0; i < sizeof counters / sizeof *counters; i++)
         printf(" %s %.0f", counters[i], value(status, counters[i]));
     printf("\n");
@@ -222,6 +262,10 @@ int main(int argc, char **argv)
 {
     static packet valid[COMMANDS];
     int fd[3]; // the last one hears
+    if (argc == 4 && strcmp(argv[1], "burn") == 0) {
+        burn(atof(argv[2]), atof(argv[3]));
+        return 0;
+    }
     if (argc != 5)
         return 2;
     struct sockaddr_in to = {.sin_family = AF_INET,
@@ -242,9 +286,10 @@ int main(int argc, char **argv)
     }
     if (!status)
         return 1;
-    double begun = now();
+    double begun = now(), used = read_clock(CLOCK_PROCESS_CPUTIME_ID) + interrupts();
     long storm = send_storm(fd, valid, atol(argv[2]), atof(argv[3]));
-    double pace = (double)storm / (now() - begun);
+    double took = now() - begun, pace = (double)storm / took;
+    double share = (read_clock(CLOCK_PROCESS_CPUTIME_ID) + interrupts() - used) / took;
     bool all = false;
     sent += storm;
     for (begun = now(); !all && now() - begun < PATIENCE;) {
@@ -258,6 +303,6 @@ int main(int argc, char **argv)
         long arrived = before + sent - (queue_dropped() - dropped);
         all = value(status, "packets") + value(status, "overrun") >= (double)arrived;
     }
-    report(status, sent, pace, queue_dropped() - dropped);
+    report(status, sent, pace, share, queue_dropped() - dropped);
     return !all;
 }

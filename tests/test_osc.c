@@ -3,6 +3,8 @@
 #include "himc/body.h"
 #include "himc/membrane.h"
 #include "osc/encode.h"
+#include "drum/drum_state.h"
+#include "performance/performance_state.h"
 
 static void test_pose_comes_33_times_a_second_with_20_bodies(void)
 {
@@ -54,6 +56,30 @@ static void test_the_time_tag_of_a_strike_is_its_time_on_the_wall_clock(void)
     double tag =
         (double)(s->time_tag >> 32) - 2208988800.0 + (double)(uint32_t)s->time_tag / 4294967296.0;
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, EPOCH + begun + time, tag);
+}
+
+// a performance that has gone on for a day, and for longer than 32 bits of seconds
+static void test_time_tags_hold_across_2_to_the_32_and_50_samples(void)
+{
+    static const double seconds[] = {89478, 23456248059.0}; // to just before 2^32 and 2^50 samples
+    for (int i = 0; i < 2; i++) {
+        restart(&(himc_osc_config){.port = 0});
+        performance->clock.made = performance->clock.played = (int64_t)seconds[i] * 48000;
+        performance->clock.step = (int64_t)seconds[i] * 10000;
+        performance->drums.slot[0].drum->time = (uint64_t)performance->clock.made;
+        double begun = simulated;
+        subscribe("strikes");
+        say("/himc/hit", "right accent f");
+        play(2);
+        const seen *s = last("/himc/strike");
+        TEST_ASSERT_NOT_NULL(s);
+        lo_arg **a = lo_message_get_argv(s->message);
+        double time = whole(a[10]) + (double)number(a[11]) - fmod(seconds[i], 2147483648.0);
+        double tag = (double)(s->time_tag >> 32) - 2208988800.0 +
+                     (double)(uint32_t)s->time_tag / 4294967296.0;
+        TEST_ASSERT_TRUE(time > 0.1 && time < 2);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, EPOCH + begun + time, tag);
+    }
 }
 
 static void test_head_sends_amplitudes_and_place_of_the_drum(void)
@@ -177,6 +203,7 @@ int main(void)
     RUN_TEST(test_pose_comes_33_times_a_second_with_20_bodies);
     RUN_TEST(test_a_strike_asked_for_over_osc_comes_back_as_strike);
     RUN_TEST(test_the_time_tag_of_a_strike_is_its_time_on_the_wall_clock);
+    RUN_TEST(test_time_tags_hold_across_2_to_the_32_and_50_samples);
     RUN_TEST(test_head_sends_amplitudes_and_place_of_the_drum);
     RUN_TEST(test_a_drum_is_tuned_over_osc);
     RUN_TEST(test_errors_are_answered_with_the_parsers_line);

@@ -279,6 +279,16 @@ static void test_reset_writes_a_recording_first_and_keeps_callbacks_and_events(v
     himc_performance_free(p);
 }
 
+static void test_reset_drops_a_recording_that_has_no_frames_yet(void)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_performance *p = performer(&config);
+    session_do(p, "record build/reset-out.bvh");
+    session_do(p, "reset");
+    TEST_ASSERT_NULL(p->recording.file);
+    himc_performance_free(p);
+}
+
 // two performances in the same state; one is refused a reset, then both play on
 static void check_refusal(unsigned seed, int allocation, const char *reason)
 {
@@ -293,6 +303,7 @@ static void check_refusal(unsigned seed, int allocation, const char *reason)
         p[i] = random_state(&same, &config, 0.1, story);
         session_try(p[i], "record stop");
         session_try(p[i], "record build/gone/out%d.bvh", i);
+        himc_performance_process(p[i], 200, NULL); // a few frames
     }
     rmdir("build/gone");
     fail_allocation(allocation);
@@ -341,6 +352,7 @@ int main(void)
     RUN_TEST(test_reset_keeps_the_hosts_drums_where_their_owner_put_them);
     RUN_TEST(test_reset_undoes_the_place_that_a_take_gave_a_drum);
     RUN_TEST(test_reset_writes_a_recording_first_and_keeps_callbacks_and_events);
+    RUN_TEST(test_reset_drops_a_recording_that_has_no_frames_yet);
     RUN_TEST(test_reset_without_memory_or_file_changes_nothing);
     unlink(TAKE);
     unlink(SCORE);

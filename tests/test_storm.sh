@@ -3,13 +3,14 @@
 # serve` and against [himc~] in Pure Data: both go on, every packet is counted, memory stays flat.
 # All is counted in packets and awaited, so that it is the same on a busy machine. With HIMC_LONG
 # 6 million packets, and once more against builds with the address and undefined behaviour
-# sanitizers. tests/realtime/test_storm.sh adds how late blocks are.
-: "${HIMC_BUILD:=build}" "${CC:=gcc}"
+# sanitizers. tests/realtime/test_storm.sh adds how late blocks are, beside the storm and beside a process that takes the same
+# share of a core and sends nothing, for HIMC_STORM_SECONDS each (60).
+: "${HIMC_BUILD:=build}" "${CC:=gcc}" "${HIMC_STORM_SECONDS:=60}"
 dir=$HIMC_BUILD/tests/storm
 port=$((20000 + 8 * $$ % 12000)) # and 7 after it; ours, should two of these run at once, and below those that the system gives
 packets=200000 rate=100000
 [ -n "$HIMC_LONG" ] && packets=6000000
-seconds=$((packets / rate)) # of a run without a storm, for tests/realtime
+[ -n "$HIMC_STORM_LATENESS" ] && packets=$((HIMC_STORM_SECONDS * rate))
 mkdir -p "$dir"
 tests=0 failures=0
 pid= keeper=
@@ -54,6 +55,18 @@ storm() { # storm PORT: leaves packets sent in $sent, lost by the system in $dro
         grown=$(($(memory $pid) - before))
     done
     pace=$(number_of pace)
+    share=$(number_of share)
+}
+
+lateness() { # lateness: of the last run of `himc serve`, as `late blocks`
+    echo "$(number late) $(number blocks)"
+}
+
+later() { # later STORM BURNER, each `late blocks`: why the storm's is more than chance explains (3 standard deviations of two counts)
+    echo "$1 $2" | awk '{
+        beside = $3 * $2 / $4
+        if ($1 - beside > 3 * sqrt($1 + beside)) printf "%d of %d late, beside the burner %d of %d", $1, $2, $3, $4
+    }'
 }
 
 counted() { # why not all is counted, in kinds too
@@ -66,12 +79,12 @@ counted() { # why not all is counted, in kinds too
     }' "$dir/counts"
 }
 
-serve() { # serve SECONDS: 0 is a storm's length
+serve() { # serve WHAT...: beside this command
     timeout 900 "$bin/himc" serve patches/improvisation.txt --port $port >"$dir/out" 2>"$dir/err" &
     keeper=$!
     await "$dir/out" listening
     pid=$(child $keeper)
-    [ "$1" = 0 ] && storm $port || sleep "$1"
+    "$@"
     alive=$(kill -0 $pid 2>/dev/null || echo dead)
     kill -TERM $pid
     wait $keeper
@@ -80,8 +93,7 @@ serve() { # serve SECONDS: 0 is a storm's length
 }
 
 against_serve() { # against_serve NAME
-    [ -n "$HIMC_STORM_LATENESS" ] && serve $seconds && quiet="$(number late) of $(number blocks), the worst by $(number latest_ms) ms"
-    serve 0
+    serve storm $port
     report himc_serve_${1}goes_on_in_a_storm "$alive$([ $code = 0 ] || echo "exit status $code: $(tail -n 1 "$dir/err")")" "$pace packets/s"
     report himc_serve_${1}counts_the_whole_storm "$(counted)" "$(number overrun) of $sent lost in the system"
     report himc_serve_${1}says_so_at_its_end \
@@ -89,7 +101,11 @@ against_serve() { # against_serve NAME
     [ -n "$1" ] && return # a sanitizer's own memory grows
     report himc_serve_keeps_its_memory "$([ "$grown" -lt 8192 ] || echo "$grown kB")" "$grown kB more"
     [ -n "$HIMC_STORM_LATENESS" ] || return
-    report himc_serve_late_blocks "" "$(number late) of $(number blocks), the worst by $(number latest_ms) ms; quiet: $quiet"
+    stormy=$(lateness) worst=$(number latest_ms)
+    serve "$dir/storm" burn $HIMC_STORM_SECONDS $share
+    beside=$(lateness)
+    report himc_serve_is_late_no_more_often_than_beside_a_burner "$(later "$stormy" "$beside")" \
+        "storm: late ${stormy% *} of ${stormy#* } blocks, the worst by $worst ms; burner ($share of a core): late ${beside% *} of ${beside#* }, the worst by $(number latest_ms) ms"
 }
 
 cat >"$dir/storm.pd" <<EOF
@@ -159,7 +175,7 @@ in_pd() { # in_pd SECONDS: 0 is a storm's length
 }
 
 against_pd() { # against_pd NAME
-    [ -n "$HIMC_STORM_LATENESS" ] && in_pd $seconds && quiet=$(grep -a '^late' "$dir/pd" | tail -n 1)
+    [ -n "$HIMC_STORM_LATENESS" ] && in_pd $HIMC_STORM_SECONDS && quiet=$(grep -a '^late' "$dir/pd" | tail -n 1)
     in_pd 0
     report himc_tilde_${1}goes_on_in_a_storm "$alive$(grep -a -m1 'ERROR: AddressSanitizer\|runtime error' "$dir/pd")" "$pace packets/s"
     report himc_tilde_${1}counts_the_whole_storm "$(counted)" "$(number_of overrun) of $sent lost in the system"
@@ -169,7 +185,7 @@ against_pd() { # against_pd NAME
     report himc_tilde_late_blocks "" "the worst by $(grep -a '^late' "$dir/pd" | tail -n 1 | sed 's/late: //') ms; quiet: ${quiet#late: } ms"
 }
 
-"$CC" -std=c17 -O2 -Wall -Wextra tests/storm.c -llo -o "$dir/storm" || exit 1
+"$CC" -std=c17 -O2 -Wall -Wextra tests/storm.c -llo -lm -o "$dir/storm" || exit 1
 bin=$HIMC_BUILD/bin externals=$HIMC_BUILD/externals/himc preload=
 against_serve
 against_pd

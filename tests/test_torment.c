@@ -26,6 +26,7 @@
 
 static char folder[] = "/tmp/himc-torment-XXXXXX", files[8][64];
 static const char *file_list[9];
+static char *take_text;
 
 /// The performer under test; its twin, or NULL.
 typedef struct pair {
@@ -39,7 +40,8 @@ typedef struct counts {
 } counts;
 
 static counts seen;
-static char story[600]; // round and command, for a failure
+#define RECENT 12
+static char recent[RECENT][600]; // the last commands with their answers, for a failure
 static heard_piece expected, played;
 
 static void write_file(const char *name, const char *text)
@@ -51,7 +53,7 @@ static void write_file(const char *name, const char *text)
 }
 
 // files that commands name: good ones, strange ones, and one that is not there
-static void write_files(void)
+static void make_files(void)
 {
     static const char *const names[] = {"take.bvh", "score.txt", "head.txt",  "broken.bvh",
                                         "bad.txt",  "gone.txt",  "record.bvh"};
@@ -65,14 +67,23 @@ static void write_files(void)
     himc_take *take = beaten_take(&body, 100, 1.2, &error);
     TEST_ASSERT_TRUE(take && himc_take_save(take, files[0], &error));
     himc_take_free(take);
+    size_t size;
+    take_text = read_all(files[0], &size);
     disc_mesh disc = disc_mesh_new(4, 0.3, 4000, 0.3);
     disc_mesh_write(&disc, folder, 4000, 0.3);
     disc_mesh_free(&disc);
+    random_files = file_list;
+}
+
+// as commands may have left them no longer
+static void write_files(void)
+{
+    write_file("take.bvh", take_text);
     write_file("score.txt", "tempo 140; drum tom 26; tom tune 110; stroke 0 left legato f;\n"
                             "kettle mallet wood; stroke 0.5 right accent ff normal tom; play;\n");
     write_file("broken.bvh", "HIERARCHY\nROOT a\n{\nOFFSET 0 0 nan\n\x1b[31m");
     write_file("bad.txt", "stroke 1 left \x1b[31m\n f;");
-    random_files = file_list;
+    unlink(files[6]);
 }
 
 static void remove_files(void)
@@ -80,12 +91,20 @@ static void remove_files(void)
     char all[80];
     snprintf(all, sizeof all, "rm -rf %s", folder);
     TEST_ASSERT_EQUAL_INT(0, system(all));
+    free(take_text);
+}
+
+static char *story(long back)
+{
+    return recent[(seen.said + RECENT - back) % RECENT];
 }
 
 static void fail(const char *what)
 {
     char text[1200];
-    snprintf(text, sizeof text, "%s: %s", story, what);
+    for (long back = RECENT - 1; back >= 0; back--)
+        printf("%s\n", story(back));
+    snprintf(text, sizeof text, "%.600s: %s", story(0), what);
     TEST_FAIL_MESSAGE(text);
 }
 
@@ -109,12 +128,13 @@ static bool carry_out(himc_performance *p, const himc_command *c, himc_receiver 
 
 static void remember(const spoken *s, int drum, int delay)
 {
-    size_t used = (size_t)snprintf(story, sizeof story, "command %ld, drum %d, delay %d: %.30s",
+    char *text = story(0);
+    size_t used = (size_t)snprintf(text, sizeof recent[0], "command %ld, drum %d, delay %d: %.30s",
                                    seen.said, drum, delay, s->name);
-    for (int i = 0; i < s->count && used < sizeof story - 80; i++)
+    for (int i = 0; i < s->count && used < sizeof recent[0] - 80; i++)
         used += (size_t)(s->atom[i].kind == HIMC_ATOM_NUMBER
-                             ? snprintf(story + used, 60, " %g", s->atom[i].number)
-                             : snprintf(story + used, 60, " %.50s", s->atom[i].symbol));
+                             ? snprintf(text + used, 60, " %g", s->atom[i].number)
+                             : snprintf(text + used, 60, " %.50s", s->atom[i].symbol));
 }
 
 // says one command, half of the time spoilt; what is refused is answered by one line
@@ -131,18 +151,19 @@ static void say_one(pair *of, random_seed *seed)
         must = spoil(&s, how, seed);
     int drum = of->p->drums.count > 0 ? any_of(seed, of->p->drums.count) : -1;
     int delay = hostile || any(seed) < 0.5 ? 0 : any_of(seed, 2000);
+    seen.said++;
     remember(&s, drum, delay);
     if (s.receiver == HIMC_DRUM && drum < 0)
         return;
     bool parsed = himc_command_parse(&c, s.receiver, s.name, s.atom, s.count, &answer);
     bool done = parsed && carry_out(of->p, &c, s.receiver, drum, delay, &answer);
-    seen.said++;
     seen.accepted += done;
     seen.refused += !done;
     if (hostile) {
         seen.spoilt[how]++;
         seen.answered[how] += !done;
     }
+    strncat(story(0), done ? " -> done" : " -> refused", sizeof recent[0] - strlen(story(0)) - 1);
     if (done && must)
         fail("accepted");
     if (done ? answer.text[0] != 0 : !is_one_line(answer.text))
@@ -200,20 +221,26 @@ static void check_drum(const himc_drum *d, int slot, int n, double before)
         check_sound(d, slot, k, n, most);
 }
 
-static void check_twin(const pair *of, int n, double *const a[2], double *const b[2])
+// true if both drums have sounded the same
+static bool sound_alike(const himc_drum *a, const himc_drum *b, int n)
 {
     double ours[LONGEST_BLOCK], theirs[LONGEST_BLOCK];
+    himc_drum_read(a, himc_drum_time(a) - (uint64_t)n, n, ours, NULL);
+    himc_drum_read(b, himc_drum_time(b) - (uint64_t)n, n, theirs, NULL);
+    return memcmp(ours, theirs, (size_t)n * sizeof(double)) == 0;
+}
+
+static void check_twin(const pair *of, int n, double *const a[2], double *const b[2])
+{
+    const performance_drums *ours = &of->p->drums, *theirs = &of->twin->drums;
     size_t bytes = (size_t)n * sizeof(double);
-    bool equal = of->p->drums.count == of->twin->drums.count && memcmp(a[0], b[0], bytes) == 0 &&
-                 memcmp(a[1], b[1], bytes) == 0;
-    for (int i = 0; equal && i < of->p->drums.count; i++) {
-        const himc_drum *d = of->p->drums.slot[i].drum, *t = of->twin->drums.slot[i].drum;
-        himc_drum_read(d, himc_drum_time(d) - (uint64_t)n, n, ours, NULL);
-        himc_drum_read(t, himc_drum_time(t) - (uint64_t)n, n, theirs, NULL);
-        equal = memcmp(ours, theirs, bytes) == 0;
-    }
-    if (!equal)
-        fail("a refused command changed something");
+    if (ours->count != theirs->count)
+        fail("a refused command changed the number of drums");
+    if (memcmp(a[0], b[0], bytes) != 0 || memcmp(a[1], b[1], bytes) != 0)
+        fail("a refused command changed a force");
+    for (int i = 0; i < ours->count; i++)
+        if (!sound_alike(ours->slot[i].drum, theirs->slot[i].drum, n))
+            fail("a refused command changed a sound");
 }
 
 // plays up to LONGEST_BLOCK samples
@@ -269,7 +296,7 @@ static himc_performance *reset_and_compare(himc_performance *p)
     himc_performance *fresh = performer(drum_like(himc_performance_drum(p, 0)));
     play_piece(fresh, PLAYED, &expected);
     play_piece(p, PLAYED, &played);
-    check_piece(&expected, &played, story);
+    check_piece(&expected, &played, story(0));
     session_do(p, "reset");
     session_do(fresh, "reset");
     himc_performance_process(p, (int)(DECLICK * RATE), NULL); // of how the piece has ended
@@ -306,6 +333,7 @@ static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good
             of.twin = fresh;
         else
             himc_performance_free(fresh);
+        write_files();
         for (int i = 0; i < ROUND; i++) {
             say_one(&of, &seed);
             play_on(&of, &seed);
@@ -325,7 +353,7 @@ static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good
 int main(void)
 {
     UNITY_BEGIN();
-    write_files();
+    make_files();
     RUN_TEST(test_hostile_commands_leave_a_performance_finite_bounded_and_as_good_as_new);
     remove_files();
     return UNITY_END();

@@ -65,11 +65,12 @@ static himc_performance *prepare(const char *source, himc_error *error)
     return NULL;
 }
 
-static void play_block(himc_performance *performance, himc_osc *osc)
+static void play_block(himc_performance *performance, himc_osc *osc, himc_loader *loader)
 {
     char line[HIMC_OSC_LINE];
     himc_event event;
     double start = cli_now();
+    himc_loader_run(loader);
     himc_osc_receive(osc, performance, COMMANDS_A_BLOCK);
     himc_performance_process(performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
     while (himc_performance_event(performance, &event)) {
@@ -88,13 +89,13 @@ typedef struct punctuality {
     double latest, given_up; ///< (s)
 } punctuality;
 
-static punctuality serve(himc_performance *performance, himc_osc *osc)
+static punctuality serve(himc_performance *performance, himc_osc *osc, himc_loader *loader)
 {
     punctuality p = {0};
     double period = (double)BLOCK / RATE, due = cli_now();
     while (!stopped) {
         sleep_until(due);
-        play_block(performance, osc);
+        play_block(performance, osc, loader);
         due += period;
         double behind = cli_now() - due;
         p.blocks++;
@@ -118,8 +119,10 @@ static int run(const cli_arguments *arguments)
     if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, &error))
         return cli_fail(&cli_serve, "%s", error.text);
     himc_performance *performance = prepare(arguments->operand, &error);
-    himc_osc *osc = performance ? himc_osc_new(&config, &error) : NULL;
+    config.loader = performance ? himc_loader_new(&error) : NULL;
+    himc_osc *osc = config.loader ? himc_osc_new(&config, &error) : NULL;
     if (!osc) {
+        himc_loader_free(config.loader);
         himc_performance_free(performance);
         return cli_fail(&cli_serve, "%s", error.text);
     }
@@ -132,9 +135,10 @@ static int run(const cli_arguments *arguments)
     printf("listening at %s port %d\n", config.bind ? config.bind : "127.0.0.1",
            himc_osc_port(osc));
     fflush(stdout);
-    punctuality p = serve(performance, osc);
+    punctuality p = serve(performance, osc, config.loader);
     himc_osc_counts c = himc_osc_count(osc);
     himc_osc_free(osc);
+    himc_loader_free(config.loader);
     himc_performance_free(performance);
     printf("{\"blocks\": %ld, \"late\": %ld, \"latest_ms\": %.3f, \"given_up_s\": %.3f, "
            "\"packets\": %ld, \"commands\": %ld, \"malformed\": %ld, \"foreign\": %ld, "

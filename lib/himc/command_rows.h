@@ -105,31 +105,36 @@ HIMC_COMMAND_ROW(LISTEN, listen, PERFORMER, NETWORK, 0, "PORT",
                  "accepts commands over OSC at that port of this machine; 0 ends it")
 
 // to a drum
-HIMC_COMMAND_ROW(RADIUS, radius, DRUM, NOW, 0, "RADIUS", "sets the head's radius")
-HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, 0, "TENSION", "sets the head's tension")
-HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, 0, "DENSITY", "sets the head's mass per area")
-HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, 0, "HZ | NOTE",
+HIMC_COMMAND_ROW(RADIUS, radius, DRUM, NOW, HIMC_CHANGES_HEAD, "RADIUS", "sets the head's radius")
+HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, HIMC_CHANGES_HEAD, "TENSION",
+                 "sets the head's tension")
+HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, HIMC_CHANGES_HEAD, "DENSITY",
+                 "sets the head's mass per area")
+HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD, "HZ | NOTE",
                  "sets the tension so that the principal mode sounds there")
-HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, 0, "COUNT", "sets the number of modes")
-HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, 0, "T60 | SIGMA0 SIGMA1",
+HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT", "sets the number of modes")
+HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD, "T60 | SIGMA0 SIGMA1",
                  "sets the losses by the decay time, or by both of their parameters")
-HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, 0, "SWITCH", "1: air and kettle load the head")
-HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, 0, "usual | VOLUME",
+HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
+                 "1: air and kettle load the head")
+HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
                  "sets the volume under the head, or the usual one for its radius")
-HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, 0, "AMOUNT",
+HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT",
                  "sets how much the tension rises as the head bows out")
-HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, 0, "AMOUNT", "lays a hand on the head")
+HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT", "lays a hand on the head")
 HIMC_COMMAND_ROW(
-    SHAPE, shape, DRUM, NOW, 0, "circle | rectangle LENGTH WIDTH | FILE",
+    SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, "circle | rectangle LENGTH WIDTH | FILE",
     "makes a head of another outline, or one of up to 800 masses on springs from a file")
 HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0, "soft|medium|hard|wood | K ALPHA MASS",
                  "chooses the mallet, or its stiffness, exponent and mass")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
                  "sets where the head stands and how it is tilted")
-HIMC_COMMAND_ROW(PICKUP, pickup, DRUM, NOW, 0, "air AZIMUTH ELEVATION DISTANCE | X Y",
+HIMC_COMMAND_ROW(PICKUP, pickup, DRUM, NOW, HIMC_CHANGES_HEAD,
+                 "air AZIMUTH ELEVATION DISTANCE | X Y",
                  "sets where the sound is taken: in the air or on the head")
-HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, 0, "CHANNELS", "sets the number of pickups")
-HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, 0,
+HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, HIMC_CHANGES_HEAD, "CHANNELS",
+                 "sets the number of pickups")
+HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
                  "sets where the sound of one pickup is taken")
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",

@@ -5,7 +5,8 @@
 /// fit are dropped and counted. The host calls, from one thread:
 ///
 ///     himc_performance_on_tick(performance, himc_osc_tick, osc);       once
-///     himc_osc_receive(osc, performance, most);                        before a block
+///     himc_loader_run(loader);                                         before a block, if any
+///     himc_osc_receive(osc, performance, most);
 ///     himc_performance_process(performance, n, force);
 ///     while (himc_performance_event(performance, &event))
 ///         himc_osc_event(osc, &event);
@@ -14,7 +15,7 @@
 #ifndef HIMC_OSC_H
 #define HIMC_OSC_H
 
-#include "himc/performance.h"
+#include "himc/loader.h"
 
 HIMC_BEGIN
 
@@ -29,6 +30,7 @@ typedef struct himc_osc_config {
     const char *files; ///< the only folder whose files `score` and `take` may read, also those in a
                        ///< score that came over the network; NULL allows no file
     const char *allow; ///< hosts, separated by commas, that anyone may subscribe; NULL none
+    himc_loader *loader; ///< carries out the commands; borrowed, must outlive it. NULL: all at once
 } himc_osc_config;
 
 /// 127.0.0.1, HIMC_OSC_PORT, no files, no other hosts.
@@ -53,8 +55,9 @@ int himc_osc_port(const himc_osc *osc);
 HIMC_RT bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *error);
 
 /// Carries out at most `most` commands that came by OSC. They may take a tenth of the time on
-/// average, and a call ends after one that takes long. Errors go back to the sender. Setup: a
-/// command may read a file.
+/// average, and a call ends after one that takes long. With a loader the call ends at a command that
+/// waits there, and the next ones begin when it is carried out; without one, this call reads its
+/// file. Errors go back to the sender.
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most);
 
 /// Takes a pose for the subscribers; for himc_performance_on_tick. `osc` is a himc_osc.
@@ -75,8 +78,8 @@ typedef struct himc_osc_counts {
     long malformed;    ///< not OSC, or an atom that is neither number nor word
     long foreign;      ///< an OSC address that is none of ours
     long refused;      ///< a command with an error, a file or a host that is not allowed
-    long frequent;     ///< beyond the limits of a second, or waiting too long
-    long overrun;      ///< lost in the system before they were read
+    long frequent;     ///< commands beyond the limits of a second, or waiting too long
+    long overrun;      ///< packets dropped by the system, not read in time
     long sent;         ///< packets out
     long unsent;       ///< packets that the system refused to send
     long lost;         ///< records dropped because a ring was full

@@ -1,5 +1,6 @@
-/// fuzz_viewer_access.c: the lines of an input are the headers Host and Origin of a request. What is
-/// admitted is checked by other means: a numeric address or this machine's name, and its Origin.
+/// fuzz_viewer_access.c: the lines of an input are the headers Host and Origin of a request. What
+/// is admitted is checked by other means: it is a numeric address or this machine's name, with its
+/// own Origin.
 #include "access.h"
 #include "fuzz.h"
 

@@ -1,3 +1,3 @@
 #!/bin/sh
-# tests/test_storm.sh, and how late blocks are in a storm beside a run without one.
+# tests/test_storm.sh for a minute, and how late blocks are in a storm and beside an equal load that sends nothing.
 HIMC_STORM_LATENESS=1 exec tests/test_storm.sh

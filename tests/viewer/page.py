@@ -225,6 +225,131 @@ def test_himc_serve_is_shown_with_drum_strikes_and_status():
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
 
 
+def test_hostile_senders_leave_the_page_as_it_was():
+    """Names without end, words of JavaScript, numbers beyond all bounds."""
+    gone()
+    browser.log()
+    draw(False)
+    words = ["constructor", "__proto__", "toString", "<b>", "", "-1", "e" * 31]
+    senders = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(40)]
+    strikes = browser.run("return viewer.panel.count")
+    for i in range(400):
+        huge = (1e30, -1e30, 0.0, 1e-30)[i % 4]
+        name, to = f"{words[i % 7] or 'x'}{i // 7}", ("127.0.0.1", OSC)
+        for packet in (
+            osc("/himc/strike", huge, "left", name, 0.1, 0.1, huge, huge, huge, words[i % 7]),
+            osc(f"/membrane/{name}/place", 0.5, 0.0, 0.8, 0.1, 0.1 + i % 100 / 100),
+            osc(f"/membrane/{name}/head", *[0.999] * 64),
+            osc(f"/himc/{name}/status", words[i % 7], huge, words[i % 5], words[i % 3]),
+            osc(f"/himc/{name}/body", "head", 999.0, -999.0, 999.0, 1.0, 0.0, 0.0, 0.0),
+            osc("/himc/beat", huge),
+            osc("/viewer/camera", words[i % 7]),
+            osc("/viewer/show", words[i % 7], i % 2),
+            osc("/viewer/exaggeration", (huge, words[i % 7])[i // 4 % 2]),
+            osc("/viewer/camera"),
+        ):
+            senders[i % 40].sendto(packet, to)
+        if i % 20 == 0:  # what does not fit into the bridge is lost: wait for the page
+            end = "return viewer.panel.count > arguments[0]"
+            browser.wait(end.replace("arguments[0]", str(strikes)))
+            strikes = browser.run("return viewer.panel.count")
+    sizes = browser.run(
+        "return [viewer.performers.size, viewer.drums.size, viewer.panel.status.size]"
+    )
+    assert sizes[0] <= 16 and sizes[1] <= 32 and sizes[2] <= 16, sizes
+    say(OSC, osc("/viewer/camera", "stage"), osc("/viewer/exaggeration", 25.0))
+    assert browser.wait("return viewer.view.name === 'stage'")
+    browser.run("viewer.scripts.length = 0")
+    assert browser.wait("return viewer.scripts.length > 3"), "no frames"
+    gone()
+    expect("3.6")
+    with sender("--still", "--start", "3.6"):
+        said = settle()
+    trouble = browser.log()
+    assert not trouble, trouble[:3]
+    return said
+
+
+def test_a_fault_in_a_frame_costs_that_frame_only():
+    browser.run(
+        "const draw = viewer.panel.draw; viewer.scripts.length = 0;"
+        "viewer.panel.draw = () => { viewer.panel.draw = draw; throw new Error('once'); }"
+    )
+    assert browser.wait("return viewer.scripts.length > 3"), "no frames"
+    assert "once" in "".join(browser.log())
+
+
+def test_a_drum_that_changes_its_size_frees_the_old_one():
+    with sender("--start", "18"):
+        assert browser.wait("return [...viewer.drums.values()].some(d => d.group.visible)")
+        draw(True)
+        counts = browser.run(
+            """
+            const drum = [...viewer.drums.values()].find(d => d.group.visible);
+            return [0.3, 0.4, 0.5, 0.4, 0.3].map(radius => {
+                drum.setPlace([0.7, 0, 0.85, 0, radius]);
+                drum.head.frustumCulled = false;
+                viewer.stage.renderer.render(viewer.stage.scene, viewer.view.camera);
+                return viewer.stage.renderer.info.memory.geometries;
+            });
+            """
+        )
+        draw(False)
+    assert counts[-1] <= counts[0], counts
+
+
+def test_a_motion_that_is_dropped_is_played_or_refused_in_one_line():
+    with open(MOTION) as file:
+        text = "".join(file.readline() for _ in range(12))
+    tried = browser.run(
+        """
+        return Promise.all([import("/motion.js"), import("/stream.js")]).then(([{Motion}]) => {
+            const pieces = ["", ",", "\\n", "-", "e", "nan", "Infinity", "1e999", "0", "9", "x", "time_s"];
+            const columns = arguments[0].split("\\n")[0].split(",");
+            let seed = 1, played = 0, refused = 0;
+            const below = n => (seed = (seed * 16807) % 2147483647) % n;
+            const finite = list => [...list].every(Number.isFinite);
+            const on = {
+                pose: (...a) => { if (!finite(a[4]) || !finite(a[5])) throw new TypeError("pose"); },
+                drum: (...a) => { if (!finite(a[4])) throw new TypeError("drum"); },
+                event: e => { if (!finite([e.x, e.y, e.force, e.time])) throw new TypeError("event"); },
+            };
+            for (let i = 0; i < 3000; i++) {
+                let text = arguments[0];
+                for (let n = below(4); n > 0; n--) {
+                    const at = below(text.length), cut = below(4) ? below(9) : below(text.length);
+                    text = text.slice(0, at) + pieces[below(pieces.length)] + text.slice(at + cut);
+                }
+                const lines = text.split("\\n"), line = 1 + below(lines.length - 1);
+                if (below(4) === 0) text = [...lines, lines[line]].join("\\n");
+                if (i < columns.length) text = arguments[0].replace(columns[i], "other");
+                let motion;
+                try {
+                    motion = new Motion(text, "a.csv");
+                } catch (error) {
+                    if (!/^a.csv:.+$/.test(error.message)) return `${error.message} of ${text}`;
+                    refused++;
+                    continue;
+                }
+                played++;
+                if (!motion.rows.every((row, k) => !k || row[0] > motion.rows[k - 1][0]))
+                    return `time does not grow in ${text.slice(0, 300)}`;
+                try {
+                    for (let t = 0; t < 60; t += 20) motion.update(t, 20, on);
+                    motion.seek(1e9), motion.update(100, 0, on);
+                } catch (error) {
+                    return `${error.message} in ${text.slice(0, 300)}`;
+                }
+            }
+            return [played, refused];
+        });
+        """,
+        text,
+    )
+    assert isinstance(tried, list) and min(tried) > 300, tried
+    return f"{tried[0]} played, {tried[1]} refused"
+
+
 def test_page_finds_a_restarted_bridge_again():
     global bridge
     bridge.__exit__()

@@ -41,6 +41,17 @@ def test_eight_performers_and_drums_cost_less_than_a_twentieth_of_a_core():
         return f"{100 * load:.1f} % of a core"
 
 
+def test_a_client_that_sends_data_is_gone_within_a_second():
+    with Viewer() as v:
+        stream = listen(v)
+        begin = time.time()
+        stream.say(b"x")
+        assert stream.ended()
+        late = time.time() - begin
+    assert late < 1, late
+    return f"{1000 * late:.0f} ms"
+
+
 def test_strike_is_drawn_within_50_ms():
     page.draw(False)
     page.gone()

@@ -41,7 +41,7 @@ export class View {
 
     preset(name) {
         if (name === "eye") this.name = name;
-        else if (presets[name]) {
+        else if (Object.hasOwn(presets, name)) {
             const [target, azimuth, elevation, distance] = presets[name];
             const narrow = Math.max(
                 1,

@@ -3,11 +3,12 @@ import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
 import { rod } from "./performer.js";
+import { discard } from "./stage.js";
 
 const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     SECTORS = 72,
     MODES = 64,
-    ABSENT_AFTER = 4000, // without amplitudes (ms); chosen: a drum at rest may send rarely
+    ABSENT_AFTER = 4000, // without amplitudes and strikes (ms); chosen: a drum at rest may send rarely
     LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
     AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
@@ -208,6 +209,7 @@ export class Drum {
             (this.to = new Float32Array(MODES)),
             (this.now = new Float32Array(MODES)));
         this.fromTime = this.toTime = 0;
+        this.heard = this.struck = 0; // amplitudes, a strike (ms)
         this.excursion = 0; // largest displacement of the head now, not exaggerated (m)
         this.setPlace(usualPlace);
         stage.scene.add(this.group);
@@ -226,7 +228,7 @@ export class Drum {
 
     build(a, z) {
         const m = materials(this.stage.environment);
-        for (const old of [...this.tilted.children, this.legs]) if (old) old.parent.remove(old);
+        for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
         this.head = new THREE.Mesh(headGeometry(a), m.head);
         this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, fittings(a, m));
         this.legs = stand(a, z, m);
@@ -247,7 +249,7 @@ export class Drum {
     }
 
     present(now) {
-        return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
+        return now - Math.max(this.heard, this.struck) < ABSENT_AFTER;
     }
 
     update(now, exaggeration) {

@@ -1,7 +1,7 @@
 // The viewer's page: receives the stream of himc-viewer, keeps performers and drums, and draws a
 // frame whenever the browser asks for one.
 import * as THREE from "./three.js";
-import { Stage } from "./stage.js";
+import { Stage, discard } from "./stage.js";
 import { View } from "./camera.js";
 import { Stream } from "./stream.js";
 import { Performer } from "./performer.js";
@@ -18,6 +18,8 @@ const performers = new Map(),
     drums = new Map(),
     marks = new Marks(),
     recorder = new Recorder(canvas);
+const PERFORMERS = 16, // as many as himc-viewer keeps
+    DRUMS = 32;
 const shown = { targets: true, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 60, script: 0, latency: null, render: 0 };
 const clock = () => performance.timeOrigin + performance.now(); // himc-viewer's clock too (ms)
@@ -30,7 +32,7 @@ let exaggeration = 25,
 
 const actions = {
     camera: name => view.preset(name) && panel.camera(name),
-    show: (what, yes) => (what in shown && (shown[what] = yes), panel.shown(shown)),
+    show: (what, yes) => (Object.hasOwn(shown, what) && (shown[what] = yes), panel.shown(shown)),
     exaggerate: times => (
         (exaggeration = Math.min(1000, Math.max(1, times || 1))),
         panel.exaggeration(exaggeration)
@@ -50,14 +52,26 @@ function attempt(f) {
     }
 }
 
+// What `table` has under that name, made if there is nothing. In a full table it replaces one that
+// is absent; undefined if there is none.
+function place(table, most, name, make) {
+    if (!table.has(name) && table.size >= most) {
+        const absent = [...table].find(([, old]) => !old.present(virtual || clock()));
+        if (!absent) return undefined;
+        discard(absent[1].group);
+        table.delete(absent[0]);
+    }
+    if (!table.has(name)) table.set(name, make());
+    return table.get(name);
+}
+
 function performer(key) {
-    if (!performers.has(key)) {
+    return place(performers, PERFORMERS, key, () => {
         const used = [...performers.values()].map(p => p.index);
         let index = 0;
         while (used.includes(index)) index++;
-        performers.set(key, new Performer(key, index, stage));
-    }
-    return performers.get(key);
+        return new Performer(key, index, stage);
+    });
 }
 
 // a drum belongs to its sender; a strike may name it before the drum itself sends anything
@@ -68,16 +82,17 @@ function drum(key, name) {
             d => d.name === name && (!performers.has(d.key) || !performers.has(key)),
         );
         if (same) return same;
-        drums.set(id, new Drum(key, name, stage));
     }
-    return drums.get(id);
+    return place(drums, DRUMS, id, () => new Drum(key, name, stage));
 }
 
 function strike(event, now) {
     const d = drum(event.from, event.drum);
-    d.struck = now;
-    if (d.striker !== event.from) d.striker = event.from;
-    marks.add(d.tilted, event, now);
+    if (d) {
+        d.struck = now;
+        d.striker = event.from;
+        marks.add(d.tilted, event, now);
+    }
     event.now = now;
     panel.strike(event);
     waiting.push(event);
@@ -86,10 +101,10 @@ function strike(event, now) {
 const on = {
     pose(key, time, known, targets, body, target) {
         live = live || !motion;
-        performer(key).receive(time, virtual || clock(), known, targets, body, target);
+        performer(key)?.receive(time, virtual || clock(), known, targets, body, target);
     },
     drum(key, name, time, place, amplitude) {
-        drum(key, name).receive(virtual || clock(), place, amplitude);
+        drum(key, name)?.receive(virtual || clock(), place, amplitude);
     },
     event(event, time) {
         const now = virtual || clock();
@@ -138,7 +153,7 @@ function updateDrums(now) {
             performers.get(d.key) || performers.get(d.striker) || performers.values().next().value;
         d.group.visible =
             shown.drums &&
-            (d.present(now) || now - d.struck < 4000 || !!(owner && owner.present(now)));
+            (d.present(now) || !!(owner && owner.present(now)));
         if (!d.group.visible) continue;
         if (owner)
             (d.group.position.copy(owner.group.position),
@@ -192,11 +207,14 @@ function frame(_, now = clock(), draw = true) {
         panel.playing(live ? null : motion);
     }
     stage.adapt(dt, view.camera);
-    next();
 }
 
 function next() {
-    requestAnimationFrame(t => window.viewer.held || frame(t));
+    requestAnimationFrame(t => {
+        if (window.viewer.held) return;
+        next(); // first, so that a fault costs one frame only
+        frame(t);
+    });
 }
 
 // while frames are held: advances the playback by `ms` and draws if asked to; time is then the

@@ -17,19 +17,27 @@ export class Motion {
             names = lines[0].trim().split(",");
         this.name = name;
         this.column = Object.fromEntries(names.map((n, i) => [n, i]));
-        for (const want of ["time_s", "left_tip_x_m", `${segments[1].joint}_x_rad`, "left_force_n"])
+        const ofHand = hand => [
+            `${hand}_force_n`,
+            ...["x", "y", "z"].flatMap(a => [`${hand}_tip_${a}_m`, `${hand}_target_${a}_m`]),
+        ];
+        for (const want of ["time_s", `${segments[1].joint}_x_rad`, ...HANDS.flatMap(ofHand)])
             if (!(want in this.column))
                 throw new Error(`${name}:1: not a motion: no column ${want}`);
         this.rows = [];
         for (let i = 1; i < lines.length; i++) {
-            const row = Float64Array.from(lines[i].split(","), Number);
-            if (row.length !== names.length || row.some(Number.isNaN)) {
-                if (lines[i].trim())
-                    throw new Error(
-                        `${name}:${i + 1}: ${row.length} numbers, wanted ${names.length}`,
-                    );
-                continue;
-            }
+            if (!lines[i].trim()) continue;
+            const row = Float64Array.from(lines[i].split(","), Number),
+                before = this.rows.length ? this.rows[this.rows.length - 1][0] : -Infinity,
+                wrong =
+                    row.length !== names.length
+                        ? `${row.length} numbers, wanted ${names.length}`
+                        : !row.every(Number.isFinite)
+                          ? "not a number"
+                          : !(row[0] > before)
+                            ? `time ${row[0]} s, allowed only above ${before} s`
+                            : "";
+            if (wrong) throw new Error(`${name}:${i + 1}: ${wrong}`);
             this.rows.push(row);
         }
         if (this.rows.length < 2) throw new Error(`${name}: no rows`);

@@ -2,6 +2,7 @@
 const $ = id => document.getElementById(id);
 const short = value => (typeof value === "number" ? +value.toPrecision(4) : value);
 const STATUS_SHOWN = ["load", "sound", "physics", "task", "strokes", "played", "recoveries"];
+const STATUS_KEPT = 16; // as many performers as himc-viewer keeps
 const SPAN = 8000; // of the running score (ms); chosen: two bars at 60 beats a minute
 const NOTE_TIME = 6000; // a message stays (ms); chosen: long enough to read a line
 const LOUDEST = 0.004, // full deflection of the level, largest displacement (m); chosen
@@ -92,6 +93,7 @@ export class Panel {
             all.push([values[i], `${values[i]} ${short(values[i + 1])}`]);
         const chosen = all.filter(([name]) => STATUS_SHOWN.includes(name));
         this.status.delete(from); // so that the newest is the last
+        if (this.status.size >= STATUS_KEPT) this.status.delete(this.status.keys().next().value);
         this.status.set(from, (chosen.length ? chosen : all).map(pair => pair[1]).join("   "));
     }
 

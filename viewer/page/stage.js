@@ -6,6 +6,12 @@ import { rgb, picture } from "./color.js";
 const LATE_FRAME = 28, // (ms); chosen: below 36 frames/s motion is visibly uneven
     LATE_FRAMES = 40; // before a step; chosen: about a second, so that one pause changes nothing
 
+// takes an object away for ever, with what it holds of the graphics card
+export function discard(object) {
+    if (object.parent) object.parent.remove(object);
+    object.traverse(part => part.geometry && part.geometry.dispose());
+}
+
 // Bright panels in a dark room, rendered once from the centre: the reflections in copper and steel.
 function environment(renderer) {
     const room = new THREE.Scene(),

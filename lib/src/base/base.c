@@ -1,10 +1,10 @@
 /// base.c: errors are text for a person, written once, where the fault is found.
 #include "himc/base.h"
 
+#include "base/format.h"
 #include "base/line.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 bool himc_error_set(himc_error *error, const char *format, ...)
@@ -29,7 +29,7 @@ bool himc_error_prefix(himc_error *error, const char *format, ...)
     himc_line_print(error->text, sizeof error->text, format, args);
     va_end(args);
     size_t used = strlen(error->text);
-    snprintf(error->text + used, sizeof error->text - used, ": %s", old);
+    himc_format(error->text + used, sizeof error->text - used, ": %s", old);
     himc_line_clean(error->text); // a character may be cut in two
     return false;
 }

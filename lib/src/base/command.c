@@ -4,6 +4,7 @@
 /// line is about the form that came closest. Numbers are held in single precision, as Pure Data and
 /// OSC send them, so that a command is the same to the last bit wherever it comes from. Invariant:
 /// a refused command changes nothing.
+#include "base/format.h"
 #include "himc/command.h"
 
 #include "base/argument.h"
@@ -48,7 +49,7 @@ static const char *next_token(const char *grammar, char token[WORD_SIZE], bool *
 {
     size_t n = strcspn(grammar, " ");
     *optional = grammar[0] == '[';
-    snprintf(token, WORD_SIZE, "%.*s", (int)(n - 2 * (size_t)*optional), grammar + *optional);
+    himc_format(token, WORD_SIZE, "%.*s", (int)(n - 2 * (size_t)*optional), grammar + *optional);
     grammar += n;
     return grammar + strspn(grammar, " ");
 }
@@ -62,7 +63,7 @@ static himc_word cut_word(const char *token, int index)
         token += *token == '|';
     }
     if (index == 0)
-        snprintf(word.text, sizeof word.text, "%.*s", (int)strcspn(token, "|"), token);
+        himc_format(word.text, sizeof word.text, "%.*s", (int)strcspn(token, "|"), token);
     return word;
 }
 

@@ -67,3 +67,9 @@ void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, doubl
     *x = -fraction[stroke->spot] * radius;
     *y = stroke->hand == HIMC_LEFT ? HAND_OFFSET : -HAND_OFFSET;
 }
+
+bool himc_head_frame_equal(const himc_head_frame *a, const himc_head_frame *b)
+{
+    return a->center.x == b->center.x && a->center.y == b->center.y && a->center.z == b->center.z &&
+           a->tilt == b->tilt && a->radius == b->radius;
+}

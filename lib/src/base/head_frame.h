@@ -5,6 +5,8 @@
 
 #include "himc/vec.h"
 
+/// True if both are in the same place, of one size.
+HIMC_RT bool himc_head_frame_equal(const himc_head_frame *a, const himc_head_frame *b);
 /// The head's x axis: unit vector in its plane, away from the performer at the world's origin.
 HIMC_RT himc_vec3 himc_head_frame_away(const himc_head_frame *frame);
 /// The head's unit normal, upwards.

@@ -7,9 +7,9 @@
 /// turns the direction of the text (U+202A .. U+202E, U+2066 .. U+2069). The memory and time are
 /// those of the line.
 #include "base/line.h"
+#include "base/format.h"
 
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 // bytes of the character at `s`, and its number; 0 if it is not UTF-8
@@ -68,6 +68,6 @@ void himc_line_clean(char *line)
 
 void himc_line_print(char *out, size_t size, const char *format, va_list args)
 {
-    vsnprintf(out, size, format, args);
+    himc_format_list(out, size, format, args);
     himc_line_clean(out);
 }

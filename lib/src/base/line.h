@@ -13,7 +13,7 @@ void himc_line_clean(char *line);
 /// True if himc_line_clean leaves the text as it is.
 bool himc_line_is_clean(const char *text);
 
-/// Prints a clean line (printf format) into `out` of `size` bytes, its final 0 included; what does
+/// Prints a clean line (conversions of base/format.h) into `out` of `size` bytes, its final 0 included; what does
 /// not fit is cut off.
 void himc_line_print(char *out, size_t size, const char *format, va_list args)
     __attribute__((format(printf, 3, 0)));

@@ -262,15 +262,30 @@ static void silence(himc_bank *bank, int i)
     memset(bank->table + (size_t)i * HIMC_BANK_TABLE, 0, sizeof(double) * HIMC_BANK_TABLE);
 }
 
-// keeps q sqrt(K) and v sqrt(m): the same energy, the same phase
-static void carry_over(himc_bank *bank, int i, const himc_oscillator *to, double h)
+// sets a state that an oscillator of that mass and omega had: q sqrt(K) and v sqrt(m) are kept, so
+// that energy and phase are the same
+static void inherit(himc_bank *bank, int i, double q, double v, double mass, double omega)
 {
-    double q, v;
-    himc_bank_state(bank, i, &q, &v);
-    double mass_ratio = sqrt(bank->mass[i] / to->mass), omega_ratio = bank->omega[i] / to->omega;
-    set_oscillator(bank, i, to, h);
+    double mass_ratio = sqrt(mass / bank->mass[i]), omega_ratio = omega / bank->omega[i];
     if (q != 0 || v != 0)
         himc_bank_excite(bank, i, q * mass_ratio * omega_ratio, v * mass_ratio);
+}
+
+static void carry_over(himc_bank *bank, int i, const himc_oscillator *to, double h)
+{
+    double q, v, mass = bank->mass[i], omega = bank->omega[i];
+    himc_bank_state(bank, i, &q, &v);
+    set_oscillator(bank, i, to, h);
+    inherit(bank, i, q, v, mass, omega);
+}
+
+void himc_bank_continue(himc_bank *bank, const himc_bank *from)
+{
+    for (int i = 0; i < bank->count && i < from->count; i++) {
+        double q, v;
+        himc_bank_state(from, i, &q, &v);
+        inherit(bank, i, q, v, from->mass[i], from->omega[i]);
+    }
 }
 
 void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count, double rate)

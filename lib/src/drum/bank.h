@@ -35,6 +35,10 @@ void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel);
 HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
                            double rate);
 
+/// The oscillators that `from` has, too, begin with its phase and energy, as if they had been in use
+/// here with its constants before the last himc_bank_set.
+HIMC_RT void himc_bank_continue(himc_bank *bank, const himc_bank *from);
+
 /// The bank has coefficients for two lengths of step.
 typedef enum himc_step_length {
     HIMC_STEP_SAMPLE,  ///< a whole sample

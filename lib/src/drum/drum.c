@@ -5,6 +5,7 @@
 /// (himc_contact_clear) it runs free in long vectorised passes, with the same bits as single
 /// steps (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does
 /// not depend on how the caller cuts time into blocks.
+#include "drum/drum_job.h"
 #include "drum/drum_state.h"
 
 #include "base/line.h"
@@ -28,6 +29,28 @@ static bool check_rate(double rate, himc_error *error)
     return himc_check_range("sample rate", rate, 8000, 192000, "Hz", error);
 }
 
+static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc_head_frame *place,
+                           himc_error *error)
+{
+    himc_drum *drum = membrane ? calloc(1, sizeof *drum) : NULL;
+    if (!drum) {
+        if (membrane)
+            himc_error_set(error, "drum: no memory");
+        himc_membrane_free(membrane);
+        return NULL;
+    }
+    snprintf(drum->name, sizeof drum->name, "%s", name);
+    drum->references = 1;
+    drum->level = 1;
+    drum->membrane = membrane;
+    himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
+    drum->place = *place;
+    drum->rate = himc_membrane_rate(membrane);
+    drum->outside_x = FIRST_WATCHED * place->radius;
+    himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
+    return drum;
+}
+
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error)
 {
     if (strlen(name) >= HIMC_NAME_SIZE) {
@@ -44,24 +67,18 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
         return NULL;
     himc_head head = himc_head_default();
     head.radius = inches * METRES_PER_INCH / 2;
-    himc_membrane *membrane = himc_membrane_new(&head, sample_rate, error);
-    himc_drum *drum = calloc(1, sizeof *drum);
-    if (!membrane || !drum) {
-        himc_membrane_free(membrane);
-        free(drum);
-        if (membrane)
-            himc_error_set(error, "drum: no memory");
-        return NULL;
+    himc_head_frame place = {.center = FIRST_PLACE, .radius = head.radius};
+    return drum_new(name, himc_membrane_new(&head, sample_rate, error), &place, error);
+}
+
+himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
+{
+    himc_drum *drum =
+        drum_new(form->name, himc_membrane_new_of(&form->head, error), &form->place, error);
+    if (drum) {
+        himc_membrane_watch(drum->membrane, form->head.watch_x, form->head.watch_y);
+        drum->external_sound = form->external_sound;
     }
-    snprintf(drum->name, sizeof drum->name, "%s", name);
-    drum->references = 1;
-    drum->level = 1;
-    drum->membrane = membrane;
-    himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
-    drum->place = (himc_head_frame){.center = FIRST_PLACE, .radius = head.radius};
-    drum->rate = sample_rate;
-    drum->outside_x = FIRST_WATCHED * head.radius;
-    himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
     return drum;
 }
 

@@ -344,7 +344,10 @@ static himc_grid *grid_new(int places, int all, int modes)
     himc_grid *g = calloc(1, sizeof *g);
     if (!g)
         return NULL;
-    *g = (himc_grid){.references = 1, .places = places, .all = all, .modes = modes};
+    g->references = 1;
+    g->places = places;
+    g->all = all;
+    g->modes = modes;
     g->x = malloc(sizeof(double) * (size_t)all);
     g->y = malloc(sizeof(double) * (size_t)all);
     g->area = malloc(sizeof(double) * (size_t)places);

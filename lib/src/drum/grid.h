@@ -17,10 +17,10 @@
 
 #define HIMC_GRID_PLACES 800 ///< most places that move; chosen: a second of computing
 
-/// Its modes. Constant once made; counts its references.
+/// Its modes. Constant once made; counts its references, which may be in several threads.
 typedef struct himc_grid himc_grid;
 struct himc_grid {
-    int references;
+    _Atomic int references;
     int places;              ///< that move
     int all;                 ///< with those that stand still
     int modes;               ///< in order of frequency

@@ -7,9 +7,11 @@
 /// so all of this holds there too.
 ///
 /// All arrays with an entry for each mode are one block of memory, the core. Another number
-/// of modes is another core, made beside the old one and exchanged. After any change of head, rate
+/// of modes is another core, made beside the old one and exchanged. A whole membrane may also be
+/// made aside, by another thread, and exchanged (himc_membrane_exchange). After any change of head, rate
 /// or pickups, oscillators and readouts are computed anew from the same tables; the bank keeps the
 /// modes' energy and phase, and a declick keeps the sound continuous.
+#include "drum/membrane_form.h"
 #include "drum/membrane_state.h"
 
 #include "drum/bessel.h"
@@ -305,26 +307,37 @@ static bool check_head(const himc_head *head, himc_outline kind, himc_error *err
     return !head->air || head->kettle == 0 || himc_air_check(head->kettle, head->radius, error);
 }
 
-himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
+himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *error)
 {
-    if (!check_head(head, HIMC_CIRCLE, error) ||
-        !himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
+    if (!check_head(&form->head, form->shape.kind, error) ||
+        !himc_check_range("sample rate", form->rate, 4000, 480000, "Hz", error))
         return NULL;
     himc_membrane *m = calloc(1, sizeof *m);
-    if (!m ||
-        !core_new(&m->core, m->points, &(himc_shape){.kind = HIMC_CIRCLE}, head->modes, error)) {
+    if (!m || !core_new(&m->core, m->points, &form->shape, form->head.modes, error)) {
         if (!m)
             himc_error_set(error, "membrane: no memory");
         free(m);
         return NULL;
     }
-    m->head = *head;
-    m->pickups[0] = himc_pickup_default();
-    m->pickup_count = 1;
+    m->head = form->head;
+    memcpy(m->pickups, form->pickups, sizeof m->pickups);
+    m->pickup_count = form->pickup_count;
     m->ends_sample = true;
-    m->rate = rate;
+    m->rate = form->rate;
+    m->watch_x = form->watch_x;
+    m->watch_y = form->watch_y;
     retune(m);
     return m;
+}
+
+himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
+{
+    return himc_membrane_new_of(&(himc_membrane_form){.shape = {.kind = HIMC_CIRCLE},
+                                                      .head = *head,
+                                                      .pickups = {himc_pickup_default()},
+                                                      .pickup_count = 1,
+                                                      .rate = rate},
+                                error);
 }
 
 void himc_membrane_free(himc_membrane *membrane)
@@ -461,13 +474,46 @@ static bool same_pickup(const himc_pickup *a, const himc_pickup *b)
            a->elevation == b->elevation && a->distance == b->distance;
 }
 
+himc_membrane_form himc_membrane_form_of(const himc_membrane *m)
+{
+    himc_membrane_form form = {.shape = *himc_membrane_shape(m),
+                               .head = m->head,
+                               .pickup_count = m->pickup_count,
+                               .rate = m->rate,
+                               .watch_x = m->watch_x,
+                               .watch_y = m->watch_y};
+    memcpy(form.pickups, m->pickups, sizeof form.pickups);
+    if (form.shape.grid)
+        himc_grid_retain(form.shape.grid);
+    return form;
+}
+
+void himc_membrane_form_free(himc_membrane_form *form)
+{
+    himc_grid_release(form->shape.grid);
+    form->shape.grid = NULL;
+}
+
+// the outline, head and pickups of `m` are those
+static bool is_alike(const himc_membrane *m, const himc_shape *shape, const himc_head *head,
+                     const himc_pickup *pickups, int count)
+{
+    bool alike = m->pickup_count == count && same_head(&m->head, head) &&
+                 same_shape(himc_membrane_shape(m), shape);
+    for (int i = 0; alike && i < count; i++)
+        alike = same_pickup(&m->pickups[i], &pickups[i]);
+    return alike;
+}
+
+bool himc_membrane_has_form(const himc_membrane *m, const himc_membrane_form *form)
+{
+    return m->rate == form->rate &&
+           is_alike(m, &form->shape, &form->head, form->pickups, form->pickup_count);
+}
+
 bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b)
 {
-    bool alike = a->pickup_count == b->pickup_count && same_head(&a->head, &b->head) &&
-                 same_shape(himc_membrane_shape(a), himc_membrane_shape(b));
-    for (int i = 0; alike && i < a->pickup_count; i++)
-        alike = same_pickup(&a->pickups[i], &b->pickups[i]);
-    return alike;
+    return is_alike(a, himc_membrane_shape(b), &b->head, b->pickups, b->pickup_count);
 }
 
 bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error)
@@ -477,6 +523,42 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
                     ? himc_membrane_set_head(membrane, &other->head, error)
                     : himc_membrane_set_shape(membrane, shape, &other->head, error);
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
+}
+
+// a head of the same outline goes on after a change from `known` modes and that energy
+static void go_on(himc_membrane *m, int known, double energy)
+{
+    if (m->film.on || m->head.glide > 0)
+        himc_membrane_find_film(m);
+    bend_new(m, known);
+    keep_energy(m, energy);
+}
+
+void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
+{
+    sounds before = read_sounds(m);
+    double energy = himc_membrane_energy(m);
+    core old = m->core;
+    int known = m->head.modes;
+    bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
+    bool head = same_head(&m->head, &made->head);
+    m->core = made->core;
+    made->core = old;
+    memcpy(m->points, made->points, sizeof m->points);
+    m->head = made->head;
+    m->air = made->air;
+    memcpy(m->pickups, made->pickups, sizeof m->pickups);
+    m->pickup_count = made->pickup_count;
+    himc_bank_set_step(m->core.bank, m->step);
+    if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
+        find_watched(m);
+    if (outline)
+        himc_bank_continue(m->core.bank, old.bank);
+    else
+        m->film = (film){0};
+    if (outline && !head)
+        go_on(m, known, energy);
+    declick_from(m, &before);
 }
 
 const himc_head *himc_membrane_head(const himc_membrane *membrane)

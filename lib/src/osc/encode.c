@@ -120,11 +120,11 @@ void himc_osc_encode_targets(osc_packets *p, const osc_pose *pose)
 void himc_osc_encode_strike(osc_packets *p, const osc_strike *strike)
 {
     const himc_strike *s = &strike->strike;
-    // a float's time is exact to 1 ms for two hours only; whole and fraction are for half a year
+    // a float's time is exact to 1 ms for two hours only; whole seconds begin again after 68 years
     double whole = floor(s->time);
     add(p, "/himc/strike", "fssfffffsiif", s->time, himc_hand_name(s->hand), s->drum, s->x, s->y,
-        s->velocity, s->force, s->duration, s->nuance, (int)strike->number, (int)whole,
-        s->time - whole);
+        s->velocity, s->force, s->duration, s->nuance, (int)strike->number,
+        (int)fmod(whole, 2147483648.0), s->time - whole);
 }
 
 void himc_osc_encode_beat(osc_packets *p, double beat)

@@ -25,7 +25,6 @@
 #include <unistd.h>
 
 #define RECEIVE_BUFFER (1 << 20) // (bytes) chosen: 0.1 s of the 100,000 packets/s of the storm test
-#define DISCARD_AT_ONCE 256      // packets; chosen: as many as are read of the listening socket
 #define SEND_ATTEMPTS 3 // the first failures may report earlier packets; there are 3 sockets
 
 // --- addresses
@@ -227,21 +226,24 @@ bool himc_osc_network_send(osc_network *n, const osc_address *to, const void *da
     return good;
 }
 
-// adds the packets that the system dropped since the last report
-static void count_overrun(osc_network *n, struct msghdr *m)
+// adds the packets that the system dropped since the last report of this socket
+static void count_overrun(osc_network *n, int socket, struct msghdr *m)
 {
+    uint32_t *reported = &n->overrun[socket];
     for (struct cmsghdr *c = CMSG_FIRSTHDR(m); c; c = CMSG_NXTHDR(m, c))
         if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
             uint32_t dropped;
             memcpy(&dropped, CMSG_DATA(c), sizeof dropped);
-            himc_osc_add(n->counts, COUNT_OVERRUN, (long)(uint32_t)(dropped - n->overrun));
-            n->overrun = dropped;
+            himc_osc_add(n->counts, COUNT_OVERRUN, (long)(uint32_t)(dropped - *reported));
+            *reported = dropped;
         }
 }
 
-static ssize_t read_message(osc_network *n, int fd, int flags, osc_address *from, void *data,
+// socket 0 is the listening one, 1 and 2 are those for sending
+static ssize_t read_message(osc_network *n, int socket, int flags, osc_address *from, void *data,
                             size_t size)
 {
+    int fd = socket == 0 ? n->in : n->out[socket - 1];
     _Alignas(struct cmsghdr) char control[512];
     socket_address at = {0};
     struct iovec part = {data, size};
@@ -257,34 +259,31 @@ static ssize_t read_message(osc_network *n, int fd, int flags, osc_address *from
     *from = from_socket(&at);
     if (flags & MSG_ERRQUEUE)
         return got;
-    count_overrun(n, &m);
+    count_overrun(n, socket, &m);
     himc_osc_add(n->counts, COUNT_PACKETS, 1);
     return got;
 }
 
 long himc_osc_network_receive(osc_network *n, osc_address *from, void *data, size_t size)
 {
-    return read_message(n, n->in, 0, from, data, size);
+    return read_message(n, 0, 0, from, data, size);
 }
 
-void himc_osc_network_discard(osc_network *n)
+bool himc_osc_network_discard(osc_network *n)
 {
     char data[16];
     osc_address from;
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < DISCARD_AT_ONCE; i++) {
-            if (read_message(n, n->out[k], 0, &from, data, sizeof data) < 0)
-                break;
-            himc_osc_add(n->counts, COUNT_FOREIGN, 1);
-        }
+    bool any = read_message(n, 1, 0, &from, data, sizeof data) >= 0 ||
+               read_message(n, 2, 0, &from, data, sizeof data) >= 0;
+    himc_osc_add(n->counts, COUNT_FOREIGN, any);
+    return any;
 }
 
 bool himc_osc_network_unreachable(osc_network *n, osc_address *to)
 {
     char data[64];
-    int fd[] = {n->in, n->out[0], n->out[1]};
     for (int i = 0; i < 3; i++)
-        if (read_message(n, fd[i], MSG_ERRQUEUE, to, data, sizeof data) >= 0)
+        if (read_message(n, i, MSG_ERRQUEUE, to, data, sizeof data) >= 0)
             return true;
     return false;
 }

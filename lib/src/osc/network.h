@@ -30,7 +30,7 @@ typedef struct osc_network {
     int in, out[2]; ///< listening, or -1; sending only, IPv4 and IPv6, opened when needed
     bool in_v6, in_loopback;
     int port;             ///< listened at, or 0
-    uint32_t overrun;     ///< packets dropped by the system, as last reported
+    uint32_t overrun[3];  ///< packets dropped by the system, as last reported: in, out[0], out[1]
     osc_counters *counts; ///< borrowed
 } osc_network;
 
@@ -43,8 +43,8 @@ void himc_osc_network_close(osc_network *network);
 void himc_osc_network_wait(osc_network *network, int milliseconds);
 /// The next packet: its size, or -1 if none waits.
 long himc_osc_network_receive(osc_network *network, osc_address *from, void *data, size_t size);
-/// Discards and counts packets that arrived at the sockets for sending.
-void himc_osc_network_discard(osc_network *network);
+/// Discards and counts a packet that arrived at a socket for sending; false if there is none.
+bool himc_osc_network_discard(osc_network *network);
 bool himc_osc_network_send(osc_network *network, const osc_address *to, const void *data,
                            size_t size);
 /// The next report that nobody listens at an address we sent to; false if there is none.

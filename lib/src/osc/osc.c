@@ -8,8 +8,9 @@
 /// The network thread waits at the sockets for 2 ms at most while there are subscriptions (20 ms
 /// otherwise), takes the packets that arrived, and sends the states that the host left in the ring.
 /// The host makes no system call to wake it: a strike leaves within 2 ms. All that arrives is paid
-/// for from buckets (so much a second, so much at once); packets beyond that are counted and not
-/// read, and the thread then rests a millisecond, so that a flood costs the machine little.
+/// for from buckets (so much a second, so much at once). When the thread has read its share of
+/// packets it rests a millisecond and leaves the others in the socket, where the system drops and
+/// counts what does not fit; so a flood costs this thread no more than its share.
 #define _GNU_SOURCE // setpriority of one thread is Linux's own
 #include "drum/drum_performer.h"
 #include "himc/osc.h"
@@ -36,7 +37,7 @@
 #define PACKET_SIZE 65536    // largest of UDP (bytes)
 #define WAIT_SUBSCRIBED 2    // (ms) chosen: a strike leaves within it
 #define WAIT_IDLE 20         // (ms) chosen: a packet ends the wait, only a local subscription waits
-#define REST 1000000         // in a flood (ns) chosen: the socket holds more than arrives in it
+#define REST 1000000         // after the share of packets (ns) chosen: a strike leaves within 2 ms
 
 #define PACKETS_PER_SECOND 8000.0 // chosen: far more than players send
 #define POINTS_PER_SECOND 1000.0  // of commands; chosen: 4 targets at 250 Hz
@@ -85,9 +86,13 @@ typedef struct osc_host {
     double published;            // wall clock of the last block (s)
     double busy;                 // computing since the last status (s)
     bool status_sent;
-    long strikes;                  // so far
-    osc_bucket work;               // time of commands (s)
-    unsigned revision[HIMC_DRUMS]; // of the drums, as last sent
+    long strikes;                      // so far
+    osc_bucket work;                   // time of commands (s)
+    himc_loader *loader;               // borrowed, or NULL
+    bool loading;                      // a command waits in the loader ...
+    osc_address loading_for;           // ... for this sender
+    char loading_drum[HIMC_NAME_SIZE]; // and this drum, or ""
+    unsigned revision[HIMC_DRUMS];     // of the drums, as last sent
 } osc_host;
 
 struct himc_osc {
@@ -318,45 +323,85 @@ static void answer(void *object, const char *line)
     end(s->osc);
 }
 
-static bool carry_out(himc_performance *performance, const osc_request *request, himc_error *error)
+static void refuse_to(himc_osc *osc, const osc_address *to, const char *error)
+{
+    himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
+    answer(&(sender){osc, to, true}, error);
+}
+
+// the loader has carried out a command, or refused it
+static void loaded(void *object, const char *error)
+{
+    himc_osc *osc = object;
+    const osc_host *h = &osc->host;
+    himc_error line;
+    osc->host.loading = false;
+    if (!error)
+        return;
+    himc_error_set(&line, "%s%s%s", h->loading_drum, h->loading_drum[0] ? ": " : "", error);
+    refuse_to(osc, &h->loading_for, line.text);
+}
+
+static himc_drum *find_drum(himc_performance *performance, const char *name, himc_error *error)
 {
     himc_drum *drum;
     char names[120] = "";
-    if (request->receiver == HIMC_PERFORMER)
-        return himc_performance_command(performance, &request->command, 0, error);
     for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
-        if (strcmp(himc_drum_name(drum), request->drum) == 0)
-            return himc_drum_command(drum, &request->command, error) ||
-                   himc_error_prefix(error, "%s", request->drum);
+        if (strcmp(himc_drum_name(drum), name) == 0)
+            return drum;
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, " %s", himc_drum_name(drum));
     }
-    return himc_error_set(error, "%s: no drum of that name, allowed:%s", request->drum,
-                          names[0] ? names : " none, make one with drum");
+    himc_error_set(error, "%s: no drum of that name, allowed:%s", name,
+                   names[0] ? names : " none, make one with drum");
+    return NULL;
+}
+
+static bool load(himc_osc *osc, const himc_load_target *to, const osc_order *order,
+                 himc_error *error)
+{
+    osc_host *h = &osc->host;
+    bool good = himc_loader_command(h->loader, to, &order->request.command, error);
+    h->loading = good && himc_loader_busy(h->loader);
+    h->loading_for = order->from;
+    snprintf(h->loading_drum, sizeof h->loading_drum, "%s", to->drum ? order->request.drum : "");
+    return good;
+}
+
+static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_order *order,
+                      himc_error *error)
+{
+    const osc_request *request = &order->request;
+    himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
+    if (request->receiver != HIMC_PERFORMER) {
+        to.drum = find_drum(performance, request->drum, error);
+        if (!to.drum)
+            return false;
+    }
+    bool good = osc->host.loader ? load(osc, &to, order, error)
+                : to.drum        ? himc_drum_command(to.drum, &request->command, error)
+                          : himc_performance_command(performance, &request->command, 0, error);
+    return good || (to.drum && himc_error_prefix(error, "%s", request->drum));
 }
 
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
-    sender from = {osc, &order->from, false};
     himc_error error = {""};
     const osc_request *request = &order->request;
-    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_INFO) {
-        himc_performance_describe(performance, answer, &from);
-    } else if (!carry_out(performance, request, &error)) {
-        from.error = true;
-        himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
-        answer(&from, error.text);
-    }
+    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_INFO)
+        himc_performance_describe(performance, answer, &(sender){osc, &order->from, false});
+    else if (!carry_out(osc, performance, order, &error))
+        refuse_to(osc, &order->from, error.text);
 }
 
-// a head of 2000 modes takes 25 ms to make anew; a sender of such commands one after the other must
-// not take the time of the sound, so their time is paid for from a bucket of seconds
+// without a loader a head of 2000 modes takes 25 ms; a sender of such commands one after the other
+// must not take the time of the sound, so their time is paid for from a bucket of seconds
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 {
     const osc_order *order;
     double spent = 0;
     for (int i = 0; i < most && (order = himc_osc_ring_peek(&osc->orders)); i++) {
-        if (spent > BLOCK_WORK || !afford(&osc->host.work, monotonic(osc), 0))
+        if (osc->host.loading || spent > BLOCK_WORK || !afford(&osc->host.work, monotonic(osc), 0))
             return;
         double start = monotonic(osc);
         obey(osc, performance, order);
@@ -464,25 +509,30 @@ static void take_message(void *object, osc_verdict verdict, osc_request *request
     }
 }
 
-// true if more packets arrive than are accepted
-static bool take_packets(himc_osc *osc)
+// false if none waits
+static bool take_packet(himc_osc *osc)
 {
     _Alignas(8) char data[PACKET_SIZE];
-    bool flood = false;
     osc_address from;
-    long size;
+    long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
+    if (size < 0)
+        return himc_osc_network_discard(&osc->network);
+    himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false});
+    return true;
+}
+
+// true if the share of packets is used up; the others wait in the sockets
+static bool take_packets(himc_osc *osc)
+{
     for (int i = 0; i < PACKETS_AT_ONCE; i++) {
-        if ((size = himc_osc_network_receive(&osc->network, &from, data, sizeof data)) < 0)
-            break;
-        if (afford(&osc->packets, monotonic(osc), 1)) {
-            himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false});
-        } else {
-            himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
-            flood = true;
-        }
+        if (!afford(&osc->packets, monotonic(osc), 1))
+            return true;
+        if (take_packet(osc))
+            continue;
+        osc->packets.level += 1; // none was read
+        return false;
     }
-    himc_osc_network_discard(&osc->network);
-    return flood;
+    return false;
 }
 
 static void send_record(himc_osc *osc, const osc_record *r)
@@ -584,6 +634,7 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
         !himc_osc_ring_init(&osc->orders, sizeof(osc_order), COMMANDS_WAITING) ||
         !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))
         return himc_error_set(error, "osc: out of memory");
+    osc->host.loader = config->loader;
     if (!set_files(osc, config->files, error) ||
         !himc_osc_network_open(&osc->network, config->bind, config->port, &osc->counts, error) ||
         !himc_osc_allow(s, config->allow, error))
@@ -673,6 +724,8 @@ void himc_osc_free(himc_osc *osc)
     if (!osc)
         return;
     stop_thread(osc);
+    if (osc->host.loading) // for this
+        himc_loader_finish(osc->host.loader);
     himc_osc_subscriptions_free(&osc->subscriptions);
     himc_osc_network_close(&osc->network);
     himc_osc_ring_free(&osc->records);

@@ -4,6 +4,7 @@
 /// push is a constant force on a segment's centre of mass. It is not given to the controller, so it
 /// disturbs the motion. The pelvis is held, and `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
+#include "base/format.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -196,7 +197,7 @@ bool himc_body_find_joint(const char *name, const char *command, int *joint, him
     himc_error_set(error, "%s: JOINT: %s, allowed", command, name);
     size_t used = error ? strlen(error->text) : 0;
     for (int j = 0; error && j < HIMC_JOINTS; j++)
-        used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
-                                 himc_joint_name(j));
+        used +=
+            himc_format(error->text + used, sizeof error->text - used, " %s", himc_joint_name(j));
     return false;
 }

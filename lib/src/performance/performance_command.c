@@ -4,6 +4,8 @@
 /// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a queue until
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
+#include "performance/performance_job.h"
+#include "base/format.h"
 #include "performance/performance_state.h"
 
 #include <stdio.h>
@@ -68,33 +70,29 @@ static bool do_seek(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool run_now(himc_performance *p, const himc_command *c, himc_error *error)
+static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return himc_performance_command(p, c, 0, error);
+    return himc_job_carry_out(himc_performance_job(p, c, error), error);
 }
 
 static bool do_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return himc_performance_load_score(p, c->atom[0].symbol, c->folder, run_now, error);
+    return carry_out(p, c, error);
 }
 
 static bool do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return himc_performance_load_take(p, c->atom[0].symbol, c->folder, error);
+    return carry_out(p, c, error);
 }
 
 static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
 {
     enum { CLEAR };
+    if (c->form != CLEAR)
+        return carry_out(p, c, error);
     himc_motion_replan(p->motion);
-    if (c->form == CLEAR) {
-        himc_planner_clear_units(p->motion->planner);
-        return true;
-    }
-    bool has_spot = c->count > 2 && c->choice[2] >= 0;
-    himc_spot spot = has_spot ? (himc_spot)c->choice[2] : HIMC_SPOT_NORMAL;
-    return himc_performance_add_units(p, c->atom[0].symbol, (himc_nuance)c->choice[1],
-                                      has_spot ? &spot : NULL, error);
+    himc_planner_clear_units(p->motion->planner);
+    return true;
 }
 
 static bool do_target(himc_performance *p, const himc_command *c, himc_error *error)
@@ -108,11 +106,9 @@ static bool do_target(himc_performance *p, const himc_command *c, himc_error *er
 
 static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    const char *name = c->atom[0].symbol;
-    if (!p->host.make_drums || himc_drums_find(&p->drums, name) >= 0)
+    if (!p->host.make_drums || himc_drums_find(&p->drums, c->atom[0].symbol) >= 0)
         return true; // in Pd each [membrane~ NAME] is a drum
-    return himc_performance_make_drum(p, name, c->count > 1 ? c->atom[1].number : USUAL_INCHES,
-                                      error);
+    return carry_out(p, c, error);
 }
 
 // control
@@ -328,8 +324,8 @@ static bool unknown_segment(const char *name, himc_error *error)
     himc_error_set(error, "push: SEGMENT: %s, allowed", name);
     size_t used = error ? strlen(error->text) : 0;
     for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
-        used += (size_t)snprintf(error->text + used, sizeof error->text - used, " %s",
-                                 himc_segment_name(i));
+        used +=
+            himc_format(error->text + used, sizeof error->text - used, " %s", himc_segment_name(i));
     return false;
 }
 
@@ -343,27 +339,9 @@ static bool do_push(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-// a recording that cannot be written is lost, with an error
-static bool finish_recording(himc_performance *p, himc_error *error)
-{
-    bool written = himc_performance_write_recording(p, error);
-    himc_performance_drop_recording(p);
-    return written;
-}
-
 static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    const char *path = c->atom[0].symbol;
-    enum { STOP };
-    bool stop = c->form == STOP;
-    if (stop && !p->recording.file)
-        return himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
-    if (stop)
-        return finish_recording(p, error);
-    if (p->recording.file)
-        return himc_error_set(error, "record: %s: already recording %s, allowed stop", path,
-                              himc_recording_path(p->recording.file));
-    return himc_performance_begin_recording(p, path, error);
+    return carry_out(p, c, error);
 }
 
 static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
@@ -398,6 +376,35 @@ static performance_action *const actions[HIMC_COMMANDS] = {
     ACTION_##receiver(ID, word, when)
 #include "himc/command_rows.h"
 };
+
+static bool run_now(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_command(p, c, 0, error);
+}
+
+bool himc_performance_takes_long(const himc_performance *p, const himc_command *c)
+{
+    int file;
+    if (c->id == HIMC_COMMAND_MAKE_DRUM)
+        return p->host.make_drums && himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
+    return c->id == HIMC_COMMAND_RECORD || himc_command_file(c, &file) != HIMC_FILE_NONE;
+}
+
+himc_job *himc_performance_job(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    static const performance_runner runner = {run_now, himc_performance_takes_long,
+                                              himc_performance_job};
+    enum { STOP };
+    switch (c->id) {
+    case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, &runner, error);
+    case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
+    case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
+    case HIMC_COMMAND_MAKE_DRUM: return himc_performance_drum_job(p, c, error);
+    default:
+        return c->form == STOP ? himc_performance_record_stop_job(p, c, error)
+                               : himc_performance_record_job(p, c, error);
+    }
+}
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)

@@ -111,18 +111,6 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
     return true;
 }
 
-bool himc_drums_make(performance_drums *d, const char *name, double inches, double sample_rate,
-                     drum_source source, int *index, himc_error *error)
-{
-    himc_drum *drum = himc_drum_new(name, inches, sample_rate, error);
-    if (!drum)
-        return false;
-    if (himc_drums_add(d, drum, source, index, error))
-        return true;
-    himc_drum_release(drum);
-    return false;
-}
-
 bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_error *error)
 {
     if (!himc_drum_check_place(center, error))

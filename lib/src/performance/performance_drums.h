@@ -8,6 +8,8 @@
 
 #define USUAL_INCHES 23 // of a drum made without a size: the smallest timpano (in)
 
+#define FIRST_DRUM "drum" // name of a drum made for strokes without one
+
 /// Where a drum comes from.
 typedef enum drum_source {
     DRUM_GIVEN, ///< by the host
@@ -40,9 +42,6 @@ bool himc_drums_have_room(const performance_drums *d, const char *name, himc_err
 /// place is placed automatically. False, and nothing changed, if there is no slot left.
 bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source source, int *index,
                     himc_error *error);
-/// Makes a drum and adds it.
-bool himc_drums_make(performance_drums *drums, const char *name, double inches, double sample_rate,
-                     drum_source source, int *index, himc_error *error);
 /// Moves a drum under a take's strikes, until its owner places it or himc_drums_put_back.
 bool himc_drums_move(performance_drums *drums, int index, himc_vec3 center, himc_error *error);
 /// Drops all drums except those given by the host, which keep their order. These are as when they

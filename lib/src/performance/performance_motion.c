@@ -112,15 +112,16 @@ bool himc_motion_free_hand(performance_motion *m, himc_hand hand, double t)
     return !himc_motion_tracks(m, hand);
 }
 
-void himc_motion_set_track(performance_motion *m, himc_track *track, const himc_limits *learned,
-                           double t)
+himc_track *himc_motion_set_track(performance_motion *m, himc_track *track,
+                                  const himc_limits *learned, double t)
 {
+    himc_track *old = m->track;
     himc_motion_take_hands_back(m, t);
-    himc_track_free(m->track);
     m->track = track;
     m->has_learned = learned != NULL;
     if (learned)
         m->learned = *learned;
+    return old;
 }
 
 // plan
@@ -304,16 +305,22 @@ void himc_motion_interpolate(performance_motion *m, double t)
     himc_setpoint_interpolate(&m->from, &m->to, t, &m->reference);
 }
 
+void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skeleton,
+                              const captured_player *captured, double level)
+{
+    himc_posture_init(posture, skeleton, level);
+    for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
+        if (captured->known[j])
+            posture->rest.joint[j] = captured->rest.joint[j];
+}
+
 void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {
     // the body begins in the posture: no cross-fade
     m->crossfade_due = false;
     himc_posture_crossfade_cancel(&m->crossfade);
-    himc_posture_init(&m->posture, skeleton, m->posture.level);
-    for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
-        if (s->captured.known[j])
-            m->posture.rest.joint[j] = s->captured.rest.joint[j];
+    himc_motion_init_posture(&m->posture, skeleton, &s->captured, m->posture.level);
     if (m->course.time == 0)
         m->course.from = m->course.goal = m->posture.trunk_posture;
     fill_tick(m, s, &m->from, t);

@@ -56,6 +56,9 @@ void himc_motion_free(performance_motion *motion);
 /// Sets another body: its resting posture, and its first targets at `t` (s).
 void himc_motion_build(performance_motion *motion, const himc_skeleton *skeleton,
                        const performance_settings *settings, double t);
+/// The natural posture of a body, with the captured joints of its player.
+HIMC_RT void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skeleton,
+                                      const captured_player *captured, double level);
 /// The pose for making controllers: sticks at rest.
 void himc_motion_resting_pose(const performance_motion *motion, himc_pose *pose);
 /// Mean of a stroke's postures at the planned places, from the first head up.
@@ -96,9 +99,10 @@ HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand han
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
 HIMC_RT bool himc_motion_free_hand(performance_motion *motion, himc_hand hand, double t);
-/// Replaces the take (NULL: none) and the limits of its player (NULL: none).
-void himc_motion_set_track(performance_motion *motion, himc_track *track,
-                           const himc_limits *learned, double t);
+/// Replaces the take (NULL: none) and the limits of its player (NULL: none). Returns the one before,
+/// which the caller frees.
+HIMC_RT himc_track *himc_motion_set_track(performance_motion *motion, himc_track *track,
+                                          const himc_limits *learned, double t);
 /// Sets the null-space target; NULL: the natural posture. `of_take`: dropped with the take.
 HIMC_RT void himc_motion_set_regression(performance_motion *motion,
                                         const performance_settings *settings,

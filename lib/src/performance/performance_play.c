@@ -2,7 +2,9 @@
 /// hits, transport, live targets, units of motion. Scores and takes have files of their own.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
+#include "capture/take.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
@@ -24,7 +26,6 @@ static bool check_stroke(const himc_stroke *s, himc_error *error)
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
-    himc_motion_replan(p->motion);
     if (!check_stroke(stroke, error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
@@ -34,6 +35,7 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
         return false;
     }
     himc_performance_keep_drum(p, &drum);
+    himc_motion_replan(p->motion);
     return himc_planner_add(p->motion->planner, stroke, drum.index, error);
 }
 
@@ -115,31 +117,67 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     himc_motion_replan(p->motion);
 }
 
-// cuts a take into units of that nuance, at `spot` or, if that is NULL, at their captured places
-static bool add_units(himc_performance *p, himc_take *take, const char *path, himc_nuance nuance,
-                      const himc_spot *spot, himc_error *error)
+// the command `units`: a take is cut into units of a nuance
+typedef struct units_job {
+    himc_job job;
+    himc_performance *performance; ///< borrowed
+    himc_command command;
+    himc_take_options options;
+    himc_grip grip;
+    himc_unit unit[HIMC_UNITS];
+    int count;
+} units_job;
+
+static bool cut_units(himc_job *job, himc_error *error)
 {
-    himc_unit units[HIMC_UNITS];
-    int count = himc_units_cut(take, &p->host.take_options, units, HIMC_UNITS, error);
-    for (int i = 0; i < count && i < HIMC_UNITS; i++) {
-        units[i].nuance = nuance;
-        units[i].grip = p->settings.grip;
-        if (spot)
-            units[i].spot = *spot;
+    units_job *j = (units_job *)job;
+    const himc_command *c = &j->command;
+    himc_take *take = himc_take_load_in(c->folder, c->atom[0].symbol, &j->options, error);
+    j->count = take ? himc_units_cut(take, &j->options, j->unit, HIMC_UNITS, error) : -1;
+    if (take && j->count < 0)
+        himc_error_prefix(error, "%s", c->atom[0].symbol);
+    himc_take_free(take);
+    for (int i = 0; i < j->count && i < HIMC_UNITS; i++) {
+        j->unit[i].nuance = (himc_nuance)c->choice[1];
+        j->unit[i].grip = j->grip;
+        if (c->count > 2 && c->choice[2] >= 0)
+            j->unit[i].spot = (himc_spot)c->choice[2];
     }
-    if (count < 0 || !himc_planner_add_units(p->motion->planner, units, count, error))
-        return false;
-    himc_events_note(&p->events, "%s: %d motion units of %s", path, count,
-                     himc_nuance_name(nuance));
-    return true;
+    return j->count >= 0;
 }
 
-bool himc_performance_add_units(himc_performance *p, const char *path, himc_nuance nuance,
-                                const himc_spot *spot, himc_error *error)
+static himc_job_state add_units(himc_job *job, himc_error *error)
 {
-    himc_take *take = himc_take_load(path, &p->host.take_options, error);
-    bool added = take && (add_units(p, take, path, nuance, spot, error) ||
-                          himc_error_prefix(error, "%s", path));
-    himc_take_free(take);
-    return added;
+    units_job *j = (units_job *)job;
+    himc_performance *p = j->performance;
+    const char *path = j->command.atom[0].symbol;
+    if (!himc_planner_add_units(p->motion->planner, j->unit, j->count, error)) {
+        himc_error_prefix(error, "%s", path);
+        return HIMC_JOB_FAILED;
+    }
+    himc_motion_replan(p->motion);
+    himc_events_note(&p->events, "%s: %d motion units of %s", path, j->count,
+                     himc_nuance_name((himc_nuance)j->command.choice[1]));
+    return HIMC_JOB_DONE;
+}
+
+static void free_units(himc_job *job)
+{
+    free(job);
+}
+
+himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
+                                     himc_error *error)
+{
+    units_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "units: out of memory");
+        return NULL;
+    }
+    j->job = (himc_job){cut_units, add_units, free_units};
+    j->performance = p;
+    himc_command_copy(&j->command, command);
+    j->options = p->host.take_options;
+    j->grip = p->settings.grip;
+    return &j->job;
 }

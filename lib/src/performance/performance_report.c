@@ -3,6 +3,7 @@
 #include "performance/performance_state.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 #define LONGEST_RECORDING 1200.0 // chosen: 20 minutes, 0.5 GB of poses at 250 Hz (s)
 
@@ -74,6 +75,12 @@ static void record(himc_performance *p, double t)
                      himc_recording_path(r->file), t);
 }
 
+static void note_written(himc_performance *p, const himc_recording *file)
+{
+    himc_events_note(&p->events, "recorded %.2f s in %s",
+                     himc_recording_frames(file) / p->clock.task_rate, himc_recording_path(file));
+}
+
 void himc_performance_tell_tick(himc_performance *p, double t)
 {
     tell_body(p, t);
@@ -81,23 +88,11 @@ void himc_performance_tell_tick(himc_performance *p, double t)
     record(p, t);
 }
 
-bool himc_performance_begin_recording(himc_performance *p, const char *path, himc_error *error)
-{
-    himc_recording *file =
-        himc_recording_new(path, &p->body->skeleton, p->clock.task_rate, LONGEST_RECORDING, error);
-    if (!file)
-        return himc_error_prefix(error, "record");
-    p->recording = (performance_recording){.file = file};
-    return true;
-}
-
 bool himc_performance_write_recording(himc_performance *p, himc_error *error)
 {
-    himc_recording *file = p->recording.file;
-    if (!himc_recording_write(file, error))
+    if (!himc_recording_write(p->recording.file, error))
         return himc_error_prefix(error, "record");
-    himc_events_note(&p->events, "recorded %.2f s in %s",
-                     himc_recording_frames(file) / p->clock.task_rate, himc_recording_path(file));
+    note_written(p, p->recording.file);
     himc_performance_drop_recording(p);
     return true;
 }
@@ -106,6 +101,102 @@ void himc_performance_drop_recording(himc_performance *p)
 {
     himc_recording_free(p->recording.file);
     p->recording.file = NULL;
+}
+
+// the command `record`: a recording is made, or taken away and written
+typedef struct record_job {
+    himc_job job;
+    himc_performance *performance; ///< borrowed
+    himc_command command;
+    himc_skeleton skeleton;
+    double rate;          ///< of tasks (Hz)
+    himc_recording *file; ///< owned
+} record_job;
+
+static bool make_recording(himc_job *job, himc_error *error)
+{
+    record_job *j = (record_job *)job;
+    himc_recording_free(j->file);
+    j->file = himc_recording_new(j->command.atom[0].symbol, &j->skeleton, j->rate,
+                                 LONGEST_RECORDING, error);
+    return j->file || himc_error_prefix(error, "record");
+}
+
+static himc_job_state begin_recording(himc_job *job, himc_error *error)
+{
+    record_job *j = (record_job *)job;
+    (void)error;
+    j->performance->recording = (performance_recording){.file = j->file};
+    j->file = NULL;
+    return HIMC_JOB_DONE;
+}
+
+static bool write_recording(himc_job *job, himc_error *error)
+{
+    return himc_recording_write(((record_job *)job)->file, error) ||
+           himc_error_prefix(error, "record");
+}
+
+static himc_job_state end_recording(himc_job *job, himc_error *error)
+{
+    record_job *j = (record_job *)job;
+    (void)error;
+    note_written(j->performance, j->file);
+    return HIMC_JOB_DONE;
+}
+
+static void free_recording(himc_job *job)
+{
+    himc_recording_free(((record_job *)job)->file);
+    free(job);
+}
+
+static record_job *record_job_new(himc_performance *p, const himc_command *command,
+                                  himc_error *error)
+{
+    record_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "record: out of memory");
+        return NULL;
+    }
+    j->performance = p;
+    himc_command_copy(&j->command, command);
+    return j;
+}
+
+himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
+                                      himc_error *error)
+{
+    const char *path = command->atom[0].symbol;
+    if (p->recording.file) {
+        himc_error_set(error, "record: %s: already recording %s, allowed stop", path,
+                       himc_recording_path(p->recording.file));
+        return NULL;
+    }
+    record_job *j = record_job_new(p, command, error);
+    if (!j)
+        return NULL;
+    j->job = (himc_job){make_recording, begin_recording, free_recording};
+    j->skeleton = p->body->skeleton;
+    j->rate = p->clock.task_rate;
+    return &j->job;
+}
+
+himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
+                                           himc_error *error)
+{
+    if (!p->recording.file) {
+        himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
+        return NULL;
+    }
+    record_job *j = record_job_new(p, command, error);
+    if (!j)
+        return NULL;
+    j->job = (himc_job){write_recording, end_recording, free_recording};
+    j->rate = p->clock.task_rate;
+    j->file = p->recording.file; // a recording that cannot be written is lost, with an error
+    p->recording.file = NULL;
+    return &j->job;
 }
 
 // info

@@ -1,8 +1,10 @@
 /// performance_score.c: `score FILE`: a score is accepted as a whole, or refused.
 ///
-/// The file is parsed as a whole (score.c) and then tried: its lines for drums go to copies of the
-/// drums, its lines for the performer are checked, its drums are counted. Only then is it carried
-/// out. While a score plays, the beats of the next one follow its own. Invariants: a score that is
+/// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its lines
+/// for drums go to copies of the drums, its lines for the performer are checked, its drums are
+/// counted and those that are missing are made. Only then is it installed: the copies give their
+/// heads to the drums, lines and strokes follow in portions, a line that takes long is a job of its
+/// own. While a score plays, the beats of the next one follow its own. Invariants: a score that is
 /// refused has changed nothing; a score from the network may do what its sender may do.
 #include "performance/performance_state.h"
 
@@ -11,69 +13,121 @@
 #include "plan/score.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define TRIAL_RECORDING 0.1 // of the trial of a file that can be opened (s)
+// chosen: a portion takes a tenth of a millisecond
+#define LINES_AT_ONCE 16
+#define STROKES_AT_ONCE 64
 
-/// Copies of the drums, for trying a score; owned.
-typedef struct rehearsal {
-    himc_performance *performance;
-    performance_action *run; ///< of a command
-    himc_drum *drum[HIMC_DRUMS];
+/// A drum of the score.
+typedef struct score_drum {
+    himc_drum *trial;   ///< owned; the lines were carried out on it
+    himc_drum *missing; ///< owned; a drum to be added, NULL if there is one
+    drum_source source; ///< of the missing one
+    bool exchanged;     ///< the drum has the head of the trial
+} score_drum;
+
+/// In the order of installing.
+typedef enum score_part { BEGINNING, BEFORE_STROKES, STROKES, AFTER_STROKES } score_part;
+
+typedef struct score_job {
+    himc_job job;
+    himc_performance *performance; ///< borrowed
+    himc_command command;
+    const char *path;
+    const performance_runner *runner;
+    // of the performance, when the job was made
+    himc_take_options options;
+    himc_skeleton skeleton;
+    double sample_rate, task_rate; ///< (Hz)
+    bool make_drums, recording;
+    himc_drum_form form[HIMC_DRUMS];
+    int forms;
+    // the score, tried
+    himc_score *score;
+    score_drum drum[HIMC_DRUMS];
     int drums;
-} rehearsal;
+    // how far it is installed
+    score_part part;
+    int at;                ///< next line or stroke
+    bool queued;           ///< it follows the one that plays
+    double from;           ///< its first beat
+    himc_job *line, *done; ///< owned; a line that takes long: under way, and finished
+    himc_track *dropped;   ///< owned
+} score_job;
 
-static himc_drum *find(himc_drum *const *drum, int drums, const char *name)
+static score_drum *find_drum(score_job *j, const char *name)
 {
-    for (int i = 0; i < drums; i++)
-        if (strcmp(himc_drum_name(drum[i]), name) == 0)
-            return drum[i];
+    for (int i = 0; i < j->drums; i++)
+        if (strcmp(himc_drum_name(j->drum[i].trial), name) == 0)
+            return &j->drum[i];
     return NULL;
 }
 
-static himc_drum *real_drum(const himc_performance *p, const char *name)
+static const himc_drum_form *find_form(const score_job *j, const char *name)
 {
-    int index = himc_drums_find(&p->drums, name);
-    return index < 0 ? NULL : p->drums.slot[index].drum;
+    for (int i = 0; i < j->forms; i++)
+        if (strcmp(j->form[i].name, name) == 0)
+            return &j->form[i];
+    return NULL;
+}
+
+static bool too_many_drums(const char *name, himc_error *error)
+{
+    return himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
+                          HIMC_DRUMS);
+}
+
+static void free_drums(score_job *j)
+{
+    for (; j->drums > 0; j->drums--) {
+        himc_drum_release(j->drum[j->drums - 1].trial);
+        himc_drum_release(j->drum[j->drums - 1].missing);
+    }
 }
 
 /// The trial drum of that name; "" is the performer's first.
-static himc_drum *trial_drum(rehearsal *r, const char *name, double inches, himc_error *error)
+static himc_drum *trial_drum(score_job *j, const char *name, double inches, drum_source source,
+                             himc_error *error)
 {
-    himc_performance *p = r->performance;
-    if (!name[0] && p->drums.count > 0)
-        name = himc_drum_name(p->drums.slot[0].drum);
-    himc_drum *drum = find(r->drum, r->drums, name), *real = real_drum(p, name);
-    if (drum)
-        return drum;
-    if (r->drums == HIMC_DRUMS) {
-        himc_error_set(error, "drum %s: a performer plays on %d drums at most", name, HIMC_DRUMS);
+    if (!name[0] && j->forms > 0)
+        name = j->form[0].name;
+    score_drum *known = find_drum(j, name);
+    const himc_drum_form *form = find_form(j, name);
+    if (known)
+        return known->trial;
+    if (j->drums == HIMC_DRUMS) {
+        too_many_drums(name, error);
         return NULL;
     }
-    drum = himc_drum_new(name, inches, p->clock.sample_rate, error);
-    if (drum && real &&
-        !himc_membrane_follow(himc_drum_membrane(drum), himc_drum_membrane(real), error)) {
-        himc_drum_release(drum);
+    score_drum made = {.source = source};
+    if (!form)
+        made.missing = himc_drum_new(name, inches, j->sample_rate, error);
+    made.trial = form           ? himc_drum_new_of(form, error)
+                 : made.missing ? himc_drum_new(name, inches, j->sample_rate, error)
+                                : NULL;
+    if (!made.trial) {
+        himc_drum_release(made.missing);
         return NULL;
     }
-    if (!drum)
-        return NULL;
-    himc_drum_set_external_sound(drum, real && himc_drum_has_external_sound(real));
-    return r->drum[r->drums++] = drum;
+    j->drum[j->drums] = made;
+    return j->drum[j->drums++].trial;
 }
 
 /// True if a line for the performer can be carried out; reads the file that it names.
-static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *error)
+static bool rehearse_command(score_job *j, const himc_command *c, himc_error *error)
 {
-    himc_performance *p = r->performance;
     const char *word = c->count > 0 ? c->atom[0].symbol : "";
     himc_take *take;
     himc_recording *recording;
     int joint, file;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
-        return !p->host.make_drums ||
-               trial_drum(r, word, c->count > 1 ? c->atom[1].number : USUAL_INCHES, error);
+        return !j->make_drums ||
+               trial_drum(j, word, c->count > 1 ? c->atom[1].number : USUAL_INCHES, DRUM_MADE,
+                          error);
     case HIMC_COMMAND_GAIN:
         return c->count < 3 || himc_body_find_joint(word, "gain", &joint, error);
     case HIMC_COMMAND_STRENGTH:
@@ -82,81 +136,151 @@ static bool rehearse_command(rehearsal *r, const himc_command *c, himc_error *er
     case HIMC_COMMAND_UNITS:
         if (himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true; // `units clear`
-        take = himc_take_load_in(c->folder, word, &p->host.take_options, error);
+        take = himc_take_load_in(c->folder, word, &j->options, error);
         himc_take_free(take);
         return take;
     case HIMC_COMMAND_RECORD:
-        if (p->recording.file || himc_command_file(c, &file) == HIMC_FILE_NONE)
+        if (j->recording || himc_command_file(c, &file) == HIMC_FILE_NONE)
             return true;
-        recording = himc_recording_new(word, &p->body->skeleton, p->clock.task_rate,
-                                       TRIAL_RECORDING, error);
+        recording = himc_recording_new(word, &j->skeleton, j->task_rate, TRIAL_RECORDING, error);
         himc_recording_free(recording);
         return recording || himc_error_prefix(error, "record");
     default: // the network's are always refused
-        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK || r->run(p, c, error);
+        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
+               j->runner->run(j->performance, c, error);
     }
 }
 
-static bool rehearse_line(rehearsal *r, const himc_score_line *line, himc_error *error)
+static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error *error)
 {
     if (!line->drum[0])
-        return rehearse_command(r, &line->command, error);
-    himc_drum *drum = trial_drum(r, line->drum, USUAL_INCHES, error);
+        return rehearse_command(j, &line->command, error);
+    himc_drum *drum = trial_drum(j, line->drum, USUAL_INCHES, DRUM_SILENT, error);
     return drum && (himc_drum_command(drum, &line->command, error) ||
                     himc_error_prefix(error, "%s", line->drum));
 }
 
-/// Number of drums with this score: the present ones, and those named by lines and strokes.
-static bool count_drums(const rehearsal *r, const himc_score *score, himc_error *error)
+/// Counts the drums with this score: the present ones, and those named by lines and strokes; makes
+/// those that only strokes name.
+static bool count_drums(score_job *j, himc_error *error)
 {
     const char *name[HIMC_DRUMS];
-    const himc_performance *p = r->performance;
     int count = 0;
-    for (int i = 0; i < p->drums.count; i++)
-        name[count++] = himc_drum_name(p->drums.slot[i].drum);
-    for (int i = -r->drums; i < score->stroke_count; i++) {
-        const char *wanted = i < 0 ? himc_drum_name(r->drum[-1 - i]) : score->strokes[i].drum;
+    for (int i = 0; i < j->forms; i++)
+        name[count++] = j->form[i].name;
+    for (int i = -j->drums; i < j->score->stroke_count; i++) {
+        const char *wanted =
+            i < 0 ? himc_drum_name(j->drum[-1 - i].trial) : j->score->strokes[i].drum;
+        if (!wanted[0] && count == 0)
+            wanted = FIRST_DRUM;
         int k = 0;
         while (k < count && strcmp(name[k], wanted) != 0)
             k++;
         if (k < count || !wanted[0])
             continue;
         if (count == HIMC_DRUMS)
-            return himc_error_set(error, "drum %s: a performer plays on %d drums at most", wanted,
-                                  HIMC_DRUMS);
+            return too_many_drums(wanted, error);
+        if (!trial_drum(j, wanted, USUAL_INCHES, DRUM_SILENT, error))
+            return false;
         name[count++] = wanted;
     }
     return true;
 }
 
-static bool rehearse(himc_performance *p, himc_score *score, const char *path, const char *folder,
-                     performance_action *run, himc_error *error)
+static bool rehearse(score_job *j, himc_error *error)
 {
-    rehearsal r = {.performance = p, .run = run};
+    const himc_score *score = j->score;
+    const char *folder = j->command.folder;
     bool good = true;
     for (int i = 0; i < score->line_count && good; i++) {
         good = (!folder || himc_confine_command(&score->lines[i].command, folder, error)) &&
-               rehearse_line(&r, &score->lines[i], error);
+               rehearse_line(j, &score->lines[i], error);
         if (good && score->lines[i].command.id == HIMC_COMMAND_TAKE && score->stroke_count > 0)
             good = himc_error_set(error, "take: a score with strokes cannot play a take");
-        good = good || himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
+        good = good || himc_error_prefix(error, "%s:%d", j->path, score->lines[i].line);
     }
-    good = good && (count_drums(&r, score, error) || himc_error_prefix(error, "%s", path));
-    for (int i = 0; i < r.drums; i++)
-        himc_drum_release(r.drum[i]);
-    return good;
+    return good && (count_drums(j, error) || himc_error_prefix(error, "%s", j->path));
 }
 
-// a line that is not a stroke: for the performer or one of its drums
-static bool run_line(himc_performance *p, const himc_score_line *line, performance_action *run,
-                     himc_error *error)
+static bool prefix_line(const score_job *j, himc_error *error)
+{
+    return himc_error_prefix(error, "%s:%d", j->path, j->score->lines[j->at].line);
+}
+
+static bool prepare(himc_job *job, himc_error *error)
+{
+    score_job *j = (score_job *)job;
+    if (j->done)
+        j->done->free(j->done);
+    j->done = NULL;
+    if (j->line)
+        return j->line->prepare(j->line, error) || prefix_line(j, error);
+    free_drums(j);
+    himc_score_free(j->score);
+    j->score = himc_score_load_in(j->command.folder, j->path, error);
+    return j->score && rehearse(j, error);
+}
+
+// the drum of that name; a missing one is added
+static bool installed_drum(score_job *j, const char *name, int *index, himc_error *error)
+{
+    himc_performance *p = j->performance;
+    score_drum *made = find_drum(j, name[0] || p->drums.count > 0 ? name : FIRST_DRUM);
+    if (!made || !made->missing || himc_drums_find(&p->drums, himc_drum_name(made->missing)) >= 0)
+        return himc_performance_ensure_drum(p, name, index, error);
+    himc_drum *missing = made->missing;
+    made->missing = NULL;
+    if (himc_drum_rate(missing) != p->clock.sample_rate)
+        himc_drum_set_rate(missing, p->clock.sample_rate, NULL);
+    return himc_performance_adopt_drum(p, missing, made->source, index, error);
+}
+
+// a line for a drum
+static bool run_on_drum(score_job *j, const himc_score_line *line, himc_error *error)
 {
     int index;
-    if (!line->drum[0])
-        return run(p, &line->command, error);
-    return himc_performance_ensure_drum(p, line->drum, &index, error) &&
-           (himc_drum_command(p->drums.slot[index].drum, &line->command, error) ||
-            himc_error_prefix(error, "%s", line->drum));
+    score_drum *made = find_drum(j, line->drum);
+    if (!installed_drum(j, line->drum, &index, error))
+        return false;
+    himc_drum *drum = j->performance->drums.slot[index].drum;
+    if (!(himc_command_table((int)line->command.id)->marks & HIMC_CHANGES_HEAD))
+        return himc_drum_command(drum, &line->command, error) ||
+               himc_error_prefix(error, "%s", line->drum);
+    if (!made->exchanged)
+        himc_drum_exchange(drum, made->trial);
+    made->exchanged = true;
+    return true;
+}
+
+static himc_job_state failed(const score_job *j, himc_error *error)
+{
+    prefix_line(j, error);
+    return HIMC_JOB_FAILED;
+}
+
+// a line for the performer, or the next part of one that takes long
+static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_error *error)
+{
+    himc_performance *p = j->performance;
+    if (line->drum[0])
+        return run_on_drum(j, line, error) ? HIMC_JOB_DONE : failed(j, error);
+    if (line->command.id == HIMC_COMMAND_MAKE_DRUM && p->host.make_drums) {
+        int index;
+        return installed_drum(j, line->command.atom[0].symbol, &index, error) ? HIMC_JOB_DONE
+                                                                              : failed(j, error);
+    }
+    if (j->line) {
+        himc_job_state state = j->line->install(j->line, error);
+        if (state == HIMC_JOB_MORE || state == HIMC_JOB_AGAIN)
+            return state;
+        j->done = j->line;
+        j->line = NULL;
+        return state == HIMC_JOB_DONE ? state : failed(j, error);
+    }
+    if (!j->runner->takes_long(p, &line->command))
+        return j->runner->run(p, &line->command, error) ? HIMC_JOB_DONE : failed(j, error);
+    j->line = j->runner->job(p, &line->command, error);
+    return j->line ? HIMC_JOB_AGAIN : failed(j, error);
 }
 
 // commands that act on strokes or on the transport are carried out after the strokes are loaded
@@ -165,49 +289,148 @@ static bool comes_after_strokes(const himc_score_line *line)
     return himc_command_table((int)line->command.id)->marks & HIMC_AFTER_STROKES;
 }
 
-static bool run_lines(himc_performance *p, const himc_score *score, bool after, const char *path,
-                      performance_action *run, himc_error *error)
+// a portion of the lines before or after the strokes; DONE after the last
+static himc_job_state run_lines(score_job *j, bool after, himc_error *error)
 {
-    for (int i = 0; i < score->line_count; i++)
-        if (comes_after_strokes(&score->lines[i]) == after &&
-            !run_line(p, &score->lines[i], run, error))
-            return himc_error_prefix(error, "%s:%d", path, score->lines[i].line);
-    return true;
-}
-
-static bool fill_from_score(himc_performance *p, const himc_score *score, const char *path,
-                            performance_action *run, himc_error *error)
-{
-    // while a score is played the next one waits for its end
-    bool queued = p->motion->playing && !p->motion->track;
-    himc_performance_drop_track(p);
-    if (!run_lines(p, score, false, path, run, error))
-        return false;
-    himc_performance_notice_drums(p);
-    if (!queued)
-        himc_planner_clear(p->motion->planner);
-    double from = queued ? himc_planner_next_start(p->motion->planner, step_time(p)) : 0;
-    if (!himc_planner_append_tempi(p->motion->planner, score->tempi, score->tempo_count, from,
-                                   error))
-        return himc_error_prefix(error, "%s", path);
-    for (int i = 0; i < score->stroke_count; i++) {
-        himc_stroke stroke = score->strokes[i];
-        stroke.beat += from;
-        if (!himc_performance_add_stroke(p, &stroke, error))
-            return himc_error_prefix(error, "%s", path);
+    for (int run = 0; j->at < j->score->line_count; j->at++) {
+        const himc_score_line *line = &j->score->lines[j->at];
+        if (comes_after_strokes(line) != after)
+            continue;
+        if (run == LINES_AT_ONCE)
+            return HIMC_JOB_MORE;
+        himc_job_state state = run_line(j, line, error);
+        if (state != HIMC_JOB_DONE)
+            return state;
+        // a head, and what took long, is a portion by itself
+        run = j->done || line->drum[0] ? LINES_AT_ONCE : run + 1;
     }
-    return run_lines(p, score, true, path, run, error);
+    return HIMC_JOB_DONE;
 }
 
-bool himc_performance_load_score(himc_performance *p, const char *path, const char *folder,
-                                 performance_action *run, himc_error *error)
+static himc_job_state begin_strokes(score_job *j, himc_error *error)
 {
-    himc_score *score = himc_score_load_in(folder, path, error);
-    if (!score)
-        return false;
-    bool ok =
-        rehearse(p, score, path, folder, run, error) && fill_from_score(p, score, path, run, error);
-    himc_score_free(score);
-    himc_motion_replan(p->motion);
-    return ok;
+    himc_performance *p = j->performance;
+    himc_planner *planner = p->motion->planner;
+    himc_performance_notice_drums(p);
+    if (!j->queued)
+        himc_planner_clear(planner);
+    j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
+    if (himc_planner_append_tempi(planner, j->score->tempi, j->score->tempo_count, j->from, error))
+        return HIMC_JOB_DONE;
+    himc_error_prefix(error, "%s", j->path);
+    return HIMC_JOB_FAILED;
+}
+
+static himc_job_state add_strokes(score_job *j, himc_error *error)
+{
+    for (int added = 0; j->at < j->score->stroke_count; j->at++, added++) {
+        int drum;
+        himc_stroke stroke = j->score->strokes[j->at];
+        if (added == STROKES_AT_ONCE)
+            return HIMC_JOB_MORE;
+        stroke.beat += j->from;
+        if (!installed_drum(j, stroke.drum, &drum, error) ||
+            !himc_performance_add_stroke(j->performance, &stroke, error)) {
+            himc_error_prefix(error, "%s", j->path);
+            return HIMC_JOB_FAILED;
+        }
+    }
+    return HIMC_JOB_DONE;
+}
+
+static void copy_performance(score_job *j)
+{
+    const himc_performance *p = j->performance;
+    while (j->forms > 0)
+        himc_drum_form_free(&j->form[--j->forms]);
+    for (int i = 0; i < p->drums.count; i++)
+        j->form[j->forms++] = himc_drum_form_of(p->drums.slot[i].drum);
+    j->options = p->host.take_options;
+    j->skeleton = p->body->skeleton;
+    j->sample_rate = p->clock.sample_rate;
+    j->task_rate = p->clock.task_rate;
+    j->make_drums = p->host.make_drums;
+    j->recording = p->recording.file != NULL;
+}
+
+// true if the drums are those with which the score was tried
+static bool drums_as_tried(const score_job *j)
+{
+    const performance_drums *drums = &j->performance->drums;
+    bool same = drums->count == j->forms && j->sample_rate == j->performance->clock.sample_rate;
+    for (int i = 0; same && i < j->forms; i++)
+        same = strcmp(himc_drum_name(drums->slot[i].drum), j->form[i].name) == 0 &&
+               himc_drum_has_form(drums->slot[i].drum, &j->form[i]);
+    return same;
+}
+
+static himc_job_state begin(score_job *j)
+{
+    himc_performance *p = j->performance;
+    if (!drums_as_tried(j)) {
+        copy_performance(j);
+        return HIMC_JOB_AGAIN;
+    }
+    // while a score is played the next one waits for its end
+    j->queued = p->motion->playing && !p->motion->track;
+    j->dropped = himc_performance_drop_track(p);
+    return HIMC_JOB_DONE;
+}
+
+// the present part; DONE at its end
+static himc_job_state install_part(score_job *j, himc_error *error)
+{
+    himc_job_state state;
+    switch (j->part) {
+    case BEGINNING: return begin(j);
+    case BEFORE_STROKES:
+        state = run_lines(j, false, error);
+        return state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
+    case STROKES: return add_strokes(j, error);
+    default: return run_lines(j, true, error);
+    }
+}
+
+static himc_job_state install(himc_job *job, himc_error *error)
+{
+    score_job *j = (score_job *)job;
+    himc_job_state state = install_part(j, error);
+    himc_motion_replan(j->performance->motion);
+    if (state != HIMC_JOB_DONE || j->part == AFTER_STROKES)
+        return state;
+    j->part++;
+    j->at = 0;
+    return HIMC_JOB_MORE;
+}
+
+static void free_job(himc_job *job)
+{
+    score_job *j = (score_job *)job;
+    if (j->line)
+        j->line->free(j->line);
+    if (j->done)
+        j->done->free(j->done);
+    free_drums(j);
+    while (j->forms > 0)
+        himc_drum_form_free(&j->form[--j->forms]);
+    himc_track_free(j->dropped);
+    himc_score_free(j->score);
+    free(j);
+}
+
+himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
+                                     const performance_runner *runner, himc_error *error)
+{
+    score_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "score: out of memory");
+        return NULL;
+    }
+    j->job = (himc_job){prepare, install, free_job};
+    j->performance = p;
+    himc_command_copy(&j->command, command);
+    j->path = j->command.atom[0].symbol;
+    j->runner = runner;
+    copy_performance(j);
+    return &j->job;
 }

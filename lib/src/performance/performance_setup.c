@@ -132,6 +132,8 @@ bool himc_performance_reset(himc_performance *p, himc_error *error)
     made_parts fresh, old = {p->motion, p->body};
     if (!make_parts(&fresh, &s, error))
         return himc_error_prefix(error, "reset");
+    if (p->recording.file && himc_recording_frames(p->recording.file) == 0)
+        himc_performance_drop_recording(p); // nothing to write
     if (p->recording.file && !himc_performance_write_recording(p, error)) {
         free_parts(&fresh);
         return himc_error_prefix(error, "reset");
@@ -228,25 +230,23 @@ void himc_performance_notice_drums(himc_performance *p)
         himc_performance_renew_limits(p);
 }
 
-bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error *error)
+bool himc_performance_adopt_drum(himc_performance *p, himc_drum *drum, drum_source source,
+                                 int *index, himc_error *error)
 {
-    int index;
-    if (!himc_drums_add(&p->drums, himc_drum_retain(drum), DRUM_GIVEN, &index, error)) {
+    if (!himc_drums_add(&p->drums, drum, source, index, error)) {
         himc_drum_release(drum);
         return false;
     }
     himc_performance_notice_drums(p);
+    if (source == DRUM_SILENT)
+        himc_events_note(&p->events, "no drum %s: playing on a silent one", himc_drum_name(drum));
     return true;
 }
 
-bool himc_performance_make_drum(himc_performance *p, const char *name, double inches,
-                                himc_error *error)
+bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error *error)
 {
     int index;
-    if (!himc_drums_make(&p->drums, name, inches, p->clock.sample_rate, DRUM_MADE, &index, error))
-        return false;
-    himc_performance_notice_drums(p);
-    return true;
+    return himc_performance_adopt_drum(p, himc_drum_retain(drum), DRUM_GIVEN, &index, error);
 }
 
 bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_drum *drum,
@@ -255,7 +255,7 @@ bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_dr
     *drum = (wanted_drum){.index = name[0] ? himc_drums_find(&p->drums, name) : 0};
     if (drum->index >= 0 && drum->index < p->drums.count)
         return true;
-    name = name[0] ? name : "drum";
+    name = name[0] ? name : FIRST_DRUM;
     if (!himc_drums_have_room(&p->drums, name, error))
         return false;
     drum->index = p->drums.count;
@@ -266,11 +266,8 @@ bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_dr
 void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
 {
     int index;
-    if (!drum->fresh || !himc_drums_add(&p->drums, drum->fresh, DRUM_SILENT, &index, NULL))
-        return;
-    himc_performance_notice_drums(p);
-    himc_events_note(&p->events, "no drum %s: playing on a silent one",
-                     himc_drum_name(drum->fresh));
+    if (drum->fresh)
+        himc_performance_adopt_drum(p, drum->fresh, DRUM_SILENT, &index, NULL);
 }
 
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
@@ -282,6 +279,61 @@ bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *in
     himc_performance_keep_drum(p, &drum);
     *index = drum.index;
     return true;
+}
+
+// the command `drum`
+typedef struct make_drum_job {
+    himc_job job;
+    himc_performance *performance; ///< borrowed
+    himc_command command;
+    double sample_rate; ///< (Hz)
+    himc_drum *drum;    ///< owned
+} make_drum_job;
+
+static bool make_drum(himc_job *job, himc_error *error)
+{
+    make_drum_job *j = (make_drum_job *)job;
+    const himc_command *c = &j->command;
+    double inches = c->count > 1 ? c->atom[1].number : USUAL_INCHES;
+    himc_drum_release(j->drum);
+    j->drum = himc_drum_new(c->atom[0].symbol, inches, j->sample_rate, error);
+    return j->drum;
+}
+
+static himc_job_state add_drum(himc_job *job, himc_error *error)
+{
+    make_drum_job *j = (make_drum_job *)job;
+    himc_performance *p = j->performance;
+    himc_drum *drum = j->drum;
+    int index;
+    if (j->sample_rate != p->clock.sample_rate) {
+        j->sample_rate = p->clock.sample_rate;
+        return HIMC_JOB_AGAIN;
+    }
+    j->drum = NULL;
+    return himc_performance_adopt_drum(p, drum, DRUM_MADE, &index, error) ? HIMC_JOB_DONE
+                                                                          : HIMC_JOB_FAILED;
+}
+
+static void free_drum(himc_job *job)
+{
+    himc_drum_release(((make_drum_job *)job)->drum);
+    free(job);
+}
+
+himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *command,
+                                    himc_error *error)
+{
+    make_drum_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "drum: out of memory");
+        return NULL;
+    }
+    j->job = (himc_job){make_drum, add_drum, free_drum};
+    j->performance = p;
+    j->sample_rate = p->clock.sample_rate;
+    himc_command_copy(&j->command, command);
+    return &j->job;
 }
 
 himc_drum *himc_performance_drum(himc_performance *p, int index)
@@ -305,10 +357,11 @@ void himc_performance_set_posture_regression(himc_performance *p,
     himc_motion_set_regression(p->motion, &p->settings, regression, false);
 }
 
-void himc_performance_drop_track(himc_performance *p)
+himc_track *himc_performance_drop_track(himc_performance *p)
 {
-    himc_motion_set_track(p->motion, NULL, NULL, step_time(p));
+    himc_track *track = himc_motion_set_track(p->motion, NULL, NULL, step_time(p));
     himc_performance_renew_limits(p);
     if (p->motion->regression_of_take)
         himc_performance_set_posture_regression(p, NULL);
+    return track;
 }

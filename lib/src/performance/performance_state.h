@@ -14,6 +14,7 @@
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
+#include "drum/drum_job.h"
 #include "himc/mocap.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"
@@ -63,10 +64,14 @@ typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc
 // performance_report.c
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
-bool himc_performance_begin_recording(himc_performance *p, const char *path, himc_error *error);
 /// Writes the recording, reports it and ends it. If it cannot be written it continues.
 bool himc_performance_write_recording(himc_performance *p, himc_error *error);
 void himc_performance_drop_recording(himc_performance *p);
+/// The command `record FILE` and `record stop` as jobs; NULL with the reason.
+himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
+                                      himc_error *error);
+himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
+                                           himc_error *error);
 
 // performance_setup.c
 /// Sets other settings for the same body.
@@ -100,28 +105,40 @@ void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum);
 /// Both steps.
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
                                   himc_error *error);
-bool himc_performance_make_drum(himc_performance *p, const char *name, double inches,
-                                himc_error *error);
-/// Drops the take with its limits and posture regression; the planner moves the hands.
-void himc_performance_drop_track(himc_performance *p);
+/// Adds a drum and its reference, which is given back if there is no place for it.
+bool himc_performance_adopt_drum(himc_performance *p, himc_drum *drum, drum_source source,
+                                 int *index, himc_error *error);
+/// The command `drum` as a job; NULL without memory.
+himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *command,
+                                    himc_error *error);
+/// Drops the take with its limits and posture regression; the planner moves the hands. Returns its
+/// track (or NULL), which the caller frees.
+himc_track *himc_performance_drop_track(himc_performance *p);
 
 // performance_play.c
-bool himc_performance_add_units(himc_performance *p, const char *path, himc_nuance nuance,
-                                const himc_spot *spot, himc_error *error);
+/// The command `units FILE` as a job; NULL without memory.
+himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
+                                     himc_error *error);
 
 // performance_take.c
-/// `folder`: the only one that a command from the network may read, else NULL.
-bool himc_performance_load_take(himc_performance *p, const char *path, const char *folder,
-                                himc_error *error);
+/// The command `take` as a job; NULL with the reason.
+himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
+                                    himc_error *error);
 /// Joint limits of a player with postures, as captured.
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error);
 
 // performance_score.c
-/// Loads a score: all of it, or nothing. `run` carries out its lines for the performer. With a
-/// `folder`, its lines have no more rights than the same commands from the network.
-bool himc_performance_load_score(himc_performance *p, const char *path, const char *folder,
-                                 performance_action *run, himc_error *error);
+/// How the lines of a score for the performer are carried out.
+typedef struct performance_runner {
+    performance_action *run;
+    bool (*takes_long)(const himc_performance *p, const himc_command *command);
+    himc_job *(*job)(himc_performance *p, const himc_command *command, himc_error *error);
+} performance_runner;
+
+/// The command `score` as a job: all of the score, or nothing. NULL without memory.
+himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
+                                     const performance_runner *runner, himc_error *error);
 
 // performance_command.c
 /// Commands that are due at the next step.

@@ -10,7 +10,9 @@
 /// from one with a stick; its limits are learned from the postures for its tips: the natural ones
 /// in `himc`, the captured ones bent to the tips in `id`.
 ///
-/// All that can fail is made first (prepare_take); only then anything changes (play_prepared).
+/// It is a job (base/job.h): the file is read, the player measured and the track made aside; what
+/// is installed is a track, limits, settings and a body of 20 segments. All that can fail comes
+/// before anything changes.
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 #include "body/limits.h"
@@ -27,74 +29,75 @@
 #define OUT_OF_REACH 1e-3     // a tip further from its target is out of reach (m)
 #define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
 
-// notes on the repairs made while reading the take
-static void note_repairs(himc_performance *p, himc_take *take, const char *path)
-{
+/// The part of a take that its player's arms do not reach.
+typedef struct take_reach {
+    int count, far;  ///< places looked at, and those out of reach
+    double farthest; ///< (m)
+} take_reach;
+
+typedef struct take_job {
+    himc_job job;
+    himc_performance *performance; ///< borrowed
+    himc_command command;
+    const char *name; ///< begins notes and errors: of the file
+    bool given;       ///< take and player are borrowed
+    // of the performance, when the job was made
+    himc_take_options options;
+    himc_skeleton_config body;
+    himc_posture posture;
+    double sample_rate;    ///< (Hz)
+    bool has_drum;         ///< else a silent one is made
+    bool own_regression;   ///< another one than a take's has been set
+    himc_head_frame place; ///< of the drum
+    // made from the take
+    wanted_drum drum;
+    himc_take *take;
+    himc_player *player;
+    himc_track *track;     ///< after `install` the one that it has replaced
+    himc_head_frame frame; ///< the drum under the strikes
+    himc_limits learned;
     himc_take_tip tips[HIMC_HANDS];
-    for (int i = 0; i < take->note_count; i++)
-        himc_events_note(&p->events, "%s: %s", path, take->notes[i]);
-    if (!himc_take_tips(take, &p->host.take_options, tips, NULL))
-        return;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (tips[hand].present && tips[hand].filled > 0)
-            himc_events_note(&p->events, "%s: %s is missing in %d frames, which are filled", path,
-                             tips[hand].name, tips[hand].filled);
+    take_reach reach;
+    int strikes, outside; ///< of the take, and those beside the drum
+    himc_posture_regression regression;
+    bool fitted;
+    himc_error unfitted; ///< why not; "" if no arm is shown
+} take_job;
+
+static bool same_place(himc_vec3 a, himc_vec3 b)
+{
+    return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
 }
 
-// a note on the part of the take out of reach; there the arm stretches towards the tips
-static void note_reach(himc_performance *p, const himc_track *track, const char *path)
+// the natural posture of the take's player before its drum
+static himc_posture posture_of(const take_job *j, const himc_skeleton *skeleton,
+                               const captured_player *captured)
 {
-    double length = himc_track_length(track), farthest = 0;
-    int far = 0, count = 0;
+    himc_posture posture = j->posture;
+    if (j->player->lengths > 0)
+        himc_motion_init_posture(&posture, skeleton, captured, posture.level);
+    if (!same_place(j->frame.center, j->place.center))
+        posture.level = j->frame.center.z + skeleton->mallet_radius;
+    return posture;
+}
+
+// the part of the take out of reach; there the arm stretches towards the tips
+static take_reach find_reach(const himc_track *track, const himc_posture *posture)
+{
+    take_reach r = {0, 0, 0};
+    double length = himc_track_length(track);
     for (double t = 0; t < length; t += REACH_CHECK_STEP)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             if (!himc_track_present(track, (himc_hand)hand))
                 continue;
             himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
-            himc_vec3 near = himc_posture_reachable(&p->motion->posture, (himc_hand)hand, x);
+            himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
             double missing = himc_vec3_length(himc_vec3_sub(x, near));
-            count++;
-            far += missing > OUT_OF_REACH;
-            farthest = fmax(farthest, missing);
+            r.count++;
+            r.far += missing > OUT_OF_REACH;
+            r.farthest = fmax(r.farthest, missing);
         }
-    if (far > 0)
-        himc_events_note(&p->events,
-                         "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", path,
-                         100.0 * far / count, farthest);
-}
-
-/// What is made of a take before anything changes. Owned.
-typedef struct prepared_take {
-    wanted_drum drum;
-    himc_head_frame frame; ///< of the drum as it will stand
-    himc_track *track;
-    himc_limits learned; ///< if the player shows postures
-    body_parts body;     ///< if the player shows lengths
-    performance_settings settings;
-    himc_posture_regression regression; ///< of the arms, if `corrected`
-    bool corrected;
-    himc_error uncorrected; ///< why not, if the arms are shown
-    int strikes, outside;   ///< of the take, and of these beside the drum
-} prepared_take;
-
-static bool is_same_place(himc_vec3 a, himc_vec3 b)
-{
-    return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
-}
-
-// moves the drum under the take's strikes, or lowers a drum that is in the way
-static void move_drum(himc_performance *p, const prepared_take *made, const char *path)
-{
-    const himc_track *track = made->track;
-    int index = made->drum.index;
-    bool strikes = himc_track_strikes(track, HIMC_LEFT) + himc_track_strikes(track, HIMC_RIGHT) > 0;
-    himc_vec3 to = made->frame.center;
-    if (is_same_place(to, himc_drums_frame(&p->drums, index)->center) ||
-        !himc_drums_move(&p->drums, index, to, NULL))
-        return;
-    himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", path,
-                     himc_drum_name(p->drums.slot[index].drum), to.x, to.y, to.z,
-                     strikes ? "under the take's strikes" : "out of the take's way");
+    return r;
 }
 
 static himc_trunk_posture mean_trunk(const himc_player *player)
@@ -195,46 +198,19 @@ static captured_player captured_of(const himc_player *player)
     return c;
 }
 
-// the settings with the body of the take's player, if the take shows one
-static bool prepare_body(const himc_performance *p, const himc_player *player, prepared_take *made,
-                         himc_error *error)
-{
-    made->settings = p->settings;
-    memset(made->settings.captured.known, 0, sizeof made->settings.captured.known);
-    if (player->lengths == 0)
-        return true;
-    made->settings.skeleton = player->config;
-    made->settings.captured = captured_of(player);
-    return himc_body_make_parts(&made->body, &made->settings, error);
-}
-
-static void adopt_player(himc_performance *p, const himc_player *player, const prepared_take *made,
-                         const char *path)
-{
-    const performance_settings *s = &made->settings;
-    if (player->lengths == 0) {
-        himc_performance_adopt(p, s);
-        return;
-    }
-    himc_performance_embody(p, s, &made->body);
-    himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
-                     path, player->lengths, s->skeleton.height, s->skeleton.mass);
-}
-
 // counts the strikes of a take, and those beside the drum as it will stand
-static bool count_strikes(const himc_performance *p, himc_take *take, prepared_take *made,
-                          himc_error *error)
+static bool count_strikes(take_job *j, himc_error *error)
 {
-    himc_take_tip tips[HIMC_HANDS];
-    if (!himc_take_tips(take, &p->host.take_options, tips, error))
+    if (!himc_take_tips(j->take, &j->options, j->tips, error))
         return false;
-    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &made->strikes);
+    himc_take_strike *strikes = himc_take_find_strikes(j->take, j->tips, &j->strikes);
     if (!strikes)
         return himc_error_set(error, "out of memory");
-    for (int i = 0; i < made->strikes; i++) {
-        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(made->track));
-        himc_vec3 local = himc_head_frame_from_world(&made->frame, at);
-        made->outside += hypot(local.x, local.y) > made->frame.radius;
+    j->outside = 0;
+    for (int i = 0; i < j->strikes; i++) {
+        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(j->track));
+        himc_vec3 local = himc_head_frame_from_world(&j->frame, at);
+        j->outside += hypot(local.x, local.y) > j->frame.radius;
     }
     free(strikes);
     return true;
@@ -246,43 +222,25 @@ static bool shows_arm(const himc_player *player, himc_hand hand)
     return player->pose && !player->walks && himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
 }
 
-// another regression than that of a take has been set
-static bool has_own_regression(const himc_performance *p)
-{
-    return p->motion->has_regression && !p->motion->regression_of_take;
-}
-
 // the default regression, corrected by this take; false without memory
-static bool prepare_regression(const himc_performance *p, const himc_player *player,
-                               const himc_take *take, prepared_take *made, himc_error *error)
+static bool fit_regression(take_job *j, const himc_skeleton *skeleton, himc_error *error)
 {
     bool memory = true;
+    const himc_player *player = j->player;
     himc_posture_regression_take seen = {
-        .skeleton = player->lengths > 0 ? &made->body.skeleton : &p->body->skeleton,
+        .skeleton = skeleton,
         .pose = player->pose,
         .frames = player->frames,
-        .rate = himc_take_rate(take),
+        .rate = himc_take_rate(j->take),
         .unseen_arm = {!shows_arm(player, HIMC_LEFT), !shows_arm(player, HIMC_RIGHT)},
         .unseen_trunk = !player->known[HIMC_TRUNK - 1]};
-    if (has_own_regression(p) || (seen.unseen_arm[HIMC_LEFT] && seen.unseen_arm[HIMC_RIGHT]))
+    j->fitted = false;
+    j->unfitted.text[0] = 0;
+    if (j->own_regression || (seen.unseen_arm[HIMC_LEFT] && seen.unseen_arm[HIMC_RIGHT]))
         return true;
-    himc_posture_regression_default(&made->regression);
-    made->corrected =
-        himc_posture_regression_correct(&made->regression, &seen, &memory, &made->uncorrected);
-    return memory || himc_error_set(error, "%s", made->uncorrected.text);
-}
-
-static void adopt_regression(himc_performance *p, const prepared_take *made, const char *path)
-{
-    if (has_own_regression(p)) {
-        himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
-        return;
-    }
-    if (made->uncorrected.text[0])
-        himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", path,
-                         made->uncorrected.text);
-    himc_motion_set_regression(p->motion, &p->settings, made->corrected ? &made->regression : NULL,
-                               made->corrected);
+    himc_posture_regression_default(&j->regression);
+    j->fitted = himc_posture_regression_correct(&j->regression, &seen, &memory, &j->unfitted);
+    return memory || himc_error_set(error, "%s", j->unfitted.text);
 }
 
 // if left and right are exchanged in a capture, its drum is behind the player
@@ -296,92 +254,240 @@ static bool check_side(const himc_player *player, const himc_head_frame *frame, 
                           -frame->center.x);
 }
 
-static void free_prepared(prepared_take *made)
+// the drum's place, or that of one that is made for the take
+static bool find_place(take_job *j, himc_error *error)
 {
-    himc_drum_release(made->drum.fresh);
-    himc_track_free(made->track);
-    himc_character_free(made->body.character);
+    himc_drum_release(j->drum.fresh);
+    j->drum = (wanted_drum){.index = 0};
+    j->frame = j->place;
+    if (j->has_drum)
+        return true;
+    j->drum.fresh = himc_drum_new(FIRST_DRUM, USUAL_INCHES, j->sample_rate, error);
+    if (j->drum.fresh)
+        j->frame = j->place = *himc_drum_head_frame(j->drum.fresh);
+    return j->drum.fresh;
 }
 
-static bool prepare_take(himc_performance *p, himc_take *take, himc_player *player,
-                         prepared_take *made, himc_error *error)
+// all that is made from take and player
+static bool make_track(take_job *j, himc_error *error)
 {
-    const himc_take_options *options = &p->host.take_options;
-    if (!himc_performance_want_drum(p, "", &made->drum, error))
+    himc_skeleton skeleton;
+    himc_player *player = j->player;
+    if (!find_place(j, error) || !himc_player_sit(player, j->take, &j->options, &j->frame, error) ||
+        !check_side(player, &j->frame, error))
         return false;
-    made->frame = made->drum.fresh ? *himc_drum_head_frame(made->drum.fresh)
-                                   : *himc_drums_frame(&p->drums, made->drum.index);
-    himc_vec3 from = made->frame.center;
-    if (!himc_player_sit(player, take, options, &made->frame, error) ||
-        !check_side(player, &made->frame, error))
+    himc_track_free(j->track);
+    j->track = himc_track_new_played(j->take, &j->options, &j->frame, player, error);
+    const himc_skeleton_config *body = player->lengths > 0 ? &player->config : &j->body;
+    if (!j->track || !learn_limits(player, j->track, &j->frame, &j->learned, error) ||
+        !(same_place(j->frame.center, j->place.center) ||
+          himc_drum_check_place(j->frame.center, error)) ||
+        !himc_skeleton_init(&skeleton, body, error) || !count_strikes(j, error))
         return false;
-    made->track = himc_track_new_played(take, options, &made->frame, player, error);
-    return made->track && learn_limits(player, made->track, &made->frame, &made->learned, error) &&
-           (is_same_place(made->frame.center, from) ||
-            himc_drum_check_place(made->frame.center, error)) &&
-           prepare_body(p, player, made, error) && count_strikes(p, take, made, error) &&
-           prepare_regression(p, player, take, made, error);
+    captured_player captured = captured_of(player);
+    himc_posture posture = posture_of(j, &skeleton, &captured);
+    j->reach = find_reach(j->track, &posture);
+    return fit_regression(j, &skeleton, error);
 }
 
-static void play_prepared(himc_performance *p, himc_take *take, const himc_player *player,
-                          const prepared_take *made, const char *path)
+static bool prefix_with(const char *name, himc_error *error)
 {
-    himc_performance_keep_drum(p, &made->drum);
-    move_drum(p, made, path);
-    adopt_player(p, player, made, path);
-    himc_performance_notice_drums(p);
-    note_repairs(p, take, path);
-    note_reach(p, made->track, path);
-    if (made->outside > 0)
-        himc_events_note(&p->events, "%s: %d of %d strikes are beside drum %s and silent", path,
-                         made->outside, made->strikes,
-                         himc_drum_name(p->drums.slot[made->drum.index].drum));
-    himc_performance_drop_track(p);
-    himc_motion_set_track(p->motion, made->track, player->pose ? &made->learned : NULL,
-                          step_time(p));
-    himc_performance_renew_limits(p);
-    adopt_regression(p, made, path);
+    if (error && strncmp(error->text, name, strlen(name)) != 0)
+        himc_error_prefix(error, "%s", name);
+    return false;
 }
 
-static bool play_take(himc_performance *p, himc_take *take, himc_player *player, const char *path,
-                      himc_error *error)
+static bool prepare(himc_job *job, himc_error *error)
 {
-    prepared_take made = {.strikes = 0};
-    if (!prepare_take(p, take, player, &made, error)) {
-        free_prepared(&made);
-        return false;
+    take_job *j = (take_job *)job;
+    if (!j->given) {
+        himc_player_free(j->player); // it sits before another place
+        j->player = NULL;
+        if (!j->take)
+            j->take = himc_take_load_in(j->command.folder, j->name, &j->options, error);
+        if (!j->take)
+            return false;
+        j->player = himc_player_new(j->take, &j->options, &j->body, error);
     }
-    play_prepared(p, take, player, &made, path);
-    return true;
+    return (j->player && make_track(j, error)) || prefix_with(j->name, error);
+}
+
+// moves the drum under the take's strikes, or lowers a drum that is in the way
+static void move_drum(const take_job *j)
+{
+    himc_performance *p = j->performance;
+    himc_vec3 to = j->frame.center;
+    bool strikes =
+        himc_track_strikes(j->track, HIMC_LEFT) + himc_track_strikes(j->track, HIMC_RIGHT) > 0;
+    if (same_place(to, himc_drums_frame(&p->drums, 0)->center) ||
+        !himc_drums_move(&p->drums, 0, to, NULL))
+        return;
+    himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", j->name,
+                     himc_drum_name(p->drums.slot[0].drum), to.x, to.y, to.z,
+                     strikes ? "under the take's strikes" : "out of the take's way");
+}
+
+// the settings with the body of the take's player, if the take shows one
+static performance_settings settings_of(const take_job *j)
+{
+    performance_settings s = j->performance->settings;
+    memset(s.captured.known, 0, sizeof s.captured.known);
+    if (j->player->lengths > 0) {
+        s.skeleton = j->player->config;
+        s.captured = captured_of(j->player);
+    }
+    return s;
+}
+
+static void adopt_player(const take_job *j, const performance_settings *s, const body_parts *parts)
+{
+    himc_performance *p = j->performance;
+    if (j->player->lengths == 0) {
+        himc_performance_adopt(p, s);
+        return;
+    }
+    himc_performance_embody(p, s, parts);
+    himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
+                     j->name, j->player->lengths, s->skeleton.height, s->skeleton.mass);
+}
+
+// notes on the repairs made while reading the take, and on the parts that cannot be played
+static void note_repairs(const take_job *j)
+{
+    himc_performance *p = j->performance;
+    for (int i = 0; i < j->take->note_count; i++)
+        himc_events_note(&p->events, "%s: %s", j->name, j->take->notes[i]);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (j->tips[hand].present && j->tips[hand].filled > 0)
+            himc_events_note(&p->events, "%s: %s is missing in %d frames, which are filled",
+                             j->name, j->tips[hand].name, j->tips[hand].filled);
+    if (j->reach.far > 0)
+        himc_events_note(&p->events,
+                         "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", j->name,
+                         100.0 * j->reach.far / j->reach.count, j->reach.farthest);
+    if (j->outside > 0)
+        himc_events_note(&p->events, "%s: %d of %d strikes are beside drum %s and silent", j->name,
+                         j->outside, j->strikes, himc_drum_name(p->drums.slot[0].drum));
+}
+
+static bool has_own_regression(const himc_performance *p)
+{
+    return p->motion->has_regression && !p->motion->regression_of_take;
+}
+
+// the take's regression, unless another has been set
+static void adopt_regression(const take_job *j)
+{
+    himc_performance *p = j->performance;
+    if (has_own_regression(p)) {
+        himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
+        return;
+    }
+    if (j->unfitted.text[0])
+        himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", j->name,
+                         j->unfitted.text);
+    himc_motion_set_regression(p->motion, &p->settings, j->fitted ? &j->regression : NULL,
+                               j->fitted);
+}
+
+static void copy_performance(take_job *j)
+{
+    const himc_performance *p = j->performance;
+    j->options = p->host.take_options;
+    j->body = p->settings.skeleton;
+    j->posture = p->motion->posture;
+    j->sample_rate = p->clock.sample_rate;
+    j->own_regression = has_own_regression(p);
+    j->has_drum = p->drums.count > 0;
+    if (j->has_drum)
+        j->place = *himc_drums_frame(&p->drums, 0);
+}
+
+// true if the drum is that for which the track was made
+static bool drum_as_seen(const take_job *j)
+{
+    const himc_performance *p = j->performance;
+    if (!j->has_drum)
+        return p->drums.count == 0 && j->sample_rate == p->clock.sample_rate;
+    return himc_head_frame_equal(himc_drums_frame(&p->drums, 0), &j->place);
+}
+
+static himc_job_state install(himc_job *job, himc_error *error)
+{
+    take_job *j = (take_job *)job;
+    himc_performance *p = j->performance;
+    body_parts parts = {.character = NULL};
+    performance_settings s = settings_of(j);
+    if (!drum_as_seen(j)) {
+        copy_performance(j);
+        return HIMC_JOB_AGAIN;
+    }
+    // in this thread: the engine keeps data for each
+    if (j->player->lengths > 0 && !himc_body_make_parts(&parts, &s, error)) {
+        prefix_with(j->name, error);
+        return HIMC_JOB_FAILED;
+    }
+    himc_performance_keep_drum(p, &j->drum);
+    j->drum.fresh = NULL;
+    move_drum(j);
+    adopt_player(j, &s, &parts);
+    himc_performance_notice_drums(p);
+    note_repairs(j);
+    himc_track *dropped = himc_performance_drop_track(p);
+    himc_motion_set_track(p->motion, j->track, j->player->pose ? &j->learned : NULL, step_time(p));
+    j->track = dropped;
+    himc_performance_renew_limits(p);
+    adopt_regression(j);
+    return HIMC_JOB_DONE;
+}
+
+static void free_job(himc_job *job)
+{
+    take_job *j = (take_job *)job;
+    himc_drum_release(j->drum.fresh);
+    himc_track_free(j->track);
+    if (!j->given) {
+        himc_player_free(j->player);
+        himc_take_free(j->take);
+    }
+    free(j);
+}
+
+static take_job *take_job_new(himc_performance *p, const char *name, himc_error *error)
+{
+    take_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "%s: out of memory", name);
+        return NULL;
+    }
+    j->job = (himc_job){prepare, install, free_job};
+    j->performance = p;
+    j->name = name;
+    copy_performance(j);
+    return j;
+}
+
+himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
+                                    himc_error *error)
+{
+    take_job *j = take_job_new(p, command->atom[0].symbol, error);
+    if (!j)
+        return NULL;
+    himc_command_copy(&j->command, command);
+    j->name = j->command.atom[0].symbol;
+    return &j->job;
 }
 
 bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_player *player,
                                   const char *name, himc_error *error)
 {
-    bool played = player && play_take(p, take, player, name, error);
-    if (!played && error && strncmp(error->text, name, strlen(name)) != 0)
-        himc_error_prefix(error, "%s", name);
-    return played;
-}
-
-// plays a take with the body of its player
-static bool play_own_player(himc_performance *p, himc_take *take, const char *name,
-                            himc_error *error)
-{
-    himc_player *player =
-        himc_player_new(take, &p->host.take_options, &p->settings.skeleton, error);
-    bool played = himc_performance_play_player(p, take, player, name, error);
-    himc_player_free(player);
-    return played;
-}
-
-bool himc_performance_load_take(himc_performance *p, const char *path, const char *folder,
-                                himc_error *error)
-{
-    himc_take *take = himc_take_load_in(folder, path, &p->host.take_options, error);
-    bool played = take && play_own_player(p, take, path, error);
-    himc_take_free(take);
-    return played;
+    take_job *j = player ? take_job_new(p, name, error) : NULL;
+    if (!j)
+        return false;
+    j->given = true;
+    j->take = take;
+    j->player = player;
+    return himc_job_carry_out(&j->job, error);
 }
 
 himc_vec3 himc_performance_take_offset(const himc_performance *p)

@@ -5,6 +5,7 @@
 /// be planned again (planner_motion.c); calls go in that direction only. Memory grows here, in
 /// setup; the motion only moves within it.
 #include "plan/planner_motion.h"
+#include "base/head_frame.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -57,18 +58,12 @@ void himc_planner_free(himc_planner *planner)
     free(planner);
 }
 
-static bool is_same_frame(const himc_head_frame *a, const himc_head_frame *b)
-{
-    return a->center.x == b->center.x && a->center.y == b->center.y && a->center.z == b->center.z &&
-           a->tilt == b->tilt && a->radius == b->radius;
-}
-
 bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place)
 {
     if (index < 0 || index >= HIMC_DRUMS || !himc_vec3_finite(place->center) ||
         !isfinite(place->tilt) || !(place->radius > 0 && place->radius < MOST_HEAD_RADIUS))
         return false;
-    if (is_same_frame(&planner->drum[index], place))
+    if (himc_head_frame_equal(&planner->drum[index], place))
         return true;
     planner->drum[index] = *place;
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);

@@ -15,6 +15,7 @@
 /// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 
 #include <stdio.h>
@@ -202,9 +203,9 @@ static const char *name_of(const timed_stroke *s, char text[64])
 {
     const char *hand = himc_hand_name(s->stroke.hand);
     if (s->index < 0 && !s->reassigned)
-        snprintf(text, 64, "hit %s", hand);
+        himc_format(text, 64, "hit %s", hand);
     else
-        snprintf(text, 64, "stroke at beat %g %s", s->stroke.beat, hand);
+        himc_format(text, 64, "stroke at beat %g %s", s->stroke.beat, hand);
     return text;
 }
 
@@ -212,9 +213,9 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
                              char text[48])
 {
     if (result == TOO_FAR)
-        snprintf(text, 48, "out of reach by %.2f m", beyond(planner, s));
+        himc_format(text, 48, "out of reach by %.2f m", beyond(planner, s));
     else
-        snprintf(text, 48, "no time to prepare it");
+        himc_format(text, 48, "no time to prepare it");
     return text;
 }
 

@@ -3,6 +3,7 @@
 /// Each kind is said once per play, so that a fast passage does not say the same thing a hundred
 /// times; the counts tell the rest at the end. What finds no room is counted in the last line.
 #include "plan/planner_notes.h"
+#include "base/format.h"
 
 #include "base/line.h"
 
@@ -14,7 +15,7 @@ static void put(planner_notes *notes, const char *format, va_list args)
 {
     if (notes->count == PLANNER_NOTES) {
         himc_planner_note *last = &notes->line[(notes->first + PLANNER_NOTES - 1) % PLANNER_NOTES];
-        snprintf(last->text, sizeof last->text, "%d more notes were lost", ++notes->lost + 1);
+        himc_format(last->text, sizeof last->text, "%d more notes were lost", ++notes->lost + 1);
         return;
     }
     himc_planner_note *note = &notes->line[(notes->first + notes->count++) % PLANNER_NOTES];

@@ -1,0 +1,58 @@
+/// loader.h: commands that take long, without holding up the sound.
+///
+/// A loader has a helper thread. A command that reads a file or computes a head of many modes is
+/// prepared there, while the performance or the drum plays on; himc_loader_run then installs it
+/// between two blocks. Commands that come behind it wait, so all act in the order in which they
+/// came. The host calls, from one thread:
+///
+///     himc_loader_command(loader, &target, &command, &error);          for each command
+///     himc_loader_run(loader);                                         before each block
+///
+/// A host that can wait calls himc_loader_finish instead: then each command acts when it comes, and
+/// the result depends on no clock.
+#ifndef HIMC_LOADER_H
+#define HIMC_LOADER_H
+
+#include "himc/performance.h"
+
+HIMC_BEGIN
+
+/// A helper thread and the commands that wait for it. Opaque.
+typedef struct himc_loader himc_loader;
+
+/// A loader; its thread starts with the first command that takes long. NULL without memory.
+himc_loader *himc_loader_new(himc_error *error);
+/// Waits for the helper thread and ends it; commands that wait are dropped. NULL is allowed.
+void himc_loader_free(himc_loader *loader);
+
+/// The receiver of a command, and who is told the result of one that has waited. All of it is
+/// borrowed until the loader is idle.
+typedef struct himc_load_target {
+    himc_performance *performance; ///< of a performer's command, else NULL
+    himc_drum *drum;               ///< of a drum's command, else NULL
+    int delay; ///< of a performer's command that need not wait, himc_performance_command (samples)
+    /// Called by himc_loader_run and himc_loader_finish when a command that has waited was carried
+    /// out (`error` is NULL) or refused, with the reason. NULL: nobody is told.
+    void (*done)(void *user, const char *error);
+    void *user; ///< given to `done`
+} himc_load_target;
+
+/// Carries a command out at once, if it is short and none waits; else it is accepted and waits.
+/// False with the reason if it was refused, or if 256 commands wait: the first one dropped is an
+/// error, the others are counted, and `done` of the last one tells their number.
+bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
+                         const himc_command *command, himc_error *error);
+/// The head of `follower` becomes that of `leader` (himc_membrane_follow). No effect while the same
+/// follower waits already. False if it was refused.
+bool himc_loader_follow(himc_loader *loader, himc_membrane *follower, const himc_membrane *leader,
+                        himc_error *error);
+/// Installs what is ready, about 0.2 ms of it. True while commands wait.
+bool himc_loader_run(himc_loader *loader);
+/// True while commands wait.
+HIMC_RT bool himc_loader_busy(const himc_loader *loader);
+/// Carries out all that waits, at once.
+void himc_loader_finish(himc_loader *loader);
+
+HIMC_END
+
+#endif

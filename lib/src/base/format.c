@@ -1,0 +1,179 @@
+/// format.c: a number is scaled by a power of ten to a whole number of as many digits as asked for;
+/// these are its digits. In long double the scaled number is exact, or nearer than any rounding of
+/// up to 9 digits can tell.
+#include "base/format.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define MOST_DIGITS 9      // after the point, or significant; 1e9 times 1e9 fits a uint64_t
+#define LARGEST_FIXED 1e9L // of %f
+
+typedef struct text {
+    char *out;
+    size_t used, size; ///< `size` counts the final 0
+} text;
+
+static void put(text *t, char c)
+{
+    if (t->used + 1 < t->size)
+        t->out[t->used++] = c;
+}
+
+static void put_text(text *t, const char *s, int most)
+{
+    for (int i = 0; (most < 0 || i < most) && s[i]; i++)
+        put(t, s[i]);
+}
+
+// at least `least` digits
+static void put_whole(text *t, uint64_t n, int least)
+{
+    char digit[20];
+    int count = 0;
+    do
+        digit[count++] = (char)('0' + n % 10);
+    while ((n /= 10) > 0);
+    while (count < least)
+        digit[count++] = '0';
+    while (count > 0)
+        put(t, digit[--count]);
+}
+
+static void put_signed(text *t, int64_t n)
+{
+    if (n < 0)
+        put(t, '-');
+    put_whole(t, n < 0 ? 0 - (uint64_t)n : (uint64_t)n, 1);
+}
+
+// 10^n
+static long double ten(int n)
+{
+    long double power = 1, base = 10;
+    for (unsigned k = (unsigned)(n < 0 ? -n : n); k > 0; k /= 2, base *= base)
+        if (k % 2)
+            power *= base;
+    return power;
+}
+
+// x 10^n
+static long double scaled(long double x, int n)
+{
+    return n < 0 ? x / ten(n) : x * ten(n);
+}
+
+// a whole number of 10^-decimals; `trim` drops zeros at its end
+static void put_decimals(text *t, uint64_t n, int decimals, bool trim)
+{
+    for (; trim && decimals > 0 && n % 10 == 0; decimals--)
+        n /= 10;
+    uint64_t unit = (uint64_t)ten(decimals);
+    put_whole(t, n / unit, 1);
+    if (decimals == 0)
+        return;
+    put(t, '.');
+    put_whole(t, n % unit, decimals);
+}
+
+// x > 0 with so many significant digits, as %g
+static void put_general(text *t, long double x, int digits)
+{
+    int exponent = (int)floorl(log10l(x));
+    long double n = rintl(scaled(x, digits - 1 - exponent));
+    if (n < ten(digits - 1)) // the logarithm was a hair too large
+        n = rintl(scaled(x, digits - 1 - --exponent));
+    if (n >= ten(digits))
+        n = rintl(scaled(x, digits - 1 - ++exponent));
+    if (exponent >= -4 && exponent < digits && exponent >= 0) {
+        put_decimals(t, (uint64_t)n, digits - 1 - exponent, true);
+    } else if (exponent >= -4 && exponent < 0) {
+        uint64_t left = (uint64_t)n;
+        int count = digits;
+        for (; left % 10 == 0 && count > 1; count--)
+            left /= 10;
+        put_text(t, "0.", -1);
+        put_text(t, "000", -exponent - 1);
+        put_whole(t, left, count);
+    } else {
+        put_decimals(t, (uint64_t)n, digits - 1, true);
+        put(t, 'e');
+        put(t, exponent < 0 ? '-' : '+');
+        put_whole(t, (uint64_t)(exponent < 0 ? -exponent : exponent), 2);
+    }
+}
+
+static void put_number(text *t, double value, char kind, int digits)
+{
+    long double x = fabsl(value);
+    digits = digits < 0 ? 6 : digits > MOST_DIGITS ? MOST_DIGITS : digits;
+    if (signbit(value))
+        put(t, '-');
+    if (!isfinite(value))
+        put_text(t, isnan(value) ? "nan" : "inf", -1);
+    else if (kind == 'f' && x < LARGEST_FIXED)
+        put_decimals(t, (uint64_t)rintl(scaled(x, digits)), digits, false);
+    else if (x > 0)
+        put_general(t, x, kind == 'f' ? 6 : digits > 0 ? digits : 1);
+    else
+        put(t, '0');
+}
+
+// the number after the point of a conversion, -1 if there is none
+static int read_precision(const char **format, va_list *args)
+{
+    int n = 0;
+    if (**format != '.')
+        return -1;
+    if (*++*format == '*') {
+        ++*format;
+        return va_arg(*args, int);
+    }
+    for (; isdigit((unsigned char)**format); ++*format)
+        n = 10 * n + (**format - '0');
+    return n;
+}
+
+static void convert(text *t, const char **format, va_list *args)
+{
+    int precision = read_precision(format, args);
+    char length = **format == 'l' || **format == 'z' ? *(*format)++ : 0;
+    switch (*(*format)++) {
+    case 'c': put(t, (char)va_arg(*args, int)); break;
+    case 's': put_text(t, va_arg(*args, const char *), precision); break;
+    case 'd': put_signed(t, length == 'l' ? va_arg(*args, long) : va_arg(*args, int)); break;
+    case 'u':
+        put_whole(t, length == 'z' ? va_arg(*args, size_t) : va_arg(*args, unsigned), 1);
+        break;
+    case 'g': put_number(t, va_arg(*args, double), 'g', precision); break;
+    case 'f': put_number(t, va_arg(*args, double), 'f', precision); break;
+    default: put(t, (*format)[-1]); break; // %%
+    }
+}
+
+size_t himc_format_list(char *out, size_t size, const char *format, va_list args)
+{
+    text t = {out, 0, size};
+    va_list rest;
+    va_copy(rest, args);
+    while (*format) {
+        if (*format != '%')
+            put(&t, *format++);
+        else if (*++format)
+            convert(&t, &format, &rest);
+    }
+    va_end(rest);
+    out[t.used] = '\0';
+    return t.used;
+}
+
+size_t himc_format(char *out, size_t size, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    size_t length = himc_format_list(out, size, format, args);
+    va_end(args);
+    return length;
+}

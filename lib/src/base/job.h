@@ -1,0 +1,31 @@
+/// job.h: a command that takes long, in two parts: `prepare` reads files and computes, in a helper
+/// thread; `install` puts the result in its place, between two blocks of the audio thread.
+///
+/// Invariant: `prepare` and `free` touch only the job: what they need of the instrument was copied
+/// into it when it was made, or by `install`. So one job, carried out here or by a loader
+/// (himc/loader.h), has one result.
+#ifndef HIMC_JOB_H
+#define HIMC_JOB_H
+
+#include "himc/base.h"
+
+/// What `install` says.
+typedef enum himc_job_state {
+    HIMC_JOB_DONE,
+    HIMC_JOB_FAILED, ///< with the reason
+    HIMC_JOB_MORE,   ///< call `install` again: it has used up its share of a block
+    HIMC_JOB_AGAIN   ///< call `prepare` again: the instrument has changed, or the next part is due
+} himc_job_state;
+
+typedef struct himc_job himc_job;
+/// The first member of each kind of job.
+struct himc_job {
+    bool (*prepare)(himc_job *job, himc_error *error); ///< false with the reason: it has failed
+    himc_job_state (*install)(himc_job *job, himc_error *error); ///< bounded time
+    void (*free)(himc_job *job); ///< frees the job and what `install` has replaced
+};
+
+/// Carries out a job at once and frees it. NULL: false, the error says why there is none.
+bool himc_job_carry_out(himc_job *job, himc_error *error);
+
+#endif

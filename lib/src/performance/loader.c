@@ -1,0 +1,280 @@
+/// loader.c: one helper thread, one job at a time, and a queue of commands in their order.
+///
+/// The job goes from hand to hand: the host makes it, the helper prepares it, the host installs it,
+/// the helper frees it with all that it has replaced. `stage` says whose it is; only its owner
+/// touches it, and the lock is held only to read or set the stage. So the host never waits for the
+/// helper, except in himc_loader_finish and himc_loader_free.
+#define _POSIX_C_SOURCE 200809L
+#include "himc/loader.h"
+#include "drum/drum_job.h"
+#include "performance/performance_job.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WAITING_LOADS 256 // chosen: a page of a patch, sent at once
+#define SHORT_AT_ONCE 8   // short commands in one run; chosen: 10 us each at most
+
+typedef enum loader_stage { IDLE, PREPARING, PREPARED, FREEING } loader_stage;
+
+typedef struct waiting_load {
+    himc_load_target target; ///< its drum is retained
+    himc_command command;
+    himc_membrane *follower; ///< of himc_loader_follow; then there is no command
+    const himc_membrane *leader;
+} waiting_load;
+
+struct himc_loader {
+    waiting_load queue[WAITING_LOADS]; ///< a ring; the first is under way
+    int first, count;
+    long dropped;
+
+    pthread_t thread;
+    bool running;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    loader_stage stage; ///< under the lock, as `stop`
+    bool stop;
+    himc_job *job;    ///< the helper's while PREPARING or FREEING, else the host's
+    bool good;        ///< it was prepared ...
+    himc_error error; ///< ... or why not
+};
+
+static void set_stage(himc_loader *loader, loader_stage stage)
+{
+    pthread_mutex_lock(&loader->lock);
+    loader->stage = stage;
+    pthread_cond_broadcast(&loader->changed);
+    pthread_mutex_unlock(&loader->lock);
+}
+
+static loader_stage stage_of(himc_loader *loader)
+{
+    pthread_mutex_lock(&loader->lock);
+    loader_stage stage = loader->stage;
+    pthread_mutex_unlock(&loader->lock);
+    return stage;
+}
+
+// the helper
+
+// true if there is work for it, false at the end
+static bool wait_for_work(himc_loader *loader, loader_stage *stage)
+{
+    pthread_mutex_lock(&loader->lock);
+    while (!loader->stop && loader->stage != PREPARING && loader->stage != FREEING)
+        pthread_cond_wait(&loader->changed, &loader->lock);
+    *stage = loader->stage;
+    bool go_on = !loader->stop;
+    pthread_mutex_unlock(&loader->lock);
+    return go_on;
+}
+
+static void *help(void *object)
+{
+    himc_loader *loader = object;
+    loader_stage stage;
+    while (wait_for_work(loader, &stage)) {
+        if (stage == PREPARING)
+            loader->good = loader->job->prepare(loader->job, &loader->error);
+        else
+            loader->job->free(loader->job);
+        set_stage(loader, stage == PREPARING ? PREPARED : IDLE);
+    }
+    return NULL;
+}
+
+// the helper has no deadline, whatever the host's priority
+static bool start(himc_loader *loader, himc_error *error)
+{
+    pthread_attr_t attributes;
+    if (loader->running)
+        return true;
+    pthread_attr_init(&attributes);
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
+    loader->running = pthread_create(&loader->thread, &attributes, help, loader) == 0;
+    pthread_attr_destroy(&attributes);
+    return loader->running || himc_error_set(error, "no thread to load in");
+}
+
+// the host
+
+himc_loader *himc_loader_new(himc_error *error)
+{
+    himc_loader *loader = calloc(1, sizeof *loader);
+    if (!loader) {
+        himc_error_set(error, "loader: out of memory");
+        return NULL;
+    }
+    pthread_mutex_init(&loader->lock, NULL);
+    pthread_cond_init(&loader->changed, NULL);
+    return loader;
+}
+
+static waiting_load *take_first(himc_loader *loader)
+{
+    waiting_load *first = &loader->queue[loader->first];
+    loader->first = (loader->first + 1) % WAITING_LOADS;
+    loader->count--;
+    return first;
+}
+
+void himc_loader_free(himc_loader *loader)
+{
+    if (!loader)
+        return;
+    pthread_mutex_lock(&loader->lock);
+    loader->stop = true;
+    pthread_cond_broadcast(&loader->changed);
+    pthread_mutex_unlock(&loader->lock);
+    if (loader->running)
+        pthread_join(loader->thread, NULL);
+    if (loader->stage != IDLE)
+        loader->job->free(loader->job);
+    while (loader->count > 0)
+        himc_drum_release(take_first(loader)->target.drum);
+    pthread_cond_destroy(&loader->changed);
+    pthread_mutex_destroy(&loader->lock);
+    free(loader);
+}
+
+// the first command is carried out, or refused; tells it, and what was dropped, after the last
+static void end_first(himc_loader *loader, const char *error)
+{
+    himc_load_target target = take_first(loader)->target;
+    himc_error lost = {""};
+    if (loader->count == 0 && loader->dropped > 1)
+        himc_error_set(&lost, "%ld commands dropped: more than %d waited", loader->dropped,
+                       WAITING_LOADS);
+    loader->dropped = loader->count == 0 ? 0 : loader->dropped;
+    if (target.done)
+        target.done(target.user, error);
+    if (target.done && lost.text[0])
+        target.done(target.user, lost.text);
+    himc_drum_release(target.drum);
+}
+
+static bool takes_long(const himc_load_target *target, const himc_command *command)
+{
+    return target->drum ? himc_drum_takes_long(target->drum, command)
+                        : himc_performance_takes_long(target->performance, command);
+}
+
+static bool carry_out(const himc_load_target *target, const himc_command *command, int delay,
+                      himc_error *error)
+{
+    return target->drum ? himc_drum_command(target->drum, command, error)
+                        : himc_performance_command(target->performance, command, delay, error);
+}
+
+static himc_job *make_job(const waiting_load *load, himc_error *error)
+{
+    if (load->follower)
+        return himc_membrane_job(load->follower, load->leader, error);
+    return load->target.drum
+               ? himc_drum_job(load->target.drum, &load->command, error)
+               : himc_performance_job(load->target.performance, &load->command, error);
+}
+
+// begins with the first that waits; true if it was short
+static bool begin_first(himc_loader *loader)
+{
+    const waiting_load *load = &loader->queue[loader->first];
+    himc_error error = {""};
+    if (load->follower || takes_long(&load->target, &load->command)) {
+        loader->job = start(loader, &error) ? make_job(load, &error) : NULL;
+        if (loader->job)
+            set_stage(loader, PREPARING);
+        else
+            end_first(loader, error.text);
+        return false;
+    }
+    bool head = himc_command_table((int)load->command.id)->marks & HIMC_CHANGES_HEAD;
+    bool good = carry_out(&load->target, &load->command, 0, &error);
+    end_first(loader, good ? NULL : error.text);
+    return !head;
+}
+
+static void install(himc_loader *loader)
+{
+    himc_job_state state =
+        loader->good ? loader->job->install(loader->job, &loader->error) : HIMC_JOB_FAILED;
+    if (state == HIMC_JOB_MORE)
+        return;
+    set_stage(loader, state == HIMC_JOB_AGAIN ? PREPARING : FREEING);
+    if (state != HIMC_JOB_AGAIN) {
+        himc_error why = loader->error;
+        end_first(loader, state == HIMC_JOB_DONE ? NULL : why.text);
+    }
+}
+
+bool himc_loader_run(himc_loader *loader)
+{
+    loader_stage stage = stage_of(loader);
+    if (stage == PREPARED)
+        install(loader);
+    for (int i = 0; stage == IDLE && loader->count > 0 && i < SHORT_AT_ONCE; i++)
+        if (!begin_first(loader))
+            break;
+    return loader->count > 0;
+}
+
+bool himc_loader_busy(const himc_loader *loader)
+{
+    return loader->count > 0;
+}
+
+void himc_loader_finish(himc_loader *loader)
+{
+    while (himc_loader_run(loader)) {
+        pthread_mutex_lock(&loader->lock);
+        while (loader->stage == PREPARING || loader->stage == FREEING)
+            pthread_cond_wait(&loader->changed, &loader->lock);
+        pthread_mutex_unlock(&loader->lock);
+    }
+}
+
+// room for one more, or NULL
+static waiting_load *add(himc_loader *loader, himc_error *error)
+{
+    if (loader->count == WAITING_LOADS) {
+        loader->dropped++;
+        himc_error_set(error, "more than %d commands wait: this one is dropped", WAITING_LOADS);
+        return NULL;
+    }
+    return &loader->queue[(loader->first + loader->count++) % WAITING_LOADS];
+}
+
+bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
+                         const himc_command *command, himc_error *error)
+{
+    if (loader->count == 0 && !takes_long(target, command))
+        return carry_out(target, command, target->delay, error);
+    waiting_load *load = add(loader, error);
+    if (!load)
+        return loader->dropped > 1;
+    load->target = *target;
+    load->follower = NULL;
+    himc_command_copy(&load->command, command);
+    if (target->drum)
+        himc_drum_retain(target->drum);
+    return true;
+}
+
+bool himc_loader_follow(himc_loader *loader, himc_membrane *follower, const himc_membrane *leader,
+                        himc_error *error)
+{
+    for (int i = 0; i < loader->count; i++)
+        if (loader->queue[(loader->first + i) % WAITING_LOADS].follower == follower)
+            return true;
+    waiting_load *load = add(loader, error);
+    if (!load)
+        return false;
+    load->target = (himc_load_target){.performance = NULL};
+    load->follower = follower;
+    load->leader = leader;
+    return true;
+}
