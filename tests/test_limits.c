@@ -225,6 +225,39 @@ static void test_closest_point_of_3000_ellipsoids_is_on_them_with_the_way_along_
     }
 }
 
+// y_k = r_k^2 x_k / (t + r_k^2) with the root t by bisection, in long double
+static himc_vec3 bisected(himc_vec3 radius, himc_vec3 x)
+{
+    const long double r[3] = {(long double)radius.x * radius.x, (long double)radius.y * radius.y,
+                              (long double)radius.z * radius.z};
+    const double p[3] = {x.x, x.y, x.z}, a[3] = {radius.x, radius.y, radius.z};
+    long double low = 0, high = 0, t = 0;
+    for (int k = 0; k < 3; k++)
+        high += fabs(p[k]) * a[k]; // every z_k is at most its share of 1 there
+    for (int i = 0; i < 200; i++) {
+        long double sum = 0;
+        t = 0.5L * (low + high);
+        for (int k = 0; k < 3; k++)
+            sum += (a[k] * p[k] / (t + r[k])) * (a[k] * p[k] / (t + r[k]));
+        *(sum > 1 ? &low : &high) = t;
+    }
+    return himc_vec3_make((double)(r[0] * p[0] / (t + r[0])), (double)(r[1] * p[1] / (t + r[1])),
+                          (double)(r[2] * p[2] / (t + r[2])));
+}
+
+static void test_closest_point_is_that_of_a_bisection(void)
+{
+    for (int i = 0; i < 20000; i++) {
+        himc_vec3 r, x = random_case(&r);
+        if (i % 2) { // a hair outside
+            himc_vec3 z = {x.x / r.x, x.y / r.y, x.z / r.z};
+            x = himc_vec3_scale(x, (1 + exp(uniform(-30, 0))) / himc_vec3_length(z));
+        }
+        himc_vec3 y = himc_limit_closest_on_ellipsoid(r, x), want = bisected(r, x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(himc_vec3_sub(y, want)));
+    }
+}
+
 static void test_brute_force_finds_no_point_of_the_ellipsoid_nearer(void)
 {
     for (int i = 0; i < 3000; i++) {
@@ -343,6 +376,7 @@ int main(void)
     RUN_TEST(test_joint_that_did_not_move_turns_freely_and_frames_may_be_one);
     RUN_TEST(test_learning_refuses_no_frames_margins_out_of_range_and_non_rotations);
     RUN_TEST(test_closest_point_of_3000_ellipsoids_is_on_them_with_the_way_along_the_normal);
+    RUN_TEST(test_closest_point_is_that_of_a_bisection);
     RUN_TEST(test_brute_force_finds_no_point_of_the_ellipsoid_nearer);
     RUN_TEST(test_closest_point_of_a_ball_is_on_the_way_to_its_centre);
     RUN_TEST(test_closest_rotation_is_itself_inside_and_on_the_bounds_outside);

@@ -306,6 +306,21 @@ static void test_membrane_air_pickup_agrees_with_rayleighs_integral(void)
     }
 }
 
+static void test_membrane_point_pickup_beyond_a_smaller_rim_moves_to_it(void)
+{
+    himc_head small = himc_head_default();
+    himc_membrane *m = himc_membrane_new(&small, 48000, NULL);
+    himc_pickup at = {.kind = HIMC_PICKUP_POINT, .x = 0.16, .y = -0.12};
+    int count;
+    TEST_ASSERT_TRUE(himc_membrane_set_pickups(m, &at, 1, NULL));
+    small.radius = 0.1;
+    TEST_ASSERT_TRUE(himc_membrane_set_head(m, &small, NULL));
+    const himc_pickup *now = himc_membrane_pickups(m, &count);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.08, now->x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.06, now->y);
+    himc_membrane_free(m);
+}
+
 static void test_membrane_point_pickup_reads_the_velocity_there(void)
 {
     himc_pickup pickup = {.kind = HIMC_PICKUP_POINT, .x = 0.1, .y = 0.05};
@@ -359,6 +374,7 @@ int main(void)
     RUN_TEST(test_membrane_with_two_thousand_modes_sounds_and_decays);
     RUN_TEST(test_membrane_silences_modes_above_half_the_rate);
     RUN_TEST(test_membrane_air_pickup_agrees_with_rayleighs_integral);
+    RUN_TEST(test_membrane_point_pickup_beyond_a_smaller_rim_moves_to_it);
     RUN_TEST(test_membrane_point_pickup_reads_the_velocity_there);
     RUN_TEST(test_membrane_refuses_bad_values_and_does_not_change);
     return UNITY_END();

@@ -157,19 +157,31 @@ static inline himc_vec3 himc_quat_rotate(himc_quat q, himc_vec3 v)
 /// The unit quaternion of a rotation vector (rad).
 static inline himc_quat himc_quat_exp(himc_vec3 rotation)
 {
-    double angle = himc_vec3_length(rotation), half = 0.5 * angle;
-    double s = angle > 1e-9 ? sin(half) / angle : 0.5;
-    himc_quat result = {cos(half), rotation.x * s, rotation.y * s, rotation.z * s};
+    double z = 0.25 * himc_vec3_dot(rotation, rotation), w, s;
+    if (z < 0x1p-9) { // below 0.09 rad the series are exact to rounding
+        w = 1 - z * (1.0 / 2 - z * (1.0 / 24 - z * (1.0 / 720 - z * (1.0 / 40320))));
+        s = 0.5 - z * (1.0 / 12 - z * (1.0 / 240 - z * (1.0 / 10080 - z * (1.0 / 725760))));
+    } else {
+        double half = sqrt(z);
+        w = cos(half);
+        s = 0.5 * sin(half) / half;
+    }
+    himc_quat result = {w, rotation.x * s, rotation.y * s, rotation.z * s};
     return result;
 }
 
 /// The rotation vector (rad) of a unit quaternion, the shorter way round: |result| <= pi.
 static inline himc_vec3 himc_quat_log(himc_quat q)
 {
-    double sign = q.w < 0 ? -1 : 1;
-    himc_vec3 v = {q.x * sign, q.y * sign, q.z * sign};
-    double length = himc_vec3_length(v);
-    double s = length > 1e-9 ? 2 * atan2(length, q.w * sign) / length : 2;
+    himc_vec3 v = {q.x, q.y, q.z};
+    double square = himc_vec3_dot(v, v), inverse = 1 / q.w, z = square * inverse * inverse, s;
+    if (z < 0x1p-9) { // below 0.09 rad the series of the arctangent is exact to rounding
+        s = 1.0 / 7 - z * (1.0 / 9 - z * (1.0 / 11));
+        s = 2 * inverse * (1 - z * (1.0 / 3 - z * (1.0 / 5 - z * s)));
+    } else {
+        double sign = q.w < 0 ? -1 : 1, length = sqrt(square);
+        s = length > 0 ? 2 * sign * atan2(length, q.w * sign) / length : 2;
+    }
     return himc_vec3_scale(v, s);
 }
 

@@ -16,6 +16,9 @@
 #include "control/limit_torque.h"
 
 #include "body/dynamics.h"
+#include "body/limits.h"
+
+#include <string.h>
 
 // chosen: firm beside strokes of up to 10 Hz and soft beside the physics rate
 #define HORIZON 0.0056        // T: a spring of 40 Hz (s)
@@ -30,13 +33,18 @@
 // chosen: above rounding, below anything visible
 #define LEAST_BEYOND 1e-9     // a joint beyond by less is within (rad)
 #define LEAST_CORRECTION 0.01 // (rad/s^2)
-#define SLIDE_STEP 1e-4       // over which motion along a limit is measured (s)
+#define LEAST_AGAIN 10.0 // after a compensation: 1.6e-4 rad beyond, left to the next step (rad/s^2)
+#define SLIDE_STEP 1e-4  // over which motion along a limit is measured (s)
 
 /// A joint in its parent's frame.
 typedef struct joint_place {
     himc_quat q;
     himc_vec3 spin; // (rad/s)
     double beyond;  // its bounds (rad)
+    // the last orientation whose place in the bounds was computed: rotated by this from q
+    himc_vec3 rotate; // (rad)
+    double measure;
+    himc_vec3 back; // from there to the nearest orientation within (rad)
 } joint_place;
 
 /// Corrections of joints, each along one direction.
@@ -47,10 +55,16 @@ typedef struct limit_stops {
     double more[HIMC_JOINTS];      // acceleration along them (rad/s^2)
 } limit_stops;
 
-// how far a rotation is from another (rad)
-static double angle_between(himc_quat a, himc_quat b)
+// places the joint where it would be after the rotation; rotations from there by less than its room
+// need no look at the bounds
+static void place_joint(const himc_limits *limits, int j, himc_vec3 rotate, joint_place *at)
 {
-    return himc_vec3_length(himc_quat_log(himc_quat_mul(a, himc_quat_conj(b))));
+    himc_quat then = himc_quat_mul(himc_quat_exp(rotate), at->q), near;
+    at->rotate = rotate;
+    at->measure = himc_limit_nearest(limits, j, then, &near);
+    at->back = himc_vec3_make(0, 0, 0);
+    if (at->measure > 1)
+        at->back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(then)));
 }
 
 static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
@@ -58,40 +72,43 @@ static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
         int p = skeleton->segment[j + 1].parent;
-        himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
-        at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
-        at[j].spin = himc_mat3_apply_transposed(&s->rotation[p], spin);
-        at[j].beyond = 0;
-        double measure = himc_limit_measure(c->limits, j, at[j].q);
-        if (measure > 1)
-            at[j].beyond = angle_between(himc_limit_closest(c->limits, j, at[j].q), at[j].q);
-        if (!c->saturation)
+        himc_saturation_counts *counts = c->saturation;
+        at[j] = (joint_place){.measure = 0};
+        if (c->limits->joint[j].bound) {
+            himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
+            at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+            at[j].spin = himc_mat3_apply_transposed(&s->rotation[p], spin);
+            place_joint(c->limits, j, at[j].rotate, &at[j]);
+            at[j].beyond = himc_vec3_length(at[j].back);
+        }
+        if (!counts)
             continue;
-        c->saturation->measure[j] = measure;
-        c->saturation->farthest[j] = fmax(c->saturation->farthest[j], at[j].beyond);
-        c->saturation->held[j] = c->saturation->held[j] && measure > FREE_MEASURE;
+        counts->measure[j] = at[j].measure;
+        if (counts->farthest[j] < at[j].beyond)
+            counts->farthest[j] = at[j].beyond;
+        counts->held[j] = counts->held[j] && at[j].measure > FREE_MEASURE;
     }
 }
 
 // missing acceleration of a joint, in its parent's frame (rad/s^2)
-static himc_vec3 correction(const himc_limits *limits, int j, const joint_place *at,
-                            himc_vec3 alpha)
+static himc_vec3 correction(const himc_limits *limits, int j, joint_place *at, himc_vec3 alpha)
 {
     himc_vec3 rotate =
         himc_vec3_madd(himc_vec3_scale(at->spin, HORIZON), 0.5 * HORIZON * HORIZON, alpha);
-    himc_quat then = himc_quat_mul(himc_quat_exp(rotate), at->q);
-    himc_quat near = himc_limit_closest(limits, j, then);
-    himc_vec3 back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(then)));
-    double angle = himc_vec3_length(back), late = fmax(at->beyond - RETURN_SPEED * HORIZON, 0);
+    double moved = himc_vec3_length(himc_vec3_sub(rotate, at->rotate));
+    if (moved > 0 && moved >= himc_limit_room(limits, j, at->measure))
+        place_joint(limits, j, rotate, at);
+    double angle = himc_vec3_length(at->back), late = at->beyond - RETURN_SPEED * HORIZON;
+    late = late > 0 ? late : 0;
     if (angle <= late)
         return himc_vec3_make(0, 0, 0);
-    return himc_vec3_scale(back, (1 - late / angle) * 2 / (HORIZON * HORIZON));
+    return himc_vec3_scale(at->back, (1 - late / angle) * 2 / (HORIZON * HORIZON));
 }
 
 // the joints that these accelerations would move out of their bounds
 static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
-                       const himc_body_state *s, const joint_place at[HIMC_JOINTS],
-                       const himc_vec3 *relative, limit_stops *found)
+                       const himc_body_state *s, joint_place at[HIMC_JOINTS],
+                       const himc_vec3 *relative, double least, limit_stops *found)
 {
     found->count = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -104,7 +121,7 @@ static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
         alpha = himc_mat3_apply_transposed(&s->rotation[p], alpha);
         himc_vec3 more = himc_mat3_apply(&s->rotation[p], correction(c->limits, j, &at[j], alpha));
         double size = himc_vec3_length(more);
-        if (size < LEAST_CORRECTION)
+        if (size < least)
             continue;
         found->joint[found->count] = j;
         found->inward[found->count] = himc_vec3_scale(more, 1 / size);
@@ -147,20 +164,33 @@ static void give_back(const limit_stops *stop, const himc_arm_jacobian *jacobian
     }
 }
 
+// acceleration of a tip that is missing beside that of other accelerations
+static himc_vec3 lost_at_tip(const himc_skeleton *skeleton, const himc_body_state *s,
+                             himc_hand hand, const himc_vec3 *before, const himc_vec3 *now)
+{
+    himc_vec3 lost = {0, 0, 0};
+    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent) {
+        himc_vec3 less = himc_vec3_sub(before[i - 1], now[i - 1]);
+        himc_vec3 lever = himc_vec3_sub(s->tip[hand], s->origin[i]);
+        lost = himc_vec3_add(lost, himc_vec3_cross(less, lever));
+    }
+    return lost;
+}
+
 void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skeleton,
                             const himc_body_state *s, const himc_arm_jacobian jacobian[HIMC_HANDS],
                             himc_vec3 wanted[HIMC_JOINTS])
 {
     joint_place at[HIMC_JOINTS];
     limit_stops stop = {.count = 0};
-    himc_vec3 before[HIMC_HANDS];
+    himc_vec3 before[HIMC_JOINTS];
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
     find_places(c, skeleton, s, at);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        before[hand] = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
+    memcpy(before, wanted, sizeof before);
     for (int pass = 0; pass <= COMPENSATION_PASSES; pass++) {
-        find_stops(c, skeleton, s, at, wanted, &stop);
+        double least = pass == 0 ? LEAST_CORRECTION : LEAST_AGAIN;
+        find_stops(c, skeleton, s, at, wanted, least, &stop);
         if (stop.count == 0)
             break;
         for (int h = 0; h < stop.count; h++) {
@@ -169,8 +199,7 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
             *a = himc_vec3_madd(*a, stop.more[h], stop.inward[h]);
         }
         for (int hand = 0; pass < COMPENSATION_PASSES && hand < HIMC_HANDS; hand++) {
-            himc_vec3 now = himc_tip_acceleration(skeleton, s, (himc_hand)hand, wanted);
-            himc_vec3 lost = himc_vec3_sub(before[hand], now);
+            himc_vec3 lost = lost_at_tip(skeleton, s, (himc_hand)hand, before, wanted);
             give_back(&stop, &jacobian[hand], (himc_hand)hand, lost, wanted);
         }
     }

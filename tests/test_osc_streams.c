@@ -1,0 +1,94 @@
+/// test_osc_streams.c: which states a subscriber gets when, and what a packet that is not quite
+/// right does: nothing.
+#include "osc_ear.h"
+
+static void test_the_highest_rate_of_several_subscriptions_is_kept(void)
+{
+    subscribe("pose 100");
+    subscribe("targets 10");
+    play(0.1);
+    forget();
+    play(1);
+    TEST_ASSERT_INT_WITHIN(2, 100, count("/himc/body") / HIMC_SEGMENTS);
+    TEST_ASSERT_INT_WITHIN(2, 2 * 10, count("/himc/targets"));
+}
+
+static void test_poses_continue_after_a_reset(void)
+{
+    subscribe("pose 50");
+    play(2);
+    say("/himc/reset", "");
+    play(0.02);
+    forget();
+    play(0.5);
+    TEST_ASSERT_INT_WITHIN(2, 25, count("/himc/body") / HIMC_SEGMENTS);
+}
+
+static void test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second(void)
+{
+    subscribe("strikes");
+    play(1.1);
+    forget();
+    play(0.5);
+    TEST_ASSERT_EQUAL_INT(0, count("/membrane/kettle/place"));
+    say("/membrane/kettle/place", "0.9 0.25 0.8");
+    play(0.02);
+    TEST_ASSERT_EQUAL_INT(1, count("/membrane/kettle/place"));
+    TEST_ASSERT_EQUAL_FLOAT(
+        0.25f, number(lo_message_get_argv(last("/membrane/kettle/place")->message)[1]));
+}
+
+static void test_info_over_osc_is_answered_and_listen_refused(void)
+{
+    say("/himc/info", "");
+    play(0.02);
+    TEST_ASSERT_TRUE(count("/himc/info") >= 3);
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/error"));
+    say("/himc/listen", "9000");
+    play(0.02);
+    TEST_ASSERT_EQUAL_STRING("listen: not over the network", last_error());
+}
+
+static void test_an_idle_hour_saves_up_no_answers(void)
+{
+    simulated += 3600;
+    for (int i = 0; i < 80; i++)
+        say("/himc/tempo", "-1");
+    play(0.004);
+    TEST_ASSERT_EQUAL_INT(50, count("/himc/error"));
+    TEST_ASSERT_EQUAL_INT(80, himc_osc_count(osc).refused);
+}
+
+static void test_an_address_with_one_part_too_many_is_foreign(void)
+{
+    say("/membrane/kettle/rim/tension", "5000");
+    say("/himc/score/stop", "");
+    say("/membrane//tension", "5000");
+    play(0.02);
+    TEST_ASSERT_EQUAL_INT(3, himc_osc_count(osc).foreign);
+    TEST_ASSERT_EQUAL_INT(0, himc_osc_count(osc).commands);
+}
+
+// what is missing lies behind it in the buffer, left by the packet before
+static void test_a_bundle_cut_off_within_an_element_is_malformed(void)
+{
+    char data[40] = "#bundle\0\0\0\0\0\0\0\0\1\0\0\0\x14/himc/tempo\0,f\0\0\x42\xf0\0\0";
+    send_bytes(data, sizeof data);
+    send_bytes(data, 32);
+    play(0.02);
+    TEST_ASSERT_EQUAL_INT(1, himc_osc_count(osc).commands);
+    TEST_ASSERT_EQUAL_INT(1, himc_osc_count(osc).malformed);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_highest_rate_of_several_subscriptions_is_kept);
+    RUN_TEST(test_poses_continue_after_a_reset);
+    RUN_TEST(test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second);
+    RUN_TEST(test_info_over_osc_is_answered_and_listen_refused);
+    RUN_TEST(test_an_idle_hour_saves_up_no_answers);
+    RUN_TEST(test_an_address_with_one_part_too_many_is_foreign);
+    RUN_TEST(test_a_bundle_cut_off_within_an_element_is_malformed);
+    return UNITY_END();
+}
