@@ -32,20 +32,20 @@ mutate() {
 
 # says what became of one mutant: killed, survived, or wrong in the table
 one() {
-    dir=$out/$1
-    rm -rf "$dir"
-    mkdir -p "$dir/run/build"
+    dir=$(mktemp -d "$out/$1.XXXXXX") && mkdir -p "$dir/run/build" || exit 1
     if ! name=$(mutate "$1" "$dir"); then
         echo "wrong    $1 the old text is not in its file exactly once"
+        rm -rf "$dir"
         return
     fi
     read -r file tests <"$dir/heading"
     if ! $COMPILE -w -I"$(dirname "$file")" -c "$dir/source.c" -o "$dir/source.o" 2>"$dir/log"; then
         echo "wrong    $1 $name: does not compile"
+        rm -rf "$dir"
         return
     fi
     for folder in *; do
-        test "$folder" = build || ln -s "$PWD/$folder" "$dir/run/$folder"
+        test "$folder" = build || ln -sT "$PWD/$folder" "$dir/run/$folder"
     done
     for test in $tests; do
         $LINK $HIMC_BUILD/tests/$test.o $HIMC_BUILD/tests/unity.o "$dir/source.o" $HIMC_BUILD/libhimc.a $LIBS -o "$dir/$test"
