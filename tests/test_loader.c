@@ -2,11 +2,11 @@
 /// in order, while the sound goes on; and what is said when they fail. `make test-tsan` runs it
 /// under the thread sanitizer.
 #include "allocations.h"
+#include "drum/drum_performer.h"
 #include "take_players.h"
 
 #include "session.h"
 
-#include "drum/drum_job.h"
 #include "himc/loader.h"
 #include "himc/membrane.h"
 

@@ -26,6 +26,19 @@ struct himc_job {
 };
 
 /// Carries out a job at once and frees it. NULL: false, the error says why there is none.
-bool himc_job_carry_out(himc_job *job, himc_error *error);
+static inline bool himc_job_carry_out(himc_job *job, himc_error *error)
+{
+    if (!job)
+        return false;
+    himc_job_state state = HIMC_JOB_AGAIN;
+    while (state == HIMC_JOB_AGAIN || state == HIMC_JOB_MORE) {
+        if (state == HIMC_JOB_AGAIN && !job->prepare(job, error))
+            state = HIMC_JOB_FAILED;
+        else
+            state = job->install(job, error);
+    }
+    job->free(job);
+    return state == HIMC_JOB_DONE;
+}
 
 #endif
