@@ -17,6 +17,10 @@ typedef enum himc_job_state {
     HIMC_JOB_AGAIN   ///< call `prepare` again: the instrument has changed, or the next part is due
 } himc_job_state;
 
+/// An instrument that changes all the time does not hold up a job for ever: after so many times
+/// `install` does with what it has. Chosen.
+#define HIMC_JOB_TRIES 3
+
 typedef struct himc_job himc_job;
 /// The first member of each kind of job.
 struct himc_job {
@@ -25,17 +29,17 @@ struct himc_job {
     void (*free)(himc_job *job); ///< frees the job and what `install` has replaced
 };
 
-/// Carries out a job at once and frees it. NULL: false, the error says why there is none.
-static inline bool himc_job_carry_out(himc_job *job, himc_error *error)
+/// Carries out a job at once and frees it. NULL: false; whoever made none has said why.
+static inline bool himc_job_carry_out(himc_job *job, himc_error *why)
 {
     if (!job)
         return false;
     himc_job_state state = HIMC_JOB_AGAIN;
     while (state == HIMC_JOB_AGAIN || state == HIMC_JOB_MORE) {
-        if (state == HIMC_JOB_AGAIN && !job->prepare(job, error))
+        if (state == HIMC_JOB_AGAIN && !job->prepare(job, why))
             state = HIMC_JOB_FAILED;
         else
-            state = job->install(job, error);
+            state = job->install(job, why);
     }
     job->free(job);
     return state == HIMC_JOB_DONE;
