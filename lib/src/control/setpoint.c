@@ -1,5 +1,6 @@
-/// setpoint.c: every channel of the targets moves on a quintic from tick to tick, with one set of basis
-/// values for all (interpolate.c). Legs keep their posture: only the joints of trunk, neck, head and arms move.
+/// setpoint.c: every channel of the targets moves on a quintic from tick to tick, with one set of
+/// basis values for all (interpolate.c). What stays the same between two ticks is computed once.
+/// Legs keep their posture: only the joints of trunk, neck, head and arms move.
 #include "control/setpoint.h"
 
 static joint_state state_of(const himc_posture_motion *m, int j)
