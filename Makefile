@@ -125,13 +125,13 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT) $(FUZZ)
 
-check: all units $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
+check: all units $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all units $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
+check-long: all units $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
@@ -320,6 +320,13 @@ $(VIEWER): $(VIEWER_O) $(filter $(BUILD)/lib/base/%,$(LIB_O))
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) $(UNITY) -c $< -o $@
+
+# to be preloaded: counts the calls that may wait, for the real-time contract
+WATCH := $(BUILD)/tests/watch.so
+$(WATCH): tests/watch/watch.c
+	$(call say,link)
+	$(Q)$(CC) -std=c17 -O2 -g $(WARNINGS) -Wno-pedantic -fPIC -shared $< -ldl -o $@
+$(BUILD)/tests/test_contract: | $(WATCH)
 
 $(UNITY_O): $(UNITY_DIR)/unity.c
 	$(call say,cc  )

@@ -68,6 +68,23 @@ static inline t_drum_link *drum_link_find(const char *name, himc_error *error)
     return NULL;
 }
 
+/* Of tests/watch/watch.c, when it is preloaded: what the DSP routines call between the two is
+counted if it may wait. */
+void watch_span_begin(void) __attribute__((weak));
+void watch_span_end(void) __attribute__((weak));
+
+static inline void watch_begin(void)
+{
+    if (watch_span_begin)
+        watch_span_begin();
+}
+
+static inline void watch_end(void)
+{
+    if (watch_span_end)
+        watch_span_end();
+}
+
 /* The performer in a drum that a [himc~] plays; [membrane~] reads its time. */
 typedef struct t_player {
     void *p_himc;

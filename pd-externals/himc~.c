@@ -39,6 +39,7 @@ static t_int *himc_tilde_perform(t_int *w)
 {
     t_himc *x = (t_himc *)w[1];
     t_stream *s = &x->x_stream;
+    watch_begin();
     himc_tilde_follow(x);
     stream_begin(s, himc_performance_time(x->x_performance));
     himc_tilde_advance(&x->x_player, s->s_count + (uint64_t)s->s_length);
@@ -47,6 +48,7 @@ static t_int *himc_tilde_perform(t_int *w)
             x->x_out[hand][i] = (t_sample)x->x_force[hand][(s->s_count + (uint64_t)i) % FORCE_RING];
     s->s_count += (uint64_t)s->s_length;
     stream_end(s);
+    watch_end();
     return w + 2;
 }
 

@@ -130,6 +130,7 @@ static t_int *membrane_perform(t_int *w)
     t_membrane *x = (t_membrane *)w[1];
     double in[3][LAYER_CHUNK], out[LAYER_OUTS][LAYER_CHUNK];
     const t_player *player = himc_drum_get_driver(x->x_link.l_drum).performer;
+    watch_begin();
     stream_begin(&x->x_stream, player ? player->p_time : himc_drum_time(x->x_link.l_drum));
     for (int done = 0, n; done < x->x_stream.s_length; done += n) {
         n = x->x_stream.s_length - done < LAYER_CHUNK ? x->x_stream.s_length - done : LAYER_CHUNK;
@@ -150,6 +151,7 @@ static t_int *membrane_perform(t_int *w)
         himc_drum_technique(x->x_link.l_drum) != x->x_technique ||
         !layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
         clock_delay(x->x_clock, 0);
+    watch_end();
     return w + 2;
 }
 

@@ -1,7 +1,6 @@
 // One line of text stays one, whatever names, files and packets bring into it.
 #include "base/line.h"
 
-#include "base/line_sink.h"
 #include "capture/player.h"
 #include "performance/performance_events.h"
 #include "plan/planner_notes.h"

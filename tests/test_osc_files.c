@@ -3,7 +3,7 @@
 // nothing.
 #include "osc_ear.h"
 
-#include "base/confine.h"
+#include "performance/confine.h"
 
 #include <dlfcn.h>
 

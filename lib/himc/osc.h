@@ -55,9 +55,9 @@ int himc_osc_port(const himc_osc *osc);
 HIMC_RT bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *error);
 
 /// Carries out at most `most` commands that came by OSC. They may take a tenth of the time on
-/// average, and a call ends after one that takes long. With a loader the call ends at a command that
-/// waits there, and the next ones begin when it is carried out; without one, this call reads its
-/// file. Errors go back to the sender.
+/// average, and a call ends after one that takes long. With a loader the call ends at a command
+/// that waits there, and the next ones begin when it is carried out; without one, this call reads
+/// its file. Errors go back to the sender.
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most);
 
 /// Takes a pose for the subscribers; for himc_performance_on_tick. `osc` is a himc_osc.

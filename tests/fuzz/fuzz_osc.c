@@ -19,7 +19,7 @@
 #define MOST_PACKET 4096 // (bytes) chosen: an input stays quick
 #define MOST_WORDS 256
 #define DEEPEST 7   // of bundles; more than are accepted
-#define STEP 5e-3   // from packet to packet (s); chosen: most commands can be paid for
+#define STEP 1e-3   // from packet to packet (s); chosen: a command in some packets can be paid for
 #define FRESH 16384 // packets to one performance; chosen: its score stays short
 
 typedef struct builder {

@@ -71,3 +71,13 @@ void himc_line_print(char *out, size_t size, const char *format, va_list args)
     himc_format_list(out, size, format, args);
     himc_line_clean(out);
 }
+
+void himc_tell(const himc_line_sink *to, const char *format, ...)
+{
+    char text[256];
+    va_list args;
+    va_start(args, format);
+    himc_line_print(text, sizeof text, format, args);
+    va_end(args);
+    to->line(to->user, text);
+}

@@ -1,5 +1,5 @@
 /// describe.c: a take and its player in lines for a person, one per fact: `himc info`.
-#include "base/line_sink.h"
+#include "base/line.h"
 #include "capture/take.h"
 
 #include <math.h>

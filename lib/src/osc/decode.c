@@ -7,7 +7,7 @@
 /// answer each other forever.
 #include "osc/decode.h"
 
-#include "base/confine.h"
+#include "performance/confine.h"
 
 #include <lo/lo.h>
 #include <stdint.h>

@@ -8,6 +8,7 @@
 /// A state is encoded once for all its subscribers: in one packet for this machine, and in packets
 /// below 1400 bytes for the others, so that none is fragmented on the way.
 #include "osc/subscribe.h"
+#include "base/format.h"
 
 #include "base/line.h"
 
@@ -43,7 +44,7 @@ bool himc_osc_change_from(osc_change *change, const himc_command *c)
     if (c->id != HIMC_COMMAND_SUBSCRIBE && c->id != HIMC_COMMAND_UNSUBSCRIBE)
         return false;
     int next = c->form == VMC ? 1 : 2;
-    snprintf(change->host, sizeof change->host, "%s", c->atom[0].symbol);
+    himc_format(change->host, sizeof change->host, "%s", c->atom[0].symbol);
     change->port = c->form == VMC ? HIMC_VMC_PORT : (int)c->atom[1].number;
     change->stream = STREAM_ANY;
     if (next < c->count && c->choice[next] >= 0)

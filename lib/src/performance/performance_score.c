@@ -1,15 +1,15 @@
 /// performance_score.c: `score FILE`: a score is accepted as a whole, or refused.
 ///
-/// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its lines
-/// for drums go to copies of the drums, its lines for the performer are checked, its drums are
+/// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its
+/// lines for drums go to copies of the drums, its lines for the performer are checked, its drums are
 /// counted and those that are missing are made. Only then is it installed: the copies give their
 /// heads to the drums, lines and strokes follow in portions, a line that takes long is a job of its
 /// own. While a score plays, the beats of the next one follow its own. Invariants: a score that is
 /// refused has changed nothing; a score from the network may do what its sender may do.
 #include "performance/performance_state.h"
 
-#include "base/confine.h"
 #include "capture/take.h"
+#include "performance/confine.h"
 #include "plan/score.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /// confine.c: commands from the network, and the one folder whose files they may read (file.c).
-#include "base/confine.h"
+#include "performance/confine.h"
 
 #include <string.h>
 

@@ -1,9 +1,9 @@
 /// confine.h: what a command from the network may do with files.
 ///
-/// The mark of such a command is its `folder`. It goes with every copy, and a score that was read so
-/// gives it to each of its commands, so that a file gives its reader no rights.
-#ifndef HIMC_CONFINE_H
-#define HIMC_CONFINE_H
+/// The mark of such a command is its `folder`. It goes with every copy, and a score that was read
+/// with it gives it to each of its commands, so that a file gives its reader no rights.
+#ifndef HIMC_PERFORMANCE_CONFINE_H
+#define HIMC_PERFORMANCE_CONFINE_H
 
 #include "himc/command.h"
 
