@@ -1,12 +1,12 @@
 /// test_loader.c: commands that take long, prepared by a helper thread: the same result as at once,
-/// in order, while the sound goes on; and what is said when they fail. `make test-tsan` runs it
-/// under the thread sanitizer.
+/// in order, while the sound goes on; and what is said when they fail. It is meant to run under the
+/// thread sanitizer, too.
 #include "allocations.h"
+#include "drum/drum_performer.h"
 #include "take_players.h"
 
 #include "session.h"
 
-#include "drum/drum_job.h"
 #include "himc/loader.h"
 #include "himc/membrane.h"
 

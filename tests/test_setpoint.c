@@ -28,6 +28,14 @@ void tearDown(void)
 {
 }
 
+static void interpolate(const himc_setpoint *from, const himc_setpoint *to, double time,
+                        himc_reference *reference)
+{
+    himc_setpoint_course course;
+    himc_setpoint_course_make(&course, from, to);
+    himc_setpoint_at(&course, time, reference);
+}
+
 static double distance(himc_vec3 a, himc_vec3 b)
 {
     return himc_vec3_length(himc_vec3_sub(a, b));
@@ -67,7 +75,7 @@ static void test_a_quintic_is_interpolated_exactly(void)
     for (int i = 0; i <= 20; i++) {
         double t = 0.03 + 0.001 * i;
         himc_target want = himc_quintic_at(&q, t);
-        himc_setpoint_interpolate(&a, &b, 7 + t, &r);
+        interpolate(&a, &b, 7 + t, &r);
         TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0, distance(want.x, r.tip[HIMC_RIGHT].x));
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0, distance(want.v, r.tip[HIMC_RIGHT].v));
         TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0, distance(want.a, r.tip[HIMC_RIGHT].a));
@@ -82,7 +90,7 @@ static void test_at_a_tick_the_reference_is_the_tick(void)
     tick_at(0.1 + PERIOD, &b);
     for (int end = 0; end < 2; end++) {
         const himc_setpoint *tick = end ? &b : &a;
-        himc_setpoint_interpolate(&a, &b, tick->time, &r);
+        interpolate(&a, &b, tick->time, &r);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             TEST_ASSERT_DOUBLE_WITHIN(1e-14, 0, distance(tick->tip[hand].x, r.tip[hand].x));
             TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0, distance(tick->tip[hand].v, r.tip[hand].v));
@@ -104,8 +112,8 @@ static void test_position_velocity_and_acceleration_agree_across_a_tick(void)
     tick_at(0.1, &a);
     tick_at(0.1 + PERIOD, &b);
     tick_at(0.1 + 2 * PERIOD, &c);
-    himc_setpoint_interpolate(&a, &b, b.time, &before);
-    himc_setpoint_interpolate(&b, &c, b.time, &after);
+    interpolate(&a, &b, b.time, &before);
+    interpolate(&b, &c, b.time, &after);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-14, 0, distance(before.tip[hand].x, after.tip[hand].x));
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0, distance(before.tip[hand].v, after.tip[hand].v));
@@ -128,9 +136,9 @@ static void test_joints_are_unit_quaternions_with_rates_that_are_their_differenc
     tick_at(0.1 + PERIOD, &b);
     for (int i = 1; i < 20; i++) {
         double t = a.time + PERIOD * i / 20;
-        himc_setpoint_interpolate(&a, &b, t - h, &r0);
-        himc_setpoint_interpolate(&a, &b, t, &r);
-        himc_setpoint_interpolate(&a, &b, t + h, &r1);
+        interpolate(&a, &b, t - h, &r0);
+        interpolate(&a, &b, t, &r);
+        interpolate(&a, &b, t + h, &r1);
         for (int j = 0; j < HIMC_JOINTS; j++) {
             himc_quat q = r.posture.joint[j];
             himc_quat moved =
@@ -153,7 +161,7 @@ static void test_between_ticks_the_joints_stay_on_the_true_motion(void)
         tick_at(start, &a);
         tick_at(start + PERIOD, &b);
         tick_at(start + 0.3 * PERIOD, &truth);
-        himc_setpoint_interpolate(&a, &b, truth.time, &r);
+        interpolate(&a, &b, truth.time, &r);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, distance(truth.tip[hand].x, r.tip[hand].x));
         for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -173,8 +181,8 @@ static void test_the_sign_of_a_quaternion_does_not_matter(void)
     c = b;
     for (int j = 0; j < HIMC_JOINTS; j += 2)
         c.posture.joint[j] = himc_quat_scale(c.posture.joint[j], -1);
-    himc_setpoint_interpolate(&a, &b, 0.1 + 0.4 * PERIOD, &r);
-    himc_setpoint_interpolate(&a, &c, 0.1 + 0.4 * PERIOD, &s);
+    interpolate(&a, &b, 0.1 + 0.4 * PERIOD, &r);
+    interpolate(&a, &c, 0.1 + 0.4 * PERIOD, &s);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const himc_posture_motion *p = &r.posture, *q = &s.posture;
         TEST_ASSERT_DOUBLE_WITHIN(1e-14, 1, fabs(himc_quat_dot(p->joint[j], q->joint[j])));
@@ -189,7 +197,7 @@ static void test_contact_flags_are_left_alone(void)
     himc_reference r = {.released = {true, false}, .normal = {{1, 2, 3}, {4, 5, 6}}};
     tick_at(0, &a);
     tick_at(PERIOD, &b);
-    himc_setpoint_interpolate(&a, &b, 0.001, &r);
+    interpolate(&a, &b, 0.001, &r);
     TEST_ASSERT_TRUE(r.released[HIMC_LEFT] && !r.released[HIMC_RIGHT]);
     TEST_ASSERT_EQUAL_DOUBLE(6, r.normal[HIMC_RIGHT].z);
 }
@@ -210,7 +218,7 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
     himc_controller_init(&controller, &control, &skeleton, &state);
     himc_posture_reachable(&posture, HIMC_LEFT, himc_vec3_make(3, 0, 1));
     himc_setpoint_complete(&tick[0], &posture);
-    himc_setpoint_interpolate(&tick[0], &tick[1], 0.001, &reference);
+    interpolate(&tick[0], &tick[1], 0.001, &reference);
     himc_character_place(character, &state);
     for (int solver = HIMC_SOLVER_DLS; solver < HIMC_SOLVERS; solver++)
         for (int law = HIMC_LAW_PRINTED; law <= HIMC_LAW_COMPUTED_TORQUE; law++)

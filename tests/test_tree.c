@@ -12,8 +12,6 @@
 #include "session.h"
 #include "bodies.h"
 
-#include <float.h>
-
 #define STEPS 1000
 #define STEP 1e-4     // of the default physics rate (s)
 #define AGREED 1e-10  // of each number, over itself where it is above 1

@@ -157,6 +157,7 @@ typedef struct bench_body {
     himc_skeleton skeleton;
     himc_posture posture;
     himc_setpoint from, to;
+    himc_setpoint_course between;
     himc_body_state state;
     himc_controller controller;
     himc_reference reference;
@@ -176,6 +177,7 @@ static bool make_body(bench_body *b, himc_error *error)
     memcpy(b->to.tip, b->from.tip, sizeof b->to.tip);
     himc_setpoint_complete(&b->from, &b->posture);
     himc_setpoint_complete(&b->to, &b->posture);
+    himc_setpoint_course_make(&b->between, &b->from, &b->to);
     memcpy(pose.joint, b->from.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
     himc_controller_config control = himc_controller_config_default();
@@ -201,7 +203,7 @@ static void do_row(bench_body *b, int part, int i)
     himc_articulation articulation;
     himc_vec3 torque[HIMC_JOINTS] = {{0, 0, 0}}, relative[HIMC_JOINTS];
     if (part == 0)
-        himc_setpoint_interpolate(&b->from, &b->to, 0.001 + 1e-9 * i, &b->reference);
+        himc_setpoint_at(&b->between, 0.001 + 1e-9 * i, &b->reference);
     else if (part == 1)
         himc_setpoint_complete(&b->to, &b->posture);
     else if (part == 2)

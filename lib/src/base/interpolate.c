@@ -53,10 +53,6 @@ himc_target himc_interpolate_points(const himc_interpolation *b, const himc_targ
                          mix3(b->weight[2], from, to)};
 }
 
-typedef struct spin_state {
-    himc_quat q, rate, second;
-} spin_state;
-
 static himc_quat add4(himc_quat a, double s, himc_quat b)
 {
     return (himc_quat){a.w + s * b.w, a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
@@ -67,15 +63,15 @@ static himc_quat pure(himc_vec3 v)
     return (himc_quat){0, v.x, v.y, v.z};
 }
 
-static spin_state spin_of(himc_quat q, himc_vec3 w, himc_vec3 a)
+static joint_knot spin_of(himc_quat q, himc_vec3 w, himc_vec3 a)
 {
     himc_quat second = himc_quat_mul(pure(a), q);
     second = add4(second, -0.5 * himc_vec3_dot(w, w), q);
-    return (spin_state){q, himc_quat_scale(himc_quat_mul(pure(w), q), 0.5),
+    return (joint_knot){q, himc_quat_scale(himc_quat_mul(pure(w), q), 0.5),
                         himc_quat_scale(second, 0.5)};
 }
 
-static himc_quat mix4(const double w[6], const spin_state *p, const spin_state *q)
+static himc_quat mix4(const double w[6], const joint_knot *p, const joint_knot *q)
 {
     himc_quat r = himc_quat_scale(p->q, w[0]);
     r = add4(add4(r, w[1], p->rate), w[2], p->second);
@@ -83,18 +79,30 @@ static himc_quat mix4(const double w[6], const spin_state *p, const spin_state *
     return add4(r, w[5], q->second);
 }
 
-joint_state himc_interpolate_joints(const himc_interpolation *b, const joint_state *from,
-                                    const joint_state *to)
+void himc_interpolate_knots(const joint_state *from, const joint_state *to, joint_knot knot[2])
 {
     double sign = himc_quat_dot(from->q, to->q) < 0 ? -1 : 1;
-    spin_state p = spin_of(from->q, from->rate, from->acceleration);
-    spin_state q = spin_of(himc_quat_scale(to->q, sign), to->rate, to->acceleration);
-    himc_quat x = mix4(b->weight[0], &p, &q), v = mix4(b->weight[1], &p, &q),
-              a = mix4(b->weight[2], &p, &q);
+    knot[0] = spin_of(from->q, from->rate, from->acceleration);
+    knot[1] = spin_of(himc_quat_scale(to->q, sign), to->rate, to->acceleration);
+}
+
+joint_state himc_interpolate_joint(const himc_interpolation *b, const joint_knot knot[2])
+{
+    const joint_knot *p = &knot[0], *q = &knot[1];
+    himc_quat x = mix4(b->weight[0], p, q), v = mix4(b->weight[1], p, q),
+              a = mix4(b->weight[2], p, q);
     double square = himc_quat_dot(x, x);
     himc_quat back = himc_quat_scale(himc_quat_conj(x), 2 / square);
     himc_vec3 w = himc_quat_vector(himc_quat_mul(v, back));
     return (joint_state){himc_quat_scale(x, 1 / sqrt(square)), w,
                          himc_vec3_madd(himc_quat_vector(himc_quat_mul(a, back)),
                                         -2 * himc_quat_dot(x, v) / square, w)};
+}
+
+joint_state himc_interpolate_joints(const himc_interpolation *b, const joint_state *from,
+                                    const joint_state *to)
+{
+    joint_knot knot[2];
+    himc_interpolate_knots(from, to, knot);
+    return himc_interpolate_joint(b, knot);
 }

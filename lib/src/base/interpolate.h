@@ -17,12 +17,21 @@ typedef struct joint_state {
     himc_vec3 rate, acceleration;
 } joint_state;
 
+/// A joint's rotation as a quaternion in four dimensions, and its derivatives.
+typedef struct joint_knot {
+    himc_quat q, rate, second;
+} joint_knot;
+
 /// The weights at `time` (s) after the first of two instants `length` (s, above 0) apart.
 himc_interpolation himc_interpolate_make(double time, double length);
 /// A point's motion between `from` and `to`.
 himc_target himc_interpolate_points(const himc_interpolation *b, const himc_target *from,
                                     const himc_target *to);
-/// A joint's motion between `from` and `to`.
+/// The knots of a joint's motion between `from` and `to`.
+void himc_interpolate_knots(const joint_state *from, const joint_state *to, joint_knot knot[2]);
+/// A joint's motion between two knots.
+joint_state himc_interpolate_joint(const himc_interpolation *b, const joint_knot knot[2]);
+/// A joint's motion between `from` and `to`, once.
 joint_state himc_interpolate_joints(const himc_interpolation *b, const joint_state *from,
                                     const joint_state *to);
 

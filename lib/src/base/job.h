@@ -25,7 +25,20 @@ struct himc_job {
     void (*free)(himc_job *job); ///< frees the job and what `install` has replaced
 };
 
-/// Carries out a job at once and frees it. NULL: false, the error says why there is none.
-bool himc_job_carry_out(himc_job *job, himc_error *error);
+/// Carries out a job at once and frees it. NULL: false; whoever made none has said why.
+static inline bool himc_job_carry_out(himc_job *job, himc_error *why)
+{
+    if (!job)
+        return false;
+    himc_job_state state = HIMC_JOB_AGAIN;
+    while (state == HIMC_JOB_AGAIN || state == HIMC_JOB_MORE) {
+        if (state == HIMC_JOB_AGAIN && !job->prepare(job, why))
+            state = HIMC_JOB_FAILED;
+        else
+            state = job->install(job, why);
+    }
+    job->free(job);
+    return state == HIMC_JOB_DONE;
+}
 
 #endif

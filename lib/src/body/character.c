@@ -6,8 +6,9 @@
 /// ODE requires. The pelvis is ODE's world (body 0), so the trunk and each leg are separate islands
 /// and ODE solves three small systems. dWorldStep is deterministic to the bit (QuickStep draws
 /// random numbers). Legs at rest keep their state to the bit until a force on them changes: the
-/// pelvis is fixed, so nothing else moves them. ODE aborts the process on an invalid mass, so the skeleton is checked before;
-/// it accepts NaN silently, so himc_performance checks the state after each step.
+/// pelvis is fixed, so nothing else moves them. ODE aborts the process on an invalid mass, so the
+/// skeleton is checked before; it accepts NaN silently, so himc_performance checks the state after
+/// each step.
 #include "body/character.h"
 
 #include "body/tree.h"

@@ -1,6 +1,6 @@
 /// character.h: the dynamic layer: the body as rigid segments on ball joints (2012 paper, equation
-/// 1: D), moved by the Open Dynamics Engine or by the same equations solved along the tree; private.
-/// Joint torques move it, no motors; the pelvis is fixed to the world.
+/// 1: D), moved by the Open Dynamics Engine or by the same equations solved along the tree;
+/// private. Joint torques move it, no motors; the pelvis is fixed to the world.
 #ifndef HIMC_CHARACTER_H
 #define HIMC_CHARACTER_H
 

@@ -11,7 +11,8 @@ typedef struct motion {
     himc_vec3 angular, linear; // acceleration of the segment, and of its joint
 } motion;
 
-static himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_vec3 spin, himc_vec3 r)
+static inline himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_vec3 spin,
+                                        himc_vec3 r)
 {
     base = himc_vec3_add(base, himc_vec3_cross(alpha, r));
     return himc_vec3_add(base, himc_vec3_cross(spin, himc_vec3_cross(spin, r)));

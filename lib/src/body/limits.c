@@ -119,8 +119,8 @@ double himc_limit_nearest(const himc_limits *limits, int joint, himc_quat rotati
     return measure;
 }
 
-// in the tangent space a rotation of the joint is at most HIMC_PI / 2 times as long, and the measure
-// grows by its length over the thinnest semi-axis
+// in the tangent space a rotation of the joint is at most HIMC_PI / 2 times as long, and the
+// measure grows by its length over the thinnest semi-axis
 double himc_limit_room(const himc_limits *limits, int joint, double measure)
 {
     himc_vec3 radius = at_least(limits->joint[joint].radius, THINNEST);

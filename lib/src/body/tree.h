@@ -1,5 +1,5 @@
-/// tree.h: one step of rigid segments on ball joints, as the Open Dynamics Engine's dWorldStep makes
-/// it, solved along the tree; private.
+/// tree.h: one step of rigid segments on ball joints, as the Open Dynamics Engine's dWorldStep
+/// makes it, solved along the tree; private.
 #ifndef HIMC_TREE_H
 #define HIMC_TREE_H
 

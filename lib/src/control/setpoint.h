@@ -4,6 +4,7 @@
 #ifndef HIMC_SETPOINT_H
 #define HIMC_SETPOINT_H
 
+#include "base/interpolate.h"
 #include "control/controller.h"
 
 /// Targets of tips and joints at a tick, and their motion.
@@ -16,9 +17,21 @@ typedef struct himc_setpoint {
 /// Fills the posture of a tick from its tips.
 HIMC_RT void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *posture);
 
-/// Tips and joint targets at `time` between two ticks into `reference`; contact flags are left
-/// alone.
-HIMC_RT void himc_setpoint_interpolate(const himc_setpoint *from, const himc_setpoint *to,
-                                       double time, himc_reference *reference);
+#define HIMC_MOVING_JOINTS (HIMC_LEFT_UPPER_LEG - 1) ///< the joints before the hips
+
+/// The motion between two ticks.
+typedef struct himc_setpoint_course {
+    double from, length;            ///< time of the first tick, and to the second (s)
+    himc_target tip[HIMC_HANDS][2]; ///< at both ticks
+    himc_posture_motion posture;    ///< at the second tick, for joints that do not move
+    joint_knot knot[HIMC_MOVING_JOINTS][2];
+} himc_setpoint_course;
+
+HIMC_RT void himc_setpoint_course_make(himc_setpoint_course *course, const himc_setpoint *from,
+                                       const himc_setpoint *to);
+
+/// Tips and joint targets at `time` into `reference`; contact flags are left alone.
+HIMC_RT void himc_setpoint_at(const himc_setpoint_course *course, double time,
+                              himc_reference *reference);
 
 #endif

@@ -5,7 +5,6 @@
 /// (himc_contact_clear) it runs free in long vectorised passes, with the same bits as single
 /// steps (bank.c); otherwise each sample is a himc_contact_step of all sticks. So the output does
 /// not depend on how the caller cuts time into blocks.
-#include "drum/drum_job.h"
 #include "drum/drum_state.h"
 
 #include "base/line.h"

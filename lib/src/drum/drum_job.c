@@ -1,7 +1,6 @@
 /// drum_job.c: a command that computes a drum's head anew, mode by mode, is carried out on a copy of
 /// the drum, at rest; then the two exchange their heads. The head that sounds gives its motion to
 /// the new one. If another command has changed it meanwhile, a new copy is made.
-#include "drum/drum_job.h"
 #include "drum/drum_state.h"
 
 #include <math.h>

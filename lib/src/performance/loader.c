@@ -6,7 +6,7 @@
 /// helper, except in himc_loader_finish and himc_loader_free.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/loader.h"
-#include "drum/drum_job.h"
+#include "drum/drum_performer.h"
 #include "performance/performance_job.h"
 
 #include <pthread.h>

@@ -297,12 +297,13 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
     else
         m->from = m->to;
     fill_tick(m, s, &m->to, next);
+    himc_setpoint_course_make(&m->between, &m->from, &m->to);
     m->replan = false;
 }
 
 void himc_motion_interpolate(performance_motion *m, double t)
 {
-    himc_setpoint_interpolate(&m->from, &m->to, t, &m->reference);
+    himc_setpoint_at(&m->between, t, &m->reference);
 }
 
 void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skeleton,

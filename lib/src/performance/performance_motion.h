@@ -41,6 +41,7 @@ typedef struct performance_motion {
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;        ///< of the ticks before and after
+    himc_setpoint_course between;  ///< these ticks
     himc_reference reference;      ///< now
     bool replan;                   ///< `from` is read again, too
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach

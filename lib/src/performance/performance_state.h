@@ -14,7 +14,7 @@
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
-#include "drum/drum_job.h"
+#include "drum/drum_performer.h"
 #include "himc/mocap.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"
