@@ -11,10 +11,10 @@
 #define HAVE_PD 1
 #endif
 
-#include "session.h"
-
 #include "drum/drum_state.h"
 #include "performance/performance_state.h"
+
+#include "session.h"
 
 #define RATE 48000
 #define LENGTH 48000

@@ -160,7 +160,7 @@ static void random_change(char *text, size_t size, unsigned *seed)
 // several mallets at once, and changes one after the other, a few samples apart
 static void test_random_changes_of_drums_in_contact_add_no_energy(void)
 {
-    for (unsigned first = 1; first <= 100; first++) {
+    for (unsigned first = 1; first <= 60; first++) {
         unsigned seed = first * 7919;
         char story[1000] = "";
         himc_drum *drum = new_drum("modes 40");
@@ -211,9 +211,9 @@ static void test_no_change_while_a_performer_touches_adds_energy(void)
     himc_performance *p = session_new();
     session_do(p, "drum kettle");
     himc_drum *drum = himc_performance_drum(p, 0);
-    for (size_t i = 0; i < 2 * sizeof changes / sizeof *changes; i++) {
-        const char *change = changes[i % (sizeof changes / sizeof *changes)];
-        int hand = (int)i % 2, into = choose(&seed, 40);
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        const char *change = changes[i];
+        int hand = (int)i % 2, into = choose(&seed, 20);
         const stick_contact *c = &p->contacts.hand[hand];
         tell(drum, mallets[choose(&seed, 10)]);
         session_do(p, "hit %s legato %.2f", himc_hand_name((himc_hand)hand), chance(&seed));
@@ -237,7 +237,7 @@ static void test_no_change_while_a_performer_touches_adds_energy(void)
         drum = himc_performance_drum(p, 0);
     }
     printf("%d of the changes during a touch\n", touching);
-    TEST_ASSERT_TRUE(touching > 20);
+    TEST_ASSERT_TRUE(touching > 10);
     himc_performance_free(p);
 }
 

@@ -238,6 +238,33 @@ static void test_a_drum_changed_meanwhile_keeps_both_changes(void)
     himc_performance_free(p);
 }
 
+static void test_a_drum_that_changes_all_the_time_does_not_hold_up_a_load(void)
+{
+    static const char *const loads[] = {"score " SCORE, "take " BVH};
+    himc_performance *p = session_new();
+    himc_loader *loader = loader_new();
+    double tension = 3000;
+    session_do(p, "drum kettle 26");
+    himc_drum *drum = himc_performance_drum(p, 0);
+    write_take();
+    write_text(SCORE, "kettle modes 90; kettle decay 0.7; stroke 1 left legato f;\n");
+    for (int i = 0; i < 3; i++) {
+        long runs = 0;
+        TEST_ASSERT_TRUE(i < 2 ? ask(loader, p, loads[i]) : ask_drum(loader, drum, "modes 60"));
+        for (char text[64]; himc_loader_run(loader); runs++) {
+            snprintf(text, sizeof text, "tension %g", tension++);
+            session_drum(p, 0, text);
+            snprintf(text, sizeof text, "place %g 0 0.85", 0.6 + 0.001 * (runs % 100));
+            session_drum(p, 0, text);
+            TEST_ASSERT_LESS_THAN(1000000, runs);
+        }
+        TEST_ASSERT_EQUAL_STRING("done", told[i]);
+        TEST_ASSERT_EQUAL_INT(i < 2 ? 90 : 60, modes_of(p));
+    }
+    himc_loader_free(loader);
+    himc_performance_free(p);
+}
+
 // a head exchanged while it sounds goes on as one that was changed in place
 static void test_a_head_from_the_helper_sounds_on_as_one_changed_in_place(void)
 {
@@ -349,6 +376,7 @@ int main(void)
     RUN_TEST(test_a_failed_load_is_told_in_its_line_and_the_next_go_on);
     RUN_TEST(test_the_257th_command_that_waits_is_dropped_with_a_line);
     RUN_TEST(test_a_drum_changed_meanwhile_keeps_both_changes);
+    RUN_TEST(test_a_drum_that_changes_all_the_time_does_not_hold_up_a_load);
     RUN_TEST(test_a_head_from_the_helper_sounds_on_as_one_changed_in_place);
     RUN_TEST(test_a_follower_gets_its_leaders_head);
     RUN_TEST(test_a_head_is_installed_without_the_allocator);

@@ -313,6 +313,7 @@ static void print_counts(void)
     for (int k = 0; k < SPOILINGS; k++)
         printf("  %-14s %8ld tried, %8ld refused in one line\n", spoiling_name[k], seen.spoilt[k],
                seen.answered[k]);
+    fflush(stdout);
 }
 
 static long from_environment(const char *name, long usual)

@@ -17,6 +17,10 @@ typedef enum himc_job_state {
     HIMC_JOB_AGAIN   ///< call `prepare` again: the instrument has changed, or the next part is due
 } himc_job_state;
 
+/// An instrument that changes all the time does not hold up a job for ever: after so many times
+/// `install` does with what it has. Chosen.
+#define HIMC_JOB_TRIES 3
+
 typedef struct himc_job himc_job;
 /// The first member of each kind of job.
 struct himc_job {

@@ -1,6 +1,7 @@
 /// drum_job.c: a command that computes a drum's head anew, mode by mode, is carried out on a copy of
 /// the drum, at rest; then the two exchange their heads. The head that sounds gives its motion to
-/// the new one. If another command has changed it meanwhile, a new copy is made.
+/// the new one. If another command has changed it meanwhile, a new copy is made; if that happens
+/// again and again, the command is carried out in place.
 #include "drum/drum_state.h"
 
 #include <math.h>
@@ -58,6 +59,7 @@ typedef struct drum_job {
     himc_command command;
     himc_drum_form form; ///< of the drum when the job was made
     himc_drum *made;     ///< owned
+    int tries;
 } drum_job;
 
 static bool prepare(himc_job *job, himc_error *error)
@@ -71,11 +73,12 @@ static bool prepare(himc_job *job, himc_error *error)
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
-    (void)error;
     if (himc_drum_has_form(j->drum, &j->form)) {
         himc_drum_exchange(j->drum, j->made);
         return HIMC_JOB_DONE;
     }
+    if (++j->tries == HIMC_JOB_TRIES)
+        return himc_drum_command(j->drum, &j->command, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
     himc_drum_form_free(&j->form);
     j->form = himc_drum_form_of(j->drum);
     return HIMC_JOB_AGAIN;
@@ -109,6 +112,7 @@ typedef struct follow_job {
     const himc_membrane *leader;
     himc_membrane_form form; ///< of the leader, at the follower's rate
     himc_membrane *made;     ///< owned
+    int tries;
 } follow_job;
 
 static void copy_leader(follow_job *j)
@@ -130,8 +134,8 @@ static himc_job_state install_follower(himc_job *job, himc_error *error)
 {
     follow_job *j = (follow_job *)job;
     (void)error;
-    if (himc_membrane_alike(j->made, j->leader) &&
-        himc_membrane_rate(j->made) == himc_membrane_rate(j->follower)) {
+    bool same = himc_membrane_alike(j->made, j->leader) || ++j->tries == HIMC_JOB_TRIES;
+    if (same && himc_membrane_rate(j->made) == himc_membrane_rate(j->follower)) {
         himc_membrane_exchange(j->follower, j->made);
         return HIMC_JOB_DONE;
     }

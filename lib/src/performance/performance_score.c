@@ -27,6 +27,7 @@ typedef struct score_drum {
     himc_drum *missing; ///< owned; a drum to be added, NULL if there is one
     drum_source source; ///< of the missing one
     bool exchanged;     ///< the drum has the head of the trial
+    bool changed;       ///< since the trial: lines are carried out in place
 } score_drum;
 
 /// In the order of installing.
@@ -50,6 +51,7 @@ typedef struct score_job {
     score_drum drum[HIMC_DRUMS];
     int drums;
     // how far it is installed
+    int tries;
     score_part part;
     int at;                ///< next line or stroke
     bool queued;           ///< it follows the one that plays
@@ -243,7 +245,7 @@ static bool run_on_drum(score_job *j, const himc_score_line *line, himc_error *e
     if (!installed_drum(j, line->drum, &index, error))
         return false;
     himc_drum *drum = j->performance->drums.slot[index].drum;
-    if (!(himc_command_table((int)line->command.id)->marks & HIMC_CHANGES_HEAD))
+    if (made->changed || !(himc_command_table((int)line->command.id)->marks & HIMC_CHANGES_HEAD))
         return himc_drum_command(drum, &line->command, error) ||
                himc_error_prefix(error, "%s", line->drum);
     if (!made->exchanged)
@@ -353,21 +355,27 @@ static void copy_performance(score_job *j)
     j->recording = p->recording.file != NULL;
 }
 
-// true if the drums are those with which the score was tried
-static bool drums_as_tried(const score_job *j)
+// true if the drums are those with which the score was tried; marks those that are not
+static bool drums_as_tried(score_job *j)
 {
     const performance_drums *drums = &j->performance->drums;
     bool same = drums->count == j->forms && j->sample_rate == j->performance->clock.sample_rate;
-    for (int i = 0; same && i < j->forms; i++)
-        same = strcmp(himc_drum_name(drums->slot[i].drum), j->form[i].name) == 0 &&
-               himc_drum_has_form(drums->slot[i].drum, &j->form[i]);
+    for (int i = 0; i < drums->count; i++) {
+        himc_drum *drum = drums->slot[i].drum;
+        const himc_drum_form *form = find_form(j, himc_drum_name(drum));
+        bool changed = !form || !himc_drum_has_form(drum, form);
+        score_drum *made = find_drum(j, himc_drum_name(drum));
+        if (made)
+            made->changed = changed;
+        same = same && !changed;
+    }
     return same;
 }
 
 static himc_job_state begin(score_job *j)
 {
     himc_performance *p = j->performance;
-    if (!drums_as_tried(j)) {
+    if (!drums_as_tried(j) && ++j->tries < HIMC_JOB_TRIES) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
     }

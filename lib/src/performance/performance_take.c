@@ -62,6 +62,7 @@ typedef struct take_job {
     himc_posture_regression regression;
     bool fitted;
     himc_error unfitted; ///< why not; "" if no arm is shown
+    int tries;
 } take_job;
 
 static bool same_place(himc_vec3 a, himc_vec3 b)
@@ -409,7 +410,8 @@ static bool drum_as_seen(const take_job *j)
     const himc_performance *p = j->performance;
     if (!j->has_drum)
         return p->drums.count == 0 && j->sample_rate == p->clock.sample_rate;
-    return himc_head_frame_equal(himc_drums_frame(&p->drums, 0), &j->place);
+    return j->tries == HIMC_JOB_TRIES ||
+           himc_head_frame_equal(himc_drums_frame(&p->drums, 0), &j->place);
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)
@@ -418,6 +420,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_performance *p = j->performance;
     body_parts parts = {.character = NULL};
     performance_settings s = settings_of(j);
+    j->tries++;
     if (!drum_as_seen(j)) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
