@@ -140,6 +140,30 @@ test-asan: deps ## the tests in C, and the viewer's, under the address and undef
 check-asan: units $(if $(TOOL_O),$(PROGRAM)) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/test_viewer.sh)
 
+# the tests with several threads: of the network, and of the loader
+THREADED := $(filter $(BUILD)/tests/test_osc% $(BUILD)/tests/test_loader%,$(UNIT))
+test-tsan: deps ## the tests with several threads under the thread sanitizer
+	@$(MAKE) check-tsan BUILD=build/tsan SANITIZE=-fsanitize=thread
+
+check-tsan: $(THREADED)
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(THREADED)
+
+clang: deps ## all of it compiled by clang, whose warnings are errors
+	@tools/deps.sh tools/deps-clang.txt
+	@$(MAKE) units build/clang/bin/himc $(if $(WEBSOCKETS),build/clang/bin/himc-viewer) BUILD=build/clang CC=clang CFLAGS="$(CFLAGS) -Werror"
+
+# of the tests' scripts those that run nothing but the program
+COVERED := $(addprefix tests/test_,cli.sh evaluate.sh osc_serve.sh osc_vmc.sh)
+coverage: deps ## the share of lib/ that the tests run, at least 97 %; what they do not run is in build/coverage/coverage.txt
+	@tools/deps.sh tools/deps-coverage.txt
+	@$(MAKE) check-coverage BUILD=build/coverage SANITIZE="--coverage -fprofile-update=atomic" CFLAGS=-O1
+
+check-coverage: units $(PROGRAM)
+	@find $(BUILD) -name '*.gcda' -delete
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(COVERED)
+	@gcovr -j $(JOBS) --root . --filter lib/ --exclude-unreachable-branches --txt $(BUILD)/coverage.txt \
+	    --print-summary --fail-under-line 97 $(BUILD)/lib
+
 # how long each target runs (s)
 FUZZ_SECONDS ?= 60
 fuzz: deps ## arbitrary bytes to all readers by clang's libFuzzer, FUZZ_SECONDS=60 each; FUZZ_TARGETS="bvh osc" only these
@@ -227,7 +251,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands

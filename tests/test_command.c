@@ -575,8 +575,8 @@ static void test_random_atoms_never_break_the_parser(void)
                                        "A2",
                                        "soft",
                                        "\n",
-                                       "a very long word indeed, longer "
-                                       "than anything the table would ever ask for, to be cut"};
+                                       ("a very long word indeed, longer "
+                                        "than anything the table would ever ask for, to be cut")};
     unsigned seed = 1;
     int good = 0;
     for (int k = 0; k < 100000; k++) {

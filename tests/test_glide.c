@@ -1,4 +1,5 @@
 /// test_glide.c: the film's stretching: the rise of pitch, and that energy never grows.
+#include "base/random.h"
 #include "drum/contact.h"
 #include "drum/membrane_probe.h"
 
@@ -193,6 +194,94 @@ static void test_glide_energy_never_grows_in_any_step_with_losses_air_and_sticks
     TEST_ASSERT_TRUE(worst < 1e-12);
 }
 
+static double between(uint64_t *state, double low, double high)
+{
+    return low + (high - low) * (double)(himc_random_bits(state) >> 11) * 0x1p-53;
+}
+
+// Sticks of random felt strike anywhere at random times, also while the head rings. The sample that
+// launches a stick adds its energy; in every other one, energy does not grow.
+static void test_glide_energy_never_grows_with_random_strokes(void)
+{
+    uint64_t state = 5;
+    double worst = 0;
+    int strokes = 0;
+    for (int k = 0; k < 6; k++) {
+        head.decay_constant = between(&state, 0, 5);
+        head.air = k % 2;
+        head.modes = 40 + 80 * k;
+        remake(RATE);
+        double lowest = 0, most = 0;
+        for (int i = 0; i < STICKS; i++)
+            place(i, 0, 0, 0, 1e6);
+        for (int n = 0; n < 6000; n++) {
+            bool launched = himc_random_bits(&state) % 800 == 0;
+            if (launched) {
+                double r = 0.9 * sqrt(between(&state, 0, 1)), turn = between(&state, 0, 6.28);
+                place(strokes++ % STICKS, r * cos(turn), r * sin(turn), between(&state, 1, 15),
+                      pow(10, between(&state, 6, 12)));
+            }
+            double before = energy(STICKS);
+            lowest = launched || n == 0 ? before : fmin(lowest, before);
+            himc_contact_step(membrane, sticks, STICKS);
+            most = fmax(most, energy(STICKS));
+            worst = fmax(worst, (energy(STICKS) - lowest) / (most + 1e-9));
+        }
+    }
+    printf("%d strokes, largest growth %.2g\n", strokes, worst);
+    TEST_ASSERT_TRUE(strokes > 30 && worst < 1e-12);
+}
+
+// the head 0.2 s after a blow; with `fine` the film acts after every sample, as a force makes it
+static void ring(double velocity, double k, bool fine)
+{
+    double sound, *const out = &sound, seen, q, v;
+    remake(RATE);
+    place(0, -0.6, 0, velocity, k);
+    for (int n = 0; n < 960; n++)
+        himc_contact_step(membrane, sticks, 1);
+    himc_membrane_state(membrane, 0, &q, &v);
+    himc_membrane_excite(membrane, 0, q, v); // the film's stretching is found anew from all modes
+    for (int n = 0; n < RATE / 5; n++) {
+        if (fine)
+            himc_membrane_push(membrane, 0, 0, 1e-30);
+        himc_membrane_run(membrane, 1, &out, &seen);
+    }
+}
+
+static void test_glide_of_every_mode_is_that_of_steps_of_a_sample_within_half_a_cent(void)
+{
+    static double q[400], v[400];
+    double worst = 0;
+    head.modes = 400;
+    head.decay_constant = 2.2;
+    head.decay_square = 0.15e-6;
+    for (double k = 1e6; k < 2e12; k *= 1000)
+        for (double velocity = 2; velocity < 13; velocity *= 2.3) {
+            double most = 0;
+            head.radius = head.radius > 0.2 ? 0.1 : 0.328;
+            ring(velocity, k, true);
+            for (int i = 0; i < 400; i++)
+                himc_membrane_state(membrane, i, &q[i], &v[i]);
+            ring(velocity, k, false);
+            for (int pass = 0; pass < 2; pass++)
+                for (int i = 0; i < 400; i++) {
+                    himc_mode mode = himc_membrane_mode(membrane, i);
+                    double omega = 2 * HIMC_PI * mode.frequency, got_q, got_v;
+                    double part = mode.mass * (v[i] * v[i] + omega * omega * q[i] * q[i]);
+                    himc_membrane_state(membrane, i, &got_q, &got_v);
+                    double turn = atan2(got_v, omega * got_q) - atan2(v[i], omega * q[i]);
+                    double cents = 1200 / log(2) * remainder(turn, 2 * HIMC_PI) / (omega * 0.2);
+                    if (pass == 0)
+                        most = fmax(most, part);
+                    else if (part > 1e-6 * most) // 60 dB below the loudest
+                        worst = fmax(worst, fabs(cents));
+                }
+        }
+    printf("largest difference %.2g cent\n", worst);
+    TEST_ASSERT_TRUE(worst > 1e-6 && worst < 0.5);
+}
+
 static void test_glide_ends_with_the_sound_and_gives_the_same_bits_in_any_blocks(void)
 {
     static double sound[4][96000], displacement[96000];
@@ -221,6 +310,8 @@ int main(void)
     RUN_TEST(test_glide_of_one_mode_agrees_with_duffings_oscillator);
     RUN_TEST(test_glide_without_losses_keeps_energy_with_any_sticks);
     RUN_TEST(test_glide_energy_never_grows_in_any_step_with_losses_air_and_sticks);
+    RUN_TEST(test_glide_energy_never_grows_with_random_strokes);
+    RUN_TEST(test_glide_of_every_mode_is_that_of_steps_of_a_sample_within_half_a_cent);
     RUN_TEST(test_glide_ends_with_the_sound_and_gives_the_same_bits_in_any_blocks);
     return UNITY_END();
 }

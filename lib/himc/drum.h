@@ -67,6 +67,9 @@ HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double
 /// many there are, the others are silent).
 HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
                                     double *sound);
+/// Whether the displacement of the watched point is computed, as it is at first; without, it reads
+/// as 0 and the drum costs less.
+HIMC_RT void himc_drum_watch(himc_drum *drum, bool on);
 /// Samples advanced since the last realign.
 HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
 /// Counts time from 0 again; the last `ahead` samples become samples 0 .. ahead - 1. The sound goes

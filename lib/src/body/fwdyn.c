@@ -5,9 +5,9 @@
 /// joint, H = m [c]x the moment for a unit acceleration of the joint and M the mass (each including
 /// the children's mass matrices A_c, moved to this joint),
 ///     J alpha + H a = -n,   f = M a + H' alpha + p   =>   A = M - H' J^-1 H,   b = p - H' J^-1 n,
-/// (`response` is J^-1 H), where n and p sum up centripetal terms, gravity, torques and forces (Featherstone 2008, chapter
-/// 7, for joints with three rotational freedoms). The legs hang on the fixed pelvis, so the arms do
-/// not act on them, and they are left out.
+/// where n and p sum up centripetal terms, gravity, torques and forces (Featherstone 2008, chapter
+/// 7, for joints with three rotational freedoms); J^-1 H is called the response. The legs hang on
+/// the fixed pelvis, so the arms do not act on them, and they are left out.
 ///
 /// A joint that resists its own relative acceleration with D (alpha - alpha_p) (a servo integrated
 /// implicitly, D = h Kd + h^2 Kp) transmits moments too. With K = (J + D)^-1

@@ -13,11 +13,38 @@
 /// of 64 samples, a pass; a readout's samples within it come from the state at its start. With C_n,
 /// S_n the coefficients of n samples, the readout rp p + rs s is after n samples
 ///     y_n = C_n a + S_n b,   a = rp p + rs s,   b = rp s - rs p,
-/// taken from a table for n = 1 .. 16, eight samples at once, and from then on
+/// taken from a table for n = 1 .. 8, again for the eight after them, and from then on
 ///     y_n = 2 C_8 y_(n-8) - (C_8^2 + S_8^2) y_(n-16).
 /// When a force ends the pass early, the state makes the steps of 32, 16, .. samples that lead there.
 /// So the steps hang on the forces alone, not on how many samples are asked for at a time, and a
 /// readout costs only when it is read.
+///
+/// The film, of energy s^2/2, pulls with the modal forces -s g, g_i = a_i q_i, and s' = g . q'.
+/// It is split from the rest (energy quadratisation: Ducceschi & Bilbao 2019; splitting: Strang
+/// 1968). While the oscillators make their step, s holds and the film does not act. Then, in no time,
+/// the film and the velocities exchange what belongs to the time t, while all q hold:
+///     v' = v - t (s + u/2) g/m,   s' = s + u,   u = t g . (v + v')/2,
+/// which is linear in u, and one division solves it. The modes gain sum m (v'^2 - v^2)/2 =
+/// -t (s + u/2) g . (v + v')/2 = -(s + u/2) u, the film s'^2/2 - s^2/2 = (s + u/2) u: together
+/// nothing, for any t, forwards or backwards. The oscillators' own step takes energy or adds the work
+/// of a force, whatever the film. So energy grows by the work of forces alone, however long the film
+/// is held, and contact need not know of the film.
+///
+/// Half of an exchange is made before a step of the oscillators, half after: of second order, and the
+/// pitch of each mode rises as it would with shorter steps, whatever its frequency w. The film is
+/// `lead` samples ahead of the oscillators; a step that a force ends early takes back what it has had
+/// too much. In the samples between, a readout adds what the film would do, to first order in time.
+///
+/// The steps are 1, 4, 8 or 16 samples: with the lowest mode's w t, about (w t)^2/9 of a rise of its
+/// pitch is lost, and the longest steps are taken that lose little of the largest rise at present.
+/// Exchanges at w t near pi would see a mode too seldom to follow its share of s. So above w t = 1
+/// (478 Hz with 16 samples of 48000) a mode makes steps of 64 samples, and the film only turns its
+/// phase, by w' t with w' = s a/(2 m w): a rotation of (w q, v), which keeps its energy. Its share of
+/// s is small. It moves q between two steps, so contact waits for it (himc_bank_ready). All this is
+/// decided at the start of a pass of 64.
+///
+/// s follows what the state makes of it to second order. After forces and every 1024 samples it is
+/// set to that, and all velocities are scaled to take or give the difference of energy.
 ///
 /// The order of all sums is fixed (bank_kernel.h): the same bits on any machine. About every 1024
 /// samples the oscillators at the top that have fallen below 1e-15 m/s are set to rest and skipped
@@ -30,11 +57,16 @@
 
 #define LANES HIMC_BANK_LANES
 #define PASS HIMC_BANK_PASS
-#define POWERS 7            // coefficients are kept for 1, 2, 4, .. 64 samples
-#define QUIET 1e-15         // (m/s) of p and s; chosen: 300 dB below a stroke
-#define FLUSH_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
-#define HIGHEST 0.49        // of the sample rate; chosen: just below half, where aliasing begins
-#define ALIGNMENT 64        // (bytes) a cache line
+#define LEVELS 4           // of the film's strength
+#define REACH 1.0          // w t up to which the film acts on a mode; chosen: well below pi
+#define LOWEST 0.35        // w t of the lowest mode at most, in steps of several samples; chosen
+#define ACCURACY 1e-3      // rise of stiffness times the square of that; chosen: 0.1 cent
+#define BLOCK 128          // oscillators whose waves are in the cache together; chosen
+#define POWERS 7           // coefficients are kept for 1, 2, 4, .. 64 samples
+#define QUIET 1e-15        // (m/s) of p and s; chosen: 300 dB below a stroke
+#define TIDY_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
+#define HIGHEST 0.49       // of the sample rate; chosen: just below half, where aliasing begins
+#define ALIGNMENT 64       // (bytes) a cache line
 
 // coefficients for a number of samples, or for a substep
 typedef struct rotation {
@@ -46,6 +78,27 @@ typedef struct effect {
     double *p, *s; // added to p and s by 1 N
 } effect;
 
+// lengths of the film's steps (samples)
+static const int steps[LEVELS] = {1, 4, 8, 16};
+
+typedef struct film {
+    bool set, on;
+    double s;                       // (J^1/2)
+    double mean;                    // s + u/2 of the last exchange
+    bool moved;                     // a force has acted since s was last anchored
+    double power;                   // g . v, the rate of s, at the last exchange
+    double lead;                    // samples that the film is ahead of the oscillators
+    double least;                   // (J) it goes off below this energy of the oscillators
+    double most[LEVELS];            // s up to which the steps may be so long
+    int reach[LEVELS];              // oscillators on which it acts (a multiple of LANES)
+    int level;                      // of the last exchange
+    double *on_p, *per_mass, *damp; // a/w_d, 1/m, d/w_d
+    double *kick;                   // g/m at the last exchange
+    double due;                     // integral of s since the others were turned (J^1/2 s)
+    double *rate;                   // a/(2 m w): their rise of w per s
+    double *tight, *slack;          // w/w_d, w_d/w
+} film;
+
 struct himc_bank {
     const himc_bank_kernel *loops;
     int capacity;  // a multiple of LANES
@@ -55,33 +108,43 @@ struct himc_bank {
     uint64_t pass; // number of the present pass
     int at;        // samples that have passed in it
     int length;    // of the present pass; 0 before it begins
+    uint64_t part; // number of the film's present step
+    int low;       // the first `low` oscillators make the film's steps, the others the pass
+    int step_at;   // samples that have passed in the film's step
+    int step;      // its length
     bool forced;   // a force has acted: the next step is a single sample
     double *memory;
     double *p, *s;          // state at the start of the pass
     rotation power[POWERS]; // of 2^k samples
-    rotation part;          // of a substep
+    rotation sub;           // of a substep
     effect whole, parted;   // in a sample, in a substep
     rotation present;       // of a step of the present length
     effect push;            // in it
-    himc_step_length step;
-    int substeps;                          // of a sample
+    himc_step_length kind;
+    int substeps; // of a sample
+    double h;     // a sample (s)
+    film film;
     double *omega, *decay, *mass, *damped; // w, d, m, w_d
     double *q_per_p;                       // 1/w_d
     double *table, *twice, *fall;          // of himc_bank_waves
-    double *a, *b;
+    _Alignas(
+        ALIGNMENT) double waves[4][BLOCK]; // a and b, of the first eight samples and the second
 };
 
-#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 4 + HIMC_BANK_TABLE)
+#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + HIMC_BANK_TABLE)
 
 static size_t round_up(size_t n, size_t multiple)
 {
     return (n + multiple - 1) / multiple * multiple;
 }
 
-// from now on no oscillator counts as being at rest
+// from now on only the oscillators at the top that are at rest count as such
 static void wake(himc_bank *bank)
 {
-    bank->live = (int)round_up((size_t)bank->count, LANES);
+    int live = bank->count;
+    while (live > 0 && bank->p[live - 1] == 0 && bank->s[live - 1] == 0)
+        live--;
+    bank->live = (int)round_up((size_t)live, LANES);
 }
 
 // takes the next array from the block
@@ -95,11 +158,13 @@ static double *take(himc_bank *bank, double **free_memory)
 static void share_memory(himc_bank *bank)
 {
     double *rest = bank->memory;
-    double **single[] = {&bank->p,       &bank->s,       &bank->omega,   &bank->decay,
-                         &bank->mass,    &bank->damped,  &bank->q_per_p, &bank->twice,
-                         &bank->fall,    &bank->a,       &bank->b,       &bank->part.c,
-                         &bank->part.s,  &bank->whole.p, &bank->whole.s, &bank->parted.p,
-                         &bank->parted.s};
+    film *f = &bank->film;
+    double **single[] = {&bank->p,       &bank->s,        &bank->omega,    &bank->decay,
+                         &bank->mass,    &bank->damped,   &bank->q_per_p,  &bank->twice,
+                         &bank->fall,    &bank->sub.c,    &bank->sub.s,    &bank->whole.p,
+                         &bank->whole.s, &bank->parted.p, &bank->parted.s, &f->on_p,
+                         &f->per_mass,   &f->damp,        &f->kick,        &f->rate,
+                         &f->tight,      &f->slack};
     for (size_t i = 0; i < sizeof single / sizeof *single; i++)
         *single[i] = take(bank, &rest);
     for (int k = 0; k < POWERS; k++)
@@ -111,7 +176,7 @@ himc_bank *himc_bank_new(int capacity, himc_error *error)
 {
     capacity = (int)round_up((size_t)capacity, LANES);
     size_t length = (size_t)capacity, bytes = ARRAYS * length * sizeof(double);
-    himc_bank *bank = calloc(1, sizeof *bank);
+    himc_bank *bank = aligned_alloc(ALIGNMENT, round_up(sizeof *bank, ALIGNMENT));
     double *memory = aligned_alloc(ALIGNMENT, round_up(bytes, ALIGNMENT));
     if (!bank || !memory) {
         free(bank);
@@ -160,30 +225,85 @@ void himc_bank_set_substeps(himc_bank *bank, int count)
 
 void himc_bank_set_step(himc_bank *bank, himc_step_length step)
 {
-    bank->step = step;
-    bank->present = step == HIMC_STEP_SUBSTEP ? bank->part : bank->power[0];
+    bank->kind = step;
+    bank->present = step == HIMC_STEP_SUBSTEP ? bank->sub : bank->power[0];
     bank->push = step == HIMC_STEP_SUBSTEP ? bank->parted : bank->whole;
 }
 
-// begins a new pass at the present state
-static void restart(himc_bank *bank)
+// turns the oscillators from `first` to `end` by n samples
+static void rotate(himc_bank *bank, int first, int end, int n)
 {
-    bank->pass++;
-    bank->at = bank->length = 0;
-}
-
-static void rotate(himc_bank *bank, const rotation *by)
-{
-    bank->loops->rotate(bank->p, bank->s, by->c, by->s, bank->live);
+    for (int k = POWERS - 1; k >= 0 && end > first; k--)
+        if (n >> k & 1)
+            bank->loops->rotate(bank->p + first, bank->s + first, bank->power[k].c + first,
+                                bank->power[k].s + first, end - first);
 }
 
 // brings the state to the present sample, which ends the pass
 static void arrive(himc_bank *bank)
 {
-    for (int k = POWERS - 1; k >= 0; k--)
-        if (bank->at >> k & 1)
-            rotate(bank, &bank->power[k]);
-    restart(bank);
+    rotate(bank, 0, bank->low, bank->step_at);
+    rotate(bank, bank->low, bank->live, bank->at);
+    bank->film.lead -= bank->step_at;
+    bank->film.due += bank->film.s * bank->at * bank->h;
+    bank->at = bank->length = bank->low = bank->step_at = 0;
+    bank->pass++;
+}
+
+// number of oscillators on which the film acts
+static int coupled(const himc_bank *bank)
+{
+    int count = bank->film.reach[bank->film.level];
+    return count < bank->live ? count : bank->live;
+}
+
+// the film's exchange with the velocities, after which it is `lead` samples ahead
+static void exchange(himc_bank *bank, double lead)
+{
+    film *f = &bank->film;
+    double t = (lead - f->lead) * bank->h, sum[2];
+    int count = coupled(bank);
+    f->lead = lead;
+    if (!f->on || t == 0)
+        return;
+    bank->loops->stretch(f->kick, f->on_p, f->per_mass, f->damp, bank->p, bank->s, count, sum);
+    double u = (t * sum[0] - 0.5 * t * t * sum[1] * f->s) / (1 + 0.25 * t * t * sum[1]);
+    bank->loops->add(bank->s, f->kick, -t * (f->s + 0.5 * u), count);
+    f->mean = f->s + 0.5 * u;
+    f->s += u;
+    f->power = sum[0];
+}
+
+// the film is off, and its energy lost
+static void slacken(himc_bank *bank)
+{
+    film *f = &bank->film;
+    f->on = false;
+    f->s = f->power = f->lead = f->due = 0;
+    f->level = 0;
+}
+
+// brings state and film to the present sample, before a change
+static void settle(himc_bank *bank)
+{
+    arrive(bank);
+    exchange(bank, 0);
+}
+
+// s as a readout hears it: at most twice the pull of the last exchange, which a film stiffer than the
+// modes themselves has not had in full
+static double audible(const film *f)
+{
+    return copysign(fmin(fabs(f->s), 2 * fabs(f->mean)), f->s);
+}
+
+// What the film adds to a readout between exchanges, per sample of its lead, `sum` being the
+// readout's weights `film` on the state. The rate of s counts at most so that s doubles in a step.
+static double film_slope(const himc_bank *bank, const himc_readout *readout, double sum)
+{
+    const film *f = &bank->film;
+    double s = audible(f), most = fabs(s) / (LANES * bank->h);
+    return bank->h * sum * (readout->direct ? fmin(fmax(f->power, -most), most) : s);
 }
 
 // p and s of one oscillator at the present sample: the same numbers as by arrive
@@ -191,8 +311,9 @@ static void present_state(const himc_bank *bank, int i, double *p, double *s)
 {
     *p = bank->p[i];
     *s = bank->s[i];
+    int n = i < bank->low ? bank->step_at : bank->at;
     for (int k = POWERS - 1; k >= 0; k--) {
-        if (!(bank->at >> k & 1))
+        if (!(n >> k & 1))
             continue;
         double c = bank->power[k].c[i], w = bank->power[k].s[i], before = *p;
         *p = c * before + w * *s;
@@ -220,20 +341,18 @@ static void find_powers(himc_bank *bank, int i)
 {
     double c1 = bank->power[0].c[i], s1 = bank->power[0].s[i], c = c1, s = s1;
     double *table = bank->table + (size_t)i * HIMC_BANK_TABLE;
-    for (int n = 1; n <= PASS; n = n < 16 ? n + 1 : 2 * n) {
-        if (n <= 16) {
-            double *t = table + (n > LANES ? 2 * LANES : 0) + (n - 1) % LANES;
-            t[0] = c;
-            t[LANES] = s;
-        }
-        for (int k = 1; k < POWERS; k++)
-            if (n == 1 << k) {
-                bank->power[k].c[i] = c;
-                bank->power[k].s[i] = s;
-            }
-        double next = n < 16 ? c * c1 - s * s1 : c * c - s * s;
-        s = n < 16 ? s * c1 + c * s1 : 2 * c * s;
+    for (int n = 0; n < LANES; n++) {
+        table[n] = c;
+        table[n + LANES] = s;
+        double next = c * c1 - s * s1;
+        s = s * c1 + c * s1;
         c = next;
+    }
+    for (int k = 1; k < POWERS; k++) {
+        c = k <= 3 ? table[(1 << k) - 1] : c * c - s * s;
+        s = k <= 3 ? table[(1 << k) - 1 + LANES] : 2 * bank->power[k - 1].c[i] * s;
+        bank->power[k].c[i] = c;
+        bank->power[k].s[i] = s;
     }
     double c8 = bank->power[3].c[i], s8 = bank->power[3].s[i];
     bank->twice[i] = 2 * c8;
@@ -248,10 +367,14 @@ static void set_oscillator(himc_bank *bank, int i, const himc_oscillator *o, dou
     bank->mass[i] = o->mass;
     bank->damped[i] = damped;
     bank->q_per_p[i] = 1 / damped;
+    bank->film.per_mass[i] = 1 / o->mass;
+    bank->film.damp[i] = o->decay / damped;
+    bank->film.tight[i] = o->omega / damped;
+    bank->film.slack[i] = damped / o->omega;
     find_step(&bank->power[0], &bank->whole, i, o, damped, h);
     find_powers(bank, i);
     if (bank->substeps > 1)
-        find_step(&bank->part, &bank->parted, i, o, damped, h / bank->substeps);
+        find_step(&bank->sub, &bank->parted, i, o, damped, h / bank->substeps);
 }
 
 // brings oscillator i to rest, for good: it has no coefficients
@@ -279,19 +402,65 @@ static void carry_over(himc_bank *bank, int i, const himc_oscillator *to, double
     inherit(bank, i, q, v, mass, omega);
 }
 
-void himc_bank_continue(himc_bank *bank, const himc_bank *from)
+// the constants of both are the same
+static bool same_constants(const himc_bank *a, const himc_bank *b)
 {
+    size_t bytes = sizeof(double) * (size_t)a->capacity;
+    return a->count == b->count && a->capacity == b->capacity && a->h == b->h &&
+           memcmp(a->omega, b->omega, bytes) == 0 && memcmp(a->decay, b->decay, bytes) == 0 &&
+           memcmp(a->mass, b->mass, bytes) == 0 && memcmp(a->film.on_p, b->film.on_p, bytes) == 0;
+}
+
+// goes on in the middle of the other's pass, to the last bit
+static void go_on_as(himc_bank *bank, const himc_bank *from)
+{
+    size_t bytes = sizeof(double) * (size_t)bank->capacity;
+    const film *g = &from->film;
+    film *f = &bank->film;
+    memcpy(bank->p, from->p, bytes);
+    memcpy(bank->s, from->s, bytes);
+    bank->live = from->live;
+    bank->age = from->age;
+    bank->at = from->at;
+    bank->length = from->length;
+    bank->low = from->low;
+    bank->step_at = from->step_at;
+    bank->step = from->step;
+    bank->forced = from->forced;
+    f->on = g->on;
+    f->s = g->s;
+    f->mean = g->mean;
+    f->moved = g->moved;
+    f->power = g->power;
+    f->lead = g->lead;
+    f->level = g->level;
+    f->due = g->due;
+    bank->pass++;
+    bank->part++;
+}
+
+void himc_bank_continue(himc_bank *bank, himc_bank *from)
+{
+    if (same_constants(bank, from)) {
+        go_on_as(bank, from);
+        return;
+    }
+    settle(from);
+    bank->age = from->age;
+    bank->film.power = from->film.power;
     for (int i = 0; i < bank->count && i < from->count; i++) {
         double q, v;
         himc_bank_state(from, i, &q, &v);
         inherit(bank, i, q, v, from->mass[i], from->omega[i]);
     }
+    himc_bank_find_film(bank);
 }
 
 void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count, double rate)
 {
     int i = 0;
-    arrive(bank);
+    settle(bank);
+    bank->h = 1 / rate;
     for (; i < count && oscillators[i].omega < 2 * HIMC_PI * HIGHEST * rate; i++) {
         if (i < bank->count)
             carry_over(bank, i, &oscillators[i], 1 / rate);
@@ -306,15 +475,88 @@ void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int coun
 }
 
 void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
-                       himc_readout *readout)
+                       const double *on_force, himc_readout *readout)
 {
+    readout->direct = on_force != NULL;
+    readout->pass = 0;
     for (int i = 0; i < bank->capacity; i++) {
         double q = on_q && i < bank->count ? on_q[i] / bank->damped[i] : 0;
         double v = on_v && i < bank->count ? on_v[i] : 0;
         readout->p[i] = q - (v != 0 ? v * bank->decay[i] / bank->damped[i] : 0);
         readout->s[i] = v;
+        if (readout->film)
+            readout->film[i] =
+                bank->film.on_p[i] * (on_force ? on_force[i] : v * bank->film.per_mass[i]);
     }
-    readout->pass = 0;
+}
+
+void himc_bank_set_film(himc_bank *bank, const double *on_square, double least)
+{
+    film *f = &bank->film;
+    settle(bank);
+    f->set = on_square != NULL;
+    f->least = least;
+    f->due = 0;
+    memset(f->reach, 0, sizeof f->reach);
+    double rise = 0; // the largest of a mode's stiffness per s
+    for (int i = 0; i < bank->count; i++) {
+        double a = on_square ? on_square[i] : 0, omega = bank->omega[i];
+        f->on_p[i] = a * bank->q_per_p[i];
+        f->rate[i] = 0.5 * a * f->per_mass[i] / omega;
+        rise = fmax(rise, a * f->per_mass[i] / (omega * omega));
+        for (int k = 0; k < LEVELS; k++)
+            if (omega * steps[k] * bank->h < REACH)
+                f->reach[k] = (int)round_up((size_t)i + 1, LANES);
+    }
+    for (int k = 0; k < LEVELS; k++) {
+        double angle = bank->omega[0] * steps[k] * bank->h; // of the lowest mode
+        f->most[k] = rise > 0 && angle < LOWEST ? ACCURACY / (rise * angle * angle) : 0;
+    }
+    himc_bank_find_film(bank);
+}
+
+// What s is to be in the present state, so that its mean in coming steps of length t is right:
+// sum a q^2/2, but of each oscillation of s only x/tan x, x = w t, since the exchanges make of it
+// x/sin x, half a step away.
+static double film_of(const himc_bank *bank, double t)
+{
+    const film *f = &bank->film;
+    double sum = 0;
+    for (int i = 0, count = coupled(bank); i < count; i++) {
+        double x = bank->omega[i] * t, y = x * x;
+        double part = 1 - y * (1.0 / 3 + y * (1.0 / 45 + y * 2.0 / 945)); // x / tan x
+        double q = bank->p[i] * bank->q_per_p[i];
+        double v = (bank->s[i] - f->damp[i] * bank->p[i]) * f->slack[i] * bank->q_per_p[i];
+        sum += f->on_p[i] * bank->damped[i] * ((1 + part) * q * q + (1 - part) * v * v);
+    }
+    return 0.25 * sum;
+}
+
+// the highest s that the oscillators could make together
+static double highest(const himc_bank *bank)
+{
+    const film *f = &bank->film;
+    double sum = 0;
+    for (int i = 0; i < bank->live; i++) {
+        double q = bank->p[i] * bank->q_per_p[i];
+        double v = (bank->s[i] - f->damp[i] * bank->p[i]) * f->slack[i] * bank->q_per_p[i];
+        sum += 0.5 * f->on_p[i] * bank->damped[i] * (q * q + v * v);
+    }
+    return sum;
+}
+
+void himc_bank_find_film(himc_bank *bank)
+{
+    film *f = &bank->film;
+    settle(bank);
+    f->level = 0;
+    f->s = f->mean = film_of(bank, 0);
+    f->on = f->moved = f->s > 0;
+}
+
+double himc_bank_film(const himc_bank *bank)
+{
+    return bank->film.s;
 }
 
 double himc_bank_energy(const himc_bank *bank)
@@ -344,7 +586,7 @@ void himc_bank_excite(himc_bank *bank, int index, double q, double v)
 {
     if (index >= bank->count)
         return;
-    arrive(bank);
+    settle(bank);
     bank->p[index] = bank->damped[index] * q;
     bank->s[index] = v + bank->decay[index] * q;
     wake(bank);
@@ -356,78 +598,205 @@ void himc_bank_rest(himc_bank *bank)
     memset(bank->p, 0, sizeof(double) * (size_t)bank->capacity);
     memset(bank->s, 0, sizeof(double) * (size_t)bank->capacity);
     bank->live = bank->age = 0;
-    restart(bank);
+    settle(bank);
+    slacken(bank);
+    bank->forced = true;
 }
 
-// fills readout->ahead for the present pass
-static void look_ahead(const himc_bank *bank, himc_readout *readout)
+// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`, its weights enlarged
+// by those of the film times `by`. Returns the sum of the film's weights on the state.
+static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, double by,
+                        int n, double *out)
 {
-    himc_bank_waves waves = {bank->a, bank->b, bank->table, bank->twice, bank->fall};
-    bank->loops->weigh(bank->a, bank->b, readout->p, readout->s, bank->p, bank->s, bank->live);
-    bank->loops->ahead(&waves, bank->live, readout->ahead);
-    readout->pass = bank->pass;
-}
-
-double himc_bank_read(const himc_bank *bank, himc_readout *readout)
-{
-    if (bank->at == 0)
-        return bank->loops->read(readout->p, readout->s, bank->p, bank->s, bank->live);
-    if (readout->pass != bank->pass)
-        look_ahead(bank, readout);
-    return readout->ahead[bank->at - 1];
-}
-
-double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
-{
-    double sum = 0;
-    for (int i = 0; i < bank->live; i++) {
-        double p, s, c = bank->present.c[i], w = bank->present.s[i];
-        present_state(bank, i, &p, &s);
-        sum += readout->p[i] * (c * p + w * s) + readout->s[i] * (c * s - w * p);
+    double(*w)[BLOCK] = bank->waves, sum = 0;
+    const double *more = r->film ? r->film : r->p;
+    for (int i = first; i < end; i += BLOCK) {
+        int count = end - i < BLOCK ? end - i : BLOCK;
+        himc_bank_waves waves = {
+            {w[0], w[1]},         {w[2], w[3]},         bank->table + (size_t)i * HIMC_BANK_TABLE,
+            bank->power[3].c + i, bank->power[3].s + i, bank->twice + i,
+            bank->fall + i};
+        sum += bank->loops->weigh(&waves, r->p + i, r->s + i, more + i, by, bank->p + i,
+                                  bank->s + i, count, n);
+        bank->loops->ahead(&waves, count, n, out);
     }
     return sum;
 }
 
-// Sets the quiet oscillators at the top to rest, from time to time.
-static void flush_quiet(himc_bank *bank)
+// adds the film's present step to readout->ahead
+static void add_step(himc_bank *bank, himc_readout *readout)
 {
-    if (bank->age < FLUSH_INTERVAL)
+    const film *f = &bank->film;
+    double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
+    bool stretched = readout->film != NULL;
+    double sum =
+        add_waves(bank, readout, 0, bank->low, stretched && readout->direct ? -audible(f) : 0,
+                  bank->step < LANES ? LANES : bank->step, out);
+    double slope = stretched ? film_slope(bank, readout, sum) : 0;
+    for (int n = 0; n < bank->step; n++)
+        ahead[n] += out[n] + (f->lead - 1 - n) * slope;
+    readout->part = bank->part;
+}
+
+// fills readout->ahead as far as the present step goes
+static void look_ahead(himc_bank *bank, himc_readout *readout)
+{
+    if (readout->pass != bank->pass) {
+        memset(readout->ahead, 0, sizeof readout->ahead);
+        add_waves(bank, readout, bank->low, bank->live, 0, PASS, readout->ahead);
+        readout->pass = bank->pass;
+        readout->part = 0;
+    }
+    if (bank->low > 0 && readout->part != bank->part)
+        add_step(bank, readout);
+}
+
+double himc_bank_read(himc_bank *bank, himc_readout *readout)
+{
+    const film *f = &bank->film;
+    if (bank->at > 0) {
+        look_ahead(bank, readout);
+        return readout->ahead[bank->at - 1];
+    }
+    double value = bank->loops->read(readout->p, readout->s, bank->p, bank->s, bank->live);
+    if (!f->on || !readout->film)
+        return value;
+    double sum = bank->loops->dot(readout->film, bank->p, coupled(bank));
+    return value - (readout->direct ? audible(f) * sum : 0) +
+           f->lead * film_slope(bank, readout, sum);
+}
+
+double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
+{
+    const film *f = &bank->film;
+    double value = 0, sum = 0;
+    for (int i = 0; i < bank->live; i++) {
+        double p, s, c = bank->present.c[i], w = bank->present.s[i];
+        present_state(bank, i, &p, &s);
+        value += readout->p[i] * (c * p + w * s) + readout->s[i] * (c * s - w * p);
+        sum += readout->film && i < coupled(bank) ? readout->film[i] * (c * p + w * s) : 0;
+    }
+    return value - (readout->direct ? audible(f) * sum : 0) +
+           (f->lead - bank->step_at - 1) * film_slope(bank, readout, sum);
+}
+
+// Chooses the film's steps, sets s to what the state makes of it, and scales the velocities so that
+// the energy stays. Ends the film when the oscillators' energy has become small.
+static void anchor(himc_bank *bank)
+{
+    film *f = &bank->film;
+    double kinetic = 0, potential = 0, most = highest(bank);
+    exchange(bank, 0);
+    for (f->level = LEVELS - 1; f->level > 0 && most > f->most[f->level];)
+        f->level--;
+    for (int i = 0; i < bank->live; i++) {
+        double v = bank->s[i] - f->damp[i] * bank->p[i], u = f->tight[i] * bank->p[i];
+        kinetic += 0.5 * bank->mass[i] * v * v;
+        potential += 0.5 * bank->mass[i] * u * u;
+    }
+    f->moved = false;
+    if (kinetic + potential <= f->least) {
+        slacken(bank);
         return;
-    bank->age = 0;
+    }
+    // at most half of the velocities' energy is taken, and they are given as much as they have
+    double s = film_of(bank, steps[f->level] * bank->h),
+           gain = fmin(0.5 * (f->s * f->s - s * s), kinetic);
+    if (gain < -0.5 * kinetic) {
+        gain = -0.5 * kinetic;
+        s = sqrt(f->s * f->s + kinetic);
+    }
+    f->s = f->mean = s;
+    double scale = kinetic > 0 ? sqrt(1 + gain / kinetic) : 1;
+    for (int i = 0; i < bank->live; i++) {
+        double lost = f->damp[i] * bank->p[i]; // s = v + d q
+        bank->s[i] = lost + scale * (bank->s[i] - lost);
+    }
+}
+
+// from time to time: sets the quiet oscillators at the top to rest
+static void tidy(himc_bank *bank)
+{
     int live = bank->live;
     while (live > 0 && fabs(bank->p[live - 1]) < QUIET && fabs(bank->s[live - 1]) < QUIET) {
         live--;
         bank->p[live] = bank->s[live] = 0;
     }
     bank->live = (int)round_up((size_t)live, LANES);
+    bank->age = 0;
 }
 
 // a step of its own: a sample after a force, or a substep
 static void single_step(himc_bank *bank)
 {
+    double samples = bank->kind == HIMC_STEP_SUBSTEP ? 1.0 / bank->substeps : 1;
     arrive(bank);
-    rotate(bank, &bank->present);
+    if (bank->film.level > 0)
+        exchange(bank, 0);
+    bank->film.level = 0;
+    exchange(bank, samples / 2);
+    bank->loops->rotate(bank->p, bank->s, bank->present.c, bank->present.s, bank->live);
+    bank->film.lead -= samples;
     bank->age++;
     bank->forced = false;
 }
 
-// samples that the present pass can give, at most n; begins the next one at its end
+// turns the oscillators on which the film does not act by what its pull has been
+static void turn(himc_bank *bank)
+{
+    film *f = &bank->film;
+    int i = coupled(bank);
+    if (f->on && f->due != 0)
+        bank->loops->turn(bank->p + i, bank->s + i, f->rate + i, f->tight + i, f->slack + i,
+                          f->damp + i, f->due, bank->live - i);
+    f->due = 0;
+}
+
+void himc_bank_ready(himc_bank *bank)
+{
+    if (bank->at < bank->length || bank->forced || bank->kind == HIMC_STEP_SUBSTEP)
+        return;
+    arrive(bank);
+    turn(bank);
+}
+
+static void begin_pass(himc_bank *bank)
+{
+    film *f = &bank->film;
+    bool due = bank->age >= TIDY_INTERVAL;
+    if (due)
+        tidy(bank);
+    if (f->on && (due || f->moved))
+        anchor(bank);
+    bank->length = PASS;
+    bank->step = f->on ? steps[f->level] : PASS;
+    bank->low = f->on ? coupled(bank) : 0;
+}
+
+// samples that the present step can give, at most n; begins the next one at its end
 static int go_on(himc_bank *bank, int n)
 {
-    if (bank->at == bank->length) {
-        arrive(bank);
-        flush_quiet(bank);
-        bank->length = PASS;
+    bool next_pass = bank->at == bank->length;
+    if (next_pass) {
+        himc_bank_ready(bank);
+        begin_pass(bank);
+    } else if (bank->step_at == bank->step) {
+        rotate(bank, 0, bank->low, bank->step);
+        bank->film.lead -= bank->step;
+        bank->step_at = 0;
     }
-    int left = bank->length - bank->at;
+    if (bank->step_at == 0) {
+        bank->part++;
+        exchange(bank, 0.5 * bank->step);
+    }
+    int left = bank->step - bank->step_at;
     return n < left ? n : left;
 }
 
 // the samples after `at` of the present pass
-static void copy_ahead(const himc_bank *bank, himc_readout *readout, int n, double *out)
+static void copy_ahead(himc_bank *bank, himc_readout *readout, int n, double *out)
 {
-    if (readout->pass != bank->pass)
-        look_ahead(bank, readout);
+    look_ahead(bank, readout);
     memcpy(out, readout->ahead + bank->at, sizeof *out * (size_t)n);
 }
 
@@ -435,7 +804,7 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
                    double *const *out)
 {
     for (int done = 0, run; done < n; done += run) {
-        bool single = bank->forced || bank->step == HIMC_STEP_SUBSTEP;
+        bool single = bank->forced || bank->kind == HIMC_STEP_SUBSTEP;
         run = single ? 1 : go_on(bank, n - done);
         if (single)
             single_step(bank);
@@ -450,60 +819,20 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
                 copy_ahead(bank, readouts[k], run, out[k] + done);
         }
         bank->at += single ? 0 : run;
+        bank->step_at += single ? 0 : run;
         bank->age += single ? 0 : run;
     }
-}
-
-typedef double pair __attribute__((vector_size(2 * sizeof(double)), may_alias));
-typedef struct lanes {
-    pair a, b;
-} lanes;
-static double total(const lanes *sum)
-{
-    return (sum->a[0] + sum->a[1]) + (sum->b[0] + sum->b[1]);
-}
-
-void himc_bank_run_coupled(himc_bank *bank, const double *weight, himc_tension_coupling *coupling)
-{
-    arrive(bank);
-    bank->forced = false;
-    pair *p = (pair *)bank->p, *s = (pair *)bank->s, *g = (pair *)coupling->shape;
-    const pair *c = (const pair *)bank->present.c, *w = (const pair *)bank->present.s;
-    const pair *a = (const pair *)weight, *b = (const pair *)bank->q_per_p;
-    const pair *push_p = (const pair *)bank->push.p;
-    lanes change = {{0}, {0}}, compliance = {{0}, {0}};
-    for (int i = 0; i < bank->live / 2; i += 2) {
-        pair q0 = p[i], q1 = p[i + 1];
-        pair p0 = c[i] * q0 + w[i] * s[i], p1 = c[i + 1] * q1 + w[i + 1] * s[i + 1];
-        s[i] = c[i] * s[i] - w[i] * q0;
-        s[i + 1] = c[i + 1] * s[i + 1] - w[i + 1] * q1;
-        p[i] = p0;
-        p[i + 1] = p1;
-        pair g0 = g[i] = a[i] * (q0 + p0), g1 = g[i + 1] = a[i + 1] * (q1 + p1);
-        change.a += g0 * (p0 - q0) * b[i];
-        change.b += g1 * (p1 - q1) * b[i + 1];
-        compliance.a += g0 * g0 * b[i] * push_p[i];
-        compliance.b += g1 * g1 * b[i + 1] * push_p[i + 1];
-    }
-    for (int i = bank->live / 2; i < bank->capacity / 2; i++)
-        g[i] = (pair){0};
-    coupling->change = total(&change);
-    coupling->compliance = total(&compliance);
-    bank->age++;
-    flush_quiet(bank);
-}
-
-void himc_bank_coupling_weights(const himc_bank *bank, const double *on_square, double *weight)
-{
-    for (int i = 0; i < bank->capacity; i++)
-        weight[i] = i < bank->count ? 0.5 * on_square[i] * bank->q_per_p[i] : 0;
 }
 
 void himc_bank_push(himc_bank *bank, const double *shape, double force)
 {
     arrive(bank);
-    wake(bank);
+    bank->live = (int)round_up((size_t)bank->count, LANES);
+    bank->age = 0;
     bank->forced = true;
+    if (!bank->film.on)
+        slacken(bank);
+    bank->film.on = bank->film.moved = bank->film.set;
     bank->loops->push(bank->p, bank->s, bank->push.p, bank->push.s, shape, force, bank->live);
 }
 
@@ -515,11 +844,18 @@ void himc_bank_step_response(const himc_bank *bank, const himc_readout *readout,
 
 double himc_bank_response(const himc_bank *bank, const double *shape, const himc_readout *readout)
 {
-    himc_bank_step_response(bank, readout, bank->a);
-    return himc_bank_sum(bank, shape, bank->a);
+    double sum = 0;
+    for (int i = 0; i < bank->capacity; i++)
+        sum += shape[i] * (readout->p[i] * bank->push.p[i] + readout->s[i] * bank->push.s[i]);
+    return sum;
 }
 
 double himc_bank_sum(const himc_bank *bank, const double *shape, const double *response)
 {
     return bank->loops->dot(shape, response, bank->capacity);
+}
+
+bool himc_bank_at_rest(const himc_bank *bank)
+{
+    return bank->live == 0;
 }

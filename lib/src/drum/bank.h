@@ -2,7 +2,8 @@
 ///
 /// m q'' + 2 m d q' + m w^2 q = f. Frequency and decay are exact at any sample rate: the only
 /// assumption is the shape of the force between two samples. The sample rate and the oscillators'
-/// constants may change while the bank sounds.
+/// constants may change while the bank sounds. A film may couple all of them: a spring on the sum of
+/// their squares.
 #ifndef HIMC_BANK_H
 #define HIMC_BANK_H
 
@@ -35,9 +36,9 @@ void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel);
 HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
                            double rate);
 
-/// The oscillators that `from` has, too, begin with its phase and energy, as if they had been in use
+/// Film and oscillators that `from` has, too, begin with its phase and energy, as if they had been in use
 /// here with its constants before the last himc_bank_set.
-HIMC_RT void himc_bank_continue(himc_bank *bank, const himc_bank *from);
+HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from);
 
 /// The bank has coefficients for two lengths of step.
 typedef enum himc_step_length {
@@ -54,40 +55,40 @@ HIMC_RT void himc_bank_set_step(himc_bank *bank, himc_step_length step);
 HIMC_RT int himc_bank_count(const himc_bank *bank);
 
 /// A linear readout of the state, sum_i (weight on q_i) q_i + (weight on q_i') q_i', in the bank's
-/// own coordinates (bank.c). Valid until the next himc_bank_set.
+/// own coordinates (bank.c). Valid until the next himc_bank_set or himc_bank_set_film.
 typedef struct himc_readout {
     double *p, *s;                ///< owned by the caller (padded)
-    uint64_t pass;                ///< to which `ahead` belongs; the caller begins with 0
+    double *film;                 ///< what the film adds, owned by the caller (padded); or NULL
+    bool direct;                  ///< `film` is of its forces themselves, not of what they move
+    uint64_t pass, part;          ///< to which `ahead` belongs; the caller begins with 0
     double ahead[HIMC_BANK_PASS]; ///< its values in the samples of that pass
 } himc_readout;
 
-/// Fills `readout` from weights on displacements and on velocities (either may be NULL).
+/// Fills `readout` from weights on displacements, on velocities and on the film's forces (each may
+/// be NULL).
 HIMC_RT void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
-                               himc_readout *readout);
+                               const double *on_force, himc_readout *readout);
 /// Value of the readout now.
-HIMC_RT double himc_bank_read(const himc_bank *bank, himc_readout *readout);
+HIMC_RT double himc_bank_read(himc_bank *bank, himc_readout *readout);
 /// Value of the readout one step later if no force acts.
 HIMC_RT double himc_bank_peek(const himc_bank *bank, const himc_readout *readout);
 
+/// Makes what changes the state between two samples and is due now. A caller that compares readouts
+/// before and after a step calls it first.
+HIMC_RT void himc_bank_ready(himc_bank *bank);
 /// Runs `n` samples (or one substep) without force: out[k][i] is the value of readouts[k] after
 /// sample i. What is not wanted (out[k] is NULL) is not computed.
 HIMC_RT void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int count,
                            double *const *out);
 
-/// What a spring on the sum of squares Q = sum_i a_i q_i^2/2 sees in a step.
-typedef struct himc_tension_coupling {
-    double *shape;     ///< g_i, the mean of dQ/dq_i before and after (padded); owned by the caller
-    double change;     ///< g . (q after - q before), which is exactly the change of Q
-    double compliance; ///< displacement along g per unit of force along g (sum g_i^2 b1_i)
-} himc_tension_coupling;
-
-/// The weights (padded) for himc_bank_run_coupled from the factors a_i; valid until the next
-/// himc_bank_set.
-HIMC_RT void himc_bank_coupling_weights(const himc_bank *bank, const double *on_square,
-                                        double *weight);
-/// Runs one step without force and fills `coupling`.
-HIMC_RT void himc_bank_run_coupled(himc_bank *bank, const double *weight,
-                                   himc_tension_coupling *coupling);
+/// The film: a spring of energy s^2/2, s = sum_i a_i q_i^2/2, on all oscillators together. Sets the
+/// a_i (count), or NULL for none. It comes on with a force or himc_bank_find_film, and goes off, its
+/// energy lost, when the oscillators together have less than `least` (J).
+HIMC_RT void himc_bank_set_film(himc_bank *bank, const double *on_square, double least);
+/// Finds s from the displacements.
+HIMC_RT void himc_bank_find_film(himc_bank *bank);
+/// s now (J^1/2), 0 while it is off.
+HIMC_RT double himc_bank_film(const himc_bank *bank);
 
 /// After a step was run: adds the effect of `force` (N) during that step, spread over the
 /// oscillators by the weights `shape` (padded).
@@ -105,12 +106,14 @@ HIMC_RT void himc_bank_step_response(const himc_bank *bank, const himc_readout *
 /// sum_i shape_i response_i.
 HIMC_RT double himc_bank_sum(const himc_bank *bank, const double *shape, const double *response);
 
-/// Kinetic and potential energy (J).
+/// Kinetic and potential energy of the oscillators (J), without the film's s^2/2.
 HIMC_RT double himc_bank_energy(const himc_bank *bank);
 /// Displacement and velocity of one oscillator (m, m/s); 0 if it is silent.
 HIMC_RT void himc_bank_state(const himc_bank *bank, int index, double *q, double *v);
 /// Sets them; no effect on a silent one.
 HIMC_RT void himc_bank_excite(himc_bank *bank, int index, double q, double v);
+/// True if all oscillators are at rest.
+HIMC_RT bool himc_bank_at_rest(const himc_bank *bank);
 /// Brings all oscillators to rest.
 HIMC_RT void himc_bank_rest(himc_bank *bank);
 

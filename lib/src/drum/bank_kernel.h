@@ -7,26 +7,36 @@
 #ifndef HIMC_BANK_KERNEL_H
 #define HIMC_BANK_KERNEL_H
 
-#define HIMC_BANK_LANES 8   ///< oscillators at once, samples at once
-#define HIMC_BANK_PASS 64   ///< samples that are computed ahead from one state
-#define HIMC_BANK_TABLE 32  ///< numbers of an oscillator's table
-#define HIMC_BANK_DIRECT 16 ///< samples of a pass that come straight from the table
+#define HIMC_BANK_LANES 8  ///< oscillators at once, samples at once
+#define HIMC_BANK_PASS 64  ///< samples that are computed ahead from one state
+#define HIMC_BANK_TABLE 16 ///< numbers of an oscillator's table
 
 /// What turns two weights and the state at the start of a pass into samples.
 typedef struct himc_bank_waves {
-    double *a, *b;       ///< sample n is the sum of C_n a + S_n b
-    const double *table; ///< C_1 .. C_8, S_1 .. S_8, C_9 .. C_16, S_9 .. S_16 of each oscillator
-    const double *twice; ///< 2 C_8
-    const double *fall;  ///< C_8^2 + S_8^2
+    double *a[2], *b[2];        ///< sample n of the first eight, of the second: sum C_n a + S_n b
+    const double *table;        ///< C_1 .. C_8, S_1 .. S_8 of each oscillator
+    const double *c8, *s8;      ///< C_8, S_8
+    const double *twice, *fall; ///< 2 C_8, C_8^2 + S_8^2
 } himc_bank_waves;
 
 typedef struct himc_bank_kernel {
     const char *name;
     /// p, s = c p + w s, c s - w p
     void (*rotate)(double *p, double *s, const double *c, const double *w, int length);
-    /// a, b = rp p + rs s, rp s - rs p
-    void (*weigh)(double *a, double *b, const double *rp, const double *rs, const double *p,
-                  const double *s, int length);
+    /// a, b = r p + rs s, r s - rs p with r = rp + more by; those of the second eight if n > 8.
+    /// Returns sum more p.
+    double (*weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
+                    const double *more, double by, const double *p, const double *s, int length,
+                    int n);
+    /// kick = per_mass g with g = on_p p; sum[0], sum[1] = sum g (s - damp p), sum g kick
+    void (*stretch)(double *kick, const double *on_p, const double *per_mass, const double *damp,
+                    const double *p, const double *s, int length, double *sum);
+    /// Turns x = tight p and y = s - damp p by the angle rate by (to its third power), with
+    /// slack = 1/tight.
+    void (*turn)(double *p, double *s, const double *rate, const double *tight, const double *slack,
+                 const double *damp, double by, int length);
+    /// x += y by
+    void (*add)(double *x, const double *y, double by, int length);
     /// p += on_p (shape force), s += on_s (shape force)
     void (*push)(double *p, double *s, const double *on_p, const double *on_s, const double *shape,
                  double force, int length);
@@ -35,8 +45,8 @@ typedef struct himc_bank_kernel {
     /// sum (rp p + rs s)
     double (*read)(const double *rp, const double *rs, const double *p, const double *s,
                    int length);
-    /// samples 1 .. HIMC_BANK_PASS
-    void (*ahead)(const himc_bank_waves *waves, int length, double *out);
+    /// adds samples 1 .. n to `out`, n being 8, 16 or HIMC_BANK_PASS
+    void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
 } himc_bank_kernel;
 
 /// Version `index` of those this machine can run, the fastest last; NULL past the last.

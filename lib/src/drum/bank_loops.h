@@ -27,15 +27,66 @@ TARGET static void NAMED(rotate)(double *p, double *s, const double *c, const do
     }
 }
 
-TARGET static void NAMED(weigh)(double *a, double *b, const double *rp, const double *rs,
-                                const double *p, const double *s, int length)
+TARGET static double NAMED(weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
+                                  const double *more, double by, const double *p, const double *s,
+                                  int length, int n)
+{
+    VEC sum[PARTS] = {{0}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++) {
+            int at = i + k * WIDTH;
+            VEC vp = *(const VEC *)(p + at), vs = *(const VEC *)(s + at);
+            VEC f = *(const VEC *)(more + at), up = *(const VEC *)(rp + at) + f * by;
+            VEC us = *(const VEC *)(rs + at), a = up * vp + us * vs, b = up * vs - us * vp;
+            *(VEC *)(waves->a[0] + at) = a;
+            *(VEC *)(waves->b[0] + at) = b;
+            sum[k] += f * vp;
+            if (n > HIMC_BANK_LANES) {
+                VEC c = *(const VEC *)(waves->c8 + at), w = *(const VEC *)(waves->s8 + at);
+                *(VEC *)(waves->a[1] + at) = c * a + w * b;
+                *(VEC *)(waves->b[1] + at) = c * b - w * a;
+            }
+        }
+    return NAMED(total)(sum);
+}
+
+TARGET static void NAMED(stretch)(double *kick, const double *on_p, const double *per_mass,
+                                  const double *damp, const double *p, const double *s, int length,
+                                  double *sum)
+{
+    VEC power[PARTS] = {{0}}, norm[PARTS] = {{0}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++) {
+            int at = i + k * WIDTH;
+            VEC vp = *(const VEC *)(p + at), g = *(const VEC *)(on_p + at) * vp;
+            VEC v = *(const VEC *)(s + at) - *(const VEC *)(damp + at) * vp;
+            VEC b = *(const VEC *)(per_mass + at) * g;
+            *(VEC *)(kick + at) = b;
+            power[k] += g * v;
+            norm[k] += g * b;
+        }
+    sum[0] = NAMED(total)(power);
+    sum[1] = NAMED(total)(norm);
+}
+
+TARGET static void NAMED(turn)(double *p, double *s, const double *rate, const double *tight,
+                               const double *slack, const double *damp, double by, int length)
 {
     for (int i = 0; i < length; i += WIDTH) {
-        VEC vp = *(const VEC *)(p + i), vs = *(const VEC *)(s + i);
-        VEC up = *(const VEC *)(rp + i), us = *(const VEC *)(rs + i);
-        *(VEC *)(a + i) = up * vp + us * vs;
-        *(VEC *)(b + i) = up * vs - us * vp;
+        VEC vp = *(VEC *)(p + i), d = *(const VEC *)(damp + i);
+        VEC x = *(const VEC *)(tight + i) * vp, y = *(VEC *)(s + i) - d * vp;
+        VEC half = *(const VEC *)(rate + i) * (0.5 * by), size = 1 + half * half;
+        VEC c = (1 - half * half) / size, w = 2 * half / size;
+        vp = (c * x + w * y) * *(const VEC *)(slack + i);
+        *(VEC *)(p + i) = vp;
+        *(VEC *)(s + i) = c * y - w * x + d * vp;
     }
+}
+
+TARGET static void NAMED(add)(double *x, const double *y, double by, int length)
+{
+    for (int i = 0; i < length; i += WIDTH)
+        *(VEC *)(x + i) += *(const VEC *)(y + i) * by;
 }
 
 TARGET static void NAMED(push)(double *p, double *s, const double *on_p, const double *on_s,
@@ -71,24 +122,28 @@ TARGET static double NAMED(read)(const double *rp, const double *rs, const doubl
 }
 
 // Two oscillators at a time, one part of the eight samples after the other: so the sums of a whole
-// pass stay in registers.
-TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, double *out)
+// pass stay in registers. `eights` is a constant in each of the three calls.
+TARGET static inline __attribute__((always_inline)) void
+NAMED(look)(const himc_bank_waves *waves, int length, int eights, double *out)
 {
     for (int k = 0; k < PARTS; k++) {
-        VEC sum[HIMC_BANK_PASS / HIMC_BANK_LANES] = {{0}}, before[2], now[2];
+        VEC sum[HIMC_BANK_PASS / HIMC_BANK_LANES], before[2], now[2];
         const VEC *x = (const VEC *)waves->table + k;
+        for (int n = 0; n < eights; n++)
+            memcpy(&sum[n], out + n * HIMC_BANK_LANES + k * WIDTH, sizeof sum[n]);
         for (int i = 0; i < length; i += 2) {
 #pragma GCC unroll 2
             for (int m = 0; m < 2; m++) {
-                double a = waves->a[i + m], b = waves->b[i + m];
-                before[m] = a * x[0] + b * x[PARTS];
-                now[m] = a * x[2 * PARTS] + b * x[3 * PARTS];
-                x += 4 * PARTS;
+                before[m] = waves->a[0][i + m] * x[0] + waves->b[0][i + m] * x[PARTS];
+                if (eights > 1)
+                    now[m] = waves->a[1][i + m] * x[0] + waves->b[1][i + m] * x[PARTS];
+                x += 2 * PARTS;
             }
             sum[0] += before[0] + before[1];
-            sum[1] += now[0] + now[1];
+            if (eights > 1)
+                sum[1] += now[0] + now[1];
 #pragma GCC unroll 8
-            for (int n = 2; n < HIMC_BANK_PASS / HIMC_BANK_LANES; n++) {
+            for (int n = 2; n < eights; n++) {
 #pragma GCC unroll 2
                 for (int m = 0; m < 2; m++) {
                     VEC next = waves->twice[i + m] * now[m] - waves->fall[i + m] * before[m];
@@ -98,9 +153,19 @@ TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, double
                 sum[n] += now[0] + now[1];
             }
         }
-        for (int n = 0; n < HIMC_BANK_PASS / HIMC_BANK_LANES; n++)
+        for (int n = 0; n < eights; n++)
             memcpy(out + n * HIMC_BANK_LANES + k * WIDTH, &sum[n], sizeof sum[n]);
     }
+}
+
+TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, int n, double *out)
+{
+    if (n == HIMC_BANK_LANES)
+        NAMED(look)(waves, length, 1, out);
+    else if (n == 2 * HIMC_BANK_LANES)
+        NAMED(look)(waves, length, 2, out);
+    else
+        NAMED(look)(waves, length, HIMC_BANK_PASS / HIMC_BANK_LANES, out);
 }
 
 #undef VEC

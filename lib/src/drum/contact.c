@@ -18,9 +18,7 @@
 ///     free head and sticks: d_f, x_f;  c0 = d - x before;  b = (d_f - x_f) - c0;
 ///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
 ///     solve r = b - G F(r);  push the head by -F, the sticks by F.
-/// The film's stretching (membrane_step.c) applies the force base - half (P . F) through its own
-/// shape, which moves point i by P_i per unit of it: b_i loses P_i base, G_ij loses half P_i P_j
-/// (and stays positive, by Cauchy and Schwarz), and the equation is the same.
+/// The film's stretching acts between two steps (bank.c), so it is not in these equations.
 ///
 /// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own
 /// acceleration - losses of the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive
@@ -72,8 +70,7 @@ typedef struct contact_pair {
 typedef struct near_stick {
     himc_stick *stick;
     strike_point *point;
-    double before;   // displacement of the head there (m)
-    double coupling; // P, displacement there per unit of the film's force (m/J^1/2)
+    double before; // displacement of the head there (m)
 } near_stick;
 
 // V(c) (J)
@@ -373,28 +370,23 @@ static contact_pair make_pair(const himc_membrane *m, const near_stick *n, doubl
 
 // G of all sticks near
 static void find_compliances(const himc_membrane *m, const near_stick *near, int count,
-                             double (*g)[MAX_PAIRS], double half, double h)
+                             double (*g)[MAX_PAIRS], double h)
 {
     for (int i = 0; i < count; i++) {
         const himc_stick *s = near[i].stick;
         double at_point = himc_strike_point_compliance(m, near[i].point, near[i].point);
         double own = s->one_way ? REGULAR * at_point + REGULAR_LEAST : 0.5 * h * h / s->mass;
-        double p = near[i].coupling;
-        g[i][i] = at_point + own - half * p * p;
+        g[i][i] = at_point + own;
         for (int j = 0; j < i; j++)
-            g[i][j] = g[j][i] = himc_strike_point_compliance(m, near[i].point, near[j].point) -
-                                half * p * near[j].coupling;
+            g[i][j] = g[j][i] = himc_strike_point_compliance(m, near[i].point, near[j].point);
     }
 }
 
-// Solves the sticks near the head. `coupled` is P . F of the forces so far, and is increased by the
-// sticks'.
-static void step_near(himc_membrane *membrane, near_stick *near, int count, double *coupled,
-                      double h)
+// solves the sticks near the head
+static void step_near(himc_membrane *membrane, const near_stick *near, int count, double h)
 {
     contact_pair pairs[MAX_PAIRS];
-    double g[MAX_PAIRS][MAX_PAIRS], from[MAX_PAIRS], half;
-    double film = himc_membrane_film_force(membrane, &half) - half * *coupled;
+    double g[MAX_PAIRS][MAX_PAIRS], from[MAX_PAIRS];
     bool apart = true;
     for (int i = 0; i < count; i++) {
         himc_stick *s = near[i].stick;
@@ -402,12 +394,10 @@ static void step_near(himc_membrane *membrane, near_stick *near, int count, doub
         if (s->one_way)
             strike_rigid(s, h);
         pairs[i] = make_pair(membrane, &near[i], from[i], h);
-        near[i].coupling = himc_strike_point_film_coupling(membrane, near[i].point);
-        pairs[i].b -= near[i].coupling * film;
         apart = apart && pairs[i].c0 <= 0 && pairs[i].c0 + pairs[i].b <= 0;
     }
     if (!apart)
-        find_compliances(membrane, near, count, g, half, h);
+        find_compliances(membrane, near, count, g, h);
     solve_pairs(pairs, count, g, h);
     for (int i = 0; i < count; i++) {
         himc_stick *s = near[i].stick;
@@ -415,7 +405,6 @@ static void step_near(himc_membrane *membrane, near_stick *near, int count, doub
         if (s->one_way)
             pairs[i].force = fmin(pairs[i].force, s->force);
         himc_strike_point_apply(membrane, near[i].point, -pairs[i].force);
-        *coupled += near[i].coupling * pairs[i].force;
         if (!s->one_way)
             move(s, pairs[i].force, h);
     }
@@ -437,6 +426,7 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
 {
     near_stick near[MAX_PAIRS];
     int near_count = 0;
+    himc_membrane_ready(membrane);
     for (int i = 0; i < count && i < MAX_PAIRS; i++) {
         himc_stick *s = sticks[i];
         if (!within_reach(s, h)) {
@@ -447,12 +437,11 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
         strike_point *point = himc_membrane_strike_point(membrane, x, y);
         double before = himc_strike_point_displacement(membrane, point);
         keep_compression(s, before);
-        near[near_count++] = (near_stick){s, point, before, 0};
+        near[near_count++] = (near_stick){s, point, before};
     }
-    double coupled = himc_membrane_free_step(membrane);
+    himc_membrane_free_step(membrane);
     if (near_count > 0)
-        step_near(membrane, near, near_count, &coupled, h);
-    himc_membrane_end_step(membrane, coupled);
+        step_near(membrane, near, near_count, h);
     for (int i = 0; i < near_count; i++) {
         himc_stick *s = near[i].stick;
         s->dent = himc_strike_point_displacement(membrane, near[i].point);

@@ -17,7 +17,8 @@
 
 #define OUTSIDE_LIMIT 1e5 // (N) larger outside forces are clamped; chosen: the sound stays finite
 #define RUN_BLOCK 64      // samples of a pass of the free head; chosen: bank.c's
-#define LEVEL_RAMP 0.010  // (s) of the head's own sound from on to off; chosen: no click
+#define WATCHED HIMC_PICKUPS // index of the ring of displacements
+#define LEVEL_RAMP 0.010     // (s) of the head's own sound from on to off; chosen: no click
 #define METRES_PER_INCH 0.0254
 #define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
 
@@ -192,9 +193,10 @@ static double outside_force(const outside *o, int at)
 static int outside_quiet(const himc_drum *drum, const outside *o)
 {
     int i = o->at;
+    if (!o->of.force)
+        return o->n - i;
     while (i < o->n && outside_force(o, i) == 0) {
-        if (o->of.force && o->of.x && o->of.y &&
-            (o->of.x[i] != drum->outside_x || o->of.y[i] != drum->outside_y))
+        if (o->of.x && o->of.y && (o->of.x[i] != drum->outside_x || o->of.y[i] != drum->outside_y))
             break;
         i++;
     }
@@ -208,39 +210,54 @@ static int channels(const himc_drum *drum)
     return count;
 }
 
-// level of the head's own sound in the coming sample
-static double next_level(himc_drum *drum)
+// levels of the head's own sound in the coming n samples
+static void next_levels(himc_drum *drum, int n, double *levels)
 {
     double goal = drum->technique == HIMC_TECHNIQUE_MODAL, step = 1 / (LEVEL_RAMP * drum->rate);
-    if (drum->level != goal)
-        drum->level += fmin(fmax(goal - drum->level, -step), step);
-    return drum->level;
+    for (int i = 0; i < n; i++) {
+        if (drum->level != goal)
+            drum->level += fmin(fmax(goal - drum->level, -step), step);
+        levels[i] = drum->level;
+    }
 }
 
-// one sample into the ring; `sound` is 0 for a channel without a pickup
-static void store(himc_drum *drum, const double sound[HIMC_PICKUPS], double watched)
+// n samples into ring `index`, times their levels, if any; `row` is NULL for silence
+static void store_row(himc_drum *drum, int index, int n, const double *row, const double *levels)
 {
-    size_t at = drum->time++ % HIMC_DRUM_RING;
-    double level = next_level(drum);
+    if (row)
+        drum->filled[index] = drum->time + (uint64_t)n;
+    else if (drum->time >= drum->filled[index] + HIMC_DRUM_RING)
+        return; // the ring is silent already
+    for (int i = 0; i < n; i++) {
+        size_t at = (drum->time + (uint64_t)i) % HIMC_DRUM_RING;
+        drum->ring[index][at] = !row ? 0 : levels ? levels[i] * row[i] : row[i];
+    }
+}
+
+// n samples into the rings; `watched` is NULL if unwanted
+static void store(himc_drum *drum, int n, double *const *sound, const double *watched, bool silent)
+{
+    double levels[RUN_BLOCK];
+    int count = silent ? 0 : channels(drum);
+    next_levels(drum, n, levels);
     for (int k = 0; k < HIMC_PICKUPS; k++)
-        drum->sound[k][at] = level * sound[k];
-    drum->watched[at] = watched;
+        store_row(drum, k, n, k < count ? sound[k] : NULL, levels);
+    store_row(drum, WATCHED, n, silent ? NULL : watched, NULL);
+    drum->time += (uint64_t)n;
 }
 
 // runs the head without contact; the sticks fly
 static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                       double *const *forces, int at)
 {
-    double sound[HIMC_PICKUPS][RUN_BLOCK] = {{0}}, watched[RUN_BLOCK], h = 1 / drum->rate;
-    double *into[HIMC_PICKUPS], one[HIMC_PICKUPS];
+    double sound[HIMC_PICKUPS][RUN_BLOCK], watched[RUN_BLOCK], h = 1 / drum->rate;
+    double *into[HIMC_PICKUPS], *seen = drum->unwatched ? NULL : watched;
     for (int k = 0; k < HIMC_PICKUPS; k++)
         into[k] = sound[k];
-    himc_membrane_run(drum->membrane, n, into, watched);
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < HIMC_PICKUPS; k++)
-            one[k] = sound[k][i];
-        store(drum, one, watched[i]);
-    }
+    bool silent = himc_membrane_at_rest(drum->membrane);
+    if (!silent)
+        himc_membrane_run(drum->membrane, n, into, seen);
+    store(drum, n, into, seen, silent);
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < n; i++)
             himc_stick_fly(sticks[k], h);
@@ -267,10 +284,13 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
-    double sound[HIMC_PICKUPS] = {0};
-    for (int k = 0, pickups = channels(drum); k < pickups; k++)
+    double sound[HIMC_PICKUPS], *into[HIMC_PICKUPS];
+    double watched = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
+    for (int k = 0, pickups = channels(drum); k < pickups; k++) {
         sound[k] = himc_membrane_sound(drum->membrane, k);
-    store(drum, sound, himc_membrane_watched(drum->membrane));
+        into[k] = &sound[k];
+    }
+    store(drum, 1, into, drum->unwatched ? NULL : &watched, false);
     himc_drum_follow_mallets(drum);
 }
 
@@ -318,15 +338,20 @@ void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                     double *displacement)
 {
     if (sound)
-        copy(drum, drum->sound[0], start, n, sound);
+        copy(drum, drum->ring[0], start, n, sound);
     if (displacement)
-        copy(drum, drum->watched, start, n, displacement);
+        copy(drum, drum->ring[WATCHED], start, n, displacement);
 }
 
 void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
                             double *sound)
 {
-    copy(drum, drum->sound[channel], start, n, sound);
+    copy(drum, drum->ring[channel], start, n, sound);
+}
+
+void himc_drum_watch(himc_drum *drum, bool on)
+{
+    drum->unwatched = !on;
 }
 
 uint64_t himc_drum_time(const himc_drum *drum)

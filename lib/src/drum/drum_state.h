@@ -45,8 +45,10 @@ struct himc_drum {
     double rate;
     uint64_t time; ///< samples since the drum was made; all samples in here are counted so
     uint64_t zero; ///< the one that counts as 0 outside, since the last realign
-    double sound[HIMC_PICKUPS][HIMC_DRUM_RING], watched[HIMC_DRUM_RING];
-    double outside_x, outside_y;        ///< point of the outside force, the watched point
+    double ring[HIMC_PICKUPS + 1][HIMC_DRUM_RING]; ///< sound of each channel; the displacement
+    uint64_t filled[HIMC_PICKUPS + 1]; ///< `time` after the last sample of a ring that may not be 0
+    bool unwatched;                    ///< the displacement is not wanted
+    double outside_x, outside_y;       ///< point of the outside force, the watched point
     drum_waiting waiting[DRUM_WAITING]; ///< unordered
     int waiting_count;
     drum_mallet mallets[HIMC_STICKS];

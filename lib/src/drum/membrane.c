@@ -22,11 +22,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: seven of its own, those of each output, those of each strike point
-#define ARRAYS (7 + (HIMC_PICKUPS + 1) * (2 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: seven of its own, those of each pickup, those of each strike point
+#define ARRAYS (7 + HIMC_PICKUPS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
+#define SLACK 1e-6            // rise per tension; chosen: 0.001 cent
 
 static void core_free(core *c)
 {
@@ -53,6 +54,7 @@ static himc_readout take_readout(double **memory, int length)
 static output take_output(double **memory, int length)
 {
     output o = {.readout = take_readout(memory, length)};
+    o.readout.film = take(memory, length);
     for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
         o.response[k] = take(memory, length);
     return o;
@@ -75,11 +77,10 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
         return false;
     }
     memset(memory, 0, bytes);
-    double **arrays[] = {&c->on_q,    &c->on_v,   &c->on_force,      &c->scratch,
-                         &c->stretch, &c->weight, &c->coupling.shape};
+    double **arrays[] = {&c->on_q, &c->on_v, &c->on_force, &c->scratch, &c->stretch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
-    c->watched = take_output(&memory, padded);
+    c->watched = take_readout(&memory, padded);
     for (int i = 0; i < HIMC_PICKUPS; i++)
         c->pickups[i] = take_output(&memory, padded);
     for (int i = 0; i < STRIKE_POINTS; i++)
@@ -137,13 +138,7 @@ static void find_watched(himc_membrane *m)
 {
     core *c = &m->core;
     himc_modes_shapes(c->modes, m->head.radius, m->watch_x, m->watch_y, c->scratch);
-    himc_bank_readout(c->bank, c->scratch, NULL, &c->watched.readout);
-    find_responses(m, &c->watched, NULL);
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
-        for (int i = 0; i < STRIKE_POINTS; i++)
-            if (m->points[i].used)
-                m->points[i].response[k].watched =
-                    himc_bank_sum(c->bank, m->points[i].shape, c->watched.response[k]);
+    himc_bank_readout(c->bank, c->scratch, NULL, NULL, &c->watched);
 }
 
 static void find_pickup(himc_membrane *m, int index)
@@ -162,7 +157,9 @@ static void find_pickup(himc_membrane *m, int index)
         c->on_v[i] = w.velocity;
         c->on_force[i] = w.force;
     }
-    himc_bank_readout(c->bank, c->on_q, c->on_v, &c->pickups[index].readout);
+    himc_bank_readout(c->bank, c->on_q, c->on_v,
+                      pickup->kind == HIMC_PICKUP_AIR ? c->on_force : NULL,
+                      &c->pickups[index].readout);
     find_responses(m, &c->pickups[index], c->on_force);
 }
 
@@ -173,6 +170,18 @@ static void find_pickups(himc_membrane *m)
         m->points[i].used = false;
     for (int i = 0; i < m->pickup_count; i++)
         find_pickup(m, i);
+}
+
+// The film is off while it could not raise the tension by SLACK of it, 0.001 cent, even with twice
+// the energy in the head.
+static void set_film(himc_membrane *m)
+{
+    double tension = m->head.tension, stiffness = himc_membrane_film_stiffness(m);
+    if (stiffness > 0)
+        himc_bank_set_film(m->core.bank, m->core.stretch,
+                           SLACK * tension * tension / (2 * stiffness));
+    else
+        himc_bank_set_film(m->core.bank, NULL, 0);
 }
 
 // points of pickups that a smaller head no longer has move to its rim
@@ -197,11 +206,9 @@ static void retune(himc_membrane *m)
     find_oscillators(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
     himc_bank_set(c->bank, c->oscillators, m->head.modes, m->rate);
-    himc_bank_coupling_weights(c->bank, c->stretch, c->weight);
+    set_film(m);
     find_pickups(m);
     find_watched(m);
-    if (m->film.on || m->head.glide > 0)
-        himc_membrane_find_film(m);
 }
 
 // On a slacker head the same energy of bending is a deeper bend, and the energy of stretching goes
@@ -211,7 +218,7 @@ static void retune(himc_membrane *m)
 static void keep_energy(himc_membrane *m, double before)
 {
     himc_bank *bank = m->core.bank;
-    double bending = 0, stretching = 0.5 * m->film.s * m->film.s, q, v;
+    double film = himc_bank_film(bank), bending = 0, stretching = 0.5 * film * film, q, v;
     double excess = himc_membrane_energy(m) - before;
     if (!(excess > ENERGY_ROUNDING * before))
         return;
@@ -226,7 +233,7 @@ static void keep_energy(himc_membrane *m, double before)
         himc_bank_state(bank, i, &q, &v);
         himc_bank_excite(bank, i, sqrt(x) * q, v);
     }
-    himc_membrane_find_film(m);
+    himc_bank_find_film(bank);
 }
 
 // a sound's last sample and the coming one, if no new force acts
@@ -238,18 +245,6 @@ typedef struct sounds {
     sound_pair of[HIMC_PICKUPS];
 } sounds;
 
-// the film's force on the modes, summed with the weights `direct`
-static double film_part(const himc_membrane *m, const double *direct)
-{
-    double sum = 0;
-    for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
-        double q, v;
-        himc_bank_state(m->core.bank, i, &q, &v);
-        sum -= m->film.s * m->core.stretch[i] * q * direct[i];
-    }
-    return sum;
-}
-
 // A pickup of accelerations has a direct part of each force, which cancels most of what the modes
 // of a bent head contribute. So the forces of the last sample are counted as if they continued.
 static void add_forces(himc_membrane *m, int index, sound_pair *sound)
@@ -259,9 +254,6 @@ static void add_forces(himc_membrane *m, int index, sound_pair *sound)
     himc_bank_step_response(c->bank, &o->readout, c->scratch);
     for (int i = 0; i < himc_bank_padded(c->bank); i++)
         c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
-    double stretching = m->film.on ? film_part(m, c->scratch) : 0;
-    sound->now += stretching;
-    sound->next += stretching;
     for (int i = 0; i < m->applied_count; i++) {
         const push *p = &m->applied[i];
         const strike_point *s = himc_membrane_strike_point(m, p->x, p->y);
@@ -356,11 +348,7 @@ static bool resize(himc_membrane *m, int count, himc_error *error)
         return false;
     int common = count < m->head.modes ? count : m->head.modes;
     himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
-    for (int i = 0; i < common; i++) {
-        double q, v;
-        himc_bank_state(old.bank, i, &q, &v);
-        himc_bank_excite(fresh.bank, i, q, v);
-    }
+    himc_bank_continue(fresh.bank, old.bank);
     m->core = fresh;
     core_free(&old);
     return true;
@@ -379,8 +367,7 @@ static void bend_new(himc_membrane *m, int first)
         if (q != 0)
             himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
     }
-    if (m->film.on)
-        himc_membrane_find_film(m);
+    himc_bank_find_film(m->core.bank);
 }
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
@@ -412,7 +399,6 @@ bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
     memcpy(membrane->points, points, sizeof points);
     membrane->core = fresh;
     membrane->head = *head;
-    membrane->film = (film){0};
     retune(membrane);
     declick_from(membrane, &before);
     core_free(&old);
@@ -528,8 +514,7 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
 // a head of the same outline goes on after a change from `known` modes and that energy
 static void go_on(himc_membrane *m, int known, double energy)
 {
-    if (m->film.on || m->head.glide > 0)
-        himc_membrane_find_film(m);
+    himc_bank_find_film(m->core.bank);
     bend_new(m, known);
     keep_energy(m, energy);
 }
@@ -554,8 +539,6 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
         find_watched(m);
     if (outline)
         himc_bank_continue(m->core.bank, old.bank);
-    else
-        m->film = (film){0};
     if (outline && !head)
         go_on(m, known, energy);
     declick_from(m, &before);
@@ -632,13 +615,12 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)
 {
     himc_bank_excite(membrane->core.bank, index, q, v);
-    himc_membrane_find_film(membrane);
+    himc_bank_find_film(membrane->core.bank);
 }
 
 void himc_membrane_rest(himc_membrane *membrane)
 {
     sounds before = read_sounds(membrane);
     himc_bank_rest(membrane->core.bank);
-    membrane->film = (film){0};
     declick_from(membrane, &before);
 }

@@ -7,13 +7,11 @@
 #include "drum/bank.h"
 #include "drum/strike_point.h"
 
-#define MAX_PUSHES 8           ///< forces of himc_membrane_push in one sample; himc/membrane.h
-#define STRIKE_POINTS 24       ///< all sticks and mallets of a drum (16) and all pushes (8)
-#define FILM_CHECK_INTERVAL 64 ///< (samples) chosen: a check costs as much as a few samples
-#define DECLICK_TIME 0.005     ///< (s) chosen: no click, and shorter than a stroke's onset
+#define MAX_PUSHES 8       ///< forces of himc_membrane_push in one sample; himc/membrane.h
+#define STRIKE_POINTS 24   ///< all sticks and mallets of a drum (16) and all pushes (8)
+#define DECLICK_TIME 0.005 ///< (s) chosen: no click, and shorter than a stroke's onset
 
-/// A signal that is read from the modes: a pickup's sound, or the displacement of the watched
-/// point.
+/// A pickup's sound, which is read from the modes.
 typedef struct output {
     himc_readout readout;
     double *response[HIMC_STEP_LENGTHS]; ///< per newton of modal force during a step (padded)
@@ -26,26 +24,15 @@ typedef struct core {
     himc_oscillator *oscillators; ///< (modes)
     double *memory;               ///< all arrays below, (padded) each, and those of strike points
     double *on_q, *on_v, *on_force, *scratch;
-    double *stretch, *weight; ///< a_i of the film's stretching; the bank's weights for them
-    himc_tension_coupling coupling;
+    double *stretch; ///< a_i of the film's stretching
     output pickups[HIMC_PICKUPS];
-    output watched;
+    himc_readout watched;
 } core;
-
-/// The film's stretching (membrane_step.c).
-typedef struct film {
-    bool on;
-    double s;     ///< root of twice its energy (J^1/2)
-    double base;  ///< mean of s in this step without contact
-    double half;  ///< reduction of that mean per P . F
-    unsigned age; ///< steps since it came on
-} film;
 
 /// What a newton at a strike point during a step has done at its end.
 typedef struct unit_response {
     double compliance;          ///< displacement of the point itself (m/N)
     double sound[HIMC_PICKUPS]; ///< (1/N)
-    double watched;             ///< displacement of the watched point (m/N)
 } unit_response;
 
 /// A point of the head and its coupling to each mode. A pure function of place and head, so caching
@@ -94,18 +81,15 @@ struct himc_membrane {
     double watch_x, watch_y;
     strike_point points[STRIKE_POINTS];
     unsigned long clock; ///< of the use of strike points
-    film film;
     push pushes[MAX_PUSHES];
     int push_count;
     push applied[STRIKE_POINTS]; ///< forces of the last step, up positive
     int applied_count;
     declick declicks[HIMC_PICKUPS];
-    double sound[HIMC_PICKUPS], watched; ///< of the last sample
+    double sound[HIMC_PICKUPS]; ///< of the last sample
 };
 
 /// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
 HIMC_RT double himc_membrane_film_stiffness(const himc_membrane *m);
-/// Computes the film's stretching from the state.
-HIMC_RT void himc_membrane_find_film(himc_membrane *m);
 
 #endif

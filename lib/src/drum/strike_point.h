@@ -1,11 +1,10 @@
 /// strike_point.h: the points where sticks meet a membrane; what contact.c needs of
 /// membrane_step.c.
 ///
-/// A sample with contact is: find the strike points and read their displacement,
-/// himc_membrane_free_step, read again (the head without contact), solve, himc_strike_point_apply
-/// for each force, and himc_membrane_end_step. With a stiff contact, a sample is divided into
-/// substeps and each of them is such a sequence (himc_membrane_set_substep). F are forces on the
-/// head at strike points, down positive; P is the film coupling of each (membrane_step.c).
+/// A sample with contact is: himc_membrane_ready, find the strike points and read their displacement,
+/// himc_membrane_free_step, read again (the head without contact), solve, and
+/// himc_strike_point_apply for each force. With a stiff contact, a sample is divided into substeps
+/// and each of them is such a sequence (himc_membrane_set_substep).
 #ifndef HIMC_STRIKE_POINT_H
 #define HIMC_STRIKE_POINT_H
 
@@ -26,17 +25,11 @@ HIMC_RT void himc_membrane_set_substep(himc_membrane *membrane, int index, int c
 /// Displacement at `a` at the end of a step per newton at `b` during it (m/N).
 HIMC_RT double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
                                             const strike_point *b);
-/// Runs one step with the pushed forces only (himc_membrane_push), before the film acts. Returns
-/// P . F of these forces.
-HIMC_RT double himc_membrane_free_step(himc_membrane *membrane);
-/// P: displacement of a strike point per unit of the film's force in this step (m/J^1/2).
-HIMC_RT double himc_strike_point_film_coupling(const himc_membrane *membrane,
-                                               const strike_point *s);
-/// The film's force in this step (J^1/2) is the value returned less `half` times P . F.
-HIMC_RT double himc_membrane_film_force(const himc_membrane *membrane, double *half);
+/// Before a step's displacements are read: makes what changes the head between two steps.
+HIMC_RT void himc_membrane_ready(himc_membrane *membrane);
+/// Runs one step with the pushed forces only (himc_membrane_push).
+HIMC_RT void himc_membrane_free_step(himc_membrane *membrane);
 /// Adds the effect of `force` (N, up positive) at the strike point during this step.
 HIMC_RT void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, double force);
-/// Adds the film's force, `coupled` being P . F of all forces, and ends the step.
-HIMC_RT void himc_membrane_end_step(himc_membrane *membrane, double coupled);
 
 #endif
