@@ -105,6 +105,7 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_drum_advance, himc_drum_advance(drum, 64, force[0], NULL, NULL))                     \
     CALL(himc_drum_read, himc_drum_read(drum, 0, 64, sound, sound))                                \
     CALL(himc_drum_read_channel, himc_drum_read_channel(drum, 0, 0, 64, sound))                    \
+    CALL(himc_drum_watch, himc_drum_watch(drum, false))                                            \
     CALL(himc_drum_time, himc_drum_time(drum))                                                     \
     CALL(himc_drum_realign, himc_drum_realign(drum, 0))                                            \
     CALL(himc_drum_strike_next, himc_drum_strike_next(drum, &(himc_contact_report){0}))            \

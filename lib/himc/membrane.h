@@ -166,8 +166,6 @@ HIMC_RT double himc_membrane_displacement(const himc_membrane *membrane, double 
 HIMC_RT double himc_membrane_energy(const himc_membrane *membrane);
 /// Displacement q and velocity v of mode `index` (0 .. head.modes - 1) (m, m/s).
 HIMC_RT void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v);
-/// True if the head is at rest, and silent until a force acts.
-HIMC_RT bool himc_membrane_at_rest(const himc_membrane *membrane);
 /// Brings the head to rest; the sound ends in 5 ms.
 HIMC_RT void himc_membrane_rest(himc_membrane *membrane);
 

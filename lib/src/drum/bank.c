@@ -9,39 +9,40 @@
 /// p and s do not depend on h, so steps of two lengths, a sample and a substep, may follow each
 /// other in any order: the bank keeps a set of coefficients for each length.
 ///
-/// After a force, the state makes one step of one sample. Then, as long as none acts, it makes steps
-/// of 64 samples, a pass; a readout's samples within it come from the state at its start. With C_n,
-/// S_n the coefficients of n samples, the readout rp p + rs s is after n samples
+/// After a force, the state makes one step of one sample. Then, as long as none acts, it makes
+/// steps of 64 samples, a pass; a readout's samples within it come from the state at its start.
+/// With C_n, S_n the coefficients of n samples, the readout rp p + rs s is after n samples
 ///     y_n = C_n a + S_n b,   a = rp p + rs s,   b = rp s - rs p,
 /// taken from a table for n = 1 .. 8, again for the eight after them, and from then on
 ///     y_n = 2 C_8 y_(n-8) - (C_8^2 + S_8^2) y_(n-16).
-/// When a force ends the pass early, the state makes the steps of 32, 16, .. samples that lead there.
-/// So the steps hang on the forces alone, not on how many samples are asked for at a time, and a
-/// readout costs only when it is read.
+/// When a force ends the pass early, the state makes the steps of 32, 16, .. samples that lead
+/// there. So the steps hang on the forces alone, not on how many samples are asked for at a time,
+/// and a readout costs only when it is read.
 ///
-/// The film, of energy s^2/2, pulls with the modal forces -s g, g_i = a_i q_i, and s' = g . q'.
-/// It is split from the rest (energy quadratisation: Ducceschi & Bilbao 2019; splitting: Strang
-/// 1968). While the oscillators make their step, s holds and the film does not act. Then, in no time,
-/// the film and the velocities exchange what belongs to the time t, while all q hold:
+/// The film, of energy s^2/2, pulls with the modal forces -s g, g_i = a_i q_i, and s' = g . q'. It
+/// is split from the rest (energy quadratisation: Ducceschi & Bilbao 2019; splitting: Strang 1968).
+/// While the oscillators make their step, s holds and the film does not act. Then, in no time, the
+/// film and the velocities exchange what belongs to the time t, while all q hold:
 ///     v' = v - t (s + u/2) g/m,   s' = s + u,   u = t g . (v + v')/2,
-/// which is linear in u, and one division solves it. The modes gain sum m (v'^2 - v^2)/2 =
-/// -t (s + u/2) g . (v + v')/2 = -(s + u/2) u, the film s'^2/2 - s^2/2 = (s + u/2) u: together
-/// nothing, for any t, forwards or backwards. The oscillators' own step takes energy or adds the work
-/// of a force, whatever the film. So energy grows by the work of forces alone, however long the film
-/// is held, and contact need not know of the film.
+/// which is linear in u, and one division solves it. The modes gain sum m (v'^2 - v^2)/2 = -t (s +
+/// u/2) g . (v + v')/2 = -(s + u/2) u, the film s'^2/2 - s^2/2 = (s + u/2) u: together nothing, for
+/// any t, forwards or backwards. The oscillators' own step takes energy or adds the work of a
+/// force, whatever the film. So energy grows by the work of forces alone, however long the film is
+/// held, and contact need not know of the film.
 ///
-/// Half of an exchange is made before a step of the oscillators, half after: of second order, and the
-/// pitch of each mode rises as it would with shorter steps, whatever its frequency w. The film is
-/// `lead` samples ahead of the oscillators; a step that a force ends early takes back what it has had
-/// too much. In the samples between, a readout adds what the film would do, to first order in time.
+/// Half of an exchange is made before a step of the oscillators, half after: of second order, and
+/// the pitch of each mode rises as it would with shorter steps, whatever its frequency w. The film
+/// is `lead` samples ahead of the oscillators; a step that a force ends early takes back what it
+/// has had too much. In the samples between, a readout adds what the film would do, to first order
+/// in time.
 ///
-/// The steps are 1, 4, 8 or 16 samples: with the lowest mode's w t, about (w t)^2/9 of a rise of its
-/// pitch is lost, and the longest steps are taken that lose little of the largest rise at present.
-/// Exchanges at w t near pi would see a mode too seldom to follow its share of s. So above w t = 1
-/// (478 Hz with 16 samples of 48000) a mode makes steps of 64 samples, and the film only turns its
-/// phase, by w' t with w' = s a/(2 m w): a rotation of (w q, v), which keeps its energy. Its share of
-/// s is small. It moves q between two steps, so contact waits for it (himc_bank_ready). All this is
-/// decided at the start of a pass of 64.
+/// The steps are 1, 4, 8 or 16 samples: with the lowest mode's w t, about (w t)^2/9 of a rise of
+/// its pitch is lost, and the longest steps are taken that lose little of the largest rise at
+/// present. Exchanges at w t near pi would see a mode too seldom to follow its share of s. So above
+/// w t = 1 (478 Hz with 16 samples of 48000) a mode makes steps of 64 samples, and the film only
+/// turns its phase, by w' t with w' = s a/(2 m w): a rotation of (w q, v), which keeps its energy.
+/// Its share of s is small. It moves q between two steps, so contact waits for it
+/// (himc_bank_ready). All this is decided at the start of a pass of 64.
 ///
 /// s follows what the state makes of it to second order. After forces and every 1024 samples it is
 /// set to that, and all velocities are scaled to take or give the difference of energy.
@@ -290,8 +291,8 @@ static void settle(himc_bank *bank)
     exchange(bank, 0);
 }
 
-// s as a readout hears it: at most twice the pull of the last exchange, which a film stiffer than the
-// modes themselves has not had in full
+// s as a readout hears it: at most twice the pull of the last exchange, which a film stiffer than
+// the modes themselves has not had in full
 static double audible(const film *f)
 {
     return copysign(fmin(fabs(f->s), 2 * fabs(f->mean)), f->s);
@@ -603,8 +604,8 @@ void himc_bank_rest(himc_bank *bank)
     bank->forced = true;
 }
 
-// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`, its weights enlarged
-// by those of the film times `by`. Returns the sum of the film's weights on the state.
+// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`, its weights
+// enlarged by those of the film times `by`. Returns the sum of the film's weights on the state.
 static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, double by,
                         int n, double *out)
 {

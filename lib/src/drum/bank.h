@@ -2,8 +2,8 @@
 ///
 /// m q'' + 2 m d q' + m w^2 q = f. Frequency and decay are exact at any sample rate: the only
 /// assumption is the shape of the force between two samples. The sample rate and the oscillators'
-/// constants may change while the bank sounds. A film may couple all of them: a spring on the sum of
-/// their squares.
+/// constants may change while the bank sounds. A film may couple all of them: a spring on the sum
+/// of their squares.
 #ifndef HIMC_BANK_H
 #define HIMC_BANK_H
 
@@ -36,8 +36,8 @@ void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel);
 HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
                            double rate);
 
-/// Film and oscillators that `from` has, too, begin with its phase and energy, as if they had been in use
-/// here with its constants before the last himc_bank_set.
+/// Film and oscillators that `from` has, too, begin with its phase and energy, as if they had been
+/// in use here with its constants before the last himc_bank_set.
 HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from);
 
 /// The bank has coefficients for two lengths of step.
@@ -82,8 +82,8 @@ HIMC_RT void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts
                            double *const *out);
 
 /// The film: a spring of energy s^2/2, s = sum_i a_i q_i^2/2, on all oscillators together. Sets the
-/// a_i (count), or NULL for none. It comes on with a force or himc_bank_find_film, and goes off, its
-/// energy lost, when the oscillators together have less than `least` (J).
+/// a_i (count), or NULL for none. It comes on with a force or himc_bank_find_film, and goes off,
+/// its energy lost, when the oscillators together have less than `least` (J).
 HIMC_RT void himc_bank_set_film(himc_bank *bank, const double *on_square, double least);
 /// Finds s from the displacements.
 HIMC_RT void himc_bank_find_film(himc_bank *bank);

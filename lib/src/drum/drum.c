@@ -9,6 +9,7 @@
 
 #include "base/line.h"
 #include "drum/contact.h"
+#include "drum/strike_point.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -210,14 +211,15 @@ static int channels(const himc_drum *drum)
     return count;
 }
 
-// levels of the head's own sound in the coming n samples
+// levels of the head's own sound in the coming n samples; `levels` is NULL if nothing sounds
 static void next_levels(himc_drum *drum, int n, double *levels)
 {
     double goal = drum->technique == HIMC_TECHNIQUE_MODAL, step = 1 / (LEVEL_RAMP * drum->rate);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n && (levels || drum->level != goal); i++) {
         if (drum->level != goal)
             drum->level += fmin(fmax(goal - drum->level, -step), step);
-        levels[i] = drum->level;
+        if (levels)
+            levels[i] = drum->level;
     }
 }
 
@@ -226,7 +228,7 @@ static void store_row(himc_drum *drum, int index, int n, const double *row, cons
 {
     if (row)
         drum->filled[index] = drum->time + (uint64_t)n;
-    else if (drum->time >= drum->filled[index] + HIMC_DRUM_RING)
+    else if (drum->filled[index] == 0 || drum->time >= drum->filled[index] + HIMC_DRUM_RING)
         return; // the ring is silent already
     for (int i = 0; i < n; i++) {
         size_t at = (drum->time + (uint64_t)i) % HIMC_DRUM_RING;
@@ -239,7 +241,7 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
 {
     double levels[RUN_BLOCK];
     int count = silent ? 0 : channels(drum);
-    next_levels(drum, n, levels);
+    next_levels(drum, n, silent ? NULL : levels);
     for (int k = 0; k < HIMC_PICKUPS; k++)
         store_row(drum, k, n, k < count ? sound[k] : NULL, levels);
     store_row(drum, WATCHED, n, silent ? NULL : watched, NULL);

@@ -6,9 +6,9 @@
 /// it is used. In air each mode has another frequency, decay and mass but the same shape (air.h),
 /// so all of this holds there too.
 ///
-/// All arrays with an entry for each mode are one block of memory, the core. Another number
-/// of modes is another core, made beside the old one and exchanged. A whole membrane may also be
-/// made aside, by another thread, and exchanged (himc_membrane_exchange). After any change of head, rate
+/// All arrays with an entry for each mode are one block of memory, the core. Another number of
+/// modes is another core, made beside the old one and exchanged. A whole membrane may also be made
+/// aside, by another thread, and exchanged (himc_membrane_exchange). After any change of head, rate
 /// or pickups, oscillators and readouts are computed anew from the same tables; the bank keeps the
 /// modes' energy and phase, and a declick keeps the sound continuous.
 #include "drum/membrane_form.h"

@@ -1,8 +1,8 @@
 /// strike_point.h: the points where sticks meet a membrane; what contact.c needs of
 /// membrane_step.c.
 ///
-/// A sample with contact is: himc_membrane_ready, find the strike points and read their displacement,
-/// himc_membrane_free_step, read again (the head without contact), solve, and
+/// A sample with contact is: himc_membrane_ready, find the strike points and read their
+/// displacement, himc_membrane_free_step, read again (the head without contact), solve, and
 /// himc_strike_point_apply for each force. With a stiff contact, a sample is divided into substeps
 /// and each of them is such a sequence (himc_membrane_set_substep).
 #ifndef HIMC_STRIKE_POINT_H
@@ -27,6 +27,8 @@ HIMC_RT double himc_strike_point_compliance(const himc_membrane *membrane, const
                                             const strike_point *b);
 /// Before a step's displacements are read: makes what changes the head between two steps.
 HIMC_RT void himc_membrane_ready(himc_membrane *membrane);
+/// True if the head is at rest, and silent until a force acts.
+HIMC_RT bool himc_membrane_at_rest(const himc_membrane *membrane);
 /// Runs one step with the pushed forces only (himc_membrane_push).
 HIMC_RT void himc_membrane_free_step(himc_membrane *membrane);
 /// Adds the effect of `force` (N, up positive) at the strike point during this step.
