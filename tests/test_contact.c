@@ -454,6 +454,24 @@ static void test_contact_counts_chatter_as_one_contact(void)
     TEST_ASSERT_TRUE(flights > 0 && stick[0].contacts >= 1);
 }
 
+// a rigid head, and a stick that is driven back onto it some time after it left
+static unsigned contacts_with_gap(double gap)
+{
+    place(0, 1.5, 0, 2); // outside the head every shape is 0
+    while (stick[0].velocity < 0 || stick[0].touching)
+        himc_contact_step(membrane, sticks, 1);
+    stick[0].acceleration = -2 * stick[0].velocity / gap;
+    for (int n = 0; n < (int)(2 * gap * RATE); n++)
+        himc_contact_step(membrane, sticks, 1);
+    return stick[0].contacts;
+}
+
+static void test_touches_1_ms_apart_are_one_contact_and_2_ms_apart_two(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, contacts_with_gap(1e-3));
+    TEST_ASSERT_EQUAL_INT(2, contacts_with_gap(2e-3));
+}
+
 static void test_contact_clear_never_returns_too_many_samples(void)
 {
     place(0, 0, 0, 10);
@@ -503,6 +521,7 @@ int main(void)
     RUN_TEST(test_one_way_motion_force_follows_hertz_with_the_mallets_exponent);
     RUN_TEST(test_one_way_head_force_scales_with_the_peak_of_the_motion_force);
     RUN_TEST(test_contact_counts_chatter_as_one_contact);
+    RUN_TEST(test_touches_1_ms_apart_are_one_contact_and_2_ms_apart_two);
     RUN_TEST(test_contact_clear_never_returns_too_many_samples);
     RUN_TEST(test_contact_with_a_stick_that_is_not_a_number_does_not_change_the_head);
     return UNITY_END();

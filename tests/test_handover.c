@@ -71,7 +71,8 @@ static double largest_torque(double seconds)
 
 static void test_a_stopped_take_is_left_without_a_jerk(void)
 {
-    static const char *const by[] = {"score patches/improvisation.txt", ("take " FILE_NAME), "reset"};
+    static const char *const by[] = {"score patches/improvisation.txt", ("take " FILE_NAME),
+                                     "reset"};
     for (int i = 0; i < 3; i++) {
         playing(2.4);
         session_do(p, "stop");
