@@ -182,11 +182,12 @@ torment: deps ## a million random and hostile commands to a playing performance;
 	@$(MAKE) $(BUILD)/tests/test_torment
 	HIMC_TORMENT=$(COMMANDS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_torment
 
-# how many hours `make soak` plays
+# how many hours `make soak` plays, and at which physics rate (Hz)
 HOURS ?= 24
-soak: deps ## a session of HOURS=24 simulated hours (SEED=1): no drift, no growth, every stroke played; a line per hour
+PHYSICS ?= 10000
+soak: deps ## a session of HOURS=24 simulated hours (SEED=1 PHYSICS=10000): no drift, no growth, every stroke played; a line per hour
 	@$(MAKE) $(BUILD)/tests/test_soak
-	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) $(BUILD)/tests/test_soak
+	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) HIMC_PHYSICS=$(PHYSICS) $(BUILD)/tests/test_soak
 
 mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
 	@$(MAKE) check-mutants

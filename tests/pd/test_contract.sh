@@ -51,7 +51,7 @@ END
 "${CC:-gcc}" -O0 "$work/offender.c" -lpthread -o "$work/offender"
 said=$(watched "$work/offender")
 report the_watch_counts_each_call_that_may_wait \
-    "$(grep -q '^watch: 9 calls in 1 spans' <<<"$said" || echo "$said")" # snprintf is vsnprintf, too
+    "$(grep -q '^watch: 9 calls in 1 spans' <<<"$said" || echo "it says: $said")" # snprintf is vsnprintf, too
 
 # a take for the patch
 echo "drum kettle; record $work/take.bvh; stroke 1 left legato f; stroke 2 right accent f; play;" >"$work/record.txt"
