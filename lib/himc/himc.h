@@ -1,7 +1,7 @@
 /// himc.h: a virtual timpanist: the core of libhimc, all that a program needs to play.
 ///
 ///     score ┐
-///     take ─┴→ planner → controller (inverse kinematics → inverse dynamics) → character (ODE)
+///     take ─┴→ planner → controller (inverse kinematics → inverse dynamics) → character (body)
 ///                                                                               ⇅
 ///     samples ←───────────────────────────────── drum (membrane ⇄ contact) ─────┘
 ///     command (Pd, OSC, file) → performance: the sample clock and the physics step → osc
