@@ -62,6 +62,7 @@ static void run(const uint8_t *bytes, size_t size)
     LLVMFuzzerTestOneInput(now.bytes, size);
     alarm(0);
     free(now.bytes);
+    now = (input){NULL, 0};
 }
 
 static void add_file(const char *path)
@@ -128,7 +129,7 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most)
     size_t at = below(size), length = 1 + below(below(4) ? 8 : 100);
     length = length < size - at ? length : size - at;
     const char *piece = pieces[below(sizeof pieces / sizeof pieces[0])];
-    const input *other = seed_count ? &seeds[below((size_t)seed_count)] : &now;
+    const input *other = seed_count ? &seeds[below((size_t)seed_count)] : &(input){NULL, 0};
     uint8_t copy[100];
     switch (below(8)) {
     case 0: data[at] ^= (uint8_t)(1u << below(8)); return size;
