@@ -119,7 +119,12 @@ static void play_for(soak *s, double seconds, bool until_done)
 
 static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};
 static const char *const spots[] = {"center", "normal", "rim"};
-static const char *const drums[] = {"kettle", "tom", "tam"};
+
+// the drum in the middle, or the one on the hand's side: across, the arm is at the end of its reach
+static const char *drum_of(soak *s, int hand)
+{
+    return choose(&s->seed, 2) ? "kettle" : hand == HIMC_LEFT ? "tam" : "tom";
+}
 
 static const char *hand_of(int hand)
 {
@@ -153,7 +158,7 @@ static void write_score(soak *s)
     session_do(s->p, "seek 0");
     session_do(s->p, "tempo %.1f", bpm);
     for (int i = 0; beat * 60 / bpm < last; i++) {
-        const char *drum = drums[choose(seed, 3)];
+        const char *drum = drum_of(s, i & 1);
         session_do(s->p, "stroke %.6f %s %s %.3f %s %s", beat, hand_of(i & 1),
                    nuances[choose(seed, 5)], chance(seed), spots[choose(seed, 3)], drum);
         double step = steps[choose(seed, 6)];
@@ -183,8 +188,9 @@ static void play_hits(soak *s)
     unsigned *seed = &s->seed;
     session_do(s->p, "clear");
     for (int i = 0; i < 20; i++) {
-        session_do(s->p, "hit %s %s %.3f %s %s", hand_of(choose(seed, 2)), nuances[choose(seed, 5)],
-                   chance(seed), spots[choose(seed, 3)], drums[choose(seed, 3)]);
+        int hand = choose(seed, 2);
+        session_do(s->p, "hit %s %s %.3f %s %s", hand_of(hand), nuances[choose(seed, 5)],
+                   chance(seed), spots[choose(seed, 3)], drum_of(s, hand));
         play_for(s, 0.2 + chance(seed), false);
     }
 }

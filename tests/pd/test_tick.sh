@@ -14,7 +14,7 @@ tests=0 failures=0
 report() { # report NAME WHY: passed if WHY is empty
     tests=$((tests + 1))
     [ -z "$2" ] || failures=$((failures + 1))
-    echo "tests/pd/test_contract.sh:${BASH_LINENO[0]}:$1:${2:+FAIL: }${2:-PASS}"
+    echo "tests/pd/test_tick.sh:${BASH_LINENO[0]}:$1:${2:+FAIL: }${2:-PASS}"
 }
 
 watched() { # watched COMMAND...: what the watch says
