@@ -13,7 +13,7 @@
 /// steps of 64 samples, a pass; a readout's samples within it come from the state at its start.
 /// With C_n, S_n the coefficients of n samples, the readout rp p + rs s is after n samples
 ///     y_n = C_n a + S_n b,   a = rp p + rs s,   b = rp s - rs p,
-/// taken from a table for n = 1 .. 8, again for the eight after them, and from then on
+/// taken from a table for n = 1 .. 16, eight samples at once, and from then on
 ///     y_n = 2 C_8 y_(n-8) - (C_8^2 + S_8^2) y_(n-16).
 /// When a force ends the pass early, the state makes the steps of 32, 16, .. samples that lead
 /// there. So the steps hang on the forces alone, not on how many samples are asked for at a time,
@@ -125,11 +125,10 @@ struct himc_bank {
     int substeps; // of a sample
     double h;     // a sample (s)
     film film;
-    double *omega, *decay, *mass, *damped; // w, d, m, w_d
-    double *q_per_p;                       // 1/w_d
-    double *table, *twice, *fall;          // of himc_bank_waves
-    _Alignas(
-        ALIGNMENT) double waves[4][BLOCK]; // a and b, of the first eight samples and the second
+    double *omega, *decay, *mass, *damped;         // w, d, m, w_d
+    double *q_per_p;                               // 1/w_d
+    double *table, *twice, *fall;                  // of himc_bank_waves
+    _Alignas(ALIGNMENT) double a[BLOCK], b[BLOCK]; // of himc_bank_waves
 };
 
 #define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + HIMC_BANK_TABLE)
@@ -342,18 +341,21 @@ static void find_powers(himc_bank *bank, int i)
 {
     double c1 = bank->power[0].c[i], s1 = bank->power[0].s[i], c = c1, s = s1;
     double *table = bank->table + (size_t)i * HIMC_BANK_TABLE;
-    for (int n = 0; n < LANES; n++) {
-        table[n] = c;
-        table[n + LANES] = s;
+    for (int n = 1; n <= 2 * LANES; n++) {
+        double *t = table + n - 1 + (n > LANES ? LANES : 0);
+        t[0] = c;
+        t[LANES] = s;
         double next = c * c1 - s * s1;
         s = s * c1 + c * s1;
         c = next;
     }
     for (int k = 1; k < POWERS; k++) {
-        c = k <= 3 ? table[(1 << k) - 1] : c * c - s * s;
-        s = k <= 3 ? table[(1 << k) - 1 + LANES] : 2 * bank->power[k - 1].c[i] * s;
-        bank->power[k].c[i] = c;
-        bank->power[k].s[i] = s;
+        int n = 1 << k; // up to 16 from the table, then by squaring
+        const double *t = table + n - 1 + (n > LANES ? LANES : 0);
+        c = n <= 2 * LANES ? t[0] : bank->power[k - 1].c[i];
+        s = n <= 2 * LANES ? t[LANES] : bank->power[k - 1].s[i];
+        bank->power[k].c[i] = n <= 2 * LANES ? c : c * c - s * s;
+        bank->power[k].s[i] = n <= 2 * LANES ? s : 2 * c * s;
     }
     double c8 = bank->power[3].c[i], s8 = bank->power[3].s[i];
     bank->twice[i] = 2 * c8;
@@ -609,16 +611,14 @@ void himc_bank_rest(himc_bank *bank)
 static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, double by,
                         int n, double *out)
 {
-    double(*w)[BLOCK] = bank->waves, sum = 0;
     const double *more = r->film ? r->film : r->p;
+    double sum = 0;
     for (int i = first; i < end; i += BLOCK) {
         int count = end - i < BLOCK ? end - i : BLOCK;
-        himc_bank_waves waves = {
-            {w[0], w[1]},         {w[2], w[3]},         bank->table + (size_t)i * HIMC_BANK_TABLE,
-            bank->power[3].c + i, bank->power[3].s + i, bank->twice + i,
-            bank->fall + i};
+        himc_bank_waves waves = {bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
+                                 bank->twice + i, bank->fall + i};
         sum += bank->loops->weigh(&waves, r->p + i, r->s + i, more + i, by, bank->p + i,
-                                  bank->s + i, count, n);
+                                  bank->s + i, count);
         bank->loops->ahead(&waves, count, n, out);
     }
     return sum;

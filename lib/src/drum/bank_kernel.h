@@ -9,25 +9,23 @@
 
 #define HIMC_BANK_LANES 8  ///< oscillators at once, samples at once
 #define HIMC_BANK_PASS 64  ///< samples that are computed ahead from one state
-#define HIMC_BANK_TABLE 16 ///< numbers of an oscillator's table
+#define HIMC_BANK_TABLE 32 ///< numbers of an oscillator's table
 
 /// What turns two weights and the state at the start of a pass into samples.
 typedef struct himc_bank_waves {
-    double *a[2], *b[2];        ///< sample n of the first eight, of the second: sum C_n a + S_n b
-    const double *table;        ///< C_1 .. C_8, S_1 .. S_8 of each oscillator
-    const double *c8, *s8;      ///< C_8, S_8
-    const double *twice, *fall; ///< 2 C_8, C_8^2 + S_8^2
+    double *a, *b;       ///< sample n is the sum of C_n a + S_n b
+    const double *table; ///< C_1 .. C_8, S_1 .. S_8, C_9 .. C_16, S_9 .. S_16 of each oscillator
+    const double *twice; ///< 2 C_8
+    const double *fall;  ///< C_8^2 + S_8^2
 } himc_bank_waves;
 
 typedef struct himc_bank_kernel {
     const char *name;
     /// p, s = c p + w s, c s - w p
     void (*rotate)(double *p, double *s, const double *c, const double *w, int length);
-    /// a, b = r p + rs s, r s - rs p with r = rp + more by; those of the second eight if n > 8.
-    /// Returns sum more p.
+    /// a, b = r p + rs s, r s - rs p with r = rp + more by. Returns sum more p.
     double (*weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
-                    const double *more, double by, const double *p, const double *s, int length,
-                    int n);
+                    const double *more, double by, const double *p, const double *s, int length);
     /// kick = per_mass g with g = on_p p; sum[0], sum[1] = sum g (s - damp p), sum g kick
     void (*stretch)(double *kick, const double *on_p, const double *per_mass, const double *damp,
                     const double *p, const double *s, int length, double *sum);

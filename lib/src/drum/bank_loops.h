@@ -29,7 +29,7 @@ TARGET static void NAMED(rotate)(double *p, double *s, const double *c, const do
 
 TARGET static double NAMED(weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
                                   const double *more, double by, const double *p, const double *s,
-                                  int length, int n)
+                                  int length)
 {
     VEC sum[PARTS] = {{0}};
     for (int i = 0; i < length; i += HIMC_BANK_LANES)
@@ -37,15 +37,10 @@ TARGET static double NAMED(weigh)(const himc_bank_waves *waves, const double *rp
             int at = i + k * WIDTH;
             VEC vp = *(const VEC *)(p + at), vs = *(const VEC *)(s + at);
             VEC f = *(const VEC *)(more + at), up = *(const VEC *)(rp + at) + f * by;
-            VEC us = *(const VEC *)(rs + at), a = up * vp + us * vs, b = up * vs - us * vp;
-            *(VEC *)(waves->a[0] + at) = a;
-            *(VEC *)(waves->b[0] + at) = b;
+            VEC us = *(const VEC *)(rs + at);
+            *(VEC *)(waves->a + at) = up * vp + us * vs;
+            *(VEC *)(waves->b + at) = up * vs - us * vp;
             sum[k] += f * vp;
-            if (n > HIMC_BANK_LANES) {
-                VEC c = *(const VEC *)(waves->c8 + at), w = *(const VEC *)(waves->s8 + at);
-                *(VEC *)(waves->a[1] + at) = c * a + w * b;
-                *(VEC *)(waves->b[1] + at) = c * b - w * a;
-            }
         }
     return NAMED(total)(sum);
 }
@@ -134,10 +129,11 @@ NAMED(look)(const himc_bank_waves *waves, int length, int eights, double *out)
         for (int i = 0; i < length; i += 2) {
 #pragma GCC unroll 2
             for (int m = 0; m < 2; m++) {
-                before[m] = waves->a[0][i + m] * x[0] + waves->b[0][i + m] * x[PARTS];
+                double a = waves->a[i + m], b = waves->b[i + m];
+                before[m] = a * x[0] + b * x[PARTS];
                 if (eights > 1)
-                    now[m] = waves->a[1][i + m] * x[0] + waves->b[1][i + m] * x[PARTS];
-                x += 2 * PARTS;
+                    now[m] = a * x[2 * PARTS] + b * x[3 * PARTS];
+                x += 4 * PARTS;
             }
             sum[0] += before[0] + before[1];
             if (eights > 1)
