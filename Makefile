@@ -36,7 +36,7 @@ PROGRAM   := $(BUILD)/bin/himc
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture plan control drum performance osc
+ROOMS     := base body capture plan control head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/$(room)/*.c)))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
@@ -221,10 +221,10 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-air-table: ## lib/src/drum/air_table.c anew (half a minute): the modes of four timpani in air
+air-table: ## lib/src/head/air_table.c anew (half a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
-	cmp -s $(BUILD)/air_table.c lib/src/drum/air_table.c || mv $(BUILD)/air_table.c lib/src/drum/air_table.c
+	cmp -s $(BUILD)/air_table.c lib/src/head/air_table.c || mv $(BUILD)/air_table.c lib/src/head/air_table.c
 
 regression-table: ## lib/src/control/posture_regression_table.c anew: how arms move with their sticks, from the database
 	@$(MAKE) $(BUILD)/tools/regression/table

@@ -17,7 +17,7 @@
 #include "drum/contact.h"
 #include "drum/drum_state.h"
 #include "drum/membrane_state.h"
-#include "drum/modes.h"
+#include "head/modes.h"
 
 #include <math.h>
 

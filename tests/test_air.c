@@ -2,7 +2,7 @@
 /// the closed forms around it, the kettle, any head.
 #include "christian_drum.h"
 
-#include "drum/bessel.h"
+#include "head/bessel.h"
 
 #include <stdio.h>
 #include <string.h>

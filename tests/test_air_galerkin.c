@@ -2,7 +2,7 @@
 /// radiation, and the modes of a 26 inch timpano.
 #include "christian_drum.h"
 
-#include "drum/bessel.h"
+#include "head/bessel.h"
 
 #include <stdio.h>
 

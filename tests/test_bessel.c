@@ -1,6 +1,6 @@
 /// test_bessel.c: Bessel functions and their zeros against tables and the C library.
 #define _XOPEN_SOURCE 700 // jn
-#include "drum/bessel.h"
+#include "head/bessel.h"
 
 #include "himc/base.h"
 #include "unity.h"

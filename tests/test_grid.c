@@ -4,10 +4,10 @@
 #include "himc/drum.h"
 
 #include "disc_mesh.h"
-#include "drum/bessel.h"
+#include "head/bessel.h"
 #include "drum/contact.h"
 #include "drum/membrane_probe.h"
-#include "drum/modes.h"
+#include "head/modes.h"
 
 #define RADIUS 0.3
 #define TENSION 3000.0

@@ -1,6 +1,6 @@
 /// test_membrane.c: pitch, decay, energy and pickups of a bare head, and changes while it sounds.
 #include "drum/membrane_probe.h"
-#include "drum/modes.h"
+#include "head/modes.h"
 
 #include "unity.h"
 

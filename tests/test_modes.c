@@ -1,6 +1,6 @@
 /// test_modes.c: the list of modes, their masses, shapes and decays, and the ranges of a head.
 #define _XOPEN_SOURCE 700 // jn
-#include "drum/modes.h"
+#include "head/modes.h"
 
 #include "unity.h"
 

@@ -1,5 +1,5 @@
 /// test_timpano.c: a drum in air: pitch, decays, pedal, damping hand, pickups.
-#include "drum/air.h"
+#include "head/air.h"
 #include "himc/drum.h"
 
 #include "unity.h"

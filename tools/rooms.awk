@@ -9,23 +9,23 @@ function fault(text)
 }
 
 BEGIN {
-    rooms = split("base body capture plan control drum performance osc", order, " ")
+    rooms = split("base body capture plan control head drum performance osc", order, " ")
     for (i = 1; i <= rooms; i++)
         rank[order[i]] = i
     # the room of a public header
-    split("vec base body body mocap capture score plan membrane drum drum drum performance performance osc osc", header, " ")
+    split("vec base body body mocap capture score plan membrane head drum drum performance performance osc osc", header, " ")
     for (i = 1; i in header; i += 2)
         room_of[header[i]] = header[i + 1]
     # which outside library is known to which files
     only["^d(World|Body|Joint|Mass|Geom|Init|Close|AllocateODE|SetAlloc|SetFree|SetRealloc)"] = "^body/character$"
     only["^lo_"] = "^osc/"
-    only["^(LAPACKE|cblas)_"] = "^(body|capture|control|drum)/"
+    only["^(LAPACKE|cblas)_"] = "^(body|capture|control|head)/"
     only["^(socket|bind|sendto|recvfrom)$"] = "^osc/"
     only["^pthread_create$"] = "^(osc/|performance/loader$)"
     # a host's process and its terminal are not the library's
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
     # these may be embedded anywhere: they and all that they call need libm and the C library alone
-    alone = "^drum/(membrane|contact|modes|bank)"
+    alone = "^(drum/(membrane|contact|bank)|head/modes)"
 }
 
 FILENAME != "-" {

@@ -3,7 +3,7 @@
 ///
 /// An input is the head's file and up to three tables, separated by '@'. They lie beside each other
 /// as the files 100, 101, 102 and 103.
-#include "drum/grid.h"
+#include "head/grid.h"
 #include "fuzz.h"
 
 #include <math.h>

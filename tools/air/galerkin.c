@@ -22,8 +22,8 @@
 /// (1,2) of a 26 inch drum, here 311 and 352).
 #include "galerkin.h"
 
-#include "drum/bessel.h"
-#include "drum/air.h"
+#include "head/bessel.h"
+#include "head/air.h"
 
 #include <complex.h>
 #include <lapacke.h>

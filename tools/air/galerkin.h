@@ -1,12 +1,12 @@
 /// galerkin.h: the modes of a head over its kettle in air, solved in full, to make and to check the
-/// table of lib/src/drum/air.c.
+/// table of lib/src/head/air.c.
 ///
 /// Frequencies are x = w a/c, and a drum is three numbers: epsilon = rho a/sigma, L/a and the
 /// tension tau = T/(sigma c^2). Setup functions; they need LAPACK.
 #ifndef HIMC_AIR_GALERKIN_H
 #define HIMC_AIR_GALERKIN_H
 
-#include "drum/air.h"
+#include "head/air.h"
 
 #define HIMC_AIR_BASIS 8    ///< functions J_m(j_mn r/a) that a loaded shape is made of
 #define HIMC_AIR_CAVITY 120 ///< modes of the kettle for each angular order

@@ -1,4 +1,4 @@
-/// table.c: computes lib/src/drum/air_table.c (half a minute): `make air-table`.
+/// table.c: computes lib/src/head/air_table.c (half a minute): `make air-table`.
 #include "galerkin.h"
 
 #include <math.h>
@@ -71,7 +71,7 @@ static void print_all(void)
     puts("/// air_table.c: the modes of four timpani in air (make air-table).\n"
          "///\n"
          "/// A row is a mode over the tensions; rows go by n, then m, then drum.\n"
-         "#include \"drum/air.h\"\n\n"
+         "#include \"head/air.h\"\n\n"
          "// clang-format off");
     printf("const double himc_air_radius[HIMC_AIR_DRUMS] = {%g, %g, %g, %g};\n", RADIUS[0],
            RADIUS[1], RADIUS[2], RADIUS[3]);

@@ -1,4 +1,4 @@
-// The modes of a round membrane in the library's order (lib/src/drum/modes.h): by increasing zero
+// The modes of a round membrane in the library's order (lib/src/head/modes.h): by increasing zero
 // of the Bessel function, each pair as cosine and sine.
 //     phi_mn = J_m(j_mn r / a) cos or sin (m theta)
 

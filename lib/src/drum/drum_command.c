@@ -2,7 +2,7 @@
 /// drum. Each makes the new state aside, has it checked, and only then takes it.
 #include "drum/drum_state.h"
 
-#include "drum/air.h"
+#include "head/air.h"
 #include "himc/vec.h"
 
 #include <math.h>

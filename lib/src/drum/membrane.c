@@ -14,9 +14,9 @@
 #include "drum/membrane_form.h"
 #include "drum/membrane_state.h"
 
-#include "drum/bessel.h"
+#include "head/bessel.h"
 #include "drum/membrane_probe.h"
-#include "drum/pickup.h"
+#include "head/pickup.h"
 
 #include <math.h>
 #include <stdlib.h>

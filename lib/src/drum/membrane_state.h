@@ -3,7 +3,7 @@
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H
 
-#include "drum/air.h"
+#include "head/air.h"
 #include "drum/bank.h"
 #include "drum/strike_point.h"
 

@@ -1,7 +1,7 @@
 /// air_table.c: the modes of four timpani in air (make air-table).
 ///
 /// A row is a mode over the tensions; rows go by n, then m, then drum.
-#include "drum/air.h"
+#include "head/air.h"
 
 // clang-format off
 const double himc_air_radius[HIMC_AIR_DRUMS] = {0.292, 0.328, 0.368, 0.406};

@@ -21,9 +21,9 @@
 /// and 3700 N/m: a 45 g mallet then meets 65 N at 3.7 m/s and 108 N at 6 m/s, the paper's 62 ..
 /// 65 and 106.9 N. With `air 1` the same head is a timpano's, and the loss by radiation comes on
 /// top of this decay.
-#include "drum/modes.h"
+#include "head/modes.h"
 
-#include "drum/bessel.h"
+#include "head/bessel.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 /// with its tension and its M with its density, so w = z/radius sqrt(T/sigma) with z = radius
 /// sqrt(w0^2 sigma0/T0) serves any other tension and density, as a Bessel zero does for a round
 /// head (modes.c).
-#include "drum/grid.h"
+#include "head/grid.h"
 
 #include "base/file.h"
 #include "himc/ranges.h"

@@ -7,7 +7,7 @@
 #ifndef HIMC_MODES_H
 #define HIMC_MODES_H
 
-#include "drum/grid.h"
+#include "head/grid.h"
 #include "himc/membrane.h"
 
 typedef struct himc_modes himc_modes;

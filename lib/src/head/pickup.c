@@ -13,10 +13,10 @@
 /// The acceleration includes the force itself: q'' = phi f/m - w^2 q - 2 d q'. Without that part, a
 /// mallet pressing on the head would give a pressure that does not exist, for in equilibrium phi
 /// f/m cancels w^2 q.
-#include "drum/pickup.h"
+#include "head/pickup.h"
 
-#include "drum/air.h"
-#include "drum/bessel.h"
+#include "head/air.h"
+#include "head/bessel.h"
 
 #include <math.h>
 

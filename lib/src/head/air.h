@@ -12,7 +12,7 @@
 #ifndef HIMC_AIR_H
 #define HIMC_AIR_H
 
-#include "drum/modes.h"
+#include "head/modes.h"
 
 #define HIMC_AIR_SPEED 344.0  ///< c (m/s)
 #define HIMC_AIR_DENSITY 1.21 ///< rho (kg/m^3); both as in Christian et al. 1984

@@ -2,7 +2,7 @@
 #ifndef HIMC_PICKUP_H
 #define HIMC_PICKUP_H
 
-#include "drum/modes.h"
+#include "head/modes.h"
 
 /// Sound per unit of a mode's state, in the units of himc/membrane.h (HIMC_PICKUP_PRESSURE,
 /// HIMC_PICKUP_VELOCITY).

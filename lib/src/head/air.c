@@ -25,7 +25,7 @@
 /// epsilon/(l j^2); its mass follows from the frequency. Thus static deflections are exact and, for
 /// the preferred modes of a tuned drum, the mass is within a tenth of the mass with which the whole
 /// problem responds to a blow (its residue).
-#include "drum/air.h"
+#include "head/air.h"
 
 #include <math.h>
 

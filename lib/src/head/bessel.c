@@ -9,7 +9,7 @@
 ///
 /// Zeros of one order are more than 3.1 apart and the first lies above m (Watson 1944, section
 /// 15.3), so steps of 1.5 from m upwards cannot miss one.
-#include "drum/bessel.h"
+#include "head/bessel.h"
 
 #include <math.h>
 
