@@ -14,6 +14,7 @@
 #define HIMC_SIGMA1_MAX 1.0            ///< decay with the square of the frequency, from 0 (s)
 #define HIMC_INCHES_MIN 12.0           ///< diameter of a drum (inches)
 #define HIMC_INCHES_MAX 60.0           ///< (inches)
+#define HIMC_INCHES_USUAL 26.0         ///< when nothing is said: the commonest timpano (inches)
 #define HIMC_PICKUPS 8                 ///< most that a membrane is heard by at once
 #define HIMC_ELEVATION_MAX 1.5708      ///< of a pickup over the head: overhead, from 0 (rad)
 #define HIMC_PICKUP_DISTANCE_MIN 0.3   ///< from the head's centre (m)
