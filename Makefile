@@ -349,6 +349,9 @@ $(BUILD)/tools/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerki
 
 $(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
 
+# needs tools/deps-sound.txt
+$(BUILD)/tools/sound/loudness: private LIBS += -lebur128
+
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
