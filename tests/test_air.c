@@ -3,6 +3,7 @@
 #include "christian_drum.h"
 
 #include "head/bessel.h"
+#include "heads.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -18,7 +19,7 @@ static himc_air_root solved(int m, int n, double a, double tension, double volum
 
 static himc_head head_of(double a, double tension)
 {
-    himc_head head = himc_head_default();
+    himc_head head = dry_head();
     head.radius = a;
     head.tension = tension;
     head.density = SIGMA;

@@ -8,6 +8,7 @@
 #include "drum/contact.h"
 #include "drum/membrane_probe.h"
 #include "head/modes.h"
+#include "heads.h"
 
 #define RADIUS 0.3
 #define TENSION 3000.0
@@ -55,7 +56,7 @@ static void put(const char *name, const char *text)
 static void compare(const himc_grid *g, double *ten, double *twenty)
 {
     himc_modes *round = himc_modes_new(&(himc_shape){.kind = HIMC_CIRCLE}, 20, NULL);
-    himc_head head = himc_head_default();
+    himc_head head = dry_head();
     *ten = *twenty = 0;
     for (int i = 0; i < 20; i++) {
         double z = himc_modes_get(round, &head, i).zero;

@@ -54,8 +54,8 @@ typedef struct himc_mode {
 /// Added to the decay of a bare head by `damp` 1 (1/s); chosen: T60 = 0.1 s.
 #define HIMC_DAMP 69.0
 
-/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes, without air; tension and decay as
-/// modes.c explains.
+/// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
+/// 200 modes.
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).

@@ -14,6 +14,7 @@
 #define HIMC_SIGMA1_MAX 1.0            ///< decay with the square of the frequency, from 0 (s)
 #define HIMC_INCHES_MIN 12.0           ///< diameter of a drum (inches)
 #define HIMC_INCHES_MAX 60.0           ///< (inches)
+#define HIMC_INCHES_USUAL 26.0         ///< when nothing is said: the commonest timpano (inches)
 #define HIMC_PICKUPS 8                 ///< most that a membrane is heard by at once
 #define HIMC_ELEVATION_MAX 1.5708      ///< of a pickup over the head: overhead, from 0 (rad)
 #define HIMC_PICKUP_DISTANCE_MIN 0.3   ///< from the head's centre (m)
@@ -26,6 +27,7 @@
 #define HIMC_TASK_RATE_MAX 2000.0     ///< (Hz)
 #define HIMC_BPM_MIN 1.0              ///< (beats per minute)
 #define HIMC_BPM_MAX 1000.0           ///< (beats per minute)
+#define HIMC_SEED_MAX 999999.0        ///< of random numbers, from 0
 #define HIMC_BODY_MASS_MIN 30.0       ///< of a player (kg)
 #define HIMC_BODY_MASS_MAX 200.0      ///< (kg)
 

@@ -17,10 +17,9 @@
 /// weights are infinite at a place and 0 at the ninth, so the surface passes through the places and
 /// has no steps as the neighbours change (moving least squares: Lancaster & Salkauskas 1981).
 ///
-/// The default head: 23 inches of Christian et al.'s Mylar, the ideal membrane of the 2012 paper,
-/// and 3700 N/m: a 45 g mallet then meets 65 N at 3.7 m/s and 108 N at 6 m/s, the paper's 62 ..
-/// 65 and 106.9 N. With `air 1` the same head is a timpano's, and the loss by radiation comes on
-/// top of this decay.
+/// The default head: a timpano of 26 inches, the commonest one, with Christian et al.'s Mylar (1984)
+/// in air, at the tension that sounds D3, the middle of its range. S0 and S1 are what air.h says of
+/// a film; the loss by radiation comes on top.
 #include "head/modes.h"
 
 #include "head/bessel.h"
@@ -64,13 +63,13 @@ struct himc_modes {
 
 himc_head himc_head_default(void)
 {
-    return (himc_head){.radius = 0.2921,
-                       .tension = 3700,
+    return (himc_head){.radius = 0.3302,
+                       .tension = 3830.3,
                        .density = 0.2653,
-                       .decay_constant = 2.2,
+                       .decay_constant = 0.5,
                        .decay_square = 3e-7,
                        .modes = 200,
-                       .air = false,
+                       .air = true,
                        .glide = 1};
 }
 
