@@ -38,6 +38,9 @@ HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
 HIMC_COMMAND_ROW(GRIP, grip, PERFORMER, NOW, 0, "german|french",
                  "sets the grip: palms down (german), or thumbs up (french)")
+HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
+                 "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
+                 "all; each seed is another player")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
                  "1: the score begins again after its last whole beat")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
