@@ -20,7 +20,7 @@ typedef struct himc_grid himc_grid;
 typedef struct himc_head {
     double radius;         ///< a (m), 0.05 .. 1
     double tension;        ///< T (N/m), 10 .. 1e5
-    double density;        ///< sigma (kg/m^2), 0.001 .. 10
+    double density;        ///< sigma (kg/m^2), 0.001 .. 1000
     double decay_constant; ///< S0 (1/s), 0 .. 1000: a mode decays as exp(-(S0 + S1 omega^2) t)
     double decay_square;   ///< S1 (s), 0 .. 1
     int modes;             ///< 1 .. HIMC_MODES_MAX, members of a pair counted; or HIMC_MODES_AUTO

@@ -78,7 +78,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
     return himc_check_range("radius", head->radius, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", error) &&
            himc_check_range("tension", head->tension, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m",
                             error) &&
-           himc_check_range("density", head->density, 0.001, 10, "kg/m2", error) &&
+           himc_check_range("density", head->density, 0.001, HIMC_DENSITY_MAX, "kg/m2", error) &&
            himc_check_range("decay S0", head->decay_constant, 0, HIMC_SIGMA0_MAX, "1/s", error) &&
            himc_check_range("decay S1", head->decay_square, 0, HIMC_SIGMA1_MAX, "s", error) &&
            (head->modes == HIMC_MODES_AUTO ||
