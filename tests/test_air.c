@@ -346,7 +346,7 @@ static void test_any_head_in_range_has_finite_slower_damped_modes(void)
         }
         himc_head head = {.radius = 0.05 * pow(20, u[0]),
                           .tension = 50 * pow(1000, u[1]),
-                          .density = 0.01 * pow(1000, u[2]),
+                          .density = 0.01 * pow(1e5, u[2]),
                           .modes = 1};
         int m = (int)(13 * u[3]), n = 1 + (int)(6 * u[4]);
         himc_air_load load =

@@ -26,6 +26,8 @@
 /// problem responds to a blow (its residue).
 #include "head/air.h"
 
+#include "head/statistical.h"
+
 #include <math.h>
 
 // half to twice the usual kettle; chosen: docs/air.md gives the errors in this range
@@ -302,8 +304,24 @@ himc_air himc_air_around(const himc_head *head, double kettle)
     return air;
 }
 
+// a mode of statistical.c, which changes no volume and has no table
+static himc_air_load on_statistical(const himc_air *air, double zero)
+{
+    double b = air->loading * 2 * RIM / zero, y = below_sound(b, air->tension);
+    double mass = air->tension / y;
+    return (himc_air_load){
+        .frequency = sqrt(y / air->tension),
+        .radiation = air->loading * HIMC_AIR_SPEED / (air->radius * mass) *
+                     himc_statistical_radiation(zero, y),
+        .mass = mass,
+        .stiffness = 1,
+    };
+}
+
 himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
 {
+    if (m < 0)
+        return on_statistical(air, zero);
     mode_id s = {m, n, zero};
     log_pair found = closed_form(air, air->depth, s);
     if (m < HIMC_AIR_ORDERS && n <= HIMC_AIR_RANKS && air->weight > 0 &&

@@ -47,7 +47,7 @@ typedef struct himc_air_load {
     double stiffness; ///< with the kettle's spring, per that of the bare head: 1 for m > 0
 } himc_air_load;
 
-/// For mode (m, n) with the zero j_mn.
+/// For mode (m, n) with the zero j_mn; a statistical one has m = -1.
 HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero);
 
 /// The mode in air: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new frequency plus
