@@ -10,6 +10,7 @@
 #define HIMC_RADIUS_MAX 1.0            ///< (m)
 #define HIMC_TENSION_MIN 10.0          ///< of a head (N/m)
 #define HIMC_TENSION_MAX 1e5           ///< (N/m)
+#define HIMC_DENSITY_MAX 1000.0        ///< of a head or plate: 13 cm of steel (kg/m^2)
 #define HIMC_SIGMA0_MAX 1000.0         ///< decay of all modes, from 0 (1/s)
 #define HIMC_SIGMA1_MAX 1.0            ///< decay with the square of the frequency, from 0 (s)
 #define HIMC_INCHES_MIN 12.0           ///< diameter of a drum (inches)
