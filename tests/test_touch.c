@@ -178,7 +178,8 @@ static void test_contact_onsets_are_reported_at_each_stroke(void)
         TEST_ASSERT_EQUAL_DOUBLE(s->x, told.x);
         TEST_ASSERT_EQUAL_DOUBLE(s->y, told.y);
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * s->velocity, s->velocity, told.velocity);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, hypot(s->x, s->y) / 0.2921, told.distance);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, hypot(s->x, s->y) / himc_drum_head_frame(drum)->radius,
+                                  told.distance);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, himc_membrane_mode(himc_drum_membrane(drum), 1).frequency,
                                   told.pitch);
     }
