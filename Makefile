@@ -221,7 +221,7 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-air-table: ## lib/src/head/air_table.c anew (half a minute): the modes of four timpani in air
+air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
 	cmp -s $(BUILD)/air_table.c lib/src/head/air_table.c || mv $(BUILD)/air_table.c lib/src/head/air_table.c
