@@ -64,10 +64,14 @@ typedef struct bench_drum {
 static const bench_drum drum[] = {
     {"drum_200_ms", "200 modes, air, glide, four strikes a second", {"modes 200", "glide 1"}, 4},
     {"drum_200_no_glide_ms", "the same without glide", {"modes 200", "glide 0"}, 4},
+    {"drum_auto_ms",
+     "`modes auto`, air, glide, four strikes a second",
+     {"modes auto", "glide 1"},
+     4},
     {"drum_1000_ms", "1000 modes, air, glide, four strikes a second", {"modes 1000", "glide 1"}, 4},
     {"silent_ms", "200 modes, silent", {"modes 200", "glide 1"}, 0},
 };
-enum { DRUM_200, DRUM_NO_GLIDE, DRUM_1000, SILENT, DRUMS };
+enum { DRUM_200, DRUM_NO_GLIDE, DRUM_AUTO, DRUM_1000, SILENT, DRUMS };
 
 /// Median of the runs.
 typedef struct figures {
@@ -241,6 +245,7 @@ static double time_modes(himc_error *error)
     himc_head head = himc_head_default();
     static double first[BLOCK], *const sound = first;
     head.modes = MODES;
+    head.air = false;
     head.decay_constant = 0.1;
     head.decay_square = 0;
     head.glide = 0;
@@ -264,8 +269,7 @@ static double time_drum(const bench_drum *b, himc_error *error)
     himc_drum *d = himc_drum_new("drum", 26, RATE, error);
     if (d)
         himc_drum_watch(d, false);
-    bool good = d && himc_command_parse_text(&command, HIMC_DRUM, "air 1", error) &&
-                himc_drum_command(d, &command, error);
+    bool good = d;
     for (int i = 0; good && i < 2; i++)
         good = himc_command_parse_text(&command, HIMC_DRUM, b->settings[i], error) &&
                himc_drum_command(d, &command, error);

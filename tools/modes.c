@@ -56,9 +56,9 @@ static int run(const cli_arguments *arguments)
     const himc_head *head = himc_membrane_head(membrane);
     double reference = himc_membrane_principal(membrane, head);
     printf("m,n,frequency_hz,ratio,t60_s\n");
-    for (int i = 0; i < head->modes; i++) {
+    for (int i = 0; himc_membrane_mode(membrane, i).mass > 0; i++) {
         himc_mode mode = himc_membrane_mode(membrane, i);
-        if (!mode.sine)
+        if (mode.m >= 0 && !mode.sine) // not the statistical ones
             printf("%d,%d,%.6f,%.6f,%.6f\n", mode.m, mode.n, mode.frequency,
                    mode.frequency / reference, log(1000) / mode.decay);
     }
@@ -74,7 +74,7 @@ const cli_call cli_modes = {
     "",
     "lists the modes of a drum: m,n,frequency_hz,ratio,t60_s",
     "The drum is the first that SCORE makes, tuned as its lines say; without SCORE the default\n"
-    "one of 23 inches. One row for each pair of nodal diameters m and circles n; the ratio is to\n"
+    "one of 26 inches. One row for each pair of nodal diameters m and circles n; the ratio is to\n"
     "the principal mode (1,1).",
     options,
     run,

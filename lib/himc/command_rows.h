@@ -38,6 +38,9 @@ HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
 HIMC_COMMAND_ROW(GRIP, grip, PERFORMER, NOW, 0, "german|french",
                  "sets the grip: palms down (german), or thumbs up (french)")
+HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
+                 "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
+                 "all; each seed is another player")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
                  "1: the score begins again after its last whole beat")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
@@ -88,12 +91,15 @@ HIMC_COMMAND_ROW(ENGINE, engine, PERFORMER, AT_SAMPLE, 0, "tree|ode",
 HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
 HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, 0, "SEGMENT FX FY FZ SECONDS",
                  "pushes a segment of the body with a force for a time")
+HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | X Y Z [YAW]",
+                 "has all drums heard by two ears there, facing the performer or that way; off: by "
+                 "the drums' pickups")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
 HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "", "sets everything as when just made")
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
-                 "makes a drum, 23 inches by default")
+                 "makes a drum, 26 inches by default")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "
@@ -112,7 +118,9 @@ HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, HIMC_CHANGES_HEAD, "DENSITY",
                  "sets the head's mass per area")
 HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD, "HZ | NOTE",
                  "sets the tension so that the principal mode sounds there")
-HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT", "sets the number of modes")
+HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
+                 "sets the number of modes; auto: exact where they overlap little, statistical "
+                 "above, up to 8 kHz and more")
 HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD, "T60 | SIGMA0 SIGMA1",
                  "sets the losses by the decay time, or by both of their parameters")
 HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
