@@ -431,6 +431,7 @@ static const char *const drum_forms[] = {"radius 0.29",
                                          "place 0.7 0 0.85 0.1",
                                          "pickup 0.1 0",
                                          "pickup air 0 0.5 2",
+                                         "gain -6",
                                          "strike 0.1 0 3"};
 
 static void test_every_form_of_every_command_is_accepted(void)
