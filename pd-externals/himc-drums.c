@@ -79,7 +79,7 @@ void himc_tilde_resolve(t_himc *x, bool tell)
         }
         if (!drum && !d->d_silent) {
             himc_error ignored;
-            himc_drum *silent = himc_drum_new(d->d_name, 23, x->x_rate, &ignored);
+            himc_drum *silent = himc_drum_new(d->d_name, HIMC_INCHES_USUAL, x->x_rate, &ignored);
             himc_tilde_release(x, d);
             d->d_silent = silent && himc_tilde_take(x, d, silent, &ignored);
             himc_drum_release(silent);

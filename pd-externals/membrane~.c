@@ -326,7 +326,7 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
     if (argc > 0)
         atom_string(argv, text, sizeof text);
     if (argc > 0 && argv[0].a_type != A_SYMBOL)
-        return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 23]",
+        return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 26]",
                               text);
     if (argc > 0)
         wish->w_name = argv[0].a_w.w_symbol->s_name;
@@ -377,7 +377,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 {
     (void)s;
     himc_error error;
-    t_wish wish = {NULL, 23, 1};
+    t_wish wish = {NULL, HIMC_INCHES_USUAL, 1};
     double rate = sys_getsr();
     t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;

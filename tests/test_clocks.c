@@ -1,5 +1,5 @@
 /// test_clocks.c: sample counts beyond 2^32 (a day at 48 kHz) and 2^50 (743 years): the same
-/// strokes and the same sound as from 0.
+/// strokes and the same sound as from 0; and the rates of sound and physics.
 ///
 /// Counts are integers of 64 bits everywhere. Time in seconds is a double, 2^50 samples are
 /// 2.3e10 s, and there its last bit is 4 microseconds; after a day it is 15 picoseconds. So a drum
@@ -130,6 +130,46 @@ static void test_a_performers_strokes_are_the_same_across_2_to_the_32_and_50(voi
     heard_free(&first);
 }
 
+// a step has at least one sample: of 8 kHz sound the physics has 8 kHz, whatever was asked for
+static void test_physics_is_never_faster_than_the_sound(void)
+{
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = 8000;
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(p, error.text);
+    himc_performance_make_drums(p, true);
+    session_do(p, "drum kettle 26");
+    session_do(p, "rate physics 20000");
+    session_do(p, "tempo 60");
+    session_do(p, "stroke 1 left accent f");
+    session_do(p, "play");
+    himc_performance_process(p, 2 * 8000, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_DOUBLE(8000, s.physics_rate);
+    TEST_ASSERT_EQUAL_DOUBLE(2, s.seconds);
+    TEST_ASSERT_EQUAL_INT(1, s.played);
+    TEST_ASSERT_EQUAL_INT(0, s.recoveries);
+    himc_performance_free(p);
+}
+
+// samples that are simulated and not yet taken stay so when the rate changes: else what is heard of
+// a drum lags behind the performance by a step with each change
+static void test_drum_is_never_more_than_a_step_ahead_of_its_performance(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle 26");
+    for (int i = 0; i < 20; i++) {
+        double rate = i & 1 ? 44100 : 48000;
+        TEST_ASSERT_TRUE_MESSAGE(himc_performance_set_rate(p, rate, &error), error.text);
+        uint64_t before = himc_performance_time(p);
+        himc_performance_process(p, 101, NULL);
+        TEST_ASSERT_EQUAL_UINT64(before + 101, himc_performance_time(p));
+        uint64_t made = himc_drum_time(himc_performance_drum(p, 0));
+        TEST_ASSERT_TRUE(made - himc_performance_time(p) < 5);
+    }
+    himc_performance_free(p);
+}
+
 #ifdef HAVE_PD
 // Pd's clock, at a logical time in ms
 static double pd_time;
@@ -178,6 +218,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_drum_plays_the_same_bits_across_2_to_the_32_and_50);
     RUN_TEST(test_a_performers_strokes_are_the_same_across_2_to_the_32_and_50);
+    RUN_TEST(test_physics_is_never_faster_than_the_sound);
+    RUN_TEST(test_drum_is_never_more_than_a_step_ahead_of_its_performance);
 #ifdef HAVE_PD
     RUN_TEST(test_a_message_to_pd_finds_its_sample_across_2_to_the_32_and_50);
 #endif

@@ -381,6 +381,8 @@ static void test_every_form_of_every_command_is_accepted(void)
                                             "tempo 90 16",
                                             "grip french",
                                             "grip german",
+                                            "human 0.3",
+                                            "human 1 999999",
                                             "loop 0",
                                             "loop 1",
                                             "record a.bvh",

@@ -2,6 +2,7 @@
 #include "drum/contact.h"
 
 #include "unity.h"
+#include "heads.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +20,7 @@ static himc_stick *sticks[STICKS] = {&stick[0], &stick[1], &stick[2], &stick[3]}
 // Christian et al.'s head; the mass of its air is included by the factor 1/0.66^2
 static void christian(int modes)
 {
-    head = himc_head_default();
+    head = dry_head();
     head.radius = 0.328;
     head.tension = 3990;
     head.density = 0.2653 / (0.66 * 0.66);

@@ -282,6 +282,34 @@ static void test_nothing_that_may_wait_is_called(void)
     himc_performance_free(performer);
 }
 
+// The host only tries the lock of the loader, and wakes the helper for two stages of a load: when
+// there is something to prepare, which is not counted here if it succeeds at once, and to free.
+static void test_the_host_of_a_loader_never_waits_for_its_helper(void)
+{
+    if (!watch_span_begin)
+        TEST_IGNORE_MESSAGE("a sanitizer stands in front of libc");
+    drum = himc_drum_new("kettle", 26, 48000, &error);
+    loader = himc_loader_new(&error);
+    himc_load_target target = {.drum = drum};
+    TEST_ASSERT_TRUE(drum && loader);
+    for (int i = 0; i < 5; i++) {
+        const char *text = i % 2 ? "modes 300" : "modes 900";
+        TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_DRUM, text, &error));
+        TEST_ASSERT_TRUE(himc_loader_command(loader, &target, &command, &error));
+        himc_loader_run(loader); // makes the job
+        long before = watch_calls();
+        while (himc_loader_busy(loader)) {
+            watch_span_begin();
+            himc_loader_run(loader);
+            watch_span_end();
+        }
+        TEST_ASSERT_LESS_OR_EQUAL(before + 2, watch_calls());
+        himc_loader_finish(loader);
+    }
+    himc_loader_free(loader);
+    himc_drum_release(drum);
+}
+
 int main(int argc, char **argv)
 {
     (void)argc;
@@ -298,5 +326,6 @@ int main(int argc, char **argv)
     UNITY_BEGIN();
     RUN_TEST(test_every_function_of_the_headers_with_the_mark_is_in_the_list);
     RUN_TEST(test_nothing_that_may_wait_is_called);
+    RUN_TEST(test_the_host_of_a_loader_never_waits_for_its_helper);
     return UNITY_END();
 }

@@ -5,6 +5,8 @@
 
 #include "unity.h"
 
+#include "heads.h"
+
 #include <stdio.h>
 
 #define RATE 48000
@@ -48,6 +50,7 @@ static void play(const char *const *score, int lines, double seconds)
     himc_performance *p = himc_performance_new(&config, &error);
     himc_drum *drum = himc_drum_new("kettle", 23, RATE, &error);
     TEST_ASSERT_TRUE_MESSAGE(p && drum && himc_performance_add_drum(p, drum, &error), error.text);
+    make_dry(drum);
     for (int i = 0; i < lines; i++) {
         himc_command c;
         TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_PERFORMER, score[i], &error) &&

@@ -1,7 +1,10 @@
-/// test_figures.c: the figures of a performance: strokes on time and on their spot, tip errors
-/// outside contact, recoveries.
+/// test_figures.c: the figures of a performance: strokes on time and on their spot, each contact
+/// once and to the sample, tip errors outside contact, recoveries.
 #include "session.h"
-#include "himc/vec.h"
+#include "performance/performance_state.h"
+
+#define RATE 48000
+#define GAP 71 // samples: 1.5 ms, which part two contacts of one hand
 
 // One stroke at 2 s; its drum is moved just before, when the stroke is committed. Returns the count
 // of played strokes.
@@ -45,6 +48,97 @@ static void test_strike_more_than_5_ms_early_is_not_played(void)
     TEST_ASSERT_EQUAL_INT(0, played_after("place 0.7 0 0.877", &late, &beside));
     TEST_ASSERT_DOUBLE_WITHIN(0.001, -0.0067, late);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0, beside);
+}
+
+static void test_stroke_without_contact_is_given_up_15_ms_after_its_time(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 60");
+    session_do(p, "stroke 2 left legato f 0 0");
+    session_do(p, "play");
+    session_play(p, 1.95, &h);
+    session_drum(p, 0, "place 0.7 0 0.6");
+    session_play(p, 0.06, &h);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).strokes);
+    session_play(p, 0.01, &h);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(1, s.strokes);
+    TEST_ASSERT_EQUAL_INT(1, s.missed);
+    TEST_ASSERT_EQUAL_STRING("left stick missed the kettle at 2.000 s", h.note);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// plays alternating loud and soft strokes with wooden mallets on a slack head, whose swing parts
+// the mallet from it in the middle of a contact; keeps each sample's force
+static heard play_chattering(double force[][3 * RATE], int samples)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    himc_event event;
+    session_do(p, "drum kettle 26");
+    session_drum(p, 0, "mallet wood");
+    session_drum(p, 0, "tension 1200");
+    session_do(p, "tempo 60");
+    for (int i = 0; i < 12; i++)
+        session_do(p, "stroke %g %s accent %g 0.1 %g", 1 + 0.15 * i, i & 1 ? "left" : "right",
+                   i & 1 ? 0.05 : 0.9, 0.03 * i - 0.18);
+    session_do(p, "play");
+    for (int i = 0; i < samples; i += 480)
+        himc_performance_process(p, 480, (double *[]){force[0] + i, force[1] + i});
+    while (himc_performance_event(p, &event))
+        heard_event(&h, &event);
+    himc_performance_free(p);
+    return h;
+}
+
+static void test_strike_is_one_contact_from_its_first_sample_of_force_to_its_last(void)
+{
+    static double force[HIMC_HANDS][3 * RATE];
+    int gaps = 0;
+    heard h = play_chattering(force, 3 * RATE);
+    TEST_ASSERT_TRUE(h.strikes >= 12);
+    for (int i = 0; i < h.strikes; i++) {
+        const himc_strike *s = &h.strike[i];
+        const double *f = force[s->hand] + lround(s->time * RATE);
+        long length = lround(s->duration * RATE);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)length, s->duration * RATE);
+        TEST_ASSERT_TRUE(f[0] > 0 && f[length - 1] > 0);
+        for (int k = 1; k <= GAP; k++)
+            TEST_ASSERT_TRUE(f[-k] == 0 && f[length - 1 + k] == 0);
+        for (long k = 0; k < length; k++)
+            gaps += f[k] == 0;
+    }
+    TEST_ASSERT_TRUE(gaps > 0);
+    heard_free(&h);
+}
+
+// the other hand's strike swings the head up into a stick that rests on it
+static void test_head_that_swings_into_a_resting_stick_is_no_strike(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    double force = 0;
+    session_do(p, "drum kettle 26");
+    session_drum(p, 0, "place 0.48 0 0.80");
+    session_do(p, "target left 0.48 0.05 0.85");
+    session_play(p, 1, NULL);
+    char place[64];
+    snprintf(place, sizeof place, "place 0.48 0 %.6f",
+             p->body->state.tip[HIMC_LEFT].z - p->body->skeleton.mallet_radius + 0.001);
+    session_drum(p, 0, place);
+    session_do(p, "hit right accent ff 0.1 -0.1");
+    for (int i = 0; i < 1000 && (force < 1 || p->contacts.hand[HIMC_LEFT].touching); i++) {
+        session_play(p, 0.01, &h);
+        force = fmax(force, p->contacts.hand[HIMC_LEFT].strike.force);
+    }
+    TEST_ASSERT_TRUE(force > 1);
+    for (int i = 0; i < h.strikes; i++)
+        TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, h.strike[i].hand);
+    heard_free(&h);
+    himc_performance_free(p);
 }
 
 static void keep_largest(void *user, const himc_motion_row *row)
@@ -93,12 +187,34 @@ static void test_each_recovery_is_counted_and_a_note_tells_the_first(void)
     himc_performance_free(p);
 }
 
+// a body that moves faster than the engine can step is put back at once, and plays on
+static void test_body_that_the_engine_refuses_is_put_back_once(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 60");
+    session_do(p, "stroke 1 left legato f");
+    session_do(p, "play");
+    session_play(p, 0.3, NULL);
+    p->body->state.spin[himc_stick_segment(HIMC_LEFT)] = himc_vec3_make(0, 3500, 0);
+    himc_character_place(p->body->character, &p->body->state);
+    session_play(p, 1.2, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(1, s.recoveries);
+    TEST_ASSERT_EQUAL_INT(1, s.played);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_strike_more_than_2_cm_off_its_spot_is_not_played);
     RUN_TEST(test_strike_more_than_5_ms_early_is_not_played);
+    RUN_TEST(test_stroke_without_contact_is_given_up_15_ms_after_its_time);
+    RUN_TEST(test_strike_is_one_contact_from_its_first_sample_of_force_to_its_last);
+    RUN_TEST(test_head_that_swings_into_a_resting_stick_is_no_strike);
     RUN_TEST(test_tips_are_measured_outside_contact_only);
     RUN_TEST(test_each_recovery_is_counted_and_a_note_tells_the_first);
+    RUN_TEST(test_body_that_the_engine_refuses_is_put_back_once);
     return UNITY_END();
 }

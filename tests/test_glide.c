@@ -4,6 +4,7 @@
 #include "drum/membrane_probe.h"
 
 #include "unity.h"
+#include "heads.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +29,7 @@ static void remake(double rate)
 // 0.19 mm
 void setUp(void)
 {
-    head = himc_head_default();
+    head = dry_head();
     head.radius = 0.328;
     head.tension = 3990;
     head.density = 0.2653 / (0.66 * 0.66);

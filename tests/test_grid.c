@@ -8,6 +8,7 @@
 #include "drum/contact.h"
 #include "drum/membrane_probe.h"
 #include "head/modes.h"
+#include "heads.h"
 
 #define RADIUS 0.3
 #define TENSION 3000.0
@@ -55,7 +56,7 @@ static void put(const char *name, const char *text)
 static void compare(const himc_grid *g, double *ten, double *twenty)
 {
     himc_modes *round = himc_modes_new(&(himc_shape){.kind = HIMC_CIRCLE}, 20, NULL);
-    himc_head head = himc_head_default();
+    himc_head head = dry_head();
     *ten = *twenty = 0;
     for (int i = 0; i < 20; i++) {
         double z = himc_modes_get(round, &head, i).zero;
@@ -198,8 +199,9 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     TEST_ASSERT_TRUE_MESSAGE(shape_of("bad.txt"), error.text);
     TEST_ASSERT_TRUE(say("shape circle"));
     refuses("k", "2 -1\n-0.9 2\n", "stiffness: not symmetric: (1, 2) is -1, (2, 1) is -0.9");
-    refuses("k", "1 1\n1 1\n", "stiffness: not positive");
-    refuses("k", "1 2\n2 1\n", "stiffness: not positive");
+    refuses("k", "1 2\n2 1\n",
+            "stiffness: negative: its lowest eigenvalue is -1 1/s2, its highest 3, allowed from 0");
+    refuses("k", "0 0\n0 0\n", "stiffness: 0, allowed one that resists bending");
     refuses("k", "1 2\n2\n", "k:2: number 2 of 2 is missing or not a number");
     refuses("k", "1 2\n2 x\n", "k:2: number 2 of 2 is missing or not a number");
     refuses("k", "1 2\n2 1 3\n", "k:2: more than 2");
@@ -226,6 +228,72 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     refuses("bad.txt", "shape round\n", "bad.txt:1: shape: unknown");
     refuses("bad.txt", "places nowhere\n", "nowhere: cannot be read: No such file");
     TEST_ASSERT_FALSE(shape_of("none.txt"));
+}
+
+#define BAR 60 // places
+
+// A bar of `length` (m), rigidity `bending` (N m^2) and mass per length (kg/m), free at both ends
+// or on springs (N/m each): K = D' D bending/h^3 with D the second difference, lumped masses.
+static void put_bar(double length, double bending, double mass, double spring)
+{
+    static double k[BAR][BAR];
+    static const double d[3] = {1, -2, 1};
+    char path[300];
+    double h = length / (BAR - 1);
+    memset(k, 0, sizeof k);
+    for (int at = 0; at + 2 < BAR; at++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                k[at + i][at + j] += bending / (h * h * h) * d[i] * d[j];
+    static const char *const names[] = {"bar-k", "bar-m", "bar-p"};
+    for (int file = 0; file < 3; file++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[file]);
+        FILE *f = fopen(path, "w");
+        for (int i = 0; i < BAR; i++) {
+            double end = i == 0 || i == BAR - 1 ? 0.5 : 1;
+            for (int j = 0; j < BAR && file < 2; j++)
+                fprintf(f, "%.17g ",
+                        file == 0 ? k[i][j] + (i == j ? spring : 0)
+                                  : (i == j ? mass * h * end : 0));
+            if (file == 2)
+                fprintf(f, "%.17g 0", h * i);
+            fputc('\n', f);
+        }
+        fclose(f);
+    }
+}
+
+// beta length of a free bar's first three bending modes: cos cosh = 1 (Fletcher & Rossing 1998)
+static const double bar_root[3] = {4.730041, 7.853205, 10.995608};
+
+// a wooden bar of 18 kg/m^2 and a steel one of 63, 4 cm wide; also on springs so soft that it
+// bounces at 2 Hz
+static void test_grid_of_a_free_bar_has_its_bending_modes_alone(void)
+{
+    static const double density[] = {18, 63, 18}, spring[] = {0, 0, 0.06};
+    for (int i = 0; i < 3; i++) {
+        double length = 0.5, bending = 30, mass = density[i] * 0.04;
+        char text[200];
+        put_bar(length, bending, mass, spring[i]);
+        snprintf(text, sizeof text,
+                 "tension 1000\ndensity %g\nplaces bar-p\nmass bar-m\nstiffness bar-k\n",
+                 density[i]);
+        put("bar.txt", text);
+        TEST_ASSERT_TRUE_MESSAGE(shape_of("bar.txt"), error.text);
+        himc_membrane *m = himc_drum_membrane(drum);
+        int first = himc_membrane_mode(m, 0).frequency < 5 ? 2 : 0;
+        TEST_ASSERT_EQUAL_INT(spring[i] > 0 ? 2 : 0, first);
+        for (int k = 0; k < 3; k++) {
+            double beta = bar_root[k] / length;
+            double hz = beta * beta * sqrt(bending / mass) / (2 * HIMC_PI);
+            TEST_ASSERT_DOUBLE_WITHIN(0.005 * hz, hz, himc_membrane_mode(m, first + k).frequency);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(say("strike 0.01 0 2"), error.text);
+        himc_drum_advance(drum, 4800, NULL, NULL, NULL);
+        double energy = himc_membrane_energy(m);
+        TEST_ASSERT_TRUE(energy > 1e-6 && energy < 0.5 * 0.03 * 4);
+        TEST_ASSERT_TRUE(say("shape circle"));
+    }
 }
 
 static void test_rectangle_has_the_modes_of_a_string_in_both_directions(void)
@@ -282,6 +350,7 @@ int main(void)
     RUN_TEST(test_grid_of_a_disc_sounds_as_the_round_head_when_struck);
     RUN_TEST(test_grid_energy_never_grows_with_glide_and_any_sticks);
     RUN_TEST(test_grid_refuses_bad_files_with_the_reason);
+    RUN_TEST(test_grid_of_a_free_bar_has_its_bending_modes_alone);
     RUN_TEST(test_rectangle_has_the_modes_of_a_string_in_both_directions);
     RUN_TEST(test_rectangle_transform_agrees_with_a_sum_over_a_raster);
     return UNITY_END();

@@ -3,6 +3,7 @@
 #include "head/modes.h"
 
 #include "unity.h"
+#include "heads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +15,7 @@ static const himc_shape circle = {.kind = HIMC_CIRCLE};
 
 void setUp(void)
 {
-    head = himc_head_default();
+    head = dry_head();
     error.text[0] = '\0';
 }
 
@@ -190,7 +191,7 @@ static void refused(const char *line)
 {
     TEST_ASSERT_FALSE(himc_head_check(&head, &error));
     TEST_ASSERT_EQUAL_STRING(line, error.text);
-    head = himc_head_default();
+    head = dry_head();
 }
 
 static void test_head_refuses_fields_out_of_range_with_the_range(void)
@@ -201,7 +202,7 @@ static void test_head_refuses_fields_out_of_range_with_the_range(void)
     head.tension = NAN;
     refused("tension: nan N/m, allowed 10 .. 100000 N/m");
     head.density = -1;
-    refused("density: -1 kg/m2, allowed 0.001 .. 10 kg/m2");
+    refused("density: -1 kg/m2, allowed 0.001 .. 1000 kg/m2");
     head.modes = 0;
     refused("modes: 0, allowed 1 .. 4000");
     head.decay_square = INFINITY;

@@ -95,9 +95,10 @@ static uint64_t play_hashed(himc_performance *p, int samples, int block)
     return hashes[0] ^ (hashes[1] * 3) ^ (hashes[2] * 5);
 }
 
-static uint64_t hash_of_piece(int block)
+static uint64_t hash_of_piece(const char *before, int block)
 {
     himc_performance *p = with_score(PIECE);
+    command(p, before);
     command(p, "play");
     uint64_t hash = play_hashed(p, 3 * 48000, block);
     himc_performance_free(p);
@@ -113,11 +114,39 @@ static himc_performance_stats play(himc_performance *p, double seconds)
 
 static void test_performance_is_the_same_twice_and_at_any_block_size(void)
 {
-    uint64_t first = hash_of_piece(64);
-    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(64));
-    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(1));
-    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(1024));
-    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece(333));
+    uint64_t first = hash_of_piece("stop", 64);
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("stop", 64));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("stop", 1));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("stop", 1024));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("human 0 5", 333));
+}
+
+static void test_a_players_variation_is_the_same_at_any_block_size_and_follows_its_seed(void)
+{
+    uint64_t first = hash_of_piece("human 0.7 5", 64);
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("human 0.7 5", 1));
+    TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("human 0.7 5", 1000));
+    TEST_ASSERT_TRUE(first != hash_of_piece("human 0.7 6", 64));
+    TEST_ASSERT_TRUE(first != hash_of_piece("stop", 64));
+}
+
+static void test_varied_strokes_land_as_they_vary(void)
+{
+    himc_performance *p = with_score(PIECE);
+    himc_event event;
+    command(p, "human 1 2");
+    command(p, "play");
+    himc_performance_stats s = play(p, 5);
+    TEST_ASSERT_EQUAL_INT(6, s.played);
+    TEST_ASSERT_EQUAL_INT(0, s.missed);
+    while (himc_performance_event(p, &event)) {
+        const himc_strike *k = &event.strike;
+        if (event.kind != HIMC_EVENT_STRIKE)
+            continue;
+        TEST_ASSERT_DOUBLE_WITHIN(0.001, k->planned_time, k->time);
+        TEST_ASSERT_TRUE(hypot(k->x - k->planned_x, k->y - k->planned_y) < 0.002);
+    }
+    himc_performance_free(p);
 }
 
 static void test_all_five_nuances_land_on_time_and_place(void)
@@ -459,6 +488,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_performance_is_the_same_twice_and_at_any_block_size);
+    RUN_TEST(test_a_players_variation_is_the_same_at_any_block_size_and_follows_its_seed);
+    RUN_TEST(test_varied_strokes_land_as_they_vary);
     RUN_TEST(test_all_five_nuances_land_on_time_and_place);
     RUN_TEST(test_default_law_keeps_tips_within_0_3_percent_of_height);
     RUN_TEST(test_every_mode_and_law_strikes_the_drum);

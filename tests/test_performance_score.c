@@ -111,7 +111,7 @@ static void test_a_take_with_left_and_right_exchanged_is_refused(void)
         himc_performance *p = session_new();
         bool played = session_try(p, "take " TRC);
         TEST_ASSERT_EQUAL_MESSAGE(!exchanged, played, error.text);
-        TEST_ASSERT_EQUAL_STRING(exchanged ? TRC ": the sticks strike 0.73 m behind the player, "
+        TEST_ASSERT_EQUAL_STRING(exchanged ? TRC ": the sticks strike 0.76 m behind the player, "
                                                  "allowed before: are left and right exchanged?"
                                            : "",
                                  error.text);

@@ -10,6 +10,7 @@
 #include "body/dynamics.h"
 #include "body/character.h"
 #include "himc/membrane.h"
+#include "heads.h"
 
 #include <stdio.h>
 
@@ -77,7 +78,7 @@ static result strike(double k, double rate, int samples, int steps)
 {
     static const himc_vec3 none[HIMC_JOINTS];
     himc_error error = {""};
-    himc_head head = himc_head_default();
+    himc_head head = dry_head();
     himc_character *body = himc_character_new(&skeleton, &error);
     himc_membrane *membrane = himc_membrane_new(&head, rate, &error);
     TEST_ASSERT_TRUE_MESSAGE(body && membrane, error.text);

@@ -241,6 +241,7 @@ static double time_modes(himc_error *error)
     himc_head head = himc_head_default();
     static double first[BLOCK], *const sound = first;
     head.modes = MODES;
+    head.air = false;
     head.decay_constant = 0.1;
     head.decay_square = 0;
     head.glide = 0;
@@ -264,8 +265,7 @@ static double time_drum(const bench_drum *b, himc_error *error)
     himc_drum *d = himc_drum_new("drum", 26, RATE, error);
     if (d)
         himc_drum_watch(d, false);
-    bool good = d && himc_command_parse_text(&command, HIMC_DRUM, "air 1", error) &&
-                himc_drum_command(d, &command, error);
+    bool good = d;
     for (int i = 0; good && i < 2; i++)
         good = himc_command_parse_text(&command, HIMC_DRUM, b->settings[i], error) &&
                himc_drum_command(d, &command, error);

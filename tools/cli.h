@@ -78,7 +78,7 @@ bool cli_same_file(const char *a, const char *b);
 
 /// The drum of a score that makes none.
 #define CLI_DRUM "kettle"
-#define CLI_INCHES 23.0
+#define CLI_INCHES HIMC_INCHES_USUAL
 
 /// Gives the performance that drum.
 bool cli_add_drum(himc_performance *performance, double rate, himc_error *error);

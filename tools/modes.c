@@ -74,7 +74,7 @@ const cli_call cli_modes = {
     "",
     "lists the modes of a drum: m,n,frequency_hz,ratio,t60_s",
     "The drum is the first that SCORE makes, tuned as its lines say; without SCORE the default\n"
-    "one of 23 inches. One row for each pair of nodal diameters m and circles n; the ratio is to\n"
+    "one of 26 inches. One row for each pair of nodal diameters m and circles n; the ratio is to\n"
     "the principal mode (1,1).",
     options,
     run,

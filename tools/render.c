@@ -296,7 +296,7 @@ const cli_call cli_render = {
     "plays a score or a take (.bvh .c3d .trc) into a WAV file",
     "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm\n"
     "tip_rms_percent peak_force_n realtime_factor. A score that makes no drum is played on\n"
-    "\"kettle\", 23 inches.",
+    "\"kettle\", 26 inches.",
     options,
     run,
 };

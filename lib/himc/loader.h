@@ -46,7 +46,9 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
 /// follower waits already. False if it was refused.
 bool himc_loader_follow(himc_loader *loader, himc_membrane *follower, const himc_membrane *leader,
                         himc_error *error);
-/// Installs what is ready, about 0.2 ms of it. True while commands wait.
+/// Installs what is ready, about 0.2 ms of it, and never waits for the helper thread. It may
+/// allocate: it carries short commands out, and makes what the helper works on. True while commands
+/// wait.
 bool himc_loader_run(himc_loader *loader);
 /// True while commands wait.
 HIMC_RT bool himc_loader_busy(const himc_loader *loader);

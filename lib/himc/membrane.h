@@ -20,7 +20,7 @@ typedef struct himc_grid himc_grid;
 typedef struct himc_head {
     double radius;         ///< a (m), 0.05 .. 1
     double tension;        ///< T (N/m), 10 .. 1e5
-    double density;        ///< sigma (kg/m^2), 0.001 .. 10
+    double density;        ///< sigma (kg/m^2), 0.001 .. 1000
     double decay_constant; ///< S0 (1/s), 0 .. 1000: a mode decays as exp(-(S0 + S1 omega^2) t)
     double decay_square;   ///< S1 (s), 0 .. 1
     int modes;             ///< both members of a pair count, 1 .. HIMC_MODES_MAX
@@ -50,8 +50,8 @@ typedef struct himc_mode {
 /// Added to the decay of a bare head by `damp` 1 (1/s); chosen: T60 = 0.1 s.
 #define HIMC_DAMP 69.0
 
-/// 23 inches, 0.2653 kg/m^2 (Christian et al. 1984), 200 modes, without air; tension and decay as
-/// modes.c explains.
+/// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
+/// 200 modes.
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).

@@ -175,7 +175,7 @@ report technique_of_patches_is_refused_where_there_are_none \
 play_pd objects.pd
 report objects_with_nonsense_arguments_are_refused_with_a_line \
     "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
-membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 23]
+membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 26]
 membrane~: argument 2: large, allowed: a diameter in inches
 membrane~: 4 arguments, allowed: NAME [INCHES [CHANNELS]]
 membrane~: argument 3: loud, allowed: a number of channels

@@ -1,4 +1,5 @@
 // What takes long while the sound goes on, or before it begins, by the processor's time.
+#include "../heads.h"
 #include "../session.h"
 #include "head/air.h"
 #include "head/modes.h"
@@ -14,7 +15,7 @@ static double cpu_ms(void)
 static void test_two_thousand_modes_are_retuned_in_a_few_milliseconds(void)
 {
     enum { ROUNDS = 20 };
-    himc_head head = himc_head_default();
+    himc_head head = dry_head();
     himc_shape round_head = {.kind = HIMC_CIRCLE};
     himc_modes *modes = himc_modes_new(&round_head, 2000, NULL);
     TEST_ASSERT_NOT_NULL(modes);

@@ -11,6 +11,8 @@
 #include "himc/membrane.h"
 #include "himc/body.h"
 
+#include "../heads.h"
+
 #include <lo/lo.h>
 #include <math.h>
 #include <stdio.h>
@@ -204,7 +206,7 @@ typedef struct plan {
 
 static void open_players(player *players, const plan *p, const motion *m)
 {
-    himc_head head = himc_head_default();
+    himc_head head = dry_head();
     for (int i = 0; i < p->performers; i++) {
         players[i] = (player){.server = lo_server_new(NULL, NULL), .offset = 0.37 * i};
         players[i].head = himc_membrane_new(&head, HEAD_RATE, NULL);

@@ -139,7 +139,6 @@ void free(void *old)
     }
 
 NEXT(int, pthread_mutex_lock, (pthread_mutex_t * m), (m))
-NEXT(int, pthread_mutex_trylock, (pthread_mutex_t * m), (m))
 NEXT(int, pthread_cond_wait, (pthread_cond_t * c, pthread_mutex_t *m), (c, m))
 NEXT(int, pthread_cond_signal, (pthread_cond_t * c), (c))
 NEXT(int, pthread_cond_broadcast, (pthread_cond_t * c), (c))

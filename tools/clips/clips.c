@@ -26,7 +26,7 @@ static const struct {
     double velocity;
 } dynamics[] = {{"pp", 0.7}, {"mf", 2}, {"ff", 6}};
 
-static const char *const setting[] = {"air 1", "decay 0.5 3e-7", "tune D3"};
+static const char *const setting[] = {"tune D3"};
 
 static double sound[LENGTH];
 

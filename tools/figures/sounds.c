@@ -146,8 +146,6 @@ int main(int count, char **argument)
         p.drum = himc_drum_new("sounds", 23, RATE, &p.error);
         if (!p.drum || !p.sound)
             fail("out of memory");
-        say(&p, "air 1");
-        say(&p, "decay 0.5 3e-7");
         say(&p, "tune D3");
         say(&p, "pickups 2");
         say(&p, "channel 1 air 1.2 0.4 1");

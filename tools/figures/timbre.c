@@ -41,8 +41,7 @@ static bool sound_of(const stroke *b, double *sound, himc_error *error)
         return false;
     double radius = himc_membrane_head(himc_drum_membrane(drum))->radius;
     snprintf(text, sizeof text, "mallet %s", b->mallet);
-    bool good = say(drum, text, error) && say(drum, "air 1", error) &&
-                say(drum, "decay 0.5 3e-7", error) && say(drum, "tune D3", error) &&
+    bool good = say(drum, text, error) && say(drum, "tune D3", error) &&
                 himc_drum_strike_at(drum, 0, -b->place * radius, 0, b->velocity, error);
     for (int at = 0; good && at < LENGTH; at += 480) {
         himc_drum_advance(drum, 480, NULL, NULL, NULL);

@@ -12,7 +12,7 @@ const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
     AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
-export const usualPlace = [0.7, 0, 0.85, 0, 0.2921]; // 23 inches, where the library puts a drum
+export const usualPlace = [0.7, 0, 0.85, 0, 0.3302]; // 26 inches, where the library puts a drum
 
 function dimples() {
     const size = 256,

@@ -80,10 +80,10 @@ export class Net {
 }
 
 const STRIKES_KEPT = 12;
-// the library's default head: radius (m), tension (N/m), density (kg/m^2), losses (1/s, s)
+// a head of 23 inches without air: radius (m), tension (N/m), density (kg/m^2), losses (1/s, s)
 const HEAD = { radius: 0.2921, tension: 3700, density: 0.2653, s0: 2.2, s1: 3e-7 };
 
-// Vibration of the default head after strikes. A strike is an impulse J (N s) at (x, y), and each
+// Vibration of that head after strikes. A strike is an impulse J (N s) at (x, y), and each
 // mode answers with a decaying sine, q = -J phi / (m w) e^(-d t) sin(w t) (Morse & Ingard 1968);
 // the answers to the last 12 strikes are added (chosen: older ones have died away).
 export class Ringing {

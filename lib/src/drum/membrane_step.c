@@ -154,6 +154,9 @@ void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, dou
 
 double himc_membrane_film_stiffness(const himc_membrane *m)
 {
+    const himc_shape *shape = himc_modes_shape(m->core.modes);
+    if (shape->kind == HIMC_GRID && shape->grid->free)
+        return 0; // no film, and nothing that it could be stretched between
     double thickness = m->head.density / FILM;
     double area = himc_modes_area(m->core.modes, m->head.radius);
     return m->head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);

@@ -27,7 +27,8 @@
 #define POINTS 4000     // most places, moving or not; chosen: bounds the time to look for them
 #define ROWS_AT_ONCE 64 // rows by which memory grows
 #define ASYMMETRY 1e-9  // of the largest entry; chosen: rounding of text files
-#define SINGULAR 1e-9   // of the highest eigenvalue; chosen: rounding of dsygvx
+#define NEGATIVE 1e-9   // of the highest eigenvalue; chosen: more than rounding of text files
+#define RIGID 1e-11     // of the same; chosen: rounding of dsygvx, below the bending of 800 places
 
 typedef struct matrix {
     int rows, columns;
@@ -392,6 +393,37 @@ static void set_mode(himc_grid *g, int k, double square)
     g->zero[k] = g->radius * sqrt(square * g->density / g->tension);
 }
 
+// Leaves out the first `rigid` modes, in which a free body moves without bending: their eigenvalues
+// are 0 but for rounding.
+static void leave_out(himc_grid *g, int rigid)
+{
+    g->free = rigid > 0;
+    g->modes -= rigid;
+    memmove(g->zero, g->zero + rigid, sizeof *g->zero * (size_t)g->modes);
+    memmove(g->shape, g->shape + (size_t)rigid * (size_t)g->places,
+            sizeof *g->shape * (size_t)g->modes * (size_t)g->places);
+}
+
+// takes the modes that bend; the eigenvalues are in `zero`, rising
+static bool take_modes(himc_grid *g, himc_error *error)
+{
+    double highest = g->zero[g->modes - 1];
+    int rigid = 0;
+    if (g->zero[0] < -NEGATIVE * fabs(highest))
+        return himc_error_set(error,
+                              "stiffness: negative: its lowest eigenvalue is %g 1/s2, its highest "
+                              "%g, allowed from 0",
+                              g->zero[0], highest);
+    while (rigid < g->modes && !(g->zero[rigid] > RIGID * highest))
+        rigid++;
+    if (rigid == g->modes)
+        return himc_error_set(error, "stiffness: 0, allowed one that resists bending");
+    leave_out(g, rigid);
+    for (int k = 0; k < g->modes; k++)
+        set_mode(g, k, g->zero[k]);
+    return true;
+}
+
 static bool solve(himc_grid *g, parts *p, himc_error *error)
 {
     int n = g->places, found = 0;
@@ -413,12 +445,7 @@ static bool solve(himc_grid *g, parts *p, himc_error *error)
                               info - n);
     if (info != 0 || found < g->modes)
         return himc_error_set(error, "no modes found (LAPACK dsygvx: %d)", info);
-    if (!(g->zero[0] > SINGULAR * g->zero[g->modes - 1]))
-        return himc_error_set(error, "stiffness: not positive: its lowest eigenvalue is %g 1/s2",
-                              g->zero[0]);
-    for (int k = 0; k < g->modes; k++)
-        set_mode(g, k, g->zero[k]);
-    return true;
+    return take_modes(g, error);
 }
 
 static himc_grid *make(parts *p, himc_error *error)

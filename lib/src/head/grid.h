@@ -7,9 +7,10 @@
 ///     places places.txt   rows of X Y (m), first the N of the matrices, then any that stand still;
 ///                         N up to 800, all up to 4000
 ///     mass mass.mtx       N x N (kg), symmetric, positive
-///     stiffness k.mtx     N x N (N/m), symmetric, positive
+///     stiffness k.mtx     N x N (N/m), symmetric, not negative
 /// A matrix is a Matrix Market file (coordinate or array, real or integer, general or symmetric) or
-/// N rows of N numbers. Between places a shape is interpolated linearly (modes.c), so list the rim.
+/// N rows of N numbers. A free body, for example a bar, also has motions without bending; they
+/// make no sound and are left out, as if it lay on something soft. Between places a shape is interpolated linearly (modes.c), so list the rim.
 #ifndef HIMC_GRID_H
 #define HIMC_GRID_H
 
@@ -24,6 +25,7 @@ struct himc_grid {
     int places;              ///< that move
     int all;                 ///< with those that stand still
     int modes;               ///< in order of frequency
+    bool free;               ///< not held: moves without bending, so it is under no tension
     double tension, density; ///< of the file (N/m, kg/m^2)
     double radius;           ///< of the circle around all places (m)
     double *x, *y;           ///< from that circle's centre, per radius (all)

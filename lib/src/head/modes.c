@@ -17,10 +17,9 @@
 /// weights are infinite at a place and 0 at the ninth, so the surface passes through the places and
 /// has no steps as the neighbours change (moving least squares: Lancaster & Salkauskas 1981).
 ///
-/// The default head: 23 inches of Christian et al.'s Mylar, the ideal membrane of the 2012 paper,
-/// and 3700 N/m: a 45 g mallet then meets 65 N at 3.7 m/s and 108 N at 6 m/s, the paper's 62 ..
-/// 65 and 106.9 N. With `air 1` the same head is a timpano's, and the loss by radiation comes on
-/// top of this decay.
+/// The default head: a timpano of 26 inches, the commonest one, with Christian et al.'s Mylar (1984)
+/// in air, at the tension that sounds D3, the middle of its range. S0 and S1 are what air.h says of
+/// a film; the loss by radiation comes on top.
 #include "head/modes.h"
 
 #include "head/bessel.h"
@@ -60,13 +59,13 @@ struct himc_modes {
 
 himc_head himc_head_default(void)
 {
-    return (himc_head){.radius = 0.2921,
-                       .tension = 3700,
+    return (himc_head){.radius = 0.3302,
+                       .tension = 3830.3,
                        .density = 0.2653,
-                       .decay_constant = 2.2,
+                       .decay_constant = 0.5,
                        .decay_square = 3e-7,
                        .modes = 200,
-                       .air = false,
+                       .air = true,
                        .glide = 1};
 }
 
@@ -75,7 +74,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
     return himc_check_range("radius", head->radius, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", error) &&
            himc_check_range("tension", head->tension, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m",
                             error) &&
-           himc_check_range("density", head->density, 0.001, 10, "kg/m2", error) &&
+           himc_check_range("density", head->density, 0.001, HIMC_DENSITY_MAX, "kg/m2", error) &&
            himc_check_range("decay S0", head->decay_constant, 0, HIMC_SIGMA0_MAX, "1/s", error) &&
            himc_check_range("decay S1", head->decay_square, 0, HIMC_SIGMA1_MAX, "s", error) &&
            himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error) &&

@@ -2,8 +2,11 @@
 ///
 /// The job goes from hand to hand: the host makes it, the helper prepares it, the host installs it,
 /// the helper frees it with all that it has replaced. `stage` says whose it is; only its owner
-/// touches it, and the lock is held only to read or set the stage. So the host never waits for the
-/// helper, except in himc_loader_finish and himc_loader_free.
+/// touches it and sets the next stage (release), the other reads it (acquire).
+///
+/// The lock is for sleeping and waking alone. The helper may lose the processor while it holds it,
+/// so the host only tries it: if the helper could not be woken, the next himc_loader_run tries
+/// again. Only himc_loader_finish and himc_loader_free wait.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/loader.h"
 #include "drum/drum_performer.h"
@@ -11,6 +14,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,54 +38,56 @@ struct himc_loader {
     pthread_t thread;
     bool running;
     pthread_mutex_t lock;
-    pthread_cond_t changed;
-    loader_stage stage; ///< under the lock, as `stop`
-    bool stop;
+    pthread_cond_t work, done; ///< for the helper, for the host
+    bool stop;                 ///< under the lock
+    bool asleep;               ///< the helper has work and could not be woken; the host's
+    _Atomic loader_stage stage;
     himc_job *job;    ///< the helper's while PREPARING or FREEING, else the host's
     bool good;        ///< it was prepared ...
     himc_error error; ///< ... or why not
 };
 
-static void set_stage(himc_loader *loader, loader_stage stage)
-{
-    pthread_mutex_lock(&loader->lock);
-    loader->stage = stage;
-    pthread_cond_broadcast(&loader->changed);
-    pthread_mutex_unlock(&loader->lock);
-}
-
 static loader_stage stage_of(himc_loader *loader)
 {
-    pthread_mutex_lock(&loader->lock);
-    loader_stage stage = loader->stage;
-    pthread_mutex_unlock(&loader->lock);
-    return stage;
+    return atomic_load_explicit(&loader->stage, memory_order_acquire);
+}
+
+static bool is_helpers(loader_stage stage)
+{
+    return stage == PREPARING || stage == FREEING;
 }
 
 // the helper
 
 // true if there is work for it, false at the end
-static bool wait_for_work(himc_loader *loader, loader_stage *stage)
+static bool wait_for_work(himc_loader *loader)
 {
     pthread_mutex_lock(&loader->lock);
-    while (!loader->stop && loader->stage != PREPARING && loader->stage != FREEING)
-        pthread_cond_wait(&loader->changed, &loader->lock);
-    *stage = loader->stage;
+    while (!loader->stop && !is_helpers(stage_of(loader)))
+        pthread_cond_wait(&loader->work, &loader->lock);
     bool go_on = !loader->stop;
     pthread_mutex_unlock(&loader->lock);
     return go_on;
 }
 
+static void give_back(himc_loader *loader, loader_stage stage)
+{
+    atomic_store_explicit(&loader->stage, stage, memory_order_release);
+    pthread_mutex_lock(&loader->lock);
+    pthread_cond_signal(&loader->done);
+    pthread_mutex_unlock(&loader->lock);
+}
+
 static void *help(void *object)
 {
     himc_loader *loader = object;
-    loader_stage stage;
-    while (wait_for_work(loader, &stage)) {
-        if (stage == PREPARING)
+    while (wait_for_work(loader)) {
+        bool preparing = stage_of(loader) == PREPARING;
+        if (preparing)
             loader->good = loader->job->prepare(loader->job, &loader->error);
         else
             loader->job->free(loader->job);
-        set_stage(loader, stage == PREPARING ? PREPARED : IDLE);
+        give_back(loader, preparing ? PREPARED : IDLE);
     }
     return NULL;
 }
@@ -102,6 +108,24 @@ static bool start(himc_loader *loader, himc_error *error)
 
 // the host
 
+// Each stage wakes the helper once: a condition that is signalled again before its waiter has left
+// may wait for it.
+static void wake(himc_loader *loader)
+{
+    if (!loader->asleep || pthread_mutex_trylock(&loader->lock) != 0)
+        return;
+    pthread_cond_signal(&loader->work);
+    pthread_mutex_unlock(&loader->lock);
+    loader->asleep = false;
+}
+
+static void hand_over(himc_loader *loader, loader_stage stage)
+{
+    atomic_store_explicit(&loader->stage, stage, memory_order_release);
+    loader->asleep = true;
+    wake(loader);
+}
+
 himc_loader *himc_loader_new(himc_error *error)
 {
     himc_loader *loader = calloc(1, sizeof *loader);
@@ -110,7 +134,8 @@ himc_loader *himc_loader_new(himc_error *error)
         return NULL;
     }
     pthread_mutex_init(&loader->lock, NULL);
-    pthread_cond_init(&loader->changed, NULL);
+    pthread_cond_init(&loader->work, NULL);
+    pthread_cond_init(&loader->done, NULL);
     return loader;
 }
 
@@ -128,15 +153,16 @@ void himc_loader_free(himc_loader *loader)
         return;
     pthread_mutex_lock(&loader->lock);
     loader->stop = true;
-    pthread_cond_broadcast(&loader->changed);
+    pthread_cond_signal(&loader->work);
     pthread_mutex_unlock(&loader->lock);
     if (loader->running)
         pthread_join(loader->thread, NULL);
-    if (loader->stage != IDLE)
+    if (stage_of(loader) != IDLE)
         loader->job->free(loader->job);
     while (loader->count > 0)
         himc_drum_release(take_first(loader)->target.drum);
-    pthread_cond_destroy(&loader->changed);
+    pthread_cond_destroy(&loader->work);
+    pthread_cond_destroy(&loader->done);
     pthread_mutex_destroy(&loader->lock);
     free(loader);
 }
@@ -187,7 +213,7 @@ static bool begin_first(himc_loader *loader)
     if (load->follower || takes_long(&load->target, &load->command)) {
         loader->job = start(loader, &error) ? make_job(load, &error) : NULL;
         if (loader->job)
-            set_stage(loader, PREPARING);
+            hand_over(loader, PREPARING);
         else
             end_first(loader, error.text);
         return false;
@@ -204,7 +230,7 @@ static void install(himc_loader *loader)
         loader->good ? loader->job->install(loader->job, &loader->error) : HIMC_JOB_FAILED;
     if (state == HIMC_JOB_MORE)
         return;
-    set_stage(loader, state == HIMC_JOB_AGAIN ? PREPARING : FREEING);
+    hand_over(loader, state == HIMC_JOB_AGAIN ? PREPARING : FREEING);
     if (state != HIMC_JOB_AGAIN) {
         himc_error why = loader->error;
         end_first(loader, state == HIMC_JOB_DONE ? NULL : why.text);
@@ -213,6 +239,7 @@ static void install(himc_loader *loader)
 
 bool himc_loader_run(himc_loader *loader)
 {
+    wake(loader);
     loader_stage stage = stage_of(loader);
     if (stage == PREPARED)
         install(loader);
@@ -231,8 +258,9 @@ void himc_loader_finish(himc_loader *loader)
 {
     while (himc_loader_run(loader)) {
         pthread_mutex_lock(&loader->lock);
-        while (loader->stage == PREPARING || loader->stage == FREEING)
-            pthread_cond_wait(&loader->changed, &loader->lock);
+        pthread_cond_signal(&loader->work);
+        while (is_helpers(stage_of(loader)))
+            pthread_cond_wait(&loader->done, &loader->lock);
         pthread_mutex_unlock(&loader->lock);
     }
 }

@@ -301,6 +301,18 @@ static bool do_grip(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
+static bool do_human(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    (void)error;
+    s.human.amount = c->atom[0].number;
+    s.human.seed = c->count > 1 ? (uint32_t)c->atom[1].number : 0;
+    himc_performance_adopt(p, &s);
+    himc_planner_set_human(p->motion->planner, s.human);
+    himc_motion_replan(p->motion);
+    return true;
+}
+
 static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;

@@ -30,6 +30,7 @@
 // chosen: a few times the 5 .. 15 ms of a contact
 #define LONGEST_RELEASE 0.060 // control releases the normal for at most this time (s)
 #define LATEST_CONTACT 0.015  // of a contact after its planned time (s)
+#define SLOWEST_STRIKE 0.01   // (m/s); chosen: a stick at rest moves by 1e-5
 #define SAME_STROKE 0.100     // largest time between planned and real contact of one stroke (s)
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
@@ -303,7 +304,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
 static void end_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
-    if (c->strike.velocity > 0) // a head raised into a resting stick is no strike
+    if (c->strike.velocity > SLOWEST_STRIKE) // a head raised into a resting stick is no strike
         himc_events_add(s->events, &event);
     if (c->released)
         go_on_from_here(c, s, hand, t);

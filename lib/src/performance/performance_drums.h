@@ -6,8 +6,6 @@
 #include "himc/drum.h"
 #include "performance/performance_events.h"
 
-#define USUAL_INCHES 23 // of a drum made without a size: the smallest timpano (in)
-
 #define FIRST_DRUM "drum" // name of a drum made for strokes without one
 
 /// Where a drum comes from.

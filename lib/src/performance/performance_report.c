@@ -305,6 +305,11 @@ static void describe_playing(const himc_performance *p, reader to)
              word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, s.hits, 1e3 * s.hit_latency,
              1e3 * s.longest_latency);
     to.line(to.user, text);
+    if (p->settings.human.amount > 0) {
+        snprintf(text, sizeof text, "human %g, seed %u", p->settings.human.amount,
+                 (unsigned)p->settings.human.seed);
+        to.line(to.user, text);
+    }
     snprintf(text, sizeof text,
              "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, "
              "peak force %.1f N, recoveries %ld",

@@ -128,7 +128,7 @@ static bool rehearse_command(score_job *j, const himc_command *c, himc_error *er
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
         return !j->make_drums ||
-               trial_drum(j, word, c->count > 1 ? c->atom[1].number : USUAL_INCHES, DRUM_MADE,
+               trial_drum(j, word, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL, DRUM_MADE,
                           error);
     case HIMC_COMMAND_GAIN:
         return c->count < 3 || himc_body_find_joint(word, "gain", &joint, error);
@@ -157,7 +157,7 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
 {
     if (!line->drum[0])
         return rehearse_command(j, &line->command, error);
-    himc_drum *drum = trial_drum(j, line->drum, USUAL_INCHES, DRUM_SILENT, error);
+    himc_drum *drum = trial_drum(j, line->drum, HIMC_INCHES_USUAL, DRUM_SILENT, error);
     return drum && (himc_drum_command(drum, &line->command, error) ||
                     himc_error_prefix(error, "%s", line->drum));
 }
@@ -182,7 +182,7 @@ static bool count_drums(score_job *j, himc_error *error)
             continue;
         if (count == HIMC_DRUMS)
             return too_many_drums(wanted, error);
-        if (!trial_drum(j, wanted, USUAL_INCHES, DRUM_SILENT, error))
+        if (!trial_drum(j, wanted, HIMC_INCHES_USUAL, DRUM_SILENT, error))
             return false;
         name[count++] = wanted;
     }

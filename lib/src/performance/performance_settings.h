@@ -5,6 +5,7 @@
 #include "body/character.h"
 #include "control/controller.h"
 #include "himc/performance.h"
+#include "plan/human.h"
 
 /// The captured rest pose: the posture of a take's player.
 typedef struct captured_player {
@@ -21,6 +22,7 @@ typedef struct performance_settings {
     himc_engine engine;
     himc_limits_kind limits;
     himc_grip grip;
+    himc_human human;
     bool one_way; ///< the head's vibration does not push back on the stick
     bool unbent;  ///< `id` follows a take's arms as captured
     captured_player captured;

@@ -259,7 +259,7 @@ bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_dr
     if (!himc_drums_have_room(&p->drums, name, error))
         return false;
     drum->index = p->drums.count;
-    drum->fresh = himc_drum_new(name, USUAL_INCHES, p->clock.sample_rate, error);
+    drum->fresh = himc_drum_new(name, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
     return drum->fresh != NULL;
 }
 
@@ -294,7 +294,7 @@ static bool make_drum(himc_job *job, himc_error *error)
 {
     make_drum_job *j = (make_drum_job *)job;
     const himc_command *c = &j->command;
-    double inches = c->count > 1 ? c->atom[1].number : USUAL_INCHES;
+    double inches = c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL;
     himc_drum_release(j->drum);
     j->drum = himc_drum_new(c->atom[0].symbol, inches, j->sample_rate, error);
     return j->drum;

@@ -263,7 +263,7 @@ static bool find_place(take_job *j, himc_error *error)
     j->frame = j->place;
     if (j->has_drum)
         return true;
-    j->drum.fresh = himc_drum_new(FIRST_DRUM, USUAL_INCHES, j->sample_rate, error);
+    j->drum.fresh = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
     if (j->drum.fresh)
         j->frame = j->place = *himc_drum_head_frame(j->drum.fresh);
     return j->drum.fresh;

@@ -82,6 +82,15 @@ himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance, double
     return g;
 }
 
+himc_gesture himc_gesture_scale(himc_gesture g, double factor)
+{
+    double shape = g.speed * g.down / g.height;
+    g.speed *= factor;
+    g.height = fmax(fmin(g.height * factor, HIGHEST_GESTURE), LOWEST_GESTURE);
+    g.down = shape * g.height / g.speed;
+    return g;
+}
+
 double himc_gesture_time(const himc_gesture *gesture, double height)
 {
     double climb = fmin(fmax(1 - height / gesture->height, LEAST_CLIMB), 1);

@@ -238,6 +238,15 @@ bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
     return is_possible(&s, goal);
 }
 
+bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)
+{
+    himc_vec3 way = himc_vec3_sub(first->spot, second->spot);
+    stroke_plan s = {.height_end = first->time + HIMC_CONTACT_TIME};
+    s.height.h = himc_vec3_dot(second->normal, way);
+    s.path.x = himc_vec3_madd(first->spot, -s.height.h, second->normal);
+    return is_possible(&s, second);
+}
+
 /// A strong rebound with little time left is followed: the stroke goes as high as the rebound takes
 /// it.
 static void follow_rebound(const stroke_plan *s, double t, himc_gesture *g)

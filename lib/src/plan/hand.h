@@ -54,6 +54,9 @@ HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal 
 /// True if a tip can reach the goal in time without superhuman speed or acceleration.
 HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
 
+/// True if the tip can reach the second goal so after it has played the first.
+HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second);
+
 /// Appends the motion up to the end of that stroke's contact. False, and nothing appended, if
 /// himc_hand_can_strike is false.
 HIMC_RT bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal);

@@ -92,6 +92,13 @@ void himc_planner_set_grip(himc_planner *planner, int grip)
     planner->grip = grip;
 }
 
+void himc_planner_set_human(himc_planner *planner, himc_human human)
+{
+    planner->human = human;
+    himc_planner_count_hits(planner);
+    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
+}
+
 /// While playing, a stroke before the planned ones is fitted in, or given up if its beat is past.
 static void fit_in(himc_planner *planner, himc_hand hand, int at)
 {
@@ -170,6 +177,7 @@ void himc_planner_clear(himc_planner *planner)
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     himc_planner_score_seek(&planner->score, 0);
+    himc_planner_count_hits(planner);
     himc_planner_notes_begin(&planner->notes);
 }
 

@@ -11,6 +11,7 @@
 #include "base/quintic.h"
 #include "himc/score.h"
 #include "capture/units.h"
+#include "plan/human.h"
 
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
@@ -47,6 +48,9 @@ bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int c
 HIMC_RT void himc_planner_clear_units(himc_planner *planner);
 /// Units of this grip (himc_grip) are preferred.
 HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
+
+/// Strokes that can still be changed vary so from now on; hits are counted from 0 again.
+HIMC_RT void himc_planner_set_human(himc_planner *planner, himc_human human);
 
 /// Checks a stroke as himc_planner_add does, and allocates for it, so that it can be added.
 bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int drum,
@@ -113,7 +117,8 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
                                  const himc_target *state);
 
 /// The current stroke of a hand at `t`, its drum and the planned time of contact: the stroke to be
-/// played next, until 50 ms after its time or half way to the one after it. False if there is none.
+/// played next, until 50 ms after its time or half way to the one after it. The spot of a stroke that
+/// a player's variation moves is where it will be played. False if there is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 

@@ -92,25 +92,61 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
                 : himc_gesture_of(stroke->nuance, stroke->dynamic);
 }
 
+/// Moves a place into the part of a head that is struck; true if it was beyond.
+static bool keep_inside(const himc_head_frame *head, double *x, double *y)
+{
+    double r = hypot(*x, *y), limit = STRUCK_SHARE * head->radius;
+    if (r <= limit)
+        return false;
+    *x *= limit / r;
+    *y *= limit / r;
+    return true;
+}
+
+/// The tip's position when it touches a head at (x, y).
+static himc_vec3 tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
+                        double y)
+{
+    return himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
+                          himc_head_frame_normal(head));
+}
+
 himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
     const himc_head_frame *head = &planner->drum[drum];
-    double x, y, limit = STRUCK_SHARE * head->radius;
+    double x, y;
     himc_stroke_spot(stroke, head->radius, &x, &y);
-    double r = hypot(x, y);
-    if (r > limit) {
+    double asked_x = x, asked_y = y;
+    if (keep_inside(head, &x, &y))
         himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
                          "%s hand: %.3g %.3g is beyond the rim, struck inside it",
-                         himc_hand_name(stroke->hand), x, y);
-        x *= limit / r;
-        y *= limit / r;
-    }
-    himc_goal goal = {.time = t, .normal = himc_head_frame_normal(head)};
-    goal.spot = himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
-                               goal.normal);
-    goal.back = himc_vec3_scale(himc_head_frame_away(head), -1);
-    goal.gesture = gesture_of(planner, stroke);
-    return goal;
+                         himc_hand_name(stroke->hand), asked_x, asked_y);
+    return (himc_goal){.time = t,
+                       .spot = tip_at(planner, head, x, y),
+                       .normal = himc_head_frame_normal(head),
+                       .back = himc_vec3_scale(himc_head_frame_away(head), -1),
+                       .gesture = gesture_of(planner, stroke)};
+}
+
+/// Lets the goal differ from the written one as a player's would.
+static void vary(const himc_planner *planner, timed_stroke *s)
+{
+    const himc_head_frame *head = &planner->drum[s->drum];
+    bool hit = s->index < 0 && !s->reassigned;
+    if (!hit)
+        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand, s->round,
+                                         s->stroke.beat);
+    const himc_variation *v = &s->variation;
+    himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
+    himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
+    keep_inside(head, &at.x, &at.y);
+    s->varied = true;
+    s->goal.spot = tip_at(planner, head, at.x, at.y);
+    s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
+    himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
+    s->goal.back = himc_vec3_madd(himc_vec3_scale(s->goal.back, cos(v->turn)), sin(v->turn), aside);
+    if (!hit) // a hit's time has been varied when it came
+        s->goal.time += v->late;
 }
 
 /// A reassigned stroke keeps its beat, a hit its time.
@@ -138,7 +174,11 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     } else {
         return false;
     }
-    next->goal = himc_planner_goal(planner, &next->stroke, next->drum, t);
+    next->written = himc_planner_goal(planner, &next->stroke, next->drum, t);
+    next->goal = next->written;
+    next->varied = false;
+    if (planner->human.amount > 0)
+        vary(planner, next);
     return true;
 }
 
@@ -168,6 +208,7 @@ static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *
     for (int i = h->waiting_count++; i > 0; i--)
         h->waiting[i] = h->waiting[i - 1];
     h->waiting[0] = *s;
+    h->waiting[0].goal = s->written;
 }
 
 /// Lets a stroke wait, in the order of time.
@@ -191,11 +232,11 @@ static void settle(himc_planner *planner, const timed_stroke *s)
         himc_planner_score_settle(&planner->score, s->stroke.hand, s->index, s->round);
 }
 
-/// How far out of its hand's reach the stroke is (m).
-static double beyond(const himc_planner *planner, const timed_stroke *s)
+/// How far out of a hand's reach the goal is (m).
+static double beyond(const himc_planner *planner, himc_hand hand, const himc_goal *goal)
 {
     const himc_planner_config *c = &planner->config;
-    return c->beyond ? c->beyond(c->body, s->stroke.hand, s->goal.spot) : 0;
+    return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
 }
 
 /// "stroke at beat 3 left" or "hit left"
@@ -213,7 +254,8 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
                              char text[48])
 {
     if (result == TOO_FAR)
-        himc_format(text, 48, "out of reach by %.2f m", beyond(planner, s));
+        himc_format(text, 48, "out of reach by %.2f m",
+                    beyond(planner, s->stroke.hand, &s->written));
     else
         himc_format(text, 48, "no time to prepare it");
     return text;
@@ -231,13 +273,30 @@ static bool is_small(himc_planner *planner, const timed_stroke *s, double since)
     return true;
 }
 
+/// Whether a varied stroke can be played, and leaves as much to the stroke after it as the written
+/// one: a variation makes no stroke impossible.
+static bool can_vary(himc_planner *planner, const timed_stroke *s)
+{
+    himc_hand hand = s->stroke.hand;
+    timed_stroke after;
+    if (beyond(planner, hand, &s->goal) > UNREACHED ||
+        !himc_hand_can_strike(&planner->hand[hand].plan, &s->goal))
+        return false;
+    return !next_stroke(planner, hand, &after) || himc_hand_can_follow(&s->goal, &after.written) ||
+           !himc_hand_can_follow(&s->written, &after.written);
+}
+
 /// Appends a stroke to its hand's plan, if the hand can play it.
-static plan_result plan_stroke(himc_planner *planner, const timed_stroke *s)
+static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
     planner_hand *h = &planner->hand[s->stroke.hand];
     int n = h->planned_count;
+    if (s->varied && !can_vary(planner, s)) {
+        s->goal = s->written;
+        s->varied = false;
+    }
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
-    if (beyond(planner, s) > UNREACHED)
+    if (beyond(planner, s->stroke.hand, &s->goal) > UNREACHED)
         return TOO_FAR;
     if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
         return NO_TIME;
@@ -255,9 +314,9 @@ static plan_result check_following(himc_planner *planner, himc_hand hand, timed_
     if (!next_stroke(planner, hand, following) || following->index < 0 ||
         is_settled(planner, following))
         return PLANNED;
-    if (beyond(planner, following) > UNREACHED)
+    if (beyond(planner, hand, &following->written) > UNREACHED)
         return TOO_FAR;
-    return himc_hand_can_strike(&planner->hand[hand].plan, &following->goal) ? PLANNED : NO_TIME;
+    return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
 }
 
 /// Plans a hand's next stroke, or a wait before it. If the result is not PLANNED, `refused` is the
@@ -358,7 +417,7 @@ static bool can_take(const himc_planner *planner, himc_hand hand, const timed_st
 {
     const planner_hand *h = &planner->hand[hand];
     double t = s->goal.time, gap = t;
-    return h->waiting_count < PLANNER_WAITING && beyond(planner, s) <= UNREACHED &&
+    return h->waiting_count < PLANNER_WAITING && beyond(planner, hand, &s->goal) <= UNREACHED &&
            find_gap(planner, hand, &gap) && gap == t &&
            t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
 }
@@ -378,7 +437,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s)
     taken.index = -1;
     taken.reassigned = true;
     taken.stroke.hand = other;
-    taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->goal.time);
+    taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
     bool can = can_take(planner, other, &taken);
     if (can)
         queue(h, &taken);
@@ -450,6 +509,11 @@ void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index)
         h->planned[i].index += h->planned[i].index >= index;
 }
 
+void himc_planner_count_hits(himc_planner *planner)
+{
+    planner->hits = 0;
+}
+
 void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand)
 {
     planner->hand[hand].waiting_count = 0;
@@ -507,7 +571,8 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     himc_planner_cut(planner, stroke->hand, t);
     timed_stroke hit = {.stroke = *stroke, .drum = drum, .index = -1};
     hit.goal = himc_planner_goal(planner, stroke, drum, t);
-    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal);
+    hit.variation = himc_human_hit(&planner->human, stroke->hand, planner->hits++);
+    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
     if (h->waiting_count == PLANNER_WAITING || !find_gap(planner, stroke->hand, &touch)) {
         himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
                          himc_hand_name(stroke->hand));
@@ -627,6 +692,12 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
         *stroke = s->stroke;
         *drum = s->drum;
         *contact_time = s->goal.time;
+        if (s->varied) {
+            himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
+            stroke->spot = HIMC_SPOT_XY;
+            stroke->x = at.x;
+            stroke->y = at.y;
+        }
         return true;
     }
     planner_due due;

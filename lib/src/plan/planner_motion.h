@@ -1,11 +1,12 @@
 /// planner_motion.h: the state of the planner, and the functions that plan motion from it.
 ///
-/// Owners: planner.c writes the settings (config, drums, units, grip), planner_score.c the score,
+/// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the score,
 /// planner_notes.c the notes, and planner_motion.c the hands and the clock.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
 
 #include "plan/follow.h"
+#include "plan/human.h"
 #include "plan/planner.h"
 #include "plan/planner_notes.h"
 #include "plan/planner_score.h"
@@ -27,7 +28,10 @@ typedef struct timed_stroke {
     bool reassigned; ///< it is from the other hand's part of the score
     bool separated;  ///< the tip has left the head again
     bool small;      ///< played much smaller than written
-    himc_goal goal;  ///< once planned, with the gesture as it will be played
+    bool varied;     ///< the goal is not as written
+    himc_variation variation; ///< of a hit since it came, of another stroke since it was varied
+    himc_goal written;
+    himc_goal goal; ///< varied; once planned, with the gesture as it will be played
 } timed_stroke;
 
 typedef struct planner_hand {
@@ -44,15 +48,17 @@ struct himc_planner {
     himc_head_frame drum[HIMC_DRUMS];
     himc_unit unit[HIMC_UNITS];
     int unit_count, grip;
+    himc_human human;
     planner_score score;
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
+    int hits;   ///< since the last `clear` or change of `human`
     double now; ///< of the last advance (s)
 };
 
 /// Both hands wait at rest.
 HIMC_RT void himc_planner_motion_init(himc_planner *planner);
-/// Where and how a tip plays a stroke on a drum at t.
+/// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
 /// Takes back the strokes planned after t that can still be changed; the plan then ends at t or
@@ -68,6 +74,8 @@ HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
 /// A stroke has been put into the hand's score at `index`: later ones move up by one.
 HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
+/// Hits are counted from 0 again.
+HIMC_RT void himc_planner_count_hits(himc_planner *planner);
 /// Drops the strokes that wait for a hand.
 HIMC_RT void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand);
 /// The planned strokes of a hand are no longer in its score.

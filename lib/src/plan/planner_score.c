@@ -184,7 +184,7 @@ void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
     score->starts++;
-    score->rounds = 0;
+    score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int next = first_after(&score->part[hand], score->beat - BEAT_ROUNDING, true);
@@ -218,6 +218,7 @@ int himc_planner_score_rebase(planner_score *score, double t)
 {
     int round = himc_planner_score_round_at(score, t);
     score->starts += round != 0;
+    score->past += round;
     score->origin += round * himc_planner_score_round_length(score);
     score->rounds -= round;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -292,6 +293,70 @@ int himc_planner_score_round_at(const planner_score *score, double t)
         return 0;
     double round = fmin(floor((t - score->origin) / length + ROUND_ROUNDING), MOST_ROUNDS);
     return score->loop ? (int)round : (int)fmin(round, score->rounds);
+}
+
+double himc_planner_score_total_beat(const planner_score *score, int round, double beat)
+{
+    return beat + ((double)score->past + round) * himc_planner_score_length(score);
+}
+
+double himc_planner_score_period(const planner_score *score, double beat)
+{
+    return gap(score, beat - 1, beat);
+}
+
+double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat)
+{
+    const planner_part *part = &score->part[hand];
+    int before = first_after(part, beat, true) - 1, after = first_after(part, beat, false);
+    if (part->count == 0)
+        return HUGE_VAL;
+    double length = himc_planner_score_length(score), first = part->list[0].stroke.beat,
+           last = part->list[part->count - 1].stroke.beat;
+    double to = before >= 0 ? gap(score, part->list[before].stroke.beat, beat)
+                            : gap(score, last, length) + gap(score, 0, beat);
+    double from = after < part->count ? gap(score, beat, part->list[after].stroke.beat)
+                                      : gap(score, beat, length) + gap(score, 0, first);
+    return fmin(to, from);
+}
+
+planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat)
+{
+    planner_walk walk = {.round = round};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        walk.at[hand] = first_after(&score->part[hand], beat, false);
+    return walk;
+}
+
+/// The beat of the next stroke of a walk, -1 if none is left in its round.
+static double beat_back(const planner_score *score, const planner_walk *walk)
+{
+    double beat = -1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (walk->at[hand] > 0)
+            beat = fmax(beat, score->part[hand].list[walk->at[hand] - 1].stroke.beat);
+    return beat;
+}
+
+bool himc_planner_score_back(const planner_score *score, planner_walk *walk, planner_onset *onset)
+{
+    double beat = beat_back(score, walk);
+    if (beat < 0 && walk->round > -score->past) {
+        walk->round--;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            walk->at[hand] = score->part[hand].count;
+        beat = beat_back(score, walk);
+    }
+    if (beat < 0)
+        return false;
+    onset->beat = himc_planner_score_total_beat(score, walk->round, beat);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_stroke *list = score->part[hand].list;
+        int at = walk->at[hand];
+        onset->strikes[hand] = at > 0 && list[at - 1].stroke.beat == beat;
+        walk->at[hand] -= onset->strikes[hand];
+    }
+    return true;
 }
 
 double himc_planner_score_time(const planner_score *score, int round, double beat)

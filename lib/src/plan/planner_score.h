@@ -29,6 +29,7 @@ typedef struct planner_score {
     bool loop;
     int rounds; ///< without loop: the last round to be played
     int starts; ///< of the transport, so far
+    int past;   ///< rounds of the loop played before round 0
 } planner_score;
 
 /// A stroke of the score with its place in it.
@@ -37,6 +38,18 @@ typedef struct planner_due {
     int index, round;
     double time; ///< (s)
 } planner_due;
+
+/// A beat on which one hand or both strike.
+typedef struct planner_onset {
+    double beat; ///< through all rounds, as himc_planner_score_total_beat
+    bool strikes[HIMC_HANDS];
+} planner_onset;
+
+/// A walk back through the strokes of both hands.
+typedef struct planner_walk {
+    int at[HIMC_HANDS]; ///< strokes of the round that are still to come
+    int round;
+} planner_walk;
 
 /// False without memory.
 bool himc_planner_score_init(planner_score *score);
@@ -96,6 +109,19 @@ HIMC_RT double himc_planner_score_length(const planner_score *score);
 HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 /// The round of the loop at `t`, 0 before it begins.
 HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
+/// A beat of a round, counted through all rounds since play began; a change of tempo in a loop
+/// leaves it as it is.
+HIMC_RT double himc_planner_score_total_beat(const planner_score *score, int round, double beat);
+/// Time of the beat before `beat` (s).
+HIMC_RT double himc_planner_score_period(const planner_score *score, double beat);
+/// Time between a beat and the hand's nearest stroke on another beat, as in a loop (s); infinite
+/// without strokes.
+HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat);
+/// A walk that begins at a beat of a round ...
+HIMC_RT planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat);
+/// ... and gives the onsets at and before it, the last one first; false when there is none left.
+HIMC_RT bool himc_planner_score_back(const planner_score *score, planner_walk *walk,
+                                     planner_onset *onset);
 /// Time of a beat in a round (s).
 HIMC_RT double himc_planner_score_time(const planner_score *score, int round, double beat);
 /// Beat at `t`, in its round.
