@@ -136,11 +136,13 @@ static void test_a_resting_stick_sinks_in_as_the_closed_form_says_with_any_numbe
         remake();
         place(&mallet[MEDIUM], SPOT, 0);
         stick.acceleration = -100;
-        for (int n = 0; n < 72000; n++)
+        stick.head.relaxation = 5e-3; // it comes to rest
+        for (int n = 0; n < 24000; n++)
             himc_contact_step(membrane, sticks, 1);
         double c = himc_patch_compliance(&head, SPOT, stick.patch);
         TEST_ASSERT_TRUE(stick.touching && stick.patch > 1e-3);
-        TEST_ASSERT_DOUBLE_WITHIN(0.002 * 3 * c, -3 * c, stick.dent);
+        double force = 100 * stick.mass;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3 * force * c, -force * c, stick.dent);
     }
 }
 
@@ -233,13 +235,14 @@ static void test_a_patch_without_losses_keeps_energy(void)
         himc_shape shape = {.kind = HIMC_RECTANGLE, .length = 0.5, .width = 0.4};
         TEST_ASSERT_TRUE(himc_membrane_set_shape(membrane, &shape, &head, NULL));
         place(&lossless, 0.05, 4);
-        double start = energy(), worst = 0, most = 0;
+        double start = energy(), worst = 0, most = 0, widest = 0;
         for (int n = 0; n < 1200; n++) {
             himc_contact_step(membrane, sticks, 1);
             worst = fmax(worst, fabs(energy() - start) / start);
             most = fmax(most, stick.force);
+            widest = fmax(widest, stick.patch);
         }
-        TEST_ASSERT_TRUE(most > 10 && stick.patch > 1e-3);
+        TEST_ASSERT_TRUE(most > 10 && widest > 1e-3);
         TEST_ASSERT_TRUE(worst < 1e-12);
     }
 }
@@ -282,7 +285,8 @@ static void test_a_patch_holds_for_a_blow(void)
     stick.velocity = -1;
     while (!stick.touching)
         himc_contact_step(membrane, sticks, 1);
-    TEST_ASSERT_EQUAL_DOUBLE(himc_patch_radius(&head, &mallet[MEDIUM], 0.03, SPOT, 1), stick.patch);
+    TEST_ASSERT_EQUAL_DOUBLE(
+        himc_patch_radius(&head, &mallet[MEDIUM], mallet[MEDIUM].mass, SPOT, 1), stick.patch);
 }
 
 // outside the head every shape is 0: a rigid wall
