@@ -201,6 +201,13 @@ test-realtime: deps ## what only the wall clock can show: rates, latencies, comp
 check-realtime: all $(REALTIME)
 	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh $(REALTIME) $(wildcard tests/realtime/test_*.sh)
 
+levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
+	@tools/deps.sh tools/deps-sound.txt
+	@$(MAKE) check-levels
+
+check-levels: all $(BUILD)/tools/sound/loudness
+	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh tests/sound/test_levels.sh
+
 bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
@@ -221,7 +228,7 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-air-table: ## lib/src/head/air_table.c anew (half a minute): the modes of four timpani in air
+air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
 	cmp -s $(BUILD)/air_table.c lib/src/head/air_table.c || mv $(BUILD)/air_table.c lib/src/head/air_table.c
@@ -252,7 +259,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime levels check-levels bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -348,6 +355,9 @@ $(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/tria
 $(BUILD)/tools/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerkin: $(BUILD)/tools/air/galerkin.o
 
 $(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
+
+# needs tools/deps-sound.txt
+$(BUILD)/tools/sound/loudness: private LIBS += -lebur128
 
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)

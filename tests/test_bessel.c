@@ -98,6 +98,12 @@ static void test_bessel_integral_of_x_j_squared_is_half_the_next_order_squared(v
     }
 }
 
+static void test_bessel_fast_order_zero_is_within_a_ten_millionth(void)
+{
+    for (double z = 0; z < 700; z += 0.013)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, jn(0, z), himc_bessel_j0(z));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -107,5 +113,6 @@ int main(void)
     RUN_TEST(test_bessel_zeros_of_high_orders_interlace_and_vanish);
     RUN_TEST(test_bessel_orders_agree_with_the_c_library);
     RUN_TEST(test_bessel_integral_of_x_j_squared_is_half_the_next_order_squared);
+    RUN_TEST(test_bessel_fast_order_zero_is_within_a_ten_millionth);
     return UNITY_END();
 }

@@ -294,6 +294,45 @@ static void test_deep_nesting_is_refused_without_recursion(void)
     free(text);
 }
 
+#define HUB "A_joint_with_a_name_of_forty_characters_"
+
+// a hub with so many end sites
+static himc_take *read_hub(int ends)
+{
+    char *text = malloc((size_t)ends * 32 + 200), *s = text;
+    s += sprintf(s, "HIERARCHY\nROOT " HUB
+                    "\n{\nOFFSET 0 1 0\nCHANNELS 6 Xposition Yposition Zposition " ZYX "\n");
+    for (int i = 0; i < ends; i++)
+        s += sprintf(s, "End Site\n{\nOFFSET 0 0.%d 0\n}\n", 1 + i % 9);
+    sprintf(s, "}\nMOTION\nFrames: 1\nFrame Time: 0.01\n0 0 0 0 0 0\n");
+    himc_take *take = read_text(text, "hub.bvh", NULL, &error);
+    free(text);
+    return take;
+}
+
+static char described[20000];
+
+static void hear(void *user, const char *line)
+{
+    (void)user;
+    TEST_ASSERT_TRUE(strlen(line) < 256);
+    strcat(strcat(described, line), "\n");
+}
+
+static void test_end_sites_of_one_joint_have_names_of_their_own_and_all_are_listed(void)
+{
+    himc_take *take = read_hub(6);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    check_point(take, 0, HUB "_end", 0, 0, 0.1);
+    check_point(take, 0, HUB "_end5", 0, 0, 0.5);
+    himc_take_describe(take, NULL, hear, NULL);
+    TEST_ASSERT_NOT_NULL(strstr(described, "joints 7: " HUB " " HUB "_end\n    " HUB "_end2 "));
+    TEST_ASSERT_NOT_NULL(strstr(described, " " HUB "_end6\n"));
+    himc_take_free(take);
+    TEST_ASSERT_NULL(read_hub(4096));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ": too many joints, allowed 4096"), error.text);
+}
+
 static void test_every_prefix_of_a_file_is_refused_or_read(void)
 {
     char text[2000];
@@ -328,6 +367,7 @@ int main(void)
     RUN_TEST(test_rows_that_do_not_fit_are_refused_with_line_and_joint);
     RUN_TEST(test_broken_hierarchies_are_refused_with_the_line);
     RUN_TEST(test_deep_nesting_is_refused_without_recursion);
+    RUN_TEST(test_end_sites_of_one_joint_have_names_of_their_own_and_all_are_listed);
     RUN_TEST(test_every_prefix_of_a_file_is_refused_or_read);
     return UNITY_END();
 }

@@ -115,6 +115,9 @@ static void test_numbers_survive_writing_and_reading_on_every_processor(void)
             unsigned char bytes[4];
             himc_c3d_put_real(p, v, bytes);
             TEST_ASSERT_EQUAL_DOUBLE((double)(float)v, himc_c3d_real(p, bytes));
+            double below = copysign(exp2(ceil(log2(fabs(v)))) * (1 - 1e-9), v); // rounds to a power
+            himc_c3d_put_real(p, below, bytes);
+            TEST_ASSERT_EQUAL_DOUBLE((double)(float)below, himc_c3d_real(p, bytes));
         }
 }
 
@@ -405,6 +408,49 @@ static void test_real_file_equals_its_export_as_text_to_a_micrometre(void)
     himc_take_free(take);
 }
 
+// a file of three points, of which the group POINT says that those with these labels are angles;
+// and which states more frames than it has
+static himc_take *read_with_angles(const char *labels, int count)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    make(&m);
+    unsigned char *at = m.bytes + 512;
+    while (at[0] || at[1]) // to the end of the parameters: each says how far it is to the next
+        at += at == m.bytes + 512
+                  ? 4
+                  : 2 + abs((signed char)at[0]) + (at[2 + at[0]] | at[3 + at[0]] << 8);
+    at = put(&m, at, 1, "ANGLES", -1, 4, count, (const unsigned char *)labels);
+    put_integer(&m, at, 1, "LONG_FRAMES", 9);
+    himc_take *take = read_made(&m);
+    free(m.bytes);
+    return take;
+}
+
+static const char *notes_of(const himc_take *take)
+{
+    static char text[1000];
+    text[0] = 0;
+    for (int i = 0; i < take->note_count; i++)
+        strcat(strcat(text, take->notes[i]), "\n");
+    return text;
+}
+
+static void test_values_of_a_model_are_no_points_and_missing_frames_are_told(void)
+{
+    himc_take *take = read_with_angles("HEADKNEE", 2);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(2, himc_take_points(take));
+    TEST_ASSERT_EQUAL_INT(-1, himc_take_find(take, "HEAD"));
+    TEST_ASSERT_EQUAL_STRING(
+        "frames: the file states 9 but contains 5, 5 are read\n"
+        "points: 1 of them are values of a model (angles, forces, ...) and left out\n",
+        notes_of(take));
+    himc_take_free(take);
+    TEST_ASSERT_NULL(read_with_angles("HEADLTIPRTIP", 3));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "all points are values of a model"),
+                                 error.text);
+}
+
 // 65025 labels of one character each
 static unsigned char *put_labels(const maker *m, unsigned char *at, const char *name, int character)
 {
@@ -468,6 +514,7 @@ int main(void)
     RUN_TEST(test_units_in_metres_and_unknown_units);
     RUN_TEST(test_non_finite_coordinates_are_gaps);
     RUN_TEST(test_every_prefix_and_every_changed_byte_is_survived);
+    RUN_TEST(test_values_of_a_model_are_no_points_and_missing_frames_are_told);
     RUN_TEST(test_thousands_of_labels_and_of_model_outputs_take_no_time);
     RUN_TEST(test_real_file_has_as_many_gaps_as_its_source_says);
     RUN_TEST(test_real_file_equals_its_export_as_text_to_a_micrometre);

@@ -456,7 +456,7 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(perform("play 1"), "play: 1 is one atom too many, allowed play");
     refused(perform("rate task 5"), "rate: HZ: 5, allowed 50 .. 2000 Hz");
     refused(drum("radius 0"), "radius: RADIUS: 0, allowed 0.05 .. 1 m");
-    refused(drum("modes 2.5"), "modes: COUNT: 2.5, allowed 1 .. 2000, whole");
+    refused(drum("modes 2.5"), "modes: 2.5, allowed 1 .. 2000, whole or auto");
     refused(drum("tune 5"),
             "tune: 5, allowed 20 .. 2000 Hz or a note from E0 to B6 such as A2 or f#3");
     refused(drum("mallet 5"), "mallet: 5, allowed soft medium hard wood");

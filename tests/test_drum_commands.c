@@ -48,6 +48,12 @@ static void test_drum_commands_set_their_parameters(void)
     says("air 0");
     says("decay 1.5");
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, log(1000) / 1.5, himc_membrane_mode(membrane, 1999).decay);
+    says("modes auto");
+    TEST_ASSERT_EQUAL_INT(HIMC_MODES_AUTO, himc_membrane_head(membrane)->modes);
+    TEST_ASSERT_EQUAL_INT(-1, himc_membrane_mode(membrane, 600).m);
+    TEST_ASSERT_TRUE(himc_membrane_mode(membrane, 600).mass > 0);
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_membrane_mode(membrane, 601).mass);
+    says("modes 2000");
     says("decay 3 1e-7");
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-7, himc_membrane_head(membrane)->decay_square);
     TEST_ASSERT_EQUAL_INT(2000, himc_membrane_head(membrane)->modes);

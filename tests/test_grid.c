@@ -219,17 +219,68 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     refuses("k", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n3 1 1\n",
             "k:4: row or column outside");
     refuses("k", "%%MatrixMarket matrix coordinate complex general\n", "k:1: allowed");
+    refuses("k", "%%MatrixMarket matrix array real symmetric\n2 1\n1\n1\n",
+            "k:2: symmetric, but not square");
+    refuses("k", "%%MatrixMarket matrix array real general\n2 2\n1\n1\n1\n",
+            "k:5: a value is missing or not a number");
     refuses("k", "", "empty");
     put("k", "2 -1\n-1 2\n");
     refuses("m", "1 2\n2 1\n", "mass: not positive");
     put("m", "1 0\n0 1\n");
     refuses("p", "0 0\n", "mass: 2 rows but 1 places");
     put("p", "0 0\n0.2 0\n0 0.2\n");
+    refuses("p", "%%MatrixMarket matrix array real general\n1 3\n0\n0\n0\n",
+            "p: rows of 3 numbers, allowed 2");
+    put("p", "0 0\n0.2 0\n0 0.2\n");
+    refuses("bad.txt", GOOD "mass m\n", "bad.txt:6: mass: named twice");
+    refuses("bad.txt", "tension 1000\ndensity 0.3\nplaces p\nstiffness k\n", "mass: missing");
+    char far_away[1400] = "places ";
+    memset(far_away + 7, 'x', 1199);
+    refuses("bad.txt", far_away, "bad.txt:1: a file name of more than 1199 characters");
     refuses("bad.txt", "tension 1000\ndensity 0\n", "bad.txt:2: density: 0");
     refuses("bad.txt", "tension 1000\nplaces p\nmass m\nstiffness k\n", "density: missing");
     refuses("bad.txt", "shape round\n", "bad.txt:1: shape: unknown");
     refuses("bad.txt", "places nowhere\n", "nowhere: cannot be read: No such file");
     TEST_ASSERT_FALSE(shape_of("none.txt"));
+}
+
+static void test_grid_matrices_in_any_form_are_the_same_head(void)
+{
+    static const char *const forms[] = {
+        "1 0 0\n0 1 0.5\n0 0.5 2\n",
+        "%%MatrixMarket matrix array real general\n% by columns\n3 3\n1\n0\n0\n0\n1\n0.5\n0\n0.5\n2\n",
+        "%%MatrixMarket matrix array real symmetric\n3 3\n1\n0\n0\n1\n0.5\n2\n",
+        "%%MatrixMarket matrix coordinate real general\n3 3 5\n1 1 1\n2 2 1\n3 3 2\n2 3 0.5\n3 2 "
+        "0.5\n",
+        "%%MatrixMarket matrix coordinate integer symmetric\n3 3 4\n1 1 1\n2 2 1\n3 3 2\n3 2 0.5\n"};
+    double zero[3] = {0};
+    put("p", "0 0\n0.2 0\n0 0.2\n0.2 0.2\n");
+    put("k", "2 -1 0\n-1 2 0\n0 0 2\n");
+    put("form.txt", GOOD);
+    for (int i = 0; i < 5; i++) {
+        char path[300];
+        put("m", forms[i]);
+        snprintf(path, sizeof path, "%s/form.txt", folder);
+        himc_grid *g = himc_grid_load(path, &error);
+        TEST_ASSERT_NOT_NULL_MESSAGE(g, error.text);
+        for (int k = 0; k < 3; k++) {
+            TEST_ASSERT_TRUE(g->zero[k] > 0);
+            zero[k] = i == 0 ? g->zero[k] : zero[k];
+            TEST_ASSERT_EQUAL_DOUBLE(zero[k], g->zero[k]);
+        }
+        himc_grid_release(g);
+    }
+}
+
+static void test_a_grid_keeps_its_shape_when_its_modes_are_prepared_aside(void)
+{
+    himc_command command;
+    TEST_ASSERT_TRUE_MESSAGE(shape_of("head.txt"), error.text);
+    TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_DRUM, "modes 7", &error));
+    himc_job *job = himc_drum_job(drum, &command, &error);
+    TEST_ASSERT_TRUE_MESSAGE(job && himc_job_carry_out(job, &error), error.text);
+    TEST_ASSERT_EQUAL_INT(HIMC_GRID, himc_membrane_shape(himc_drum_membrane(drum))->kind);
+    TEST_ASSERT_EQUAL_INT(7, himc_membrane_head(himc_drum_membrane(drum))->modes);
 }
 
 #define BAR 60 // places
@@ -352,6 +403,8 @@ int main(void)
     RUN_TEST(test_grid_of_a_disc_sounds_as_the_round_head_when_struck);
     RUN_TEST(test_grid_energy_never_grows_with_glide_and_any_sticks);
     RUN_TEST(test_grid_refuses_bad_files_with_the_reason);
+    RUN_TEST(test_grid_matrices_in_any_form_are_the_same_head);
+    RUN_TEST(test_a_grid_keeps_its_shape_when_its_modes_are_prepared_aside);
     RUN_TEST(test_grid_of_a_free_bar_has_its_bending_modes_alone);
     RUN_TEST(test_rectangle_has_the_modes_of_a_string_in_both_directions);
     RUN_TEST(test_rectangle_transform_agrees_with_a_sum_over_a_raster);

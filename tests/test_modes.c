@@ -203,8 +203,8 @@ static void test_head_refuses_fields_out_of_range_with_the_range(void)
     refused("tension: nan N/m, allowed 10 .. 100000 N/m");
     head.density = -1;
     refused("density: -1 kg/m2, allowed 0.001 .. 1000 kg/m2");
-    head.modes = 0;
-    refused("modes: 0, allowed 1 .. 4000");
+    head.modes = -1;
+    refused("modes: -1, allowed 1 .. 4000");
     head.decay_square = INFINITY;
     refused("decay S1: inf s, allowed 0 .. 1 s");
     TEST_ASSERT_NULL(himc_modes_new(&circle, 4001, &error));

@@ -127,6 +127,65 @@ static void test_subscriptions_outlive_listening_elsewhere(void)
     TEST_ASSERT_INT_WITHIN(20, 20 * 16, count("/himc/body"));
 }
 
+// a command of the host that its network has not seen yet goes with the subscriptions
+static void test_a_subscription_that_waits_outlives_listening_elsewhere(void)
+{
+    himc_command command;
+    himc_error error;
+    char text[64];
+    snprintf(text, sizeof text, "subscribe 127.0.0.1 %d targets 50", ear_port);
+    TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER, text, &error));
+    TEST_ASSERT_TRUE(himc_osc_command(osc, &command, &error));
+    himc_osc *other = himc_osc_reopen(osc, &(himc_osc_config){.port = 0}, &error);
+    TEST_ASSERT_NOT_NULL(other);
+    osc = other;
+    said = heard_packets = 0;
+    himc_performance_on_tick(performance, himc_osc_tick, osc);
+    forget();
+    play(0.5);
+    TEST_ASSERT_INT_WITHIN(4, 2 * 25, count("/himc/targets"));
+}
+
+static void test_only_subscriptions_are_the_networks_and_only_as_many_as_have_room(void)
+{
+    himc_command command;
+    himc_error error;
+    int taken = 0;
+    TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER, "stop", &error));
+    TEST_ASSERT_FALSE(himc_osc_command(osc, &command, &error));
+    TEST_ASSERT_EQUAL_STRING("allowed here: subscribe unsubscribe", error.text);
+    TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER,
+                                             "subscribe 127.0.0.1 9 targets 50", &error));
+    while (taken < 100000 && himc_osc_command(osc, &command, &error))
+        taken++;
+    TEST_ASSERT_EQUAL_STRING("too many subscriptions at once: this one is dropped", error.text);
+    others_hear = true;
+    play(0.02);
+    TEST_ASSERT_EQUAL_INT(1, himc_osc_count(osc).subscriptions);
+    TEST_ASSERT_TRUE(himc_osc_command(osc, &command, &error));
+}
+
+static void test_bad_settings_are_refused_in_a_line(void)
+{
+    himc_error error;
+    char hosts[600] = "127.0.0.1";
+    himc_osc_config config = himc_osc_default();
+    config.port = 65536;
+    TEST_ASSERT_NULL(himc_osc_reopen(NULL, &config, &error));
+    TEST_ASSERT_EQUAL_STRING("port: 65536, allowed 0 .. 65535", error.text);
+    config.port = 0;
+    for (int i = 1; i < 33; i++)
+        sprintf(hosts + strlen(hosts), ",127.0.0.%d", 1 + i);
+    config.allow = hosts;
+    TEST_ASSERT_NULL(himc_osc_new(&config, &error));
+    TEST_ASSERT_EQUAL_STRING("allow: 127.0.0.33 is one host too many, allowed 32", error.text);
+    memset(hosts, 'x', 300);
+    hosts[300] = 0;
+    TEST_ASSERT_NULL(himc_osc_new(&config, &error));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(error.text, "allow: xxx", 10), error.text);
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "x: no host of that name"));
+}
+
 static void test_an_unknown_host_name_delays_no_other_subscriber(void)
 {
     himc_command command;
@@ -189,6 +248,9 @@ int main(void)
     RUN_TEST(test_an_unreachable_address_is_tried_once_a_second);
     RUN_TEST(test_an_unreachable_address_is_removed_after_a_minute);
     RUN_TEST(test_subscriptions_outlive_listening_elsewhere);
+    RUN_TEST(test_a_subscription_that_waits_outlives_listening_elsewhere);
+    RUN_TEST(test_only_subscriptions_are_the_networks_and_only_as_many_as_have_room);
+    RUN_TEST(test_bad_settings_are_refused_in_a_line);
     RUN_TEST(test_an_unknown_host_name_delays_no_other_subscriber);
     RUN_TEST(test_200_subscriptions_are_served_and_the_257th_refused);
     return UNITY_END();

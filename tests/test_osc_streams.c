@@ -38,6 +38,22 @@ static void test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second(void)
         0.25f, number(lo_message_get_argv(last("/membrane/kettle/place")->message)[1]));
 }
 
+static void test_each_drum_is_sent_by_its_name(void)
+{
+    himc_error error;
+    himc_drum *other = himc_drum_new("other", 29, 48000, &error);
+    TEST_ASSERT_TRUE(himc_performance_add_drum(performance, other, &error));
+    himc_drum_release(other);
+    subscribe("strikes");
+    play(1.1);
+    TEST_ASSERT_EQUAL_INT(count("/membrane/kettle/place"), count("/membrane/other/place"));
+    forget();
+    say("/membrane/other/place", "0.9 -0.25 0.8");
+    play(0.02);
+    TEST_ASSERT_EQUAL_INT(0, count("/membrane/kettle/place"));
+    TEST_ASSERT_EQUAL_INT(1, count("/membrane/other/place"));
+}
+
 static void test_info_over_osc_is_answered_and_listen_refused(void)
 {
     say("/himc/info", "");
@@ -86,6 +102,7 @@ int main(void)
     RUN_TEST(test_the_highest_rate_of_several_subscriptions_is_kept);
     RUN_TEST(test_poses_continue_after_a_reset);
     RUN_TEST(test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second);
+    RUN_TEST(test_each_drum_is_sent_by_its_name);
     RUN_TEST(test_info_over_osc_is_answered_and_listen_refused);
     RUN_TEST(test_an_idle_hour_saves_up_no_answers);
     RUN_TEST(test_an_address_with_one_part_too_many_is_foreign);

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "allocations.h"
 #include "himc/himc.h"
+#include "performance/research.h"
 #include "performance/performance_state.h"
 
 #include "unity.h"
@@ -484,6 +485,58 @@ static void test_calls_for_C_programs_refuse_what_is_out_of_range(void)
     himc_performance_free(p);
 }
 
+static void test_commands_that_are_not_the_performers_or_too_far_ahead_are_refused(void)
+{
+    himc_performance *p = new_performance();
+    himc_command c;
+    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "tension 3000", &error));
+    TEST_ASSERT_FALSE(himc_performance_command(p, &c, 0, &error));
+    TEST_ASSERT_EQUAL_STRING("a drum's command, not the performer's", error.text);
+    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_PERFORMER, "stop", &error));
+    TEST_ASSERT_TRUE(himc_performance_command(p, &c, 8192, &error));
+    TEST_ASSERT_FALSE(himc_performance_command(p, &c, 8193, &error));
+    TEST_ASSERT_EQUAL_STRING("delay: 8193 samples, allowed 0 .. 8192", error.text);
+    himc_performance_free(p);
+}
+
+static void test_a_performer_has_16_drums_and_one_of_a_name(void)
+{
+    himc_performance *p = new_performance();
+    himc_drum *drum = NULL, *again = himc_drum_new("d0", 29, RATE, &error);
+    char name[8];
+    for (int i = 0; i <= HIMC_DRUMS; i++) {
+        snprintf(name, sizeof name, "d%d", i);
+        drum = himc_drum_new(name, 26, RATE, &error);
+        TEST_ASSERT_EQUAL(i < HIMC_DRUMS, himc_performance_add_drum(p, drum, &error));
+        if (i < HIMC_DRUMS) {
+            TEST_ASSERT_EQUAL_PTR(drum, himc_performance_drum(p, i));
+        }
+        himc_drum_release(drum);
+    }
+    TEST_ASSERT_EQUAL_STRING("drum d16: a performer plays on 16 drums at most", error.text);
+    for (int i = 0; i < 2; i++) { // in place of the old one, and then of itself
+        TEST_ASSERT_TRUE(himc_performance_add_drum(p, again, &error));
+        TEST_ASSERT_EQUAL_PTR(again, himc_performance_drum(p, 0));
+    }
+    himc_drum_release(again);
+    TEST_ASSERT_EQUAL_STRING("d15", himc_drum_name(himc_performance_drum(p, 15)));
+    play(p, 0.01);
+    himc_performance_free(p);
+}
+
+static void test_weights_out_of_range_name_their_segment(void)
+{
+    himc_performance *p = new_performance();
+    double weight[HIMC_SEGMENTS];
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        weight[i] = 1;
+    weight[HIMC_LEFT_HAND] = -1;
+    TEST_ASSERT_FALSE(himc_performance_set_weights(p, weight, &error));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(error.text, "left-hand: weight: -1, allowed", 30),
+                                  error.text);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -508,5 +561,8 @@ int main(void)
     RUN_TEST(test_calls_for_C_programs_equal_the_commands_of_the_same_name);
     RUN_TEST(test_calls_for_C_programs_refuse_what_is_out_of_range);
     RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
+    RUN_TEST(test_commands_that_are_not_the_performers_or_too_far_ahead_are_refused);
+    RUN_TEST(test_a_performer_has_16_drums_and_one_of_a_name);
+    RUN_TEST(test_weights_out_of_range_name_their_segment);
     return UNITY_END();
 }

@@ -88,6 +88,71 @@ static void test_a_take_in_a_score_with_strokes_is_refused_with_its_line(void)
     himc_performance_free(p);
 }
 
+// what only shows when a score is carried out is told with its line, too
+static void test_a_line_that_fails_when_it_is_carried_out_is_named(void)
+{
+    himc_performance *p = session_new();
+    write_text("drum kettle 26;\ngrip french;\nrecord stop;\n");
+    TEST_ASSERT_FALSE(session_try(p, "score " SCORE));
+    TEST_ASSERT_EQUAL_STRING(SCORE ":3: record: stop: nothing is being recorded, allowed FILE",
+                             error.text);
+    himc_performance_free(p);
+}
+
+// the notes of a command
+static const char *notes_of(himc_performance *p, const char *command)
+{
+    static char text[4000];
+    himc_event event;
+    text[0] = 0;
+    session_do(p, "%s", command);
+    while (himc_performance_event(p, &event))
+        if (event.kind == HIMC_EVENT_NOTE)
+            strcat(strcat(text, event.text), "\n");
+    return text;
+}
+
+static void test_repairs_of_a_take_are_told_when_it_is_loaded(void)
+{
+    himc_take *take = made_take(TRC);
+    int tip = himc_take_find(take, "LeftStick_end");
+    if (tip < 0)
+        for (int i = 0; i < himc_take_points(take); i++)
+            puts(himc_take_point_name(take, i));
+    TEST_ASSERT_TRUE(tip >= 0);
+    for (int f = 20; f < 24; f++)
+        *himc_take_at(take, f, tip) = himc_vec3_make(NAN, NAN, NAN);
+    save(take, TRC);
+    himc_performance *p = session_new();
+    const char *notes = notes_of(p, "take " TRC);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(notes, TRC ": LeftStick_end is missing in 4 frames, which are filled"), notes);
+    himc_performance_free(p);
+}
+
+static void test_units_of_a_take_without_strokes_and_too_many_units_are_refused(void)
+{
+    himc_performance *p = session_new();
+    himc_take *take = made_take(TRC);
+    save(take, TRC);
+    int loaded = 0;
+    while (loaded < 300 && session_try(p, "units " TRC " legato"))
+        loaded++;
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, " more, allowed 256 in all"), error.text);
+    TEST_ASSERT_TRUE(loaded >= 256 / 8 && loaded < 256);
+    session_do(p, "units clear");
+    take = made_take(TRC);
+    for (int f = 1; f < himc_take_frames(take); f++)
+        for (int i = 0; i < himc_take_points(take); i++)
+            *himc_take_at(take, f, i) = *himc_take_at(take, 0, i);
+    save(take, TRC);
+    TEST_ASSERT_FALSE(session_try(p, "units " TRC " legato"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, TRC), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(error.text, "0 strokes, allowed: at least one that is a clear fall"), error.text);
+    himc_performance_free(p);
+}
+
 // markers named as if the player's left were right: so the player looks away from the drum
 static void exchange_sides(himc_take *take)
 {
@@ -126,6 +191,9 @@ int main(void)
     RUN_TEST(test_a_score_begins_at_its_seek);
     RUN_TEST(test_a_take_in_a_score_without_strokes_is_played);
     RUN_TEST(test_a_take_in_a_score_with_strokes_is_refused_with_its_line);
+    RUN_TEST(test_a_line_that_fails_when_it_is_carried_out_is_named);
+    RUN_TEST(test_repairs_of_a_take_are_told_when_it_is_loaded);
+    RUN_TEST(test_units_of_a_take_without_strokes_and_too_many_units_are_refused);
     RUN_TEST(test_a_take_with_left_and_right_exchanged_is_refused);
     return UNITY_END();
 }

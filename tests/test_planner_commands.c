@@ -3,6 +3,8 @@
 #include "allocations.h"
 #include "planners.h"
 
+#include "plan/planner_motion.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,6 +91,41 @@ static void test_tempo_change_keeps_the_beat_and_moves_later_strokes(void)
     TEST_ASSERT_TRUE(himc_planner_current(planner, HIMC_LEFT, 1.25, &s, &drum, &touch));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.75, touch);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, 1.75).x.z);
+}
+
+static void test_new_tempi_while_playing_keep_the_beat(void)
+{
+    static const himc_tempo_change tempi[] = {{0, 60}, {3, 240}, {4, 60}};
+    for (int i = 0; i < 8; i++)
+        add(planner, 1 + i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < 0.75; t += 0.004)
+        himc_planner_advance(planner, t);
+    double now = 0.748 + PLANNER_AHEAD, beat = himc_planner_beat(planner, now);
+    TEST_ASSERT_TRUE_MESSAGE(himc_planner_set_tempi(planner, tempi, 3, &error), error.text);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, beat, himc_planner_beat(planner, now));
+    double third = now + 3 - beat; // at 60 a minute
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4, himc_planner_beat(planner, third + 0.25));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, third + 0.25).x.z);
+    himc_planner_tempo(planner, third + 2, 120); // past both changes
+    beat = himc_planner_beat(planner, third + 2);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, beat + 2, himc_planner_beat(planner, third + 3));
+}
+
+static void test_tempi_out_of_order_or_none_are_refused(void)
+{
+    static const himc_tempo_change tempi[] = {{0, 60}, {3, 240}, {3, 60}};
+    TEST_ASSERT_FALSE(himc_planner_set_tempi(planner, tempi, 3, &error));
+    TEST_ASSERT_EQUAL_STRING("tempo: BEAT: 3 is not after the one before", error.text);
+    TEST_ASSERT_FALSE(himc_planner_set_tempi(planner, tempi, 0, &error));
+    TEST_ASSERT_EQUAL_STRING("tempo: 0 changes, allowed 1 or more", error.text);
+    himc_planner_play(planner, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2,
+                              himc_planner_beat(planner, 2) - himc_planner_beat(planner, 1));
+    himc_planner_config config = himc_planner_default();
+    config.rest[HIMC_RIGHT].y = NAN;
+    TEST_ASSERT_NULL(himc_planner_new(&config, &error));
+    TEST_ASSERT_EQUAL_STRING("rest of the right hand: not finite", error.text);
 }
 
 static void test_stop_brings_the_tip_to_rest_and_play_resumes(void)
@@ -375,6 +412,8 @@ int main(void)
     RUN_TEST(test_fast_strokes_are_smaller_and_one_note_says_so);
     RUN_TEST(test_32_notes_are_kept_and_lost_ones_are_counted);
     RUN_TEST(test_tempo_change_keeps_the_beat_and_moves_later_strokes);
+    RUN_TEST(test_new_tempi_while_playing_keep_the_beat);
+    RUN_TEST(test_tempi_out_of_order_or_none_are_refused);
     RUN_TEST(test_stop_brings_the_tip_to_rest_and_play_resumes);
     RUN_TEST(test_hit_comes_within_a_quarter_second_from_rest);
     RUN_TEST(test_reach_arrives_and_stays);

@@ -148,6 +148,80 @@ static void test_any_body_is_read_back_point_by_point(void)
     himc_take_free(take);
 }
 
+// so many markers a decimetre apart; the second is missing in the frames from 10 to 19
+static himc_take *markers_with_a_gap(int count)
+{
+    enum { FRAMES = 40 };
+    char *text = malloc((size_t)FRAMES * (size_t)count * 40 + 4000), *at = text;
+    at += sprintf(at, "PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t%d\t%d\tmm\n",
+                  FRAMES, count);
+    at += sprintf(at, "Frame#\tTime");
+    for (int i = 0; i < count; i++)
+        at += sprintf(at, "\tM%d\t\t", i);
+    at += sprintf(at, "\n\n");
+    for (int f = 0; f < FRAMES; f++) {
+        at += sprintf(at, "%d\t%g", f + 1, 0.01 * f);
+        for (int i = 0; i < count; i++)
+            at += i == 1 && f >= 10 && f < 20
+                      ? sprintf(at, "\t\t\t")
+                      : sprintf(at, "\t%d\t%d\t%d", 3 * i + 1, 900 + f, 100 + i);
+        at += sprintf(at, "\n");
+    }
+    himc_take *take = himc_take_read(text, strlen(text), "markers.trc", NULL, &error);
+    free(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    return take;
+}
+
+static void test_gaps_of_markers_are_saved_as_gaps(void)
+{
+    static const char *const suffixes[] = {"trc", "c3d"};
+    himc_take *take = markers_with_a_gap(3);
+    for (int i = 0; i < 2; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/tmp/himc-gaps-%d.%s", (int)getpid(), suffixes[i]);
+        TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, path, &error), error.text);
+        himc_take *back = himc_take_load(path, NULL, &error);
+        unlink(path);
+        TEST_ASSERT_NOT_NULL_MESSAGE(back, error.text);
+        for (int f = 0; f < 40; f++)
+            for (int k = 0; k < 3; k++) {
+                himc_vec3 a = himc_take_point(take, f, k), b = himc_take_point(back, f, k);
+                TEST_ASSERT_EQUAL(k != 1 || f < 10 || f >= 20, himc_vec3_finite(a));
+                TEST_ASSERT_EQUAL(himc_vec3_finite(a), himc_vec3_finite(b));
+                TEST_ASSERT_TRUE(!himc_vec3_finite(a) ||
+                                 himc_vec3_length(himc_vec3_sub(a, b)) < 1e-5);
+            }
+        himc_take_free(back);
+    }
+    himc_take_free(take);
+}
+
+static void test_what_a_format_cannot_hold_is_refused_and_leaves_no_file(void)
+{
+    himc_take *take = markers_with_a_gap(256);
+    TEST_ASSERT_FALSE(himc_take_save(take, "build/unsaved.bvh", &error));
+    TEST_ASSERT_EQUAL_STRING(
+        "markers.trc: the take has no skeleton to write as .bvh, allowed .c3d .trc", error.text);
+    TEST_ASSERT_FALSE(himc_take_save(take, "build/unsaved.c3d", &error));
+    TEST_ASSERT_EQUAL_STRING("markers.trc: 256 points, allowed in a .c3d: up to 255", error.text);
+    TEST_ASSERT_FALSE(access("build/unsaved.bvh", F_OK) == 0);
+    TEST_ASSERT_FALSE(access("build/unsaved.c3d", F_OK) == 0);
+    himc_take_free(take);
+}
+
+// of a long path the end is told, which distinguishes files
+static void test_a_long_path_keeps_its_end_in_an_error(void)
+{
+    char path[1000] = "";
+    for (int i = 0; i < 90; i++)
+        strcat(path, "build/../");
+    strcat(path, "lost.trc");
+    TEST_ASSERT_NULL(himc_take_read("x", 1, path, NULL, &error));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(error.text, "...", 3), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "build/../lost.trc:1: "), error.text);
+}
+
 static void test_bad_names_and_places_are_refused_in_a_line(void)
 {
     himc_performance *p = session_new();
@@ -173,6 +247,9 @@ int main(void)
     RUN_TEST(test_c3d_plays_back_to_the_same_strokes);
     RUN_TEST(test_trc_plays_back_to_the_same_strokes);
     RUN_TEST(test_any_body_is_read_back_point_by_point);
+    RUN_TEST(test_gaps_of_markers_are_saved_as_gaps);
+    RUN_TEST(test_what_a_format_cannot_hold_is_refused_and_leaves_no_file);
+    RUN_TEST(test_a_long_path_keeps_its_end_in_an_error);
     RUN_TEST(test_bad_names_and_places_are_refused_in_a_line);
     return UNITY_END();
 }

@@ -54,6 +54,27 @@ static void test_score_sorts_strokes_and_keeps_other_lines_in_order(void)
     himc_score_free(s);
 }
 
+// lines and tempi are copied to more room as they come: each keeps its atoms
+static void test_a_score_of_many_lines_keeps_each_and_sorts_its_tempi(void)
+{
+    char text[4000] = "", name[16];
+    for (int i = 0; i < 70; i++)
+        sprintf(text + strlen(text), "drum d%d 2%d;\n tempo %d %d;\n", i, i % 10, 60 + i, 70 - i);
+    himc_score *s = parse(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(s, error.text);
+    TEST_ASSERT_EQUAL_INT(70, s->line_count);
+    TEST_ASSERT_EQUAL_INT(71, s->tempo_count); // and the default at 0
+    for (int i = 0; i < 70; i++) {
+        sprintf(name, "d%d", i);
+        TEST_ASSERT_EQUAL_STRING(name, s->lines[i].command.atom[0].symbol);
+        TEST_ASSERT_EQUAL_DOUBLE(20 + i % 10, s->lines[i].command.atom[1].number);
+        TEST_ASSERT_EQUAL_INT(1 + 2 * i, s->lines[i].line);
+        TEST_ASSERT_EQUAL_DOUBLE(1 + i, s->tempi[1 + i].beat);
+        TEST_ASSERT_EQUAL_DOUBLE(129 - i, s->tempi[1 + i].bpm);
+    }
+    himc_score_free(s);
+}
+
 static void test_empty_score_has_the_default_tempo(void)
 {
     himc_score *s = parse("");
@@ -87,6 +108,8 @@ static void test_errors_name_file_and_line(void)
                              error.text);
     TEST_ASSERT_NULL(himc_score_load("tests", &error));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
+    TEST_ASSERT_NULL(himc_score_load("/proc/self/environ", &error)); // zeros among its letters
+    TEST_ASSERT_EQUAL_STRING("/proc/self/environ: not a text file", error.text);
 }
 
 // room for a path and 256 characters more; a word that long once ended the program
@@ -148,6 +171,19 @@ static void test_long_scores_are_read_and_too_long_ones_refused(void)
     free(text);
 }
 
+static void test_more_than_10000_lines_or_tempi_are_refused(void)
+{
+    char *text = malloc(10001 * 24), *s = text;
+    for (int i = 0; i < 10001; i++)
+        s += sprintf(s, "grip french;\n");
+    refused(text, "s.txt:10001: one line too many, allowed 10000 besides strokes");
+    s = text;
+    for (int i = 0; i < 10001; i++)
+        s += sprintf(s, "tempo 90 %d;\n", i);
+    refused(text, "s.txt:10001: tempo: one too many, allowed 10000");
+    free(text);
+}
+
 static void test_random_text_never_breaks_the_reader(void)
 {
     static const char alphabet[] = "stroke left legato f drum tune 0123456789 .-e;;\n\\ #,";
@@ -170,12 +206,14 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_score_sorts_strokes_and_keeps_other_lines_in_order);
+    RUN_TEST(test_a_score_of_many_lines_keeps_each_and_sorts_its_tempi);
     RUN_TEST(test_empty_score_has_the_default_tempo);
     RUN_TEST(test_errors_name_file_and_line);
     RUN_TEST(test_a_statement_of_more_than_1280_characters_is_refused_in_one_line);
     RUN_TEST(test_a_byte_order_mark_is_skipped);
     RUN_TEST(test_seconds_and_beat_are_inverse_through_tempo_changes);
     RUN_TEST(test_long_scores_are_read_and_too_long_ones_refused);
+    RUN_TEST(test_more_than_10000_lines_or_tempi_are_refused);
     RUN_TEST(test_random_text_never_breaks_the_reader);
     return UNITY_END();
 }

@@ -185,6 +185,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
 {
     static const char *const faults[][2] = {
         {"gain nose 1 1;", ":5: gain: JOINT: nose, allowed waist"},
+        {"strength nose 1;", ":5: strength: JOINT: nose, allowed waist"},
         {"listen 9000;", ":5: listen: allowed as a message"},
         {"units /no/such/take.bvh legato;", ":5: /no/such/take.bvh"},
         {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
@@ -224,6 +225,12 @@ static void test_score_with_too_many_drums_changes_nothing(void)
                  "stroke %d left legato mf normal drum%d;\n", i, i);
     TEST_ASSERT_FALSE(load_text(p, text));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "16 drums at most"), error.text);
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
+    text[0] = 0;
+    for (int i = 0; i <= HIMC_DRUMS; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "other%d mallet wood;\n", i);
+    TEST_ASSERT_FALSE(load_text(p, text));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ":17: drum other16: "), error.text);
     TEST_ASSERT_NULL(himc_performance_drum(p, 1));
     himc_performance_free(p);
 }

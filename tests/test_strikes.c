@@ -68,6 +68,18 @@ static void test_head_raised_into_a_resting_stick_is_no_onset(void)
     TEST_ASSERT_FALSE(himc_drum_contact_next(drum, &onset));
 }
 
+// a strike comes at its time, not after its count of samples
+static void test_strike_that_waits_keeps_its_time_when_the_rate_changes(void)
+{
+    himc_contact_onset onset;
+    TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 4000, 0.1, 0, 3, &error));
+    advance(1000);
+    TEST_ASSERT_TRUE_MESSAGE(himc_drum_set_rate(drum, 2 * RATE, &error), error.text);
+    advance(7000);
+    TEST_ASSERT_TRUE(himc_drum_contact_next(drum, &onset));
+    TEST_ASSERT_INT_WITHIN(1, 1000 + 2 * 3000, (int)onset.at);
+}
+
 static void test_sound_and_place_of_a_strike_are_read_together(void)
 {
     TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 300, 0.1, 0, 3, &error));
@@ -116,6 +128,7 @@ int main(void)
     RUN_TEST(test_two_strikes_at_one_sample_begin_in_the_order_asked_for);
     RUN_TEST(test_force_of_a_wooden_strike_is_its_peak_within_the_sample);
     RUN_TEST(test_head_raised_into_a_resting_stick_is_no_onset);
+    RUN_TEST(test_strike_that_waits_keeps_its_time_when_the_rate_changes);
     RUN_TEST(test_sound_and_place_of_a_strike_are_read_together);
     RUN_TEST(test_onsets_count_from_the_realign);
     RUN_TEST(test_of_more_than_64_reports_and_onsets_the_latest_are_kept);

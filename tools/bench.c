@@ -64,10 +64,14 @@ typedef struct bench_drum {
 static const bench_drum drum[] = {
     {"drum_200_ms", "200 modes, air, glide, four strikes a second", {"modes 200", "glide 1"}, 4},
     {"drum_200_no_glide_ms", "the same without glide", {"modes 200", "glide 0"}, 4},
+    {"drum_auto_ms",
+     "`modes auto`, air, glide, four strikes a second",
+     {"modes auto", "glide 1"},
+     4},
     {"drum_1000_ms", "1000 modes, air, glide, four strikes a second", {"modes 1000", "glide 1"}, 4},
     {"silent_ms", "200 modes, silent", {"modes 200", "glide 1"}, 0},
 };
-enum { DRUM_200, DRUM_NO_GLIDE, DRUM_1000, SILENT, DRUMS };
+enum { DRUM_200, DRUM_NO_GLIDE, DRUM_AUTO, DRUM_1000, SILENT, DRUMS };
 
 /// Median of the runs.
 typedef struct figures {

@@ -56,9 +56,9 @@ static int run(const cli_arguments *arguments)
     const himc_head *head = himc_membrane_head(membrane);
     double reference = himc_membrane_principal(membrane, head);
     printf("m,n,frequency_hz,ratio,t60_s\n");
-    for (int i = 0; i < head->modes; i++) {
+    for (int i = 0; himc_membrane_mode(membrane, i).mass > 0; i++) {
         himc_mode mode = himc_membrane_mode(membrane, i);
-        if (!mode.sine)
+        if (mode.m >= 0 && !mode.sine) // not the statistical ones
             printf("%d,%d,%.6f,%.6f,%.6f\n", mode.m, mode.n, mode.frequency,
                    mode.frequency / reference, log(1000) / mode.decay);
     }

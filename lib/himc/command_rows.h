@@ -115,7 +115,9 @@ HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, HIMC_CHANGES_HEAD, "DENSITY",
                  "sets the head's mass per area")
 HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD, "HZ | NOTE",
                  "sets the tension so that the principal mode sounds there")
-HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT", "sets the number of modes")
+HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
+                 "sets the number of modes; auto: exact where they overlap little, statistical "
+                 "above, up to 8 kHz and more")
 HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD, "T60 | SIGMA0 SIGMA1",
                  "sets the losses by the decay time, or by both of their parameters")
 HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",

@@ -23,19 +23,23 @@ typedef struct himc_head {
     double density;        ///< sigma (kg/m^2), 0.001 .. 1000
     double decay_constant; ///< S0 (1/s), 0 .. 1000: a mode decays as exp(-(S0 + S1 omega^2) t)
     double decay_square;   ///< S1 (s), 0 .. 1
-    int modes;             ///< both members of a pair count, 1 .. HIMC_MODES_MAX
+    int modes;             ///< 1 .. HIMC_MODES_MAX, members of a pair counted; or HIMC_MODES_AUTO
     bool air;              ///< true if air and kettle load it; for round heads only
     double kettle;         ///< volume under it (m^3), half to twice the usual; 0 is the usual
     double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's
     double damp;           ///< a hand on the head: 0 none .. 1 dead at once
 } himc_head;
 
+/// As `modes` of a head: on a round head 209 exact modes, up to about 1.6 kHz on a timpano, and 392
+/// statistical ones for all others up to 8 kHz and more; on others 200, or as many as it has.
+#define HIMC_MODES_AUTO 0
+
 /// One mode of the list. Modes with m > 0 come as a pair of equal frequency: cosine, then sine. If
 /// the list ends within a pair, it has the cosine, which is the one that a blow on the x axis
 /// excites.
 typedef struct himc_mode {
-    int m;            ///< nodal diameters; of a rectangle half waves along x; of a grid 0
-    int n;            ///< nodal circles with the rim; half waves along y; of a grid index + 1
+    int m; ///< nodal diameters; of a rectangle half waves along x; of a grid 0; statistical: -1
+    int n; ///< nodal circles with the rim; half waves along y; of a grid or statistical 1, 2, ...
     bool sine;        ///< the second one of a pair: sin(m azimuth) in place of cos(m azimuth)
     double zero;      ///< j_mn; of other outlines its counterpart, wave number times radius
     double norm;      ///< integral of phi^2 over the head, per pi a^2
@@ -132,7 +136,7 @@ HIMC_RT const himc_head *himc_membrane_head(const himc_membrane *membrane);
 HIMC_RT const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count);
 /// Sample rate (Hz).
 HIMC_RT double himc_membrane_rate(const himc_membrane *membrane);
-/// Mode `index` (0 .. head.modes - 1) as it sounds, with its air.
+/// Mode `index` (0 ..) as it sounds, with its air; all fields are 0 past the last.
 HIMC_RT himc_mode himc_membrane_mode(const himc_membrane *membrane, int index);
 /// Frequency of the principal mode (Hz) of `head` with this membrane's outline: (1,1) if round,
 /// whether or not it is in the list, else the lowest.
@@ -164,7 +168,7 @@ HIMC_RT double himc_membrane_watched(const himc_membrane *membrane);
 HIMC_RT double himc_membrane_displacement(const himc_membrane *membrane, double x, double y);
 /// Kinetic and potential energy, the film's stretching included (J).
 HIMC_RT double himc_membrane_energy(const himc_membrane *membrane);
-/// Displacement q and velocity v of mode `index` (0 .. head.modes - 1) (m, m/s).
+/// Displacement q and velocity v of mode `index` (0 ..) (m, m/s); 0 past the last audible one.
 HIMC_RT void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v);
 /// Brings the head to rest; the sound ends in 5 ms.
 HIMC_RT void himc_membrane_rest(himc_membrane *membrane);

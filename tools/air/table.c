@@ -1,4 +1,4 @@
-/// table.c: computes lib/src/head/air_table.c (half a minute): `make air-table`.
+/// table.c: computes lib/src/head/air_table.c (three quarters of a minute): `make air-table`.
 #include "galerkin.h"
 
 #include <math.h>
@@ -35,9 +35,10 @@ static bool solve_node(const himc_air_order *order, int drum, int k, himc_error 
         .tension = tension / (HIMC_AIR_TABLE_FILM * HIMC_AIR_SPEED * HIMC_AIR_SPEED),
         .loading = HIMC_AIR_DENSITY * RADIUS[drum] / HIMC_AIR_TABLE_FILM,
         .depth = HIMC_AIR_KETTLE_SHAPE / HIMC_PI,
+        .quality = HIMC_AIR_KETTLE_QUALITY,
     };
     himc_air_root root[HIMC_AIR_RANKS];
-    if (!himc_air_solve(order, &problem, HIMC_AIR_RANKS, root, error))
+    if (!himc_air_oscillators(order, &problem, HIMC_AIR_RANKS, root, error))
         return false;
     for (int n = 0; n < HIMC_AIR_RANKS; n++) {
         double bare = order->alpha[n] * sqrt(problem.tension);

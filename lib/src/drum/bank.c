@@ -442,7 +442,7 @@ static void go_on_as(himc_bank *bank, const himc_bank *from)
     bank->part++;
 }
 
-void himc_bank_continue(himc_bank *bank, himc_bank *from)
+void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
 {
     if (same_constants(bank, from)) {
         go_on_as(bank, from);
@@ -451,7 +451,7 @@ void himc_bank_continue(himc_bank *bank, himc_bank *from)
     settle(from);
     bank->age = from->age;
     bank->film.power = from->film.power;
-    for (int i = 0; i < bank->count && i < from->count; i++) {
+    for (int i = 0; i < count && i < bank->count && i < from->count; i++) {
         double q, v;
         himc_bank_state(from, i, &q, &v);
         inherit(bank, i, q, v, from->mass[i], from->omega[i]);

@@ -36,9 +36,9 @@ void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel);
 HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
                            double rate);
 
-/// Film and oscillators that `from` has, too, begin with its phase and energy, as if they had been
-/// in use here with its constants before the last himc_bank_set.
-HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from);
+/// Film and the first `count` oscillators, if `from` has them, too, begin with its phase and energy,
+/// as if they had been in use here with its constants before the last himc_bank_set.
+HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from, int count);
 
 /// The bank has coefficients for two lengths of step.
 typedef enum himc_step_length {

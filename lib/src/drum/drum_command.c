@@ -102,7 +102,8 @@ static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
 static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
-    head.modes = (int)number(c, 0);
+    enum { COUNT, AUTO };
+    head.modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)number(c, 0);
     return set_head(drum, &head, error);
 }
 
@@ -322,8 +323,9 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
-             drum->name, head->radius, head->tension, head->density, principal, head->modes,
-             himc_membrane_audible(drum->membrane), drum->mallet_name.text,
+             drum->name, head->radius, head->tension, head->density, principal,
+             himc_membrane_modes(drum->membrane), himc_membrane_audible(drum->membrane),
+             drum->mallet_name.text,
              himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, p->center.x,
              p->center.y, p->center.z);
 }

@@ -60,19 +60,22 @@ static output take_output(double **memory, int length)
     return o;
 }
 
-// Modes, bank and arrays for `count` modes of that outline, and the arrays of strike points. False,
-// and nothing kept, without memory.
+// Modes, bank and arrays for `modes` (as a head's) of that outline, and the arrays of strike points.
+// False, and nothing kept, without memory.
 static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_shape *shape,
-                     int count, himc_error *error)
+                     int modes, himc_error *error)
 {
-    *c = (core){.modes = himc_modes_new(shape, count, error), .bank = himc_bank_new(count, error)};
+    *c = (core){.modes = himc_modes_new(shape, modes, error)};
+    if (!c->modes)
+        return false;
+    int count = himc_modes_count(c->modes);
+    c->bank = himc_bank_new(count, error);
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     int padded = c->bank ? himc_bank_padded(c->bank) : 0;
     size_t bytes = sizeof(double) * (size_t)padded * ARRAYS;
     double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!c->modes || !c->bank || !c->oscillators || !memory) {
-        if (c->modes)
-            himc_error_set(error, "modes: no memory for %d modes", count);
+    if (!c->bank || !c->oscillators || !memory) {
+        himc_error_set(error, "modes: no memory for %d modes", count);
         core_free(c);
         return false;
     }
@@ -111,7 +114,7 @@ static void find_oscillators(himc_membrane *m)
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
     bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
-    for (int i = 0; i < m->head.modes; i++) {
+    for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode bare = himc_modes_get(c->modes, &m->head, i);
         c->stretch[i] = root * bare.stiffness / m->head.tension;
         c->wave[i] = smooth ? bare.zero / m->head.radius : 0;
@@ -153,7 +156,7 @@ static void find_pickup(himc_membrane *m, int index)
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
     himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
-    for (int i = 0; i < m->head.modes; i++) {
+    for (int i = 0; i < himc_membrane_modes(m); i++) {
         const himc_oscillator *o = &c->oscillators[i];
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
         mode.frequency = o->omega / (2 * HIMC_PI);
@@ -214,7 +217,7 @@ static void retune(himc_membrane *m)
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
-    himc_bank_set(c->bank, c->oscillators, m->head.modes, m->rate);
+    himc_bank_set(c->bank, c->oscillators, himc_membrane_modes(m), m->rate);
     set_film(m);
     find_pickups(m);
     find_watched(m);
@@ -349,15 +352,15 @@ void himc_membrane_free(himc_membrane *membrane)
     free(membrane);
 }
 
-// another number of modes; those that remain keep their state
-static bool resize(himc_membrane *m, int count, himc_error *error)
+// other modes; those that remain, `common`, keep their state
+static bool resize(himc_membrane *m, int modes, int *common, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!core_new(&fresh, m->points, himc_modes_shape(old.modes), count, error))
+    if (!core_new(&fresh, m->points, himc_modes_shape(old.modes), modes, error))
         return false;
-    int common = count < m->head.modes ? count : m->head.modes;
-    himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
-    himc_bank_continue(fresh.bank, old.bank);
+    *common = himc_modes_common(old.modes, fresh.modes);
+    himc_bank_set(fresh.bank, old.oscillators, *common, m->rate);
+    himc_bank_continue(fresh.bank, old.bank, *common);
     m->core = fresh;
     core_free(&old);
     return true;
@@ -385,8 +388,8 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
         return false;
     sounds before = read_sounds(membrane);
     double energy = himc_membrane_energy(membrane);
-    int known = membrane->head.modes;
-    if (head->modes != known && !resize(membrane, head->modes, error))
+    int known = himc_membrane_modes(membrane);
+    if (head->modes != membrane->head.modes && !resize(membrane, head->modes, &known, error))
         return false;
     membrane->head = *head;
     retune(membrane);
@@ -533,7 +536,6 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     sounds before = read_sounds(m);
     double energy = himc_membrane_energy(m);
     core old = m->core;
-    int known = m->head.modes;
     bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
     bool head = same_head(&m->head, &made->head);
     m->core = made->core;
@@ -546,10 +548,12 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
-    if (outline)
-        himc_bank_continue(m->core.bank, old.bank);
-    if (outline && !head)
-        go_on(m, known, energy);
+    if (outline) {
+        int known = himc_modes_common(old.modes, m->core.modes);
+        himc_bank_continue(m->core.bank, old.bank, known);
+        if (!head)
+            go_on(m, known, energy);
+    }
     declick_from(m, &before);
 }
 
@@ -569,8 +573,15 @@ double himc_membrane_rate(const himc_membrane *membrane)
     return membrane->rate;
 }
 
+int himc_membrane_modes(const himc_membrane *membrane)
+{
+    return himc_modes_count(membrane->core.modes);
+}
+
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
+    if (index >= himc_membrane_modes(membrane))
+        return (himc_mode){0};
     himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
     return loaded(membrane, &bare);
 }

@@ -21,6 +21,9 @@ void himc_membrane_form_free(himc_membrane_form *form);
 /// True if that is the membrane's form, the watched point apart.
 HIMC_RT bool himc_membrane_has_form(const himc_membrane *membrane, const himc_membrane_form *form);
 
+/// Number of its modes.
+HIMC_RT int himc_membrane_modes(const himc_membrane *membrane);
+
 /// A membrane of that form, at rest; NULL with the reason.
 himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *error);
 /// Gives `membrane` the form of `made`, which has the same rate and is then only to be freed. Modes

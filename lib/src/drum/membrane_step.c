@@ -37,7 +37,7 @@ static const double *weights(himc_membrane *m, double b)
     }
     oldest->b = b;
     oldest->age = ++m->clock;
-    for (int i = 0; i < m->head.modes; i++)
+    for (int i = 0; i < himc_modes_count(m->core.modes); i++)
         oldest->weight[i] = i > 0 && c->wave[i] == c->wave[i - 1]
                                 ? oldest->weight[i - 1]
                                 : himc_patch_weight(c->wave[i] * b);
@@ -67,7 +67,7 @@ static void spread(himc_membrane *m, strike_point *s)
     if (!(b > 0))
         return;
     const double *weight = weights(m, b);
-    for (int i = 0; i < m->head.modes; i++)
+    for (int i = 0; i < himc_modes_count(m->core.modes); i++)
         s->shape[i] *= weight[i];
     if (round)
         s->residual = find_residual(m, s, b);

@@ -15,8 +15,7 @@
 /// sin^2 t for small x, where this is the monopole, dipole ... in x^(2m+1).
 ///
 /// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension. Between its nodes:
-/// monotone cubics (Fritsch & Butland 1984) along the tension, where a mode that meets a sloshing
-/// of the kettle jumps from below it to above; lines between drums. The ratio of table and closed
+/// monotone cubics (Fritsch & Butland 1984) along the tension; lines between drums. The ratio of table and closed
 /// form at the table's kettle multiplies the closed form at the actual kettle. Outside the table
 /// this ratio goes to 1 over a factor of four in tension, or two in epsilon: no step and no bend
 /// while the pedal moves.
@@ -26,6 +25,8 @@
 /// the preferred modes of a tuned drum, the mass is within a tenth of the mass with which the whole
 /// problem responds to a blow (its residue).
 #include "head/air.h"
+
+#include "head/statistical.h"
 
 #include <math.h>
 
@@ -303,8 +304,24 @@ himc_air himc_air_around(const himc_head *head, double kettle)
     return air;
 }
 
+// a mode of statistical.c, which changes no volume and has no table
+static himc_air_load on_statistical(const himc_air *air, double zero)
+{
+    double b = air->loading * 2 * RIM / zero, y = below_sound(b, air->tension);
+    double mass = air->tension / y;
+    return (himc_air_load){
+        .frequency = sqrt(y / air->tension),
+        .radiation = air->loading * HIMC_AIR_SPEED / (air->radius * mass) *
+                     himc_statistical_radiation(zero, y),
+        .mass = mass,
+        .stiffness = 1,
+    };
+}
+
 himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
 {
+    if (m < 0)
+        return on_statistical(air, zero);
     mode_id s = {m, n, zero};
     log_pair found = closed_form(air, air->depth, s);
     if (m < HIMC_AIR_ORDERS && n <= HIMC_AIR_RANKS && air->weight > 0 &&

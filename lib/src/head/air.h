@@ -1,7 +1,7 @@
 /// air.h: the effect of the air on both sides of a head, and of the kettle, on its modes.
 ///
 /// Air moves with the head and makes it heavier, the low modes most; it carries sound away;
-/// enclosed in the kettle it is a spring to the modes of order m = 0. A loaded mode keeps its shape
+/// enclosed in the kettle it is a spring to the modes of order m = 0, and it has losses. A loaded mode keeps its shape
 /// and its stiffness T (j/a)^2 int phi^2 dS, so a slow push and a change of tension act on the same
 /// head; its mass and decay change. A head without air needs none of these functions.
 ///
@@ -42,12 +42,12 @@ HIMC_RT himc_air himc_air_around(const himc_head *head, double kettle);
 /// The effect of air on a mode.
 typedef struct himc_air_load {
     double frequency; ///< per that of the bare head
-    double radiation; ///< decay by sound carried away (1/s)
+    double radiation; ///< decay by sound carried away and the kettle's loss (1/s)
     double mass;      ///< modal mass per that of the bare head
     double stiffness; ///< with the kettle's spring, per that of the bare head: 1 for m > 0
 } himc_air_load;
 
-/// For mode (m, n) with the zero j_mn.
+/// For mode (m, n) with the zero j_mn; a statistical one has m = -1.
 HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero);
 
 /// The mode in air: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new frequency plus

@@ -99,6 +99,26 @@ double himc_bessel_j(int m, double z)
     return value;
 }
 
+// polynomials by Abramowitz & Stegun 1964, 9.4.1 and 9.4.3: errors below 5e-8
+double himc_bessel_j0(double z)
+{
+    double t = z * z / 9, u = 3 / z;
+    if (z <= 3)
+        return 1 + t * (-2.2499997 +
+                        t * (1.2656208 +
+                             t * (-.3163866 + t * (.0444479 + t * (-.0039444 + t * .0002100)))));
+    double size = .79788456 +
+                  u * (-.00000077 +
+                       u * (-.00552740 +
+                            u * (-.00009512 + u * (.00137237 + u * (-.00072805 + u * .00014476)))));
+    double angle =
+        z - .78539816 +
+        u * (-.04166397 +
+             u * (-.00003954 +
+                  u * (.00262573 + u * (-.00054125 + u * (-.00029333 + u * .00013558)))));
+    return size * cos(angle) / sqrt(z);
+}
+
 double himc_bessel_zero_between(int m, double low, double high)
 {
     double value, slope, sign = himc_bessel_j(m, low), z = 0.5 * (low + high);

@@ -9,6 +9,9 @@ void himc_bessel_orders(double z, int top, double *j);
 /// J_m(z), m >= 0, z >= 0.
 double himc_bessel_j(int m, double z);
 
+/// J_0(z), z >= 0, to 1e-7; fast.
+double himc_bessel_j0(double z);
+
 /// The n-th positive zero of J_m (m >= 0, n >= 1), to about 1e-15 relative.
 double himc_bessel_zero(int m, int n);
 

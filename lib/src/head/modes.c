@@ -23,6 +23,7 @@
 #include "head/modes.h"
 
 #include "head/bessel.h"
+#include "head/statistical.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,6 +32,7 @@
 #define TABLE_STEPS 32       // of the table per unit of z; chosen for the error above
 #define TABLE_MARGIN 4       // in z; chosen: more than Weyl's law is off
 #define ORDERS 160           // more than 4000 modes have (about 125)
+#define AUTO_OTHERS 200      // modes of a head that is not round, if not given; chosen
 #define NEAREST 8            // places of a fit; chosen: a plane has three unknowns
 #define REGULAR_PLACE 1e-12  // (per radius^2) keeps a weight finite at a place
 #define COLLINEAR 1e-9       // relative; places nearer to one line than this fit no plane
@@ -47,14 +49,16 @@ typedef struct entry {
 struct himc_modes {
     himc_shape shape;
     int count;       // modes
+    int exact;       // of these, in the list of entries; the others are statistical
     int entry_count; // entries they use
     entry *entries;  // sorted by z
     // for round heads only
-    int *first;    // (entry_count) index of the entry's first mode
-    int *of;       // (count) entry of a mode
-    int top;       // largest order in the table
-    int columns;   // its grid points
-    double *table; // (top + 1, columns, 2) J and J'/TABLE_STEPS
+    int *first;                    // (entry_count) index of the entry's first mode
+    int *of;                       // (count) entry of a mode
+    int top;                       // largest order in the table
+    int columns;                   // its grid points
+    double *table;                 // (top + 1, columns, 2) J and J'/TABLE_STEPS
+    himc_statistical *statistical; // if any mode is
 };
 
 himc_head himc_head_default(void)
@@ -77,7 +81,8 @@ bool himc_head_check(const himc_head *head, himc_error *error)
            himc_check_range("density", head->density, 0.001, HIMC_DENSITY_MAX, "kg/m2", error) &&
            himc_check_range("decay S0", head->decay_constant, 0, HIMC_SIGMA0_MAX, "1/s", error) &&
            himc_check_range("decay S1", head->decay_square, 0, HIMC_SIGMA1_MAX, "s", error) &&
-           himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error) &&
+           (head->modes == HIMC_MODES_AUTO ||
+            himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error)) &&
            himc_check_range("kettle", head->kettle, 0, 10, "m3", error) &&
            himc_check_range("glide", head->glide, 0, 1, "", error) &&
            himc_check_range("damp", head->damp, 0, 1, "", error);
@@ -164,25 +169,25 @@ static int find_zeros(const himc_modes *modes, entry *out)
 static bool assign_modes(himc_modes *modes, int found)
 {
     int mode = 0, i = 0;
-    for (; i < found && mode < modes->count; i++) {
+    for (; i < found && mode < modes->exact; i++) {
         modes->first[i] = mode;
         int members = modes->entries[i].m > 0 ? 2 : 1;
-        for (int k = 0; k < members && mode < modes->count; k++)
+        for (int k = 0; k < members && mode < modes->exact; k++)
             modes->of[mode++] = i;
     }
     modes->entry_count = i;
-    return mode == modes->count;
+    return mode == modes->exact;
 }
 
 static bool list_round(himc_modes *modes)
 {
-    double end = 1 + sqrt(1 + 4.0 * modes->count) + TABLE_MARGIN;
+    double end = 1 + sqrt(1 + 4.0 * modes->exact) + TABLE_MARGIN;
     if (!tabulate(modes, (int)end, (int)(end * TABLE_STEPS) + 2))
         return false;
     int found = find_zeros(modes, NULL);
     modes->entries = malloc(sizeof *modes->entries * (size_t)found);
     modes->first = malloc(sizeof *modes->first * (size_t)found);
-    modes->of = malloc(sizeof *modes->of * (size_t)modes->count);
+    modes->of = malloc(sizeof *modes->of * (size_t)modes->exact);
     if (!modes->entries || !modes->first || !modes->of)
         return false;
     find_zeros(modes, modes->entries);
@@ -241,17 +246,36 @@ static bool list_modes(himc_modes *modes)
     return false;
 }
 
+static int exact_of_auto(const himc_shape *shape, int most)
+{
+    return shape->kind == HIMC_CIRCLE ? HIMC_STATISTICAL_EXACT
+                                      : (most < AUTO_OTHERS ? most : AUTO_OTHERS);
+}
+
+static bool list_statistical(himc_modes *modes)
+{
+    modes->statistical = malloc(sizeof *modes->statistical);
+    if (!modes->statistical)
+        return false;
+    himc_statistical_list(modes->statistical);
+    modes->count += HIMC_STATISTICAL_MODES;
+    return true;
+}
+
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error)
 {
     int most = shape->kind == HIMC_GRID ? shape->grid->modes : HIMC_MODES_MAX;
+    bool automatic = count == HIMC_MODES_AUTO;
+    if (automatic)
+        count = exact_of_auto(shape, most);
     if (!himc_check_range("modes", count, 1, most, "", error))
         return NULL;
     himc_modes *modes = calloc(1, sizeof *modes);
     if (modes) {
-        modes->count = count;
+        modes->count = modes->exact = count;
         modes->shape = *shape;
         himc_grid_retain(shape->grid);
-        if (list_modes(modes))
+        if (list_modes(modes) && (!automatic || !is_round(modes) || list_statistical(modes)))
             return modes;
     }
     himc_modes_free(modes);
@@ -268,12 +292,20 @@ void himc_modes_free(himc_modes *modes)
     free(modes->first);
     free(modes->of);
     free(modes->table);
+    free(modes->statistical);
     free(modes);
 }
 
 int himc_modes_count(const himc_modes *modes)
 {
     return modes->count;
+}
+
+int himc_modes_common(const himc_modes *a, const himc_modes *b)
+{
+    if (a->statistical && b->statistical)
+        return a->count;
+    return a->exact < b->exact ? a->exact : b->exact;
 }
 
 const himc_shape *himc_modes_shape(const himc_modes *modes)
@@ -302,6 +334,11 @@ double himc_modes_area(const himc_modes *modes, double radius)
 // the fields of a mode that depend on the shape alone
 static himc_mode bare_shape(const himc_modes *modes, int index)
 {
+    if (index >= modes->exact) {
+        const himc_statistical_mode *s = &modes->statistical->mode[index - modes->exact];
+        return (himc_mode){
+            .m = -1, .n = index - modes->exact + 1, .zero = s->zero, .norm = 1 / s->count};
+    }
     int i = is_round(modes) ? modes->of[index] : index;
     const entry *e = &modes->entries[i];
     bool sine = is_round(modes) && index > modes->first[i];
@@ -409,6 +446,15 @@ static double at_rectangle(const himc_shape *shape, const entry *e, double x, do
     return sin(e->m * HIMC_PI * (x / a + 0.5)) * sin(e->n * HIMC_PI * (y / b + 0.5));
 }
 
+static double at_statistical(const himc_modes *modes, int index, double x, double y)
+{
+    double shapes[HIMC_STATISTICAL_MODES];
+    if (!(hypot(x, y) < 1))
+        return 0;
+    himc_statistical_shapes(modes->statistical, x, y, shapes);
+    return shapes[index - modes->exact];
+}
+
 static double at_circle(const himc_modes *modes, double radius, int index, double x, double y)
 {
     int i = modes->of[index], m = modes->entries[i].m;
@@ -421,6 +467,8 @@ static double at_circle(const himc_modes *modes, double radius, int index, doubl
 
 double himc_modes_shape_at(const himc_modes *modes, double radius, int index, double x, double y)
 {
+    if (index >= modes->exact)
+        return at_statistical(modes, index, x / radius, y / radius);
     if (is_round(modes))
         return at_circle(modes, radius, index, x, y);
     if (modes->shape.kind == HIMC_RECTANGLE)
@@ -455,7 +503,7 @@ static void shapes_of_circle(const himc_modes *modes, double r, double cosine, d
         int k = (int)z;
         double j = hermite(row(modes, m) + 2 * k, z - k);
         shapes[mode] = j * c[m];
-        if (m > 0 && mode + 1 < modes->count)
+        if (m > 0 && mode + 1 < modes->exact)
             shapes[mode + 1] = j * s[m];
     }
 }
@@ -475,11 +523,18 @@ void himc_modes_shapes(const himc_modes *modes, double radius, double x, double 
     else if (modes->shape.kind == HIMC_RECTANGLE)
         for (int i = 0; i < modes->count; i++)
             shapes[i] = at_rectangle(&modes->shape, &modes->entries[i], x / radius, y / radius);
-    else if (r < 1)
+    else if (!(r < 1))
+        memset(shapes, 0, sizeof *shapes * (size_t)modes->count);
+    else
         shapes_of_circle(modes, r, distance > 0 ? x / distance : 1, distance > 0 ? y / distance : 0,
                          shapes);
-    else
-        memset(shapes, 0, sizeof *shapes * (size_t)modes->count);
+    if (modes->statistical && r < 1)
+        himc_statistical_shapes(modes->statistical, x / radius, y / radius, shapes + modes->exact);
+}
+
+double himc_modes_pressure(const himc_modes *modes, int index, double across, double azimuth)
+{
+    return himc_statistical_pressure(modes->statistical, index - modes->exact, across, azimuth);
 }
 
 // int_0^1 sin(m pi u) exp(i s (u - 1/2)) du: real for m odd, imaginary for m even

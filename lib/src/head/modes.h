@@ -13,13 +13,15 @@
 typedef struct himc_modes himc_modes;
 
 /// The lowest `count` modes of a head of that outline: 1 .. HIMC_MODES_MAX, of a grid (retained) as
-/// many as it has. Modes of a rectangle have m and n half waves along x and y, those of a grid are
+/// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y, those of a grid are
 /// numbered by n; both have no pairs. NULL with an error out of range or without memory.
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error);
 void himc_modes_free(himc_modes *modes);
 
 HIMC_RT int himc_modes_count(const himc_modes *modes);
 HIMC_RT const himc_shape *himc_modes_shape(const himc_modes *modes);
+/// So many modes at the beginning of both lists, of the same outline, are the same.
+HIMC_RT int himc_modes_common(const himc_modes *a, const himc_modes *b);
 /// Area of the head (m^2).
 HIMC_RT double himc_modes_area(const himc_modes *modes, double radius);
 
@@ -37,6 +39,11 @@ HIMC_RT void himc_modes_shapes(const himc_modes *modes, double radius, double x,
 /// ky y (k in rad/m, result in m^2).
 HIMC_RT void himc_modes_transform(const himc_modes *modes, double radius, int index, double kx,
                                   double ky, double *even, double *odd);
+
+/// Amplitude of the pressure of a statistical mode far away, over rho radius^2/distance and its
+/// acceleration; `across` is radius times wavenumber in air times cos(elevation).
+HIMC_RT double himc_modes_pressure(const himc_modes *modes, int index, double across,
+                                   double azimuth);
 
 /// True if every field of `head` is in its range; else an error with the field, the value and the
 /// range.

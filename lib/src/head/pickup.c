@@ -8,7 +8,7 @@
 ///
 /// With the time factor exp(-i w t), -i q'' is -w q'. So modes of even m sound by their
 /// acceleration, those of odd m a quarter of a period apart, by w times their velocity; the signs
-/// repeat with period 4 in m.
+/// repeat with period 4 in m. A statistical mode counts as one of odd m.
 ///
 /// A head without air would give no pressure at all. It is given what Rayleigh's integral makes of
 /// it, times BARE: it loses no sound, its loudest mode (0,1) rings on for seconds, and with the
@@ -60,13 +60,16 @@ static double per_pascal(const himc_head *head)
 }
 
 // pressure per (m/s^2) of the mode's acceleration, phase aside
-static double radiation(const himc_mode *mode, const himc_head *head, const himc_pickup *pickup)
+static double radiation(const himc_mode *mode, const himc_head *head, const himc_pickup *pickup,
+                        const himc_modes *modes, int index)
 {
     double x =
         2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED * head->radius * cos(pickup->elevation);
-    double angle = mode->m * pickup->azimuth;
-    return HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius *
-           overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
+    double angle = mode->m * pickup->azimuth,
+           scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
+    if (mode->m < 0)
+        return scale * himc_modes_pressure(modes, index, x, pickup->azimuth);
+    return scale * overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
 // the weights of a head that is not round: the integral itself, in phase and a quarter of a period
@@ -92,10 +95,10 @@ pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *h
         return (pickup_weights){.velocity = point_shape / HIMC_PICKUP_VELOCITY};
     if (himc_modes_shape(modes)->kind != HIMC_CIRCLE)
         return of_outline(pickup, head, modes, index, mode);
-    double weight = radiation(mode, head, pickup) * per_pascal(head);
+    double weight = radiation(mode, head, pickup, modes, index) * per_pascal(head);
     double omega = 2 * HIMC_PI * mode->frequency;
     double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;
-    if (mode->m % 2 == 1)
+    if (mode->m % 2 != 0)
         return (pickup_weights){.velocity = sign * weight * omega};
     return (pickup_weights){.displacement = -sign * weight * omega * omega,
                             .velocity = -sign * weight * 2 * mode->decay,

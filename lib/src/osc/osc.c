@@ -218,7 +218,7 @@ void himc_osc_event(himc_osc *osc, const himc_event *event)
 static void put_head(himc_osc *osc, himc_drum *drum, double time)
 {
     himc_membrane *membrane = himc_drum_membrane(drum);
-    int modes = himc_membrane_head(membrane)->modes;
+    int modes = himc_membrane_audible(membrane); // the first of them are exact
     osc_state *state = begin(osc, STATE_HEAD, time);
     if (!state)
         return;
