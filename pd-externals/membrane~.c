@@ -4,7 +4,8 @@ strikes.
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
          (himc/command.h); x and y of the spot (m from the head's centre, x away from the
          performer, signal or float)
-outlets  sound, one for each of CHANNELS pickups; displacement under the spot (m); messages:
+outlets  sound, one for each of CHANNELS pickups, or of the left and the right ear of its
+         performer's `listener`; displacement under the spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
          touch TIME X Y VELOCITY PLACE PITCH       a blow begins: distance from the centre
                                                    per radius, the principal mode's frequency (Hz)
@@ -70,7 +71,7 @@ static void membrane_fit_layer(t_membrane *x)
     if (layer_fits(&x->x_layer, drum))
         return;
     bool good = pd_in_real_time()
-                    ? himc_loader_follow(x->x_loader, x->x_layer.l_membrane, drum, &error)
+                    ? himc_loader_follow(x->x_loader, layer_membrane(&x->x_layer), drum, &error)
                     : layer_fit(&x->x_layer, drum, &error);
     if (himc_loader_busy(x->x_loader))
         clock_delay(x->x_load, LOAD_PERIOD);
@@ -99,7 +100,7 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
         driver.advance_to(driver.performer, x->x_stream.s_count + (uint64_t)n);
         membrane_read(x, n, out);
         x->x_layer.l_silent = himc_drum_technique(drum) != HIMC_TECHNIQUE_MODAL;
-        layer_play(&x->x_layer, x->x_channels, n, in, out);
+        layer_play(&x->x_layer, drum, x->x_channels, n, in, out);
     } else {
         himc_drum_advance(drum, n, in[0], in[1], in[2]);
         membrane_read(x, n, out);
@@ -162,7 +163,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
     if (sp[0]->s_n > HIMC_DRUM_RING) {
         pd_error(x, "membrane~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n,
                  HIMC_DRUM_RING);
-    } else if (!himc_membrane_set_rate(x->x_layer.l_membrane, sp[0]->s_sr, &error) ||
+    } else if (!himc_drum_set_rate(x->x_layer.l_drum, sp[0]->s_sr, &error) ||
                (!driven && !himc_drum_set_rate(x->x_link.l_drum, sp[0]->s_sr, &error))) {
         pd_error(x, "membrane~: %s", error.text);
     } else {
@@ -350,9 +351,8 @@ static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer,
     himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
     if (drum && himc_command_parse(&pickups, HIMC_DRUM, "pickups", &channels, 1, error) &&
         himc_drum_command(drum, &pickups, error))
-        layer->l_membrane =
-            himc_membrane_new(himc_membrane_head(himc_drum_membrane(drum)), rate, error);
-    if (layer->l_membrane) {
+        layer->l_drum = himc_drum_new(name, wish->w_inches, rate, error);
+    if (layer->l_drum) {
         himc_drum_set_external_sound(drum, true);
         return drum;
     }
@@ -417,7 +417,7 @@ static void membrane_free(t_membrane *x)
     himc_loader_free(x->x_loader);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
-    himc_membrane_free(x->x_layer.l_membrane);
+    himc_drum_release(x->x_layer.l_drum);
     clock_free(x->x_clock);
     clock_free(x->x_load);
     clock_free(x->x_touch_clock);

@@ -233,9 +233,9 @@ check test_motion_has_250_rows_a_second \
     true_that "($(wc -l <motion.csv) - 1 - 250 * $(number seconds)) ^ 2 <= 4"
 format="$(bytes 20 2 u2 one.wav) $(bytes 22 2 u2 one.wav)"
 format="$(head -c 4 one.wav) $format $(bytes 24 4 u4 one.wav) $(bytes 34 2 u2 one.wav)"
-check test_wav_is_mono_32_bit_float_at_48000 [ "$format" = "RIFF 3 1 48000 32" ]
+check test_wav_has_two_ears_in_32_bit_float_at_48000 [ "$format" = "RIFF 3 2 48000 32" ]
 check test_wav_is_as_long_as_said \
-    true_that "($(wc -c <one.wav) / 192000 - $(number seconds)) ^ 2 < 1e-5"
+    true_that "($(wc -c <one.wav) / 384000 - $(number seconds)) ^ 2 < 1e-5"
 tail -c "$(($(wc -c <one.wav) / 48 * 48 - 48))" one.wav | od -An -v -t f4 -w4 | awk '
     { v = $1 < 0 ? -$1 : $1; if (v > peak) peak = v; late[NR] = v }
     END {
@@ -249,6 +249,19 @@ check test_sound_is_heard_and_not_clipped \
 check test_sound_dies_away_by_80_decibels \
     true_that "$(cut -d' ' -f 2 levels) <= 1e-4 * $(cut -d' ' -f 1 levels)"
 check test_no_temporary_file_is_left [ "$(ls | grep -c '\.[A-Za-z0-9]\{6\}$')" = 0 ]
+
+# one channel is the pickups', whatever listener the score has; two are the ears of its listener
+"$himc" render piece.txt -o pickups.wav --channels 1 >/dev/null
+(echo "listener 2 0 1.5;"; cat piece.txt) >heard.txt
+"$himc" render heard.txt -o two.wav --channels 1 >/dev/null
+check test_one_channel_is_that_of_the_pickups cmp pickups.wav two.wav
+check test_one_channel_is_mono [ "$(bytes 22 2 u2 pickups.wav)" = 1 ]
+"$himc" render heard.txt -o two.wav >/dev/null
+check test_ears_are_where_the_score_has_them [ "$(cmp -s one.wav two.wav; echo $?)" = 1 ]
+(echo "listener off;"; cat piece.txt) >off.txt
+"$himc" render off.txt -o two.wav >/dev/null
+check test_a_score_without_listener_has_its_pickups_on_the_left [ \
+    "$(tail -c "$(($(wc -c <two.wav) / 48 * 48 - 48))" two.wav | od -An -v -t f4 -w8 | awk '$2 != 0 { n++ } END { print n + 0 }')" = 0 ]
 
 # the same again, and in other blocks
 "$himc" render piece.txt -o two.wav --strokes two.csv >/dev/null

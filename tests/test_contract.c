@@ -108,6 +108,7 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_drum_watch, himc_drum_watch(drum, false))                                            \
     CALL(himc_drum_time, himc_drum_time(drum))                                                     \
     CALL(himc_drum_realign, himc_drum_realign(drum, 0))                                            \
+    CALL(himc_drum_hear_as, himc_drum_hear_as(drum, drum))                                         \
     CALL(himc_drum_strike_next, himc_drum_strike_next(drum, &(himc_contact_report){0}))            \
     CALL(himc_drum_contact_next, himc_drum_contact_next(drum, &(himc_contact_onset){0}))           \
     CALL(himc_drum_technique, himc_drum_technique(drum))                                           \

@@ -1,9 +1,9 @@
 /// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a WAV
 /// file.
 ///
-/// The command `score` or `take`, then `play` on sample 0, then block after block, just as
-/// `[himc~]` does it in Pd; each sample written is the sum of the drums' samples, rounded to 32-bit
-/// float once, as Pd's signals are. The end is tested only where a cell of 0.2 s ends; blocks end
+/// The commands `listener`, `score` or `take`, then `play` on sample 0, then block after block, just
+/// as `[himc~]` does it in Pd; each sample of a channel is the sum of the drums' samples, rounded to
+/// 32-bit float once, as Pd's signals are. The end is tested only where a cell of 0.2 s ends; blocks end
 /// there too, so that nothing depends on --block. The end: the performer is done and a whole cell
 /// stayed 80 dB below the peak, or 8 s have passed.
 #define _POSIX_C_SOURCE 200809L
@@ -20,16 +20,24 @@
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
 #define SILENCE 1e-4   // of the peak: 80 dB
+#define HEARD_BY_TWO 2 // channels, one for each ear
 #define BLOCK_MAX 8192 // samples; chosen: the longest block of Pd
-/// What the 32-bit sizes in a WAV file can count, headers taken off (samples).
+/// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
-enum { OUT, RATE, BLOCK, STROKES, MOTION, MODE, LIMITS, TAKE };
+/// Where a piece is heard if it does not say; chosen: half to the side of the first drum and 1.9 m
+/// from it, where the two ears differ as in recordings of a timpano.
+#define LISTENER "listener 1.9 1.4 1.2"
+
+enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
 
 static const cli_option options[] = {
-    {"output", 'o', "OUT.wav", "the sound, 32-bit float, one channel: the sum of all drums"},
+    {"output", 'o', "OUT.wav", "the sound of all drums, 32-bit float"},
     {"rate", 0, "HZ", "sample rate, 8000 .. 192000 (48000)"},
     {"block", 0, "N", "samples computed at a time, 1 .. 8192 (64); the result is the same"},
+    {"channels", 0, "N",
+     "2: two ears in front of the drums, or where the score has them; 1: the "
+     "drums' pickups, no ears (2)"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
     {"motion", 0, "F.csv", "a row every 4 ms: targets, sticks, joint angles, forces, elbows"},
     {"mode", 0, "mode", "control pipeline (himc)"},
@@ -41,7 +49,7 @@ static const cli_option options[] = {
 /// The arguments.
 typedef struct job {
     const char *source, *mode, *limits;
-    int rate, block;
+    int rate, block, channels;
     himc_take_options take;
 } job;
 
@@ -50,12 +58,19 @@ typedef struct rendering {
     himc_performance *performance;
     cli_file wav, strokes, motion;
     SNDFILE *sound;
+    int channels;
     bool done;     ///< the performer has come to rest
     int failed;    ///< errno of the first write that did not arrive
     bool too_long; ///< for a WAV file
     uint64_t samples, done_at;
     double peak, cell_peak; ///< of the sound so far, of the cell under way
 } rendering;
+
+/// Samples of a channel that a WAV file can hold.
+static double room(int channels)
+{
+    return WAV_SAMPLES / channels;
+}
 
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
 {
@@ -64,7 +79,8 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                  .mode = value[MODE],
                  .limits = value[LIMITS],
                  .rate = 48000,
-                 .block = 64};
+                 .block = 64,
+                 .channels = HEARD_BY_TWO};
     const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION]};
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
@@ -75,6 +91,7 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                                       files[k]);
     return cli_count("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
            cli_count("--block", value[BLOCK], 1, BLOCK_MAX, "samples", &out->block, error) &&
+           cli_count("--channels", value[CHANNELS], 1, 2, "", &out->channels, error) &&
            cli_take_options(out->source, value + TAKE, &out->take, error);
 }
 
@@ -92,10 +109,10 @@ static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, him
     double beat = score->stroke_count ? score->strokes[score->stroke_count - 1].beat : 0;
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
     himc_score_free(score);
-    if (seconds + TAIL_SECONDS > WAV_SAMPLES / wanted->rate)
+    if (seconds + TAIL_SECONDS > room(wanted->channels) / wanted->rate)
         return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %d Hz: %.0f s",
                               wanted->source, seconds, wanted->rate,
-                              WAV_SAMPLES / wanted->rate - TAIL_SECONDS);
+                              room(wanted->channels) / wanted->rate - TAIL_SECONDS);
     return true;
 }
 
@@ -110,6 +127,8 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
         return false;
     if (!makes_drums && !cli_add_drum(performance, wanted->rate, error))
         return false;
+    if (wanted->channels == HEARD_BY_TWO && !cli_tell(performance, LISTENER, NULL, error))
+        return false;
     if (wanted->limits && !cli_tell(performance, "limits", wanted->limits, error))
         return false;
     if (!cli_tell(performance, take ? "take" : "score", wanted->source, error))
@@ -119,15 +138,19 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
         himc_error_set(&note, "%s: loop: one round is rendered", wanted->source);
         printf("note: %s\n", note.text);
     }
-    return (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
+    return (wanted->channels == HEARD_BY_TWO ||
+            cli_tell(performance, "listener off", NULL, error)) &&
+           (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
            cli_tell(performance, "play", NULL, error);
 }
 
-static bool open_sound(rendering *r, const char *path, int rate, himc_error *error)
+static bool open_sound(rendering *r, const char *path, const job *wanted, himc_error *error)
 {
     if (!cli_file_open(&r->wav, path, error))
         return false;
-    SF_INFO info = {.samplerate = rate, .channels = 1, .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
+    SF_INFO info = {.samplerate = wanted->rate,
+                    .channels = wanted->channels,
+                    .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
     r->sound = sf_open_fd(fileno(r->wav.stream), SFM_WRITE, &info, SF_FALSE);
     if (!r->sound)
         return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(NULL));
@@ -163,22 +186,29 @@ static void take_events(rendering *r)
     }
 }
 
-static void play_block(rendering *r, int n)
+/// The samples of one channel, interleaved with the others.
+static void sum_drums(rendering *r, int channel, int n, float *out)
 {
     double heard[BLOCK_MAX], sum[BLOCK_MAX];
-    float out[BLOCK_MAX];
     himc_drum *drum;
     memset(sum, 0, (size_t)n * sizeof *sum);
-    himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
     for (int d = 0; (drum = himc_performance_drum(r->performance, d)); d++) {
-        himc_drum_read(drum, r->samples, n, heard, NULL);
+        himc_drum_read_channel(drum, channel, r->samples, n, heard);
         for (int i = 0; i < n; i++)
             sum[i] += heard[i];
     }
     for (int i = 0; i < n; i++) {
-        out[i] = (float)sum[i];
+        out[i * r->channels + channel] = (float)sum[i];
         r->cell_peak = fmax(r->cell_peak, fabs(sum[i]));
     }
+}
+
+static void play_block(rendering *r, int n)
+{
+    float out[HEARD_BY_TWO * BLOCK_MAX];
+    himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
+    for (int channel = 0; channel < r->channels; channel++)
+        sum_drums(r, channel, n, out);
     errno = 0;
     if (sf_writef_float(r->sound, out, n) != n)
         r->failed = errno ? errno : EIO;
@@ -211,7 +241,7 @@ static double play(rendering *r, const job *wanted)
             play_block(r, n);
             left -= n;
         }
-        r->too_long = (double)(r->samples + (uint64_t)cell) > WAV_SAMPLES;
+        r->too_long = (double)(r->samples + (uint64_t)cell) > room(r->channels);
         show_progress((double)r->samples / wanted->rate, cli_now() - start);
     } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
     double elapsed = cli_now() - start;
@@ -227,7 +257,7 @@ static bool keep_files(rendering *r, himc_error *error)
         return himc_error_set(error, "%s: cannot be written: %s", path, strerror(r->failed));
     if (r->too_long)
         return himc_error_set(error, "%s: not over when the file is full, allowed %.0f samples",
-                              path, WAV_SAMPLES);
+                              path, room(r->channels));
     bool closed = !sf_close(r->sound);
     r->sound = NULL;
     if (!closed)
@@ -253,9 +283,10 @@ static bool open_all(rendering *r, const job *wanted, const char *const *value, 
     config.sample_rate = wanted->rate;
     if (config.physics_rate > wanted->rate)
         config.physics_rate = wanted->rate;
+    r->channels = wanted->channels;
     r->performance = himc_performance_new(&config, error);
     if (!r->performance || !prepare(r->performance, wanted, error) ||
-        !open_sound(r, value[OUT], wanted->rate, error) ||
+        !open_sound(r, value[OUT], wanted, error) ||
         !cli_file_open(&r->strokes, value[STROKES], error) ||
         !cli_file_open(&r->motion, value[MOTION], error))
         return false;

@@ -91,6 +91,9 @@ HIMC_COMMAND_ROW(ENGINE, engine, PERFORMER, AT_SAMPLE, 0, "tree|ode",
 HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
 HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, 0, "SEGMENT FX FY FZ SECONDS",
                  "pushes a segment of the body with a force for a time")
+HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | X Y Z [YAW]",
+                 "has all drums heard by two ears there, facing the performer or that way; off: by "
+                 "the drums' pickups")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")

@@ -64,12 +64,17 @@ HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, cons
 HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                             double *displacement);
 /// The sound of pickup `channel` (0 .. HIMC_PICKUPS - 1; the command `pickups CHANNELS` sets how
-/// many there are, the others are silent).
+/// many there are, the others are silent). While the performer's `listener` hears the drum, channel
+/// 0 is the left ear, 1 the right one, and the others are silent.
 HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
                                     double *sound);
 /// Whether the displacement of the watched point is computed, as it is at first; without, it reads
 /// as 0 and the drum costs less.
 HIMC_RT void himc_drum_watch(himc_drum *drum, bool on);
+/// Takes the place of `other` and, if a performer's `listener` hears that, the ways from there to
+/// its ears: for a second drum that sounds together with it. The heads must be alike
+/// (himc_membrane_follow).
+HIMC_RT void himc_drum_hear_as(himc_drum *drum, const himc_drum *other);
 /// Samples advanced since the last realign.
 HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
 /// Counts time from 0 again; the last `ahead` samples become samples 0 .. ahead - 1. The sound goes

@@ -49,7 +49,7 @@ lines() { # lines TEXT: says which of these lines Pd has not written exactly onc
 
 # --- the sound
 
-"$build/bin/himc" render short.txt -o "$work/render.wav" --strokes "$work/strokes.csv" >"$work/log" 2>&1
+"$build/bin/himc" render short.txt --channels 1 -o "$work/render.wav" --strokes "$work/strokes.csv" >"$work/log" 2>&1
 for run in "64 64" "64 64" "1 1" "1024 1024" "64 1024" "1024 64"; do
     set -- $run
     name=pd-$1-$2
@@ -247,7 +247,7 @@ report reopening_finds_its_names_free "$(grep -m1 '^error' "$work/log")"
 # --- the whole piece
 
 if [ -n "$HIMC_LONG" ]; then
-    "$build/bin/himc" render "$root/patches/improvisation.txt" -o "$work/improvisation.wav" >"$work/log" 2>&1
+    "$build/bin/himc" render "$root/patches/improvisation.txt" --channels 1 -o "$work/improvisation.wav" >"$work/log" 2>&1
     play_pd "$root/patches/01-improvisation.pd" -send "himc-record $work/recorded.wav"
     report improvisation_in_pd_equals_himc_render_bit_by_bit \
         "$(different improvisation recorded 0 1900000)"

@@ -55,7 +55,7 @@ report the_watch_counts_each_call_that_may_wait \
 
 # a take for the patch
 echo "drum kettle; record $work/take.bvh; stroke 1 left legato f; stroke 2 right accent f; play;" >"$work/record.txt"
-"$build/bin/himc" render "$work/record.txt" -o "$work/record.wav" >"$work/log" 2>&1
+"$build/bin/himc" render "$work/record.txt" --channels 1 -o "$work/record.wav" >"$work/log" 2>&1
 cat >"$work/score.txt" <<'END'
 kettle modes 60; kettle tension 3000; tempo 140; stroke 0.5 left legato f; stroke 1 right accent mf;
 stroke 1.5 left staccato p rim; play;

@@ -13,8 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TUNE_LOW 20    // principal mode (Hz); chosen: below the deepest drum ...
-#define TUNE_HIGH 2000 // ... and above the highest (Hz): notes E0 to B6
+#define TUNE_LOW 20          // principal mode (Hz); chosen: below the deepest drum ...
+#define TUNE_HIGH 2000       // ... and above the highest (Hz): notes E0 to B6
+#define LISTENER_FARTHEST 15 // on each axis (m); chosen: the far end of a recital's room
 
 // in the order of himc_hand, himc_nuance, himc_spot
 static const char *const hands[] = {"left", "right", NULL};
@@ -48,9 +49,12 @@ static const himc_argument arguments[] = {
     {"Y", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
     {"X", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
     {"Y", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
+    {"X", "listener", HIMC_ARGUMENT_NUMBER, -LISTENER_FARTHEST, LISTENER_FARTHEST, "m", NULL},
+    {"Y", "listener", HIMC_ARGUMENT_NUMBER, -LISTENER_FARTHEST, LISTENER_FARTHEST, "m", NULL},
     {"X", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
     {"Y", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
     {"Z", NULL, HIMC_ARGUMENT_NUMBER, 0, 3, "m", NULL},
+    {"YAW", NULL, HIMC_ARGUMENT_NUMBER, -6.2832, 6.2832, "rad", NULL},
     {"TILT", NULL, HIMC_ARGUMENT_NUMBER, -0.8, 0.8, "rad", NULL},
     {"LAMBDA", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 1, "m", NULL},
     {"SHOULDER", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},

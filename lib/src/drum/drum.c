@@ -7,6 +7,7 @@
 /// not depend on how the caller cuts time into blocks.
 #include "drum/drum_state.h"
 
+#include "base/head_frame.h"
 #include "base/line.h"
 #include "drum/contact.h"
 #include "drum/strike_point.h"
@@ -78,6 +79,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
         drum_new(form->name, himc_membrane_new_of(&form->head, error), &form->place, error);
     if (drum) {
         himc_membrane_watch(drum->membrane, form->head.watch_x, form->head.watch_y);
+        himc_drum_listen(drum, &form->listener);
         drum->external_sound = form->external_sound;
     }
     return drum;
@@ -119,6 +121,44 @@ void himc_drum_stand(himc_drum *drum, himc_vec3 center)
 {
     drum->place.center = center;
     drum->revision++;
+    himc_drum_find_ways(drum);
+}
+
+// the ways to the ears; the rays may come from elsewhere
+static void find_ways(himc_drum *drum, bool rays)
+{
+    if (!drum->listener.on) {
+        himc_membrane_mute_pickups(drum->membrane, false);
+        himc_ears_close(&drum->ears);
+        return;
+    }
+    himc_ear_paths paths = himc_ears_trace(&drum->listener, &drum->place);
+    if (rays)
+        himc_membrane_set_rays(drum->membrane, paths.ray);
+    himc_ears_set(&drum->ears, &paths, drum->rate);
+}
+
+void himc_drum_find_ways(himc_drum *drum)
+{
+    find_ways(drum, true);
+}
+
+void himc_drum_listen(himc_drum *drum, const himc_listener *listener)
+{
+    if (himc_listener_equal(&drum->listener, listener))
+        return;
+    drum->listener = *listener;
+    find_ways(drum, true);
+}
+
+void himc_drum_hear_as(himc_drum *drum, const himc_drum *other)
+{
+    if (himc_listener_equal(&drum->listener, &other->listener) &&
+        himc_head_frame_equal(&drum->place, &other->place))
+        return;
+    drum->listener = other->listener;
+    drum->place = other->place;
+    find_ways(drum, false);
 }
 
 const himc_head_frame *himc_drum_head_frame(const himc_drum *drum)
@@ -163,6 +203,7 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error)
         m->end = drum->time - (uint64_t)llround((double)(drum->time - m->end) * ratio);
     }
     drum->rate = sample_rate;
+    himc_drum_find_ways(drum);
     return true;
 }
 
@@ -236,12 +277,31 @@ static void store_row(himc_drum *drum, int index, int n, const double *row, cons
     }
 }
 
+// Puts the ears in the place of the first two channels, as far as they are heard; `sound` has the
+// rays behind the pickups. Returns the number of channels that may sound.
+static int listen_in(himc_drum *drum, int n, double *const *sound, bool silent)
+{
+    himc_ears *ears = &drum->ears;
+    int count = silent ? 0 : channels(drum), some = count > HIMC_EARS ? count : HIMC_EARS;
+    if (!himc_ears_heard(ears) || (silent && himc_ears_at_rest(ears)))
+        return count;
+    for (int k = himc_ears_alone(ears) ? 0 : count; k < some; k++)
+        memset(sound[k], 0, (size_t)n * sizeof(double));
+    bool rays = !silent && himc_membrane_rays(drum->membrane);
+    himc_ears_hear(ears, n, rays ? sound + HIMC_PICKUPS : NULL, some, sound);
+    if (himc_ears_alone(ears))
+        himc_membrane_mute_pickups(drum->membrane, true);
+    if (!himc_ears_heard(ears))
+        himc_membrane_set_rays(drum->membrane, NULL);
+    return some;
+}
+
 // n samples into the rings; `watched` is NULL if unwanted
 static void store(himc_drum *drum, int n, double *const *sound, const double *watched, bool silent)
 {
     double levels[RUN_BLOCK];
-    int count = silent ? 0 : channels(drum);
-    next_levels(drum, n, silent ? NULL : levels);
+    int count = listen_in(drum, n, sound, silent);
+    next_levels(drum, n, silent && count == 0 ? NULL : levels);
     for (int k = 0; k < HIMC_PICKUPS; k++)
         store_row(drum, k, n, k < count ? sound[k] : NULL, levels);
     store_row(drum, WATCHED, n, silent ? NULL : watched, NULL);
@@ -252,13 +312,16 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
 static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                       double *const *forces, int at)
 {
-    double sound[HIMC_PICKUPS][RUN_BLOCK], watched[RUN_BLOCK], h = 1 / drum->rate;
-    double *into[HIMC_PICKUPS], *seen = drum->unwatched ? NULL : watched;
-    for (int k = 0; k < HIMC_PICKUPS; k++)
+    double sound[HIMC_OUTPUTS][RUN_BLOCK], watched[RUN_BLOCK], h = 1 / drum->rate;
+    double *into[HIMC_OUTPUTS], *wanted[HIMC_OUTPUTS], *seen = drum->unwatched ? NULL : watched;
+    bool alone = himc_ears_alone(&drum->ears);
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
         into[k] = sound[k];
+        wanted[k] = alone && k < HIMC_PICKUPS ? NULL : sound[k];
+    }
     bool silent = himc_membrane_at_rest(drum->membrane);
     if (!silent)
-        himc_membrane_run(drum->membrane, n, into, seen);
+        himc_membrane_run_all(drum->membrane, n, wanted, seen);
     store(drum, n, into, seen, silent);
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < n; i++)
@@ -286,9 +349,9 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
-    double sound[HIMC_PICKUPS], *into[HIMC_PICKUPS];
+    double sound[HIMC_OUTPUTS], *into[HIMC_OUTPUTS];
     double watched = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
-    for (int k = 0, pickups = channels(drum); k < pickups; k++) {
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
         sound[k] = himc_membrane_sound(drum->membrane, k);
         into[k] = &sound[k];
     }

@@ -160,6 +160,7 @@ static bool do_place(himc_drum *drum, const himc_command *c, himc_error *error)
     drum->place.tilt = c->count == 4 ? number(c, 3) : drum->place.tilt;
     drum->placed = true;
     drum->revision++;
+    himc_drum_find_ways(drum);
     return true;
 }
 

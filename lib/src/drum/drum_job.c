@@ -19,6 +19,7 @@ himc_drum_form himc_drum_form_of(const himc_drum *drum)
 {
     himc_drum_form form = {.head = himc_membrane_form_of(drum->membrane),
                            .place = drum->place,
+                           .listener = drum->listener,
                            .external_sound = drum->external_sound};
     memcpy(form.name, drum->name, sizeof form.name);
     return form;
@@ -44,6 +45,7 @@ void himc_drum_exchange(himc_drum *drum, himc_drum *made)
     himc_membrane_exchange(drum->membrane, made->membrane);
     drum->place.radius = made->place.radius;
     drum->revision += grown;
+    himc_drum_find_ways(drum);
 }
 
 // modes of a head, those that are computed faster counted for less
@@ -55,13 +57,21 @@ static int mode_work(const himc_membrane *membrane)
                        : count;
 }
 
+bool himc_drum_listening_takes_long(const himc_drum *drum)
+{
+    return mode_work(drum->membrane) * HIMC_RAYS > SHORT_WORK;
+}
+
 bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command)
 {
     int pickups;
     himc_membrane_pickups(drum->membrane, &pickups);
-    int readouts = pickups + 1; // and the watched point
+    bool heard = drum->listener.on;
+    int readouts = pickups + 1 + (heard ? HIMC_RAYS : 0); // and the watched point
     if (command->id == HIMC_COMMAND_PICKUPS)
         readouts = 1 + (int)fmax(pickups, command->atom[0].number);
+    if (command->id == HIMC_COMMAND_PLACE)
+        return heard && himc_drum_listening_takes_long(drum);
     return command->id == HIMC_COMMAND_SHAPE || command->id == HIMC_COMMAND_MODES ||
            ((himc_command_table((int)command->id)->marks & HIMC_CHANGES_HEAD) &&
             mode_work(drum->membrane) * readouts > SHORT_WORK);
@@ -71,6 +81,8 @@ typedef struct drum_job {
     himc_job job;
     himc_drum *drum; ///< borrowed
     himc_command command;
+    himc_listener listener; ///< of himc_drum_listen_job; then there is no command
+    bool listens;
     himc_drum_form form; ///< of the drum when the job was made
     himc_drum *made;     ///< owned
     int tries;
@@ -81,18 +93,31 @@ static bool prepare(himc_job *job, himc_error *error)
     drum_job *j = (drum_job *)job;
     himc_drum_release(j->made);
     j->made = himc_drum_new_of(&j->form, error);
-    return j->made && himc_drum_command(j->made, &j->command, error);
+    if (j->made && j->listens)
+        himc_drum_listen(j->made, &j->listener);
+    return j->made && (j->listens || himc_drum_command(j->made, &j->command, error));
+}
+
+// Carries it out on the drum itself. Where only rays change and the drum has them already, that is
+// quick.
+static bool act(drum_job *j, himc_error *error)
+{
+    if (!j->listens)
+        return himc_drum_command(j->drum, &j->command, error);
+    himc_drum_listen(j->drum, &j->listener);
+    return true;
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
     if (himc_drum_has_form(j->drum, &j->form)) {
+        bool rays = j->listens || j->command.id == HIMC_COMMAND_PLACE;
         himc_drum_exchange(j->drum, j->made);
-        return HIMC_JOB_DONE;
+        return !rays || act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
     }
     if (++j->tries == HIMC_JOB_TRIES)
-        return himc_drum_command(j->drum, &j->command, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
+        return act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
     himc_drum_form_free(&j->form);
     j->form = himc_drum_form_of(j->drum);
     return HIMC_JOB_AGAIN;
@@ -106,17 +131,35 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error)
+static drum_job *job_new(himc_drum *drum, const char *what, himc_error *error)
 {
     drum_job *j = calloc(1, sizeof *j);
     if (!j) {
-        himc_error_set(error, "%s: out of memory", himc_command_table((int)command->id)->name);
+        himc_error_set(error, "%s: out of memory", what);
         return NULL;
     }
     j->job = (himc_job){prepare, install, free_job};
     j->drum = drum;
-    himc_command_copy(&j->command, command);
     j->form = himc_drum_form_of(drum);
+    return j;
+}
+
+himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error)
+{
+    drum_job *j = job_new(drum, himc_command_table((int)command->id)->name, error);
+    if (!j)
+        return NULL;
+    himc_command_copy(&j->command, command);
+    return &j->job;
+}
+
+himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, himc_error *error)
+{
+    drum_job *j = job_new(drum, "listener", error);
+    if (!j)
+        return NULL;
+    j->listener = *listener;
+    j->listens = true;
     return &j->job;
 }
 

@@ -4,6 +4,7 @@
 #define HIMC_DRUM_PERFORMER_H
 
 #include "base/job.h"
+#include "drum/ears.h"
 #include "drum/membrane_form.h"
 #include "himc/drum.h"
 
@@ -19,6 +20,10 @@ typedef struct himc_outside_force {
 /// @param outside  or NULL
 HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                                       double *const *forces, const himc_outside_force *outside);
+
+/// Who hears the drum by two ears: from now on they are its first two channels, instead of pickups.
+/// A listener who is off, as at first, leaves them to the pickups. It changes over in 5 ms.
+HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
@@ -42,6 +47,7 @@ typedef struct himc_drum_form {
     char name[HIMC_NAME_SIZE];
     himc_membrane_form head;
     himc_head_frame place;
+    himc_listener listener;
     bool external_sound;
 } himc_drum_form;
 
@@ -61,6 +67,11 @@ void himc_drum_exchange(himc_drum *drum, himc_drum *made);
 HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command);
 /// Such a command as a job; the drum must outlive it. NULL without memory.
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error);
+
+/// True if himc_drum_listen would take longer than an audio block can wait.
+HIMC_RT bool himc_drum_listening_takes_long(const himc_drum *drum);
+/// himc_drum_listen as a job; the drum must outlive it, but for `free`. NULL without memory.
+himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, himc_error *error);
 
 /// himc_membrane_follow as a job; both must outlive it. NULL without memory.
 himc_job *himc_membrane_job(himc_membrane *follower, const himc_membrane *leader,

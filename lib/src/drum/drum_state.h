@@ -4,6 +4,7 @@
 #define HIMC_DRUM_STATE_H
 
 #include "drum/drum_performer.h"
+#include "drum/ears.h"
 
 #define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
 #define DRUM_REPORTS 64
@@ -59,7 +60,12 @@ struct himc_drum {
     himc_technique technique;
     bool external_sound;
     double level; ///< of the head's own sound, 0 .. 1
+    himc_listener listener;
+    himc_ears ears; ///< of the listener
 };
+
+/// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
+HIMC_RT void himc_drum_find_ways(himc_drum *drum);
 
 /// Launches the strikes that are due, as long as a mallet is free; the others go on waiting.
 HIMC_RT void himc_drum_launch(himc_drum *drum);

@@ -22,8 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: ten of its own, those of each pickup, each patch and each strike point
-#define ARRAYS (10 + PATCHES + HIMC_PICKUPS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: ten of its own, those of each output, each patch and each strike point
+#define ARRAYS (10 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
@@ -85,8 +85,8 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
-    for (int i = 0; i < HIMC_PICKUPS; i++)
-        c->pickups[i] = take_output(&memory, padded);
+    for (int i = 0; i < HIMC_OUTPUTS; i++)
+        c->outputs[i] = take_output(&memory, padded);
     for (int i = 0; i < PATCHES; i++)
         c->patches[i].weight = take(&memory, padded);
     for (int i = 0; i < STRIKE_POINTS; i++)
@@ -114,6 +114,8 @@ static void find_oscillators(himc_membrane *m)
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
     bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode bare = himc_modes_get(c->modes, &m->head, i);
         c->stretch[i] = root * bare.stiffness / m->head.tension;
@@ -151,7 +153,7 @@ static void find_watched(himc_membrane *m)
     himc_bank_readout(c->bank, c->scratch, NULL, NULL, &c->watched);
 }
 
-static void find_pickup(himc_membrane *m, int index)
+static void find_output(himc_membrane *m, int index)
 {
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
@@ -169,19 +171,19 @@ static void find_pickup(himc_membrane *m, int index)
     }
     himc_bank_readout(c->bank, c->on_q, c->on_v,
                       pickup->kind == HIMC_PICKUP_AIR ? c->on_force : NULL,
-                      &c->pickups[index].readout);
-    find_responses(m, &c->pickups[index], c->on_force);
+                      &c->outputs[index].readout);
+    find_responses(m, &c->outputs[index], c->on_force);
 }
 
-// all pickups; strike points hold responses to them and are computed again when asked for
-static void find_pickups(himc_membrane *m)
+// outputs from `first` to `end`; strike points hold responses to them and are computed again when
+// asked for
+static void find_outputs(himc_membrane *m, int first, int end)
 {
     for (int i = 0; i < STRIKE_POINTS; i++)
         m->points[i].used = false;
-    for (int i = 0; i < PATCHES; i++)
-        m->core.patches[i].b = 0;
-    for (int i = 0; i < m->pickup_count; i++)
-        find_pickup(m, i);
+    for (int i = first; i < end; i++)
+        if (himc_membrane_has(m, i))
+            find_output(m, i);
 }
 
 // The film is off while it could not raise the tension by SLACK of it, 0.001 cent, even with twice
@@ -219,7 +221,7 @@ static void retune(himc_membrane *m)
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
     himc_bank_set(c->bank, c->oscillators, himc_membrane_modes(m), m->rate);
     set_film(m);
-    find_pickups(m);
+    find_outputs(m, 0, HIMC_OUTPUTS);
     find_watched(m);
 }
 
@@ -254,7 +256,7 @@ typedef struct sound_pair {
 } sound_pair;
 
 typedef struct sounds {
-    sound_pair of[HIMC_PICKUPS];
+    sound_pair of[HIMC_OUTPUTS];
 } sounds;
 
 // A pickup of accelerations has a direct part of each force, which cancels most of what the modes
@@ -262,7 +264,7 @@ typedef struct sounds {
 static void add_forces(himc_membrane *m, int index, sound_pair *sound)
 {
     core *c = &m->core;
-    const output *o = &c->pickups[index];
+    const output *o = &c->outputs[index];
     himc_bank_step_response(c->bank, &o->readout, c->scratch);
     for (int i = 0; i < himc_bank_padded(c->bank); i++)
         c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
@@ -277,8 +279,10 @@ static void add_forces(himc_membrane *m, int index, sound_pair *sound)
 static sounds read_sounds(himc_membrane *m)
 {
     sounds s = {0};
-    for (int i = 0; i < m->pickup_count; i++) {
-        himc_readout *readout = &m->core.pickups[i].readout;
+    for (int i = 0; i < HIMC_OUTPUTS; i++) {
+        if (!himc_membrane_has(m, i))
+            continue;
+        himc_readout *readout = &m->core.outputs[i].readout;
         const declick *d = &m->declicks[i];
         s.of[i] = (sound_pair){himc_bank_read(m->core.bank, readout) + declick_at(d, d->at - 1),
                                himc_bank_peek(m->core.bank, readout) + declick_at(d, d->at)};
@@ -287,12 +291,12 @@ static sounds read_sounds(himc_membrane *m)
     return s;
 }
 
-// continues the sounds from `before` by declicks
-static void declick_from(himc_membrane *m, const sounds *before)
+// continues the sounds of the outputs from `first` to `end` by declicks, from `before`
+static void declick_from(himc_membrane *m, const sounds *before, int first, int end)
 {
-    memset(m->declicks, 0, sizeof m->declicks);
+    memset(m->declicks + first, 0, sizeof *m->declicks * (size_t)(end - first));
     sounds after = read_sounds(m);
-    for (int i = 0; i < m->pickup_count; i++) {
+    for (int i = first; i < end; i++) {
         const sound_pair *a = &after.of[i], *b = &before->of[i];
         double step = b->next - a->next;
         m->declicks[i] = (declick){.step = step,
@@ -326,6 +330,7 @@ himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *
     m->head = form->head;
     memcpy(m->pickups, form->pickups, sizeof m->pickups);
     m->pickup_count = form->pickup_count;
+    m->rays = form->rays;
     m->ends_sample = true;
     m->rate = form->rate;
     m->watch_x = form->watch_x;
@@ -395,7 +400,7 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
     retune(membrane);
     bend_new(membrane, known);
     keep_energy(membrane, energy);
-    declick_from(membrane, &before);
+    declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     return true;
 }
 
@@ -412,7 +417,7 @@ bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
     membrane->core = fresh;
     membrane->head = *head;
     retune(membrane);
-    declick_from(membrane, &before);
+    declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     core_free(&old);
     return true;
 }
@@ -433,9 +438,45 @@ bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *picku
     sounds before = read_sounds(membrane);
     memcpy(membrane->pickups, pickups, sizeof *pickups * (size_t)count);
     membrane->pickup_count = count;
-    find_pickups(membrane);
-    declick_from(membrane, &before);
+    find_outputs(membrane, 0, HIMC_PICKUPS);
+    declick_from(membrane, &before, 0, HIMC_PICKUPS);
     return true;
+}
+
+static bool same_pickup(const himc_pickup *a, const himc_pickup *b)
+{
+    return a->kind == b->kind && a->x == b->x && a->y == b->y && a->azimuth == b->azimuth &&
+           a->elevation == b->elevation && a->distance == b->distance;
+}
+
+static bool same_rays(const himc_pickup *a, const himc_pickup *b)
+{
+    bool same = (a == NULL) == (b == NULL);
+    for (int i = 0; same && a && i < HIMC_RAYS; i++)
+        same = same_pickup(&a[i], &b[i]);
+    return same;
+}
+
+void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays)
+{
+    if (same_rays(himc_membrane_rays(membrane), rays))
+        return;
+    sounds before = read_sounds(membrane);
+    membrane->rays = rays != NULL;
+    if (rays)
+        memcpy(membrane->pickups + HIMC_PICKUPS, rays, sizeof *rays * HIMC_RAYS);
+    find_outputs(membrane, HIMC_PICKUPS, HIMC_OUTPUTS);
+    declick_from(membrane, &before, HIMC_PICKUPS, HIMC_OUTPUTS);
+}
+
+const himc_pickup *himc_membrane_rays(const himc_membrane *membrane)
+{
+    return membrane->rays ? membrane->pickups + HIMC_PICKUPS : NULL;
+}
+
+void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
+{
+    membrane->muted = mute;
 }
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
@@ -443,13 +484,13 @@ bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *er
     if (!himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
         return false;
     sounds before = read_sounds(membrane);
-    for (int i = 0; i < HIMC_PICKUPS; i++) {
+    for (int i = 0; i < HIMC_OUTPUTS; i++) {
         sound_pair *s = &before.of[i];
         s->next = s->now + (s->next - s->now) * (membrane->rate / rate);
     }
     membrane->rate = rate;
     retune(membrane);
-    declick_from(membrane, &before);
+    declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     return true;
 }
 
@@ -466,17 +507,12 @@ static bool same_head(const himc_head *a, const himc_head *b)
            a->glide == b->glide && a->damp == b->damp;
 }
 
-static bool same_pickup(const himc_pickup *a, const himc_pickup *b)
-{
-    return a->kind == b->kind && a->x == b->x && a->y == b->y && a->azimuth == b->azimuth &&
-           a->elevation == b->elevation && a->distance == b->distance;
-}
-
 himc_membrane_form himc_membrane_form_of(const himc_membrane *m)
 {
     himc_membrane_form form = {.shape = *himc_membrane_shape(m),
                                .head = m->head,
                                .pickup_count = m->pickup_count,
+                               .rays = m->rays,
                                .rate = m->rate,
                                .watch_x = m->watch_x,
                                .watch_y = m->watch_y};
@@ -492,12 +528,13 @@ void himc_membrane_form_free(himc_membrane_form *form)
     form->shape.grid = NULL;
 }
 
-// the outline, head and pickups of `m` are those
+// the outline, head, pickups and rays of `m` are those
 static bool is_alike(const himc_membrane *m, const himc_shape *shape, const himc_head *head,
-                     const himc_pickup *pickups, int count)
+                     const himc_pickup *pickups, int count, bool rays)
 {
     bool alike = m->pickup_count == count && same_head(&m->head, head) &&
-                 same_shape(himc_membrane_shape(m), shape);
+                 same_shape(himc_membrane_shape(m), shape) &&
+                 same_rays(himc_membrane_rays(m), rays ? pickups + HIMC_PICKUPS : NULL);
     for (int i = 0; alike && i < count; i++)
         alike = same_pickup(&m->pickups[i], &pickups[i]);
     return alike;
@@ -506,12 +543,12 @@ static bool is_alike(const himc_membrane *m, const himc_shape *shape, const himc
 bool himc_membrane_has_form(const himc_membrane *m, const himc_membrane_form *form)
 {
     return m->rate == form->rate &&
-           is_alike(m, &form->shape, &form->head, form->pickups, form->pickup_count);
+           is_alike(m, &form->shape, &form->head, form->pickups, form->pickup_count, form->rays);
 }
 
 bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b)
 {
-    return is_alike(a, himc_membrane_shape(b), &b->head, b->pickups, b->pickup_count);
+    return is_alike(a, himc_membrane_shape(b), &b->head, b->pickups, b->pickup_count, b->rays);
 }
 
 bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error)
@@ -520,6 +557,8 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     bool good = same_shape(himc_membrane_shape(membrane), shape)
                     ? himc_membrane_set_head(membrane, &other->head, error)
                     : himc_membrane_set_shape(membrane, shape, &other->head, error);
+    if (good && !same_rays(himc_membrane_rays(membrane), himc_membrane_rays(other)))
+        himc_membrane_set_rays(membrane, himc_membrane_rays(other));
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
@@ -545,6 +584,7 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     m->air = made->air;
     memcpy(m->pickups, made->pickups, sizeof m->pickups);
     m->pickup_count = made->pickup_count;
+    m->rays = made->rays;
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
@@ -554,7 +594,7 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
         if (!head)
             go_on(m, known, energy);
     }
-    declick_from(m, &before);
+    declick_from(m, &before, 0, HIMC_OUTPUTS);
 }
 
 const himc_head *himc_membrane_head(const himc_membrane *membrane)
@@ -642,5 +682,5 @@ void himc_membrane_rest(himc_membrane *membrane)
 {
     sounds before = read_sounds(membrane);
     himc_bank_rest(membrane->core.bank);
-    declick_from(membrane, &before);
+    declick_from(membrane, &before, 0, HIMC_OUTPUTS);
 }

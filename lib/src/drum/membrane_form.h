@@ -5,12 +5,18 @@
 
 #include "himc/membrane.h"
 
-/// A membrane's outline, head and pickups.
+/// Rays: what ears (ears.h) need of a head beside its pickups, the sound it sends out in the
+/// direction of the left ear, of the right ear, and of the floor's mirror image.
+enum { HIMC_RAY_LEFT, HIMC_RAY_RIGHT, HIMC_RAY_FLOOR, HIMC_RAYS };
+#define HIMC_OUTPUTS (HIMC_PICKUPS + HIMC_RAYS) ///< pickups, then rays
+
+/// A membrane's outline, head, pickups and rays.
 typedef struct himc_membrane_form {
     himc_shape shape; ///< its grid is retained
     himc_head head;
-    himc_pickup pickups[HIMC_PICKUPS];
+    himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
+    bool rays;               ///< it has them
     double rate;             ///< (Hz)
     double watch_x, watch_y; ///< the watched point (m)
 } himc_membrane_form;
@@ -26,6 +32,17 @@ HIMC_RT int himc_membrane_modes(const himc_membrane *membrane);
 
 /// A membrane of that form, at rest; NULL with the reason.
 himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *error);
+/// Sets its rays (HIMC_RAYS, of kind AIR), or NULL for none. Their sound begins, or changes over, in
+/// 5 ms; the pickups do not notice.
+HIMC_RT void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays);
+/// Its rays, borrowed; NULL if it has none.
+HIMC_RT const himc_pickup *himc_membrane_rays(const himc_membrane *membrane);
+/// himc_membrane_run with a row for each of the HIMC_OUTPUTS.
+HIMC_RT void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound,
+                                   double *watched);
+/// Whether the sound of the pickups is not wanted: it is then 0 in samples with contact, too.
+HIMC_RT void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute);
+
 /// Gives `membrane` the form of `made`, which has the same rate and is then only to be freed. Modes
 /// of the same outline go on, as with himc_membrane_set_head; another outline begins at rest, as
 /// with himc_membrane_set_shape. No memory is allocated.

@@ -3,9 +3,10 @@
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H
 
-#include "head/air.h"
 #include "drum/bank.h"
+#include "drum/membrane_form.h"
 #include "drum/strike_point.h"
+#include "head/air.h"
 
 #define MAX_PUSHES 8       ///< forces of himc_membrane_push in one sample; himc/membrane.h
 #define STRIKE_POINTS 24   ///< all sticks and mallets of a drum (16) and all pushes (8)
@@ -36,14 +37,14 @@ typedef struct core {
     double *wave;                     ///< wave numbers of the bare modes (1/m); 0 of a grid's
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     patch patches[PATCHES];
-    output pickups[HIMC_PICKUPS];
+    output outputs[HIMC_OUTPUTS];
     himc_readout watched;
 } core;
 
 /// What a newton at a strike point during a step has done at its end.
 typedef struct unit_response {
     double compliance;          ///< displacement of the point itself (m/N)
-    double sound[HIMC_PICKUPS]; ///< (1/N)
+    double sound[HIMC_OUTPUTS]; ///< (1/N)
 } unit_response;
 
 /// A point of the head and its coupling to each mode. A pure function of place, patch and head, so
@@ -83,9 +84,11 @@ static inline double declick_at(const declick *d, int at)
 
 struct himc_membrane {
     himc_head head;
-    himc_air air; ///< around it
-    himc_pickup pickups[HIMC_PICKUPS];
+    himc_air air;                      ///< around it
+    himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
+    bool rays;  ///< it has them
+    bool muted; ///< the pickups' sound is not wanted
     double rate;
     himc_step_length step; ///< of the next step
     bool ends_sample;      ///< the next step is the last one of a sample
@@ -97,9 +100,15 @@ struct himc_membrane {
     int push_count;
     push applied[STRIKE_POINTS]; ///< forces of the last step, up positive
     int applied_count;
-    declick declicks[HIMC_PICKUPS];
-    double sound[HIMC_PICKUPS]; ///< of the last sample
+    declick declicks[HIMC_OUTPUTS];
+    double sound[HIMC_OUTPUTS]; ///< of the last sample
 };
+
+/// Whether the membrane has output k, a pickup or a ray.
+static inline bool himc_membrane_has(const himc_membrane *m, int k)
+{
+    return k < m->pickup_count || (m->rays && k >= HIMC_PICKUPS);
+}
 
 /// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
 HIMC_RT double himc_membrane_film_stiffness(const himc_membrane *m);

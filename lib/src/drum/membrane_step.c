@@ -88,8 +88,9 @@ static void move_point(himc_membrane *m, strike_point *s, double x, double y, do
         unit_response *e = &s->response[k];
         himc_bank_set_step(c->bank, (himc_step_length)k);
         e->compliance = himc_bank_response(c->bank, s->shape, &s->readout);
-        for (int i = 0; i < m->pickup_count; i++)
-            e->sound[i] = himc_bank_sum(c->bank, s->shape, c->pickups[i].response[k]);
+        for (int i = 0; i < HIMC_OUTPUTS; i++)
+            if (himc_membrane_has(m, i))
+                e->sound[i] = himc_bank_sum(c->bank, s->shape, c->outputs[i].response[k]);
     }
     himc_bank_set_step(c->bank, m->step);
 }
@@ -140,14 +141,21 @@ double himc_strike_point_compliance(const himc_membrane *membrane, const strike_
                   : himc_bank_response(membrane->core.bank, b->shape, &a->readout);
 }
 
+// whether the sound of output k is read in samples with contact
+static bool is_wanted(const himc_membrane *m, int k)
+{
+    return himc_membrane_has(m, k) && !(m->muted && k < HIMC_PICKUPS);
+}
+
 void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, double force)
 {
     if (force == 0)
         return;
     himc_bank_push(membrane->core.bank, s->shape, force);
     const unit_response *e = &s->response[membrane->step];
-    for (int i = 0; i < membrane->pickup_count; i++)
-        membrane->sound[i] += e->sound[i] * force;
+    for (int i = 0; i < HIMC_OUTPUTS; i++)
+        if (is_wanted(membrane, i))
+            membrane->sound[i] += e->sound[i] * force;
     if (membrane->applied_count < STRIKE_POINTS)
         membrane->applied[membrane->applied_count++] = (push){s->x, s->y, s->b, force};
 }
@@ -171,18 +179,21 @@ double himc_membrane_rise(const himc_membrane *membrane)
 static void run_free(himc_membrane *m, int n, double *const *sound, double *watched)
 {
     core *c = &m->core;
-    himc_readout *readouts[HIMC_PICKUPS + 1];
-    double *out[HIMC_PICKUPS + 1];
-    int count = m->pickup_count;
-    for (int k = 0; k < count; k++) {
-        readouts[k] = &c->pickups[k].readout;
-        out[k] = sound[k];
-    }
+    himc_readout *readouts[HIMC_OUTPUTS + 1];
+    double *out[HIMC_OUTPUTS + 1];
+    int count = 0;
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        if (himc_membrane_has(m, k)) {
+            readouts[count] = &c->outputs[k].readout;
+            out[count++] = sound[k];
+        }
     readouts[count] = &c->watched;
     out[count] = watched;
     himc_bank_run(c->bank, n, readouts, count + 1, out);
     m->applied_count = 0;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
+        if (!himc_membrane_has(m, k))
+            continue;
         declick *d = &m->declicks[k];
         for (int i = 0; i < n && m->ends_sample && d->at <= d->length; i++, d->at++)
             if (sound[k])
@@ -198,9 +209,9 @@ void himc_membrane_ready(himc_membrane *membrane)
 
 void himc_membrane_free_step(himc_membrane *membrane)
 {
-    double sound[HIMC_PICKUPS], *into[HIMC_PICKUPS];
-    for (int k = 0; k < HIMC_PICKUPS; k++)
-        into[k] = &sound[k];
+    double sound[HIMC_OUTPUTS], *into[HIMC_OUTPUTS];
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        into[k] = is_wanted(membrane, k) ? &sound[k] : NULL;
     run_free(membrane, 1, into, NULL);
     for (int i = 0; i < membrane->push_count; i++) {
         const push *p = &membrane->pushes[i];
@@ -211,13 +222,15 @@ void himc_membrane_free_step(himc_membrane *membrane)
         membrane->push_count = 0;
 }
 
-void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, double *watched)
+void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound, double *watched)
 {
-    double *rest[HIMC_PICKUPS];
+    double *rest[HIMC_OUTPUTS];
     int i = n > 0 && membrane->push_count > 0;
     if (i > 0)
         himc_membrane_free_step(membrane);
-    for (int k = 0; k < membrane->pickup_count; k++) {
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
+        if (!himc_membrane_has(membrane, k))
+            continue;
         if (sound[k] && i > 0)
             sound[k][0] = membrane->sound[k];
         rest[k] = sound[k] ? sound[k] + i : NULL;
@@ -226,6 +239,14 @@ void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, dou
         watched[0] = himc_membrane_watched(membrane);
     if (i < n)
         run_free(membrane, n - i, rest, watched ? watched + i : NULL);
+}
+
+void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, double *watched)
+{
+    double *rows[HIMC_OUTPUTS] = {NULL};
+    for (int k = 0; k < membrane->pickup_count; k++)
+        rows[k] = sound[k];
+    himc_membrane_run_all(membrane, n, rows, watched);
 }
 
 void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)
@@ -261,7 +282,8 @@ double himc_membrane_energy(const himc_membrane *membrane)
 bool himc_membrane_at_rest(const himc_membrane *membrane)
 {
     bool rest = membrane->push_count == 0 && himc_bank_at_rest(membrane->core.bank);
-    for (int k = 0; k < membrane->pickup_count; k++)
-        rest = rest && membrane->declicks[k].at >= membrane->declicks[k].length;
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        if (himc_membrane_has(membrane, k))
+            rest = rest && membrane->declicks[k].at >= membrane->declicks[k].length;
     return rest;
 }

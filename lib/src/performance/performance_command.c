@@ -351,6 +351,33 @@ static bool do_push(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
+// who listens, as the command says
+static himc_listener listener_of(const himc_command *c)
+{
+    enum { OFF };
+    if (c->form == OFF)
+        return (himc_listener){.on = false};
+    himc_listener listener =
+        himc_listener_at(himc_vec3_make(c->atom[0].number, c->atom[1].number, c->atom[2].number));
+    if (c->count > 3)
+        listener.yaw = c->atom[3].number;
+    return listener;
+}
+
+static bool do_listener(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_listener listener = listener_of(c);
+    (void)error;
+    himc_drums_listen(&p->drums, &listener);
+    return true;
+}
+
+static himc_job *listener_job(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_listener listener = listener_of(c);
+    return himc_drums_listen_job(&p->drums, &listener, error);
+}
+
 static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return carry_out(p, c, error);
@@ -399,6 +426,8 @@ bool himc_performance_takes_long(const himc_performance *p, const himc_command *
     int file;
     if (c->id == HIMC_COMMAND_MAKE_DRUM)
         return p->host.make_drums && himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
+    if (c->id == HIMC_COMMAND_LISTENER)
+        return himc_drums_listening_takes_long(&p->drums);
     return c->id == HIMC_COMMAND_RECORD || himc_command_file(c, &file) != HIMC_FILE_NONE;
 }
 
@@ -411,6 +440,7 @@ himc_job *himc_performance_job(himc_performance *p, const himc_command *c, himc_
     case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, &runner, error);
     case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
     case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
+    case HIMC_COMMAND_LISTENER: return listener_job(p, c, error);
     case HIMC_COMMAND_MAKE_DRUM: return himc_performance_drum_job(p, c, error);
     default:
         return c->form == STOP ? himc_performance_record_stop_job(p, c, error)

@@ -7,6 +7,7 @@
 #include "base/head_frame.h"
 #include "drum/drum_state.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // chosen: as timpani are set up, rims a finger apart and all within a turn of the trunk
@@ -84,6 +85,14 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     d->slot[index] =
         (drum_slot){.drum = drum, .source = source, .revision = himc_drum_revision(drum) - 1};
     find_room(d, index);
+    himc_drum_listen(drum, &d->listener);
+}
+
+// gives a drum back
+static void release(himc_drum *drum)
+{
+    himc_drum_listen(drum, &(himc_listener){.on = false});
+    himc_drum_release(drum);
 }
 
 bool himc_drums_have_room(const performance_drums *d, const char *name, himc_error *error)
@@ -101,13 +110,15 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         return false;
     if (i < 0)
         i = d->count++;
-    else
-        himc_drum_release(d->slot[i].drum);
     *index = i;
-    if (d->slot[i].drum == drum) // the same drum again stays where it is
+    if (d->slot[i].drum == drum) { // the same drum again stays where it is
+        himc_drum_release(drum);
         d->slot[i].revision = himc_drum_revision(drum) - 1;
-    else
-        fill_slot(d, i, drum, source);
+        return true;
+    }
+    if (d->slot[i].drum)
+        release(d->slot[i].drum);
+    fill_slot(d, i, drum, source);
     return true;
 }
 
@@ -127,7 +138,7 @@ void himc_drums_put_back(performance_drums *d)
     for (int i = 0; i < old.count; i++) {
         himc_drum *drum = old.slot[i].drum;
         if (old.slot[i].source != DRUM_GIVEN) {
-            himc_drum_release(drum);
+            release(drum);
             continue;
         }
         if (is_where_put(&old.slot[i]))
@@ -140,7 +151,91 @@ void himc_drums_put_back(performance_drums *d)
 void himc_drums_release(performance_drums *d)
 {
     while (d->count > 0)
-        himc_drum_release(d->slot[--d->count].drum);
+        release(d->slot[--d->count].drum);
+}
+
+void himc_drums_listen(performance_drums *d, const himc_listener *listener)
+{
+    d->listener = *listener;
+    for (int i = 0; i < d->count; i++)
+        himc_drum_listen(d->slot[i].drum, listener);
+}
+
+bool himc_drums_listening_takes_long(const performance_drums *d)
+{
+    bool takes_long = false;
+    for (int i = 0; i < d->count; i++)
+        takes_long = takes_long || himc_drum_listening_takes_long(d->slot[i].drum);
+    return takes_long;
+}
+
+typedef struct listen_job {
+    himc_job job;
+    performance_drums *drums; ///< borrowed
+    himc_listener listener;
+    struct {
+        himc_drum *drum; ///< that was in the slot
+        himc_job *job;   ///< owned, as long as it is not done
+        bool done;
+    } of[HIMC_DRUMS];
+    int count;
+} listen_job;
+
+static bool prepare_listening(himc_job *job, himc_error *error)
+{
+    listen_job *j = (listen_job *)job;
+    bool good = true;
+    for (int i = 0; good && i < j->count; i++)
+        good = j->of[i].done || j->of[i].job->prepare(j->of[i].job, error);
+    return good;
+}
+
+static himc_job_state install_listening(himc_job *job, himc_error *error)
+{
+    listen_job *j = (listen_job *)job;
+    performance_drums *d = j->drums;
+    bool again = false;
+    for (int i = 0; i < j->count; i++) {
+        bool there = i < d->count && d->slot[i].drum == j->of[i].drum; // it may have been replaced
+        if (!j->of[i].done && there)
+            j->of[i].done = j->of[i].job->install(j->of[i].job, error) != HIMC_JOB_AGAIN;
+        again = again || (there && !j->of[i].done);
+    }
+    if (again)
+        return HIMC_JOB_AGAIN;
+    himc_drums_listen(d, &j->listener);
+    return HIMC_JOB_DONE;
+}
+
+static void free_listening(himc_job *job)
+{
+    listen_job *j = (listen_job *)job;
+    for (int i = 0; i < j->count; i++)
+        if (j->of[i].job)
+            j->of[i].job->free(j->of[i].job);
+    free(j);
+}
+
+himc_job *himc_drums_listen_job(performance_drums *d, const himc_listener *listener,
+                                himc_error *error)
+{
+    listen_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "listener: out of memory");
+        return NULL;
+    }
+    j->job = (himc_job){prepare_listening, install_listening, free_listening};
+    j->drums = d;
+    j->listener = *listener;
+    for (; j->count < d->count; j->count++) {
+        himc_drum *drum = j->of[j->count].drum = d->slot[j->count].drum;
+        j->of[j->count].job = himc_drum_listen_job(drum, listener, error);
+        if (!j->of[j->count].job) {
+            free_listening(&j->job);
+            return NULL;
+        }
+    }
+    return &j->job;
 }
 
 bool himc_drums_noticed(performance_drums *d, int index)

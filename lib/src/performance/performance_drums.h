@@ -29,6 +29,7 @@ typedef struct drum_slot {
 typedef struct performance_drums {
     drum_slot slot[HIMC_DRUMS];
     int count;
+    himc_listener listener; ///< of all of them
 } performance_drums;
 
 /// Slot of the drum with that name, -1 if there is none.
@@ -42,8 +43,15 @@ bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source sourc
                     himc_error *error);
 /// Moves a drum under a take's strikes, until its owner places it or himc_drums_put_back.
 bool himc_drums_move(performance_drums *drums, int index, himc_vec3 center, himc_error *error);
-/// Drops all drums except those given by the host, which keep their order. These are as when they
-/// were added: heads at rest, at the place of their owner or else placed automatically.
+/// All drums, also those to come, are heard by this listener as long as they are the performance's.
+HIMC_RT void himc_drums_listen(performance_drums *drums, const himc_listener *listener);
+/// True if that would take longer than an audio block can wait.
+HIMC_RT bool himc_drums_listening_takes_long(const performance_drums *drums);
+/// The same as a job; the drums must outlive it. NULL without memory.
+himc_job *himc_drums_listen_job(performance_drums *drums, const himc_listener *listener,
+                                himc_error *error);
+/// Drops all drums except those given by the host, which keep their order, and the listener. They
+/// are as when they were added: heads at rest, at the place of their owner or else placed automatically.
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
 

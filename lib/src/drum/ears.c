@@ -1,0 +1,265 @@
+/// ears.c: the air between a drum and two ears: time, distance, the head's shadow, the floor.
+///
+/// A drum sends a ray to each ear, with the directivity of each mode in that direction (pickup.c),
+/// and one to the floor. The floor is a mirror: the ray that it returns comes from the drum's image
+/// below it, with the time and distance from there, weaker by FLOOR and by what a carpeted or
+/// wooden floor takes of high frequencies. A drum's lower side is no baffle: below the plane of the
+/// rim a direction has BELOW of the power (boundary elements: 0.64 to 0.73).
+///
+/// The head is a sphere of radius h around the listener's place. To an ear on it, the sound has the
+/// way of Woodworth's formula: with t the angle between the ear's axis and the source, R from the
+/// middle of the head,
+///     r = R - h cos t (t < pi/2),   r = R + h (t - pi/2) beyond,
+/// so that a source at the side has ears (h/c)(pi/2 + 1) apart, 0.66 ms. Time is r/c, gain 1/r. The
+/// shadow is Brown and Duda's filter (1998) of one pole and one zero,
+///     H = (1 + i a w/2w0)/(1 + i w/2w0),   w0 = c/h,   a = 1.05 + 0.95 cos(1.2 t),
+/// which is a + (1 - a) L with one L for all sources: each ear has one L, whatever it hears.
+///
+/// A time between two samples is Lagrange's cubic through four. When paths change, the old and the
+/// new are both heard for a moment: no delay line ever jumps or slides. All is counted in samples,
+/// so how many are asked for at a time does not matter.
+#include "drum/ears.h"
+
+#include "base/head_frame.h"
+#include "head/air.h"
+
+#include <math.h>
+#include <string.h>
+
+#define HEAD_RADIUS 0.0875 // h (m), Brown & Duda 1998
+#define SHADOW_ANGLE 1.2   // 180/150 degrees: the darkest place lies before the far end; as there
+#define SHADOW_MEAN 1.05   // as there, (1 + 0.1/2)
+#define SHADOW_DEPTH 0.95  // as there, (1 - 0.1/2)
+#define FLOOR 0.9          // chosen: a wooden floor returns nine tenths
+#define FLOOR_CORNER 4e3   // (Hz) chosen: what it takes of high frequencies
+#define BELOW 0.7          // of the power, below the rim
+#define NEAREST HIMC_PICKUP_DISTANCE_MIN // (m) a far field holds no nearer
+#define FADE 0.005                       // (s) chosen: no click, and no two places for long
+#define AFTER 1024 // samples until the filters have forgotten; chosen: 1e-18 of it at 192 kHz
+
+himc_listener himc_listener_at(himc_vec3 place)
+{
+    bool there = place.x == 0 && place.y == 0;
+    return (himc_listener){true, place, there ? 0 : atan2(-place.y, -place.x)};
+}
+
+bool himc_listener_equal(const himc_listener *a, const himc_listener *b)
+{
+    return a->on == b->on && (!a->on || (a->place.x == b->place.x && a->place.y == b->place.y &&
+                                         a->place.z == b->place.z && a->yaw == b->yaw));
+}
+
+// unit vector from the middle of the head out of an ear
+static himc_vec3 ear_axis(const himc_listener *l, int ear)
+{
+    double side = ear == HIMC_EAR_LEFT ? 1 : -1;
+    return himc_vec3_make(-side * sin(l->yaw), side * cos(l->yaw), 0);
+}
+
+// the ray that leaves a head for a point of the world, and whether it goes below the rim
+static himc_pickup ray_to(const himc_head_frame *frame, himc_vec3 point, bool *below)
+{
+    himc_vec3 to = himc_head_frame_from_world(frame, point);
+    *below = to.z < 0;
+    return (himc_pickup){.kind = HIMC_PICKUP_AIR,
+                         .azimuth = atan2(to.y, to.x),
+                         .elevation = atan2(fabs(to.z), hypot(to.x, to.y)),
+                         .distance = 1};
+}
+
+// from a source to an ear
+static himc_ear_path path_to(const himc_listener *l, int ear, himc_vec3 source, double strength)
+{
+    himc_vec3 to = himc_vec3_sub(source, l->place);
+    double distance = himc_vec3_length(to);
+    double side = distance > 0 ? himc_vec3_dot(ear_axis(l, ear), to) / distance : 0;
+    double angle = acos(fmin(fmax(side, -1), 1));
+    double around = side > 0 ? -side : angle - HIMC_PI / 2;
+    double way = fmax(distance + HEAD_RADIUS * around, NEAREST);
+    return (himc_ear_path){.delay = way / HIMC_AIR_SPEED,
+                           .gain = strength / way,
+                           .shelf = SHADOW_MEAN + SHADOW_DEPTH * cos(SHADOW_ANGLE * angle)};
+}
+
+static himc_vec3 mirrored(himc_vec3 point)
+{
+    return himc_vec3_make(point.x, point.y, -point.z);
+}
+
+himc_ear_paths himc_ears_trace(const himc_listener *l, const himc_head_frame *frame)
+{
+    himc_ear_paths p;
+    bool below;
+    p.ray[HIMC_RAY_FLOOR] = ray_to(frame, mirrored(l->place), &below);
+    double returned = FLOOR * (below ? sqrt(BELOW) : 1);
+    for (int ear = 0; ear < HIMC_EARS; ear++) {
+        himc_vec3 at = himc_vec3_madd(l->place, HEAD_RADIUS, ear_axis(l, ear));
+        p.floor[ear] = path_to(l, ear, mirrored(frame->center), returned);
+        p.floor[ear].delay -= 1 / (2 * HIMC_PI * FLOOR_CORNER); // the filter's own
+        p.ray[HIMC_RAY_LEFT + ear] = ray_to(frame, at, &below);
+        p.direct[ear] = path_to(l, ear, frame->center, below ? sqrt(BELOW) : 1);
+    }
+    return p;
+}
+
+// Lagrange's weights for `x` of a sample (0 .. 1) after the second of four
+static himc_ear_tap tap_of(const himc_ear_path *path, double rate)
+{
+    double samples = fmin(path->delay * rate, HIMC_EARS_LINE - 4), x = samples - floor(samples);
+    himc_ear_tap t = {.whole = (int)floor(samples), .shelf = path->shelf};
+    t.weight[0] = -path->gain * x * (x - 1) * (x - 2) / 6;
+    t.weight[1] = path->gain * (x + 1) * (x - 1) * (x - 2) / 2;
+    t.weight[2] = -path->gain * (x + 1) * x * (x - 2) / 2;
+    t.weight[3] = path->gain * (x + 1) * x * (x - 1) / 6;
+    return t;
+}
+
+// the trapezoidal rule for a pole at `hz`; the state stays
+static void set_pole(himc_one_pole *p, double hz, double rate)
+{
+    double q = HIMC_PI * hz / rate;
+    p->keep = (1 - q) / (1 + q);
+    p->take = q / (1 + q);
+}
+
+static double low_pass(himc_one_pole *p, double x)
+{
+    p->y = p->keep * p->y + p->take * (x + p->x);
+    p->x = x;
+    return p->y;
+}
+
+static void forget(himc_one_pole *p)
+{
+    p->x = p->y = 0;
+}
+
+static int longest(const himc_ear_taps *taps)
+{
+    int most = 0;
+    for (int ear = 0; ear < HIMC_EARS; ear++) {
+        most = taps->direct[ear].whole > most ? taps->direct[ear].whole : most;
+        most = taps->floor[ear].whole > most ? taps->floor[ear].whole : most;
+    }
+    return most;
+}
+
+// begins to listen, to an empty room
+static void begin(himc_ears *e)
+{
+    memset(e->line, 0, sizeof e->line);
+    forget(&e->shadow[HIMC_EAR_LEFT]);
+    forget(&e->shadow[HIMC_EAR_RIGHT]);
+    forget(&e->floor);
+    e->changes = false;
+    e->faded = 1;
+    e->now = e->next;
+    e->reach = longest(&e->now);
+    e->at = e->silent = 0;
+}
+
+static void fade_to_next(himc_ears *e)
+{
+    int before = longest(&e->now), now = longest(&e->next);
+    e->changes = false;
+    e->before = e->now;
+    e->now = e->next;
+    e->reach = before > now ? before : now;
+    e->faded = 0;
+}
+
+void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, double rate)
+{
+    e->step = 1 / (FADE * rate);
+    set_pole(&e->floor, FLOOR_CORNER, rate);
+    for (int ear = 0; ear < HIMC_EARS; ear++) {
+        set_pole(&e->shadow[ear], HIMC_AIR_SPEED / HEAD_RADIUS / HIMC_PI, rate); // 2 w0
+        e->next.direct[ear] = tap_of(&paths->direct[ear], rate);
+        e->next.floor[ear] = tap_of(&paths->floor[ear], rate);
+    }
+    if (himc_ears_heard(e))
+        e->changes = true;
+    else
+        begin(e);
+    e->on = true;
+}
+
+void himc_ears_close(himc_ears *e)
+{
+    e->on = false;
+}
+
+bool himc_ears_at_rest(const himc_ears *e)
+{
+    return e->silent >= HIMC_EARS_LINE && e->faded == 1 && !e->changes &&
+           e->level == (e->on ? 1 : 0);
+}
+
+// what a path brings now: four samples of its line
+static double arriving(const himc_ears *e, int ray, const himc_ear_tap *tap)
+{
+    double sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += tap->weight[i] * e->line[ray][(e->at - tap->whole + 1 - i) & (HIMC_EARS_LINE - 1)];
+    return sum;
+}
+
+// adds `part` of what the paths bring to an ear, as it passes the head and as its filter takes it
+static void gather(const himc_ears *e, const himc_ear_taps *taps, int ear, double part,
+                   double *passing, double *filtered)
+{
+    double direct = part * arriving(e, ear, &taps->direct[ear]);
+    double floor = part * arriving(e, HIMC_RAY_FLOOR, &taps->floor[ear]);
+    double shelf = taps->direct[ear].shelf, floor_shelf = taps->floor[ear].shelf;
+    *passing += shelf * direct + floor_shelf * floor;
+    *filtered += (1 - shelf) * direct + (1 - floor_shelf) * floor;
+}
+
+static double smooth(double x)
+{
+    return x * x * (3 - 2 * x);
+}
+
+// takes a sample of each ray into the lines
+static void take_in(himc_ears *e, double left, double right, double floor)
+{
+    bool silent = left == 0 && right == 0 && floor == 0;
+    e->silent = !silent ? 0 : e->silent < HIMC_EARS_LINE ? e->silent + 1 : e->silent;
+    if (e->silent == AFTER)
+        forget(&e->floor);
+    e->line[HIMC_RAY_LEFT][e->at] = left;
+    e->line[HIMC_RAY_RIGHT][e->at] = right;
+    e->line[HIMC_RAY_FLOOR][e->at] = low_pass(&e->floor, floor);
+}
+
+// the ear's sample at present
+static double hear(himc_ears *e, int ear)
+{
+    double passing = 0, filtered = 0, part = smooth(e->faded);
+    if (e->silent > e->reach + 2 * AFTER) {
+        forget(&e->shadow[ear]);
+        return 0;
+    }
+    if (e->faded < 1)
+        gather(e, &e->before, ear, 1 - part, &passing, &filtered);
+    gather(e, &e->now, ear, part, &passing, &filtered);
+    return passing + low_pass(&e->shadow[ear], filtered);
+}
+
+void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double *const *rows)
+{
+    for (int i = 0; i < n; i++) {
+        if (e->changes && e->faded == 1)
+            fade_to_next(e);
+        take_in(e, rays ? rays[HIMC_RAY_LEFT][i] : 0, rays ? rays[HIMC_RAY_RIGHT][i] : 0,
+                rays ? rays[HIMC_RAY_FLOOR][i] : 0);
+        e->level = fmin(fmax(e->level + (e->on ? e->step : -e->step), 0), 1);
+        e->faded = fmin(e->faded + e->step, 1);
+        double level = smooth(e->level);
+        for (int k = 0; k < count; k++)
+            rows[k][i] *= 1 - level;
+        for (int ear = 0; ear < HIMC_EARS; ear++)
+            rows[ear][i] += level * hear(e, ear);
+        e->at = (e->at + 1) & (HIMC_EARS_LINE - 1);
+    }
+}
