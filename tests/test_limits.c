@@ -252,6 +252,8 @@ static void test_closest_point_is_that_of_a_bisection(void)
         if (i % 2) { // a hair outside
             himc_vec3 z = {x.x / r.x, x.y / r.y, x.z / r.z};
             x = himc_vec3_scale(x, (1 + exp(uniform(-30, 0))) / himc_vec3_length(z));
+        } else if (i % 10 == 0) { // far outside
+            x = himc_vec3_scale(x, exp(uniform(0, 10)));
         }
         himc_vec3 y = himc_limit_closest_on_ellipsoid(r, x), want = bisected(r, x);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(himc_vec3_sub(y, want)));
@@ -305,6 +307,116 @@ static void test_closest_rotation_is_itself_inside_and_on_the_bounds_outside(voi
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1, himc_limit_measure(&limits, ELBOW, near));
         }
     TEST_ASSERT_TRUE(moved > 4000);
+}
+
+// the elbow's bounds: an ellipsoid with random mean and axes
+static void random_bounds(double widest)
+{
+    himc_mat3 axes = himc_mat3_from_quat(random_rotation());
+    himc_vec3 r = {exp(uniform(-6.9, 0)), exp(uniform(-6.9, 0)), exp(uniform(-6.9, 0))};
+    limits = (himc_limits){.kind = HIMC_LIMITS_ELLIPSOID};
+    limits.joint[ELBOW] = (himc_limit){.bound = true,
+                                       .mean = random_rotation(),
+                                       .axes = axes,
+                                       .radius = himc_vec3_scale(r, widest)};
+}
+
+// a rotation with that place along the elbow's ellipsoid's axes
+static himc_quat at_place(himc_vec3 t)
+{
+    const himc_limit *l = &limits.joint[ELBOW];
+    return himc_quat_mul(l->mean, himc_quat_exp(himc_mat3_apply(&l->axes, t)));
+}
+
+// the nearest rotation within, all of it in long double, from the definition
+static himc_quat found_by_bisection(himc_quat q)
+{
+    const himc_limit *l = &limits.joint[ELBOW];
+    himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), q);
+    himc_vec3 v = himc_mat3_apply_transposed(&l->axes, himc_quat_vector(away));
+    long double sine =
+        sqrtl((long double)v.x * v.x + (long double)v.y * v.y + (long double)v.z * v.z);
+    long double sign = away.w < 0 ? -1 : 1, s = 2 * sign * atan2l(sine, sign * away.w) / sine;
+    v = himc_vec3_make((double)(s * v.x), (double)(s * v.y), (double)(s * v.z));
+    himc_vec3 t = himc_mat3_apply(&l->axes, bisected(l->radius, v));
+    long double half =
+        sqrtl((long double)t.x * t.x + (long double)t.y * t.y + (long double)t.z * t.z) / 2;
+    himc_quat near = {(double)cosl(half), t.x * (double)(sinl(half) / half / 2),
+                      t.y * (double)(sinl(half) / half / 2), t.z * (double)(sinl(half) / half / 2)};
+    return himc_quat_mul(l->mean, near);
+}
+
+static void test_way_back_of_random_poses_is_that_found_by_bisection(void)
+{
+    int outside = 0;
+    for (int i = 0; i < 20000; i++) {
+        double room;
+        random_bounds(1);
+        himc_vec3 t = random_vector(1), r = limits.joint[ELBOW].radius;
+        if (i % 2) // a hair outside
+            t = himc_vec3_scale(himc_vec3_make(t.x * r.x, t.y * r.y, t.z * r.z),
+                                (1 + exp(uniform(-20, -2))) / himc_vec3_length(t));
+        himc_quat q = i % 4 ? at_place(t) : random_rotation();
+        himc_vec3 back = himc_limit_back(&limits, ELBOW, q, 0, &room);
+        if (himc_limit_measure(&limits, ELBOW, q) <= 1) {
+            TEST_ASSERT_EQUAL_DOUBLE(0, himc_vec3_length(back));
+            continue;
+        }
+        outside++;
+        himc_quat near = himc_quat_mul(himc_quat_exp(back), q);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, between(near, found_by_bisection(q)));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, between(near, himc_limit_closest(&limits, ELBOW, q)));
+    }
+    TEST_ASSERT_TRUE(outside > 15000);
+}
+
+static void test_a_rotation_within_the_room_of_a_place_keeps_the_bounds(void)
+{
+    int tight = 0;
+    for (int i = 0; i < 30000; i++) {
+        random_bounds(2 * HIMC_PI);
+        himc_vec3 z = himc_vec3_unit(random_vector(1)), r = limits.joint[ELBOW].radius;
+        z = himc_vec3_scale(z, 1 - exp(uniform(-5, 0)));
+        himc_quat q = at_place(himc_vec3_make(z.x * r.x, z.y * r.y, z.z * r.z));
+        himc_limit_place place = himc_limit_locate(&limits, ELBOW, q);
+        himc_vec3 turn = himc_vec3_scale(himc_vec3_unit(random_vector(1)), place.room);
+        himc_quat then = himc_quat_mul(himc_quat_exp(turn), q);
+        double measure = himc_limit_measure(&limits, ELBOW, then);
+        TEST_ASSERT_TRUE(place.measure > 1 || measure < 1 + 1e-12);
+        tight += measure - place.measure > 0.5 * (1 - place.measure);
+    }
+    TEST_ASSERT_TRUE(tight > 200);
+}
+
+static void test_way_back_is_left_out_only_where_it_is_shorter_than_asked_for(void)
+{
+    int left_out = 0, shorter = 0;
+    for (int kind = HIMC_LIMITS_ELLIPSOID; kind <= HIMC_LIMITS_EULER; kind++)
+        for (int i = 0; i < 20000; i++) {
+            double room, farther = exp(uniform(-10, 0));
+            random_bounds(1);
+            himc_limit *l = &limits.joint[ELBOW];
+            limits.kind = (himc_limits_kind)kind;
+            l->upper = l->radius;
+            l->lower = himc_vec3_scale(l->radius, -1);
+            himc_vec3 t = himc_vec3_unit(random_vector(1));
+            t = himc_vec3_scale(
+                himc_vec3_make(t.x * l->radius.x, t.y * l->radius.y, t.z * l->radius.z),
+                1 + exp(uniform(-10, 0)));
+            himc_quat q = at_place(t);
+            himc_vec3 back = himc_limit_back(&limits, ELBOW, q, 0, &room);
+            himc_vec3 far = himc_limit_back(&limits, ELBOW, q, farther, &room);
+            double length = himc_vec3_length(back);
+            TEST_ASSERT_TRUE(length <= himc_limit_locate(&limits, ELBOW, q).most_beyond + 1e-12);
+            shorter += length < farther;
+            if (length > 0 && himc_vec3_length(far) == 0) {
+                left_out++;
+                TEST_ASSERT_TRUE(length < farther + 1e-12);
+            } else {
+                TEST_ASSERT_EQUAL_MEMORY(&back, &far, sizeof far);
+            }
+        }
+    TEST_ASSERT_TRUE(left_out > shorter / 4);
 }
 
 static void test_ellipsoids_and_boxes_of_no_width_give_finite_rotations(void)
@@ -380,6 +492,9 @@ int main(void)
     RUN_TEST(test_brute_force_finds_no_point_of_the_ellipsoid_nearer);
     RUN_TEST(test_closest_point_of_a_ball_is_on_the_way_to_its_centre);
     RUN_TEST(test_closest_rotation_is_itself_inside_and_on_the_bounds_outside);
+    RUN_TEST(test_way_back_of_random_poses_is_that_found_by_bisection);
+    RUN_TEST(test_a_rotation_within_the_room_of_a_place_keeps_the_bounds);
+    RUN_TEST(test_way_back_is_left_out_only_where_it_is_shorter_than_asked_for);
     RUN_TEST(test_ellipsoids_and_boxes_of_no_width_give_finite_rotations);
     RUN_TEST(test_table_1_bounds_neck_shoulders_elbows_and_wrists_and_no_more);
     RUN_TEST(test_table_1_lets_the_wrist_bend_by_40_degrees_most_of_it_in_flexion);

@@ -222,6 +222,37 @@ static void test_a_joint_hits_its_bounds_again_once_it_has_left_them(void)
     TEST_ASSERT_EQUAL_INT(2, saturation.hits[NECK]);
 }
 
+// so little that the angle beyond is of no use, and nothing moves the joint
+static void test_a_joint_at_rest_a_little_beyond_its_bounds_is_on_them_a_moment_later(void)
+{
+    bind(NECK, himc_vec3_make(0.2, 0.2, 0.2), himc_vec3_make(0, 0.205, 0));
+    saturation.farthest[NECK] = 1;
+    yield();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1, himc_limit_measure(&limits, NECK, soon(NECK)));
+}
+
+// the angle is not computed in each step, but the largest is that of all steps
+static void test_the_farthest_angle_beyond_is_that_of_all_steps(void)
+{
+    static const double reach[] = {0.02, 0.3, 1};
+    double farthest = 0, before = 0;
+    long records = 0;
+    bind(NECK, himc_vec3_make(0.2, 0.1, 0.003), himc_vec3_make(0, 0, 0));
+    for (int i = 0; i < 3000; i++) {
+        himc_vec3 off = random_vector(reach[i % 3] * i / 3000);
+        pose.joint[NECK] = himc_quat_mul(limits.joint[NECK].mean, himc_quat_exp(off));
+        rate[NECK] = random_vector(5);
+        yield();
+        himc_quat near = himc_limit_closest(&limits, NECK, pose.joint[NECK]);
+        himc_quat beyond = himc_quat_mul(near, himc_quat_conj(pose.joint[NECK]));
+        farthest = fmax(farthest, himc_vec3_length(himc_quat_log(beyond)));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, farthest, saturation.farthest[NECK]);
+        records += farthest > before;
+        before = farthest;
+    }
+    TEST_ASSERT_TRUE(records > 10);
+}
+
 // Fice et al. 2014: neck 51 N m; Holzbaur et al. 2007: shoulder 68 +- 28, wrist 10 +- 5; Delp et
 // al. 1996: wrist 12; the rest are round figures (strength.c)
 static void test_strength_of_75_kg_is_that_of_the_table(void)
@@ -253,6 +284,8 @@ int main(void)
     RUN_TEST(test_limit_damping_beside_servos_never_adds_energy);
     RUN_TEST(test_other_joints_compensate_a_stopped_elbow_at_the_tip);
     RUN_TEST(test_a_joint_hits_its_bounds_again_once_it_has_left_them);
+    RUN_TEST(test_a_joint_at_rest_a_little_beyond_its_bounds_is_on_them_a_moment_later);
+    RUN_TEST(test_the_farthest_angle_beyond_is_that_of_all_steps);
     RUN_TEST(test_strength_of_75_kg_is_that_of_the_table);
     return UNITY_END();
 }

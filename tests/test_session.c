@@ -192,7 +192,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         {"kettle shape /no/such/grid.txt;", ":5: kettle: /no/such/grid.txt"},
         {"record /no/such/folder/x.bvh;", ":5: record: /no/such/folder/x.bvh"},
         {"stroke 1 left legato loud;", ":5: stroke: DYNAMIC: loud"},
-        {"kettle modes 0;", ":5: kettle: modes: COUNT: 0"}};
+        {"kettle modes 0;", ":5: kettle: modes: 0, allowed 1 .. 2000"}};
     himc_performance *p = with_kettle();
     char before[4096] = "", after[4096], text[400];
     session_do(p, "stroke 1 left legato mf");

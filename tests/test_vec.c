@@ -124,6 +124,24 @@ static void test_log_and_exp_keep_tiny_angles(void)
     }
 }
 
+// against long double: at the ends of the polynomials and between
+static void test_log_and_exp_are_exact_to_rounding(void)
+{
+    for (int i = 0; i < 20000; i++) {
+        himc_vec3 r = himc_vec3_scale(himc_vec3_unit(random_vector()), HIMC_PI * i / 20000);
+        long double half = hypotl(hypotl(r.x, r.y), r.z) / 2, square;
+        long double s = half > 0 ? sinl(half) / half / 2 : 0.5L;
+        himc_quat q = himc_quat_exp(r);
+        TEST_ASSERT_DOUBLE_WITHIN(5e-16, 0, (double)(q.w - cosl(half)));
+        TEST_ASSERT_DOUBLE_WITHIN(5e-16, 0, (double)(q.y - r.y * s));
+        square = (long double)q.x * q.x + (long double)q.y * q.y + (long double)q.z * q.z;
+        if (i > 0)
+            s = 2 * atan2l(sqrtl(square), q.w) / sqrtl(square);
+        himc_vec3 back = himc_quat_log(q);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15 * (1 + fabs(back.x)), 0, (double)(back.x - s * q.x));
+    }
+}
+
 static void test_log_takes_the_shorter_way_and_ignores_the_sign(void)
 {
     for (int i = 0; i < 1000; i++) {
@@ -203,6 +221,7 @@ int main(void)
     RUN_TEST(test_product_applies_the_right_factor_first);
     RUN_TEST(test_log_undoes_exp_up_to_half_a_turn);
     RUN_TEST(test_log_and_exp_keep_tiny_angles);
+    RUN_TEST(test_log_and_exp_are_exact_to_rounding);
     RUN_TEST(test_log_takes_the_shorter_way_and_ignores_the_sign);
     RUN_TEST(test_matrix_and_quaternion_are_the_same_rotation);
     RUN_TEST(test_matrix_to_quaternion_and_back_at_every_largest_component);

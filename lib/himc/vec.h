@@ -157,10 +157,13 @@ static inline himc_vec3 himc_quat_rotate(himc_quat q, himc_vec3 v)
 /// The unit quaternion of a rotation vector (rad).
 static inline himc_quat himc_quat_exp(himc_vec3 rotation)
 {
-    double z = 0.25 * himc_vec3_dot(rotation, rotation), w, s;
-    if (z < 0x1p-9) { // below 0.09 rad the series are exact to rounding
-        w = 1 - z * (1.0 / 2 - z * (1.0 / 24 - z * (1.0 / 720 - z * (1.0 / 40320))));
-        s = 0.5 - z * (1.0 / 12 - z * (1.0 / 240 - z * (1.0 / 10080 - z * (1.0 / 725760))));
+    double z = 0.25 * himc_vec3_dot(rotation, rotation), y = z * z, w, s;
+    if (z < 0.25) { // below 1 rad the series are exact to rounding
+        w = 1.0 / 40320 - z * (1.0 / 3628800) + y * (1.0 / 479001600 - z * (1.0 / 87178291200));
+        w = 1 - z * 0.5 + y * (1.0 / 24 - z * (1.0 / 720) + y * w);
+        s = 1.0 / 725760 - z * (1.0 / 79833600) +
+            y * (1.0 / 12454041600 - z * (1.0 / 2615348736000));
+        s = 0.5 - z * (1.0 / 12) + y * (1.0 / 240 - z * (1.0 / 10080) + y * s);
     } else {
         double half = sqrt(z);
         w = cos(half);
@@ -170,19 +173,28 @@ static inline himc_quat himc_quat_exp(himc_vec3 rotation)
     return result;
 }
 
+/// Angle over the sine of its half, signed: the rotation vector over the vector part of a unit
+/// quaternion.
+static inline double himc_quat_log_ratio(himc_quat q)
+{
+    double u = 1 - fabs(q.w), y = u * u, s;
+    if (u < 0.2) { // below 1.28 rad a minimax polynomial, exact to 1e-17
+        double high = 9.5049082339517749e-4 + u * 8.6761211424043542e-4;
+        high = 4.9671380431637343e-3 + u * 2.3789886983455347e-3 + y * high;
+        high = 2.3087995632767271e-2 + u * 1.0656517591901795e-2 + y * high;
+        high = 1.1428571427235699e-1 + u * 5.0793651644593404e-2 + y * high;
+        s = 2 + u * (2.0 / 3 + u * 2.6666666666674782e-1 + y * high);
+    } else {
+        double length = himc_vec3_length(himc_quat_vector(q));
+        s = 2 * atan2(length, fabs(q.w)) / length;
+    }
+    return q.w < 0 ? -s : s;
+}
+
 /// The rotation vector (rad) of a unit quaternion, the shorter way round: |result| <= pi.
 static inline himc_vec3 himc_quat_log(himc_quat q)
 {
-    himc_vec3 v = {q.x, q.y, q.z};
-    double square = himc_vec3_dot(v, v), inverse = 1 / q.w, z = square * inverse * inverse, s;
-    if (z < 0x1p-9) { // below 0.09 rad the series of the arctangent is exact to rounding
-        s = 1.0 / 7 - z * (1.0 / 9 - z * (1.0 / 11));
-        s = 2 * inverse * (1 - z * (1.0 / 3 - z * (1.0 / 5 - z * s)));
-    } else {
-        double sign = q.w < 0 ? -1 : 1, length = sqrt(square);
-        s = length > 0 ? 2 * sign * atan2(length, q.w * sign) / length : 2;
-    }
-    return himc_vec3_scale(v, s);
+    return himc_vec3_scale(himc_quat_vector(q), himc_quat_log_ratio(q));
 }
 
 // Matrices

@@ -10,10 +10,11 @@
 /// singular values and are just large enough for the farthest sample. The nearest point y to an x
 /// outside is y_k = r_k^2 x_k / (t + r_k^2), where t > 0 puts it on the surface (Eberly, Distance
 /// from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid, 2013). With z_k = y_k / r_k the
-/// root of 1 / |z(t)| = 1 is found by Newton's method: this function is nearly linear, rising and
-/// concave, so from below no step goes too far (More & Sorensen 1983). It begins where the largest
-/// single z_k is 1. Invariant: no divisor is
-/// smaller than THINNEST, whatever the radii.
+/// root of f(t) = 1 / |z(t)| - 1 is found by Halley's method (Gander, On Halley's Iteration Method,
+/// 1985), of third order, from where the largest single z_k is 1: f is nearly linear, rising and
+/// concave, so Newton's steps from below go nowhere too far (More & Sorensen 1983), and Halley's,
+/// which are longer, are held to twice those. Invariant: no divisor is smaller than THINNEST,
+/// whatever the radii.
 #include "body/limits.h"
 
 #include "base/euler.h"
@@ -24,8 +25,9 @@
 
 // least semi-axis and half interval (rad). Chosen: 0.06 degrees, below the noise of captures
 #define THINNEST 1e-3
-#define NEWTON_STEPS 64 // chosen: an upper bound, of a million random cases none takes more than 13
-#define NEWTON_END 1e-7 // chosen: after a step this small in proportion the next is rounding
+#define HALLEY_STEPS \
+    64 // chosen: an upper bound, of two million random cases none takes more than 9
+#define HALLEY_END 1e-5 // chosen: after a step this small in proportion the next is rounding
 #define UNIT_TOLERANCE \
     1e-6 // chosen: of a unit quaternion's squared length, rounding of file formats
 #define DEGREE (HIMC_PI / 180)
@@ -35,16 +37,14 @@ static double larger(double a, double b)
     return a > b ? a : b; // a call of fmax would take longer
 }
 
-static himc_vec3 at_least(himc_vec3 v, double least)
+static double least(himc_vec3 v)
 {
-    return himc_vec3_make(larger(v.x, least), larger(v.y, least), larger(v.z, least));
+    return -larger(-v.x, larger(-v.y, -v.z));
 }
 
-// the components along the ellipsoid's axes of a rotation in the tangent space of the mean
-static himc_vec3 along_axes(const himc_limit *l, himc_quat rotation)
+static himc_vec3 at_least(himc_vec3 v, double low)
 {
-    himc_vec3 t = himc_quat_log(himc_quat_mul(himc_quat_conj(l->mean), rotation));
-    return himc_mat3_apply_transposed(&l->axes, t);
+    return himc_vec3_make(larger(v.x, low), larger(v.y, low), larger(v.z, low));
 }
 
 static himc_vec3 divide(himc_vec3 a, himc_vec3 b)
@@ -52,9 +52,8 @@ static himc_vec3 divide(himc_vec3 a, himc_vec3 b)
     return himc_vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
 }
 
-static double box_measure(const himc_limit *l, himc_quat rotation)
+static double box_measure(const himc_limit *l, himc_vec3 angle)
 {
-    himc_vec3 angle = himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), rotation));
     himc_vec3 middle = himc_vec3_scale(himc_vec3_add(l->lower, l->upper), 0.5);
     himc_vec3 half = at_least(himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5), THINNEST);
     himc_vec3 z = divide(himc_vec3_sub(angle, middle), half);
@@ -64,17 +63,19 @@ static double box_measure(const himc_limit *l, himc_quat rotation)
 himc_vec3 himc_limit_closest_on_ellipsoid(himc_vec3 radius, himc_vec3 x)
 {
     // r and s = t in units of the thinnest semi-axis squared
-    double thin = -larger(-radius.x, larger(-radius.y, -radius.z)), step = 1;
+    double thin = least(radius), step = INFINITY;
     himc_vec3 a = himc_vec3_scale(radius, 1 / thin), u = divide(x, radius);
     himc_vec3 r = himc_vec3_make(a.x * a.x, a.y * a.y, a.z * a.z);
     himc_vec3 ru = himc_vec3_make(r.x * u.x, r.y * u.y, r.z * u.z);
     double s = larger(larger(fabs(ru.x) - r.x, fabs(ru.y) - r.y), larger(fabs(ru.z) - r.z, 0));
-    for (int i = 0; i < NEWTON_STEPS && step > NEWTON_END * (s + 1); i++) {
+    for (int i = 0; i < HALLEY_STEPS && fabs(step) > HALLEY_END * (s + 1); i++) {
         himc_vec3 d = himc_vec3_make(1 / (s + r.x), 1 / (s + r.y), 1 / (s + r.z));
         himc_vec3 z = himc_vec3_make(ru.x * d.x, ru.y * d.y, ru.z * d.z);
-        himc_vec3 slope = himc_vec3_make(z.x * d.x, z.y * d.y, z.z * d.z);
-        double square = himc_vec3_dot(z, z);
-        step = square * (sqrt(square) - 1) / himc_vec3_dot(z, slope);
+        himc_vec3 y = himc_vec3_make(z.x * d.x, z.y * d.y, z.z * d.z);
+        double square = himc_vec3_dot(z, z), length = sqrt(square);
+        double slope = himc_vec3_dot(z, y), bend = square * himc_vec3_dot(y, y) - slope * slope;
+        double divisor = 2 * slope * slope - 3 * (length - 1) * bend;
+        step = 2 * (length - 1) * square * slope / larger(divisor, slope * slope);
         s = larger(s + step, 0);
     }
     return himc_vec3_make(r.x * x.x / (s + r.x), r.y * x.y / (s + r.y), r.z * x.z / (s + r.z));
@@ -86,59 +87,98 @@ static double clamp(double value, double low, double high)
     return fmin(fmax(value, middle - half), middle + half);
 }
 
-static himc_quat closest_in_box(const himc_limit *l, himc_quat rotation)
+static himc_vec3 closest_in_box(const himc_limit *l, himc_vec3 angle)
 {
-    himc_vec3 angle = himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), rotation));
-    himc_vec3 near = himc_vec3_make(clamp(angle.x, l->lower.x, l->upper.x),
-                                    clamp(angle.y, l->lower.y, l->upper.y),
-                                    clamp(angle.z, l->lower.z, l->upper.z));
-    return himc_quat_mul(l->mean, himc_euler_to_quat(near));
+    return himc_vec3_make(clamp(angle.x, l->lower.x, l->upper.x),
+                          clamp(angle.y, l->lower.y, l->upper.y),
+                          clamp(angle.z, l->lower.z, l->upper.z));
 }
 
-double himc_limit_nearest(const himc_limits *limits, int joint, himc_quat rotation, himc_quat *near)
+// distance along an axis to the ellipsoid, from a point z (by semi-axes) with |z|^2 = 1 + excess:
+// radius (z_k - sqrt(z_k^2 - excess)), or a little more
+static double along_axis(double radius, double z, double excess)
+{
+    return z * z >= excess ? radius * excess / fabs(z) : INFINITY;
+}
+
+// The surface is no farther from a point outside than on the way to the centre or along an axis, and
+// rotations are no farther apart than their logarithms.
+static double most_beyond(himc_vec3 radius, himc_vec3 t, double measure)
+{
+    double excess = measure * measure - 1;
+    himc_vec3 z = divide(t, radius);
+    himc_vec3 way =
+        himc_vec3_make(along_axis(radius.x, z.x, excess), along_axis(radius.y, z.y, excess),
+                       along_axis(radius.z, z.z, excess));
+    return fmin(himc_vec3_length(t) * (1 - 1 / measure), least(way));
+}
+
+// A rotation of the joint is in the tangent space at most HIMC_PI / 2 times as long, and the measure
+// grows by its length over the thinnest semi-axis.
+static himc_limit_place locate_in_ellipsoid(const himc_limit *l, himc_quat rotation)
+{
+    himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), rotation);
+    himc_vec3 v = himc_mat3_apply_transposed(&l->axes, himc_quat_vector(away));
+    himc_vec3 radius = at_least(l->radius, THINNEST);
+    double ratio = himc_quat_log_ratio(away);
+    himc_limit_place place = {.at = himc_vec3_scale(v, ratio)};
+    place.measure = fabs(ratio) * himc_vec3_length(divide(v, radius));
+    if (place.measure <= 1)
+        place.room = (1 - place.measure) * least(radius) / (HIMC_PI / 2);
+    else
+        place.most_beyond = most_beyond(radius, place.at, place.measure);
+    return place;
+}
+
+static himc_limit_place locate_in_box(const himc_limit *l, himc_quat rotation)
+{
+    himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), rotation);
+    himc_limit_place place = {.at = himc_euler_from_quat(away)};
+    place.measure = box_measure(l, place.at);
+    if (place.measure > 1)
+        place.most_beyond = HIMC_PI;
+    return place;
+}
+
+himc_limit_place himc_limit_locate(const himc_limits *limits, int joint, himc_quat rotation)
 {
     const himc_limit *l = &limits->joint[joint];
-    himc_vec3 t, radius;
-    double measure;
-    *near = rotation;
     if (limits->kind == HIMC_LIMITS_OFF || !l->bound)
-        return 0;
-    if (limits->kind == HIMC_LIMITS_EULER) {
-        measure = box_measure(l, rotation);
-        if (measure > 1)
-            *near = closest_in_box(l, rotation);
-        return measure;
-    }
-    t = along_axes(l, rotation);
-    radius = at_least(l->radius, THINNEST);
-    measure = himc_vec3_length(divide(t, radius));
-    if (measure > 1) {
-        t = himc_limit_closest_on_ellipsoid(radius, t);
-        *near = himc_quat_mul(l->mean, himc_quat_exp(himc_mat3_apply(&l->axes, t)));
-    }
-    return measure;
+        return (himc_limit_place){.measure = 0};
+    return limits->kind == HIMC_LIMITS_EULER ? locate_in_box(l, rotation)
+                                             : locate_in_ellipsoid(l, rotation);
 }
 
-// in the tangent space a rotation of the joint is at most HIMC_PI / 2 times as long, and the
-// measure grows by its length over the thinnest semi-axis
-double himc_limit_room(const himc_limits *limits, int joint, double measure)
+// the nearest rotation within of a place outside
+static himc_quat project(const himc_limits *limits, int joint, const himc_limit_place *place)
 {
-    himc_vec3 radius = at_least(limits->joint[joint].radius, THINNEST);
-    double thin = -larger(-radius.x, larger(-radius.y, -radius.z));
-    return limits->kind == HIMC_LIMITS_ELLIPSOID ? (1 - measure) * thin / (HIMC_PI / 2) : 0;
+    const himc_limit *l = &limits->joint[joint];
+    if (limits->kind == HIMC_LIMITS_EULER)
+        return himc_quat_mul(l->mean, himc_euler_to_quat(closest_in_box(l, place->at)));
+    himc_vec3 t = himc_limit_closest_on_ellipsoid(at_least(l->radius, THINNEST), place->at);
+    return himc_quat_mul(l->mean, himc_quat_exp(himc_mat3_apply(&l->axes, t)));
+}
+
+himc_vec3 himc_limit_back(const himc_limits *limits, int joint, himc_quat rotation, double farther,
+                          double *room)
+{
+    himc_limit_place place = himc_limit_locate(limits, joint, rotation);
+    *room = place.room;
+    if (place.measure <= 1 || place.most_beyond < farther)
+        return himc_vec3_make(0, 0, 0);
+    himc_quat near = project(limits, joint, &place);
+    return himc_quat_log(himc_quat_mul(near, himc_quat_conj(rotation)));
 }
 
 double himc_limit_measure(const himc_limits *limits, int joint, himc_quat rotation)
 {
-    himc_quat near;
-    return himc_limit_nearest(limits, joint, rotation, &near);
+    return himc_limit_locate(limits, joint, rotation).measure;
 }
 
 himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_quat rotation)
 {
-    himc_quat near;
-    himc_limit_nearest(limits, joint, rotation, &near);
-    return near;
+    himc_limit_place place = himc_limit_locate(limits, joint, rotation);
+    return place.measure > 1 ? project(limits, joint, &place) : rotation;
 }
 
 // the box around an ellipsoid

@@ -17,34 +17,37 @@
 
 #include "body/dynamics.h"
 #include "body/limits.h"
+#include "control/tracking_error.h"
 
 #include <string.h>
 
 // chosen: firm beside strokes of up to 10 Hz and soft beside the physics rate
-#define HORIZON 0.0056        // T: a spring of 40 Hz (s)
-#define LIMIT_SPRING 60.0     // beside a servo (Hz)
-#define RETURN_SPEED 3.0      // of the way back from far beyond (rad/s)
-#define LARGEST_BEYOND 0.02   // beyond this the pull does not grow (rad)
-#define LOST_DAMPING 0.05     // lambda, of the compensation at the tips (m)
-#define COMPENSATION_PASSES 3 // each may move another joint out of its bounds
+#define HORIZON 0.0056                        // T: a spring of 40 Hz (s)
+#define HALF_SQUARE (0.5 * HORIZON * HORIZON) // (s^2)
+#define LIMIT_SPRING 60.0                     // beside a servo (Hz)
+#define RETURN_SPEED 3.0                      // of the way back from far beyond (rad/s)
+#define LARGEST_BEYOND 0.02                   // beyond this the pull does not grow (rad)
+#define LOST_DAMPING 0.05                     // lambda, of the compensation at the tips (m)
+#define COMPENSATION_PASSES 3                 // each may move another joint out of its bounds
 // chosen: of bounds, for the count of hits
 #define HIT_MEASURE 0.95  // a joint this near its bounds has hit them ...
 #define FREE_MEASURE 0.85 // ... and can hit them again after a return to here
 // chosen: above rounding, below anything visible
-#define LEAST_BEYOND 1e-9     // a joint beyond by less is within (rad)
-#define LEAST_CORRECTION 0.01 // (rad/s^2)
-#define LEAST_AGAIN 10.0 // after a compensation: 1.6e-4 rad beyond, left to the next step (rad/s^2)
-#define SLIDE_STEP 1e-4  // over which motion along a limit is measured (s)
+#define LEAST_BEYOND 1e-9                     // a joint beyond by less is within (rad)
+#define LEAST_CORRECTION (0.01 * HALF_SQUARE) // that of 0.01 rad/s^2 (rad)
+#define LEAST_AGAIN (10 * HALF_SQUARE) // after a compensation: the rest is for the next step (rad)
+#define SLIDE_STEP 1e-4                // over which motion along a limit is measured (s)
 
-/// A joint in its parent's frame.
+/// A joint and its bounds; rotations in the world's frame.
 typedef struct joint_place {
-    himc_quat q;
-    himc_vec3 spin; // (rad/s)
-    double beyond;  // its bounds (rad)
-    // the last orientation whose place in the bounds was computed: rotated by this from q
+    himc_quat q; // in the parent's frame
+    const himc_mat3 *parent;
+    double beyond;   // its bounds (rad)
+    himc_vec3 coast; // its rotation within the horizon without acceleration (rad)
+    // the last orientation that was placed in the bounds: rotated by this from q; infinite: none
     himc_vec3 rotate; // (rad)
-    double measure;
-    himc_vec3 back; // from there to the nearest orientation within (rad)
+    double room;      // no rotation from there by less leaves the bounds (rad)
+    himc_vec3 back;   // from there to the nearest orientation within (rad)
 } joint_place;
 
 /// Corrections of joints, each along one direction.
@@ -55,77 +58,75 @@ typedef struct limit_stops {
     double more[HIMC_JOINTS];      // acceleration along them (rad/s^2)
 } limit_stops;
 
-// places the joint where it would be after the rotation; rotations from there by less than its room
-// need no look at the bounds
-static void place_joint(const himc_limits *limits, int j, himc_vec3 rotate, joint_place *at)
+// places the joint where it would be after the rotation; no way back that is shorter than `least`
+// (rad) need be found
+static void place_joint(const himc_limits *limits, int j, himc_vec3 rotate, double least,
+                        joint_place *at)
 {
-    himc_quat then = himc_quat_mul(himc_quat_exp(rotate), at->q), near;
+    himc_quat turn = himc_quat_exp(himc_mat3_apply_transposed(at->parent, rotate));
+    himc_vec3 back = himc_limit_back(limits, j, himc_quat_mul(turn, at->q), least, &at->room);
     at->rotate = rotate;
-    at->measure = himc_limit_nearest(limits, j, then, &near);
+    at->back = himc_mat3_apply(at->parent, back);
+}
+
+// Places a joint in its bounds as it is now. The angle beyond is computed where it may be more than
+// `least` (rad) or than before, else it is of no use.
+static void find_place(const himc_controller *c, int j, double least, joint_place *at)
+{
+    himc_saturation_counts *counts = c->saturation;
+    himc_limit_place place = himc_limit_locate(c->limits, j, at->q);
     at->back = himc_vec3_make(0, 0, 0);
-    if (at->measure > 1)
-        at->back = himc_quat_log(himc_quat_mul(near, himc_quat_conj(then)));
+    at->rotate = himc_vec3_make(place.measure > 1 ? INFINITY : 0, 0, 0);
+    at->room = place.room;
+    at->beyond = 0;
+    if (place.most_beyond > least || (counts && place.most_beyond > counts->farthest[j])) {
+        place_joint(c->limits, j, himc_vec3_make(0, 0, 0), 0, at);
+        at->beyond = himc_vec3_length(at->back);
+    }
+    if (!counts)
+        return;
+    counts->measure[j] = place.measure;
+    if (counts->farthest[j] < at->beyond)
+        counts->farthest[j] = at->beyond;
+    counts->held[j] = counts->held[j] && place.measure > FREE_MEASURE;
 }
 
 static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
-                        const himc_body_state *s, joint_place at[HIMC_JOINTS])
+                        const himc_body_state *s, double least, joint_place at[HIMC_JOINTS])
 {
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        int p = skeleton->segment[j + 1].parent;
-        himc_saturation_counts *counts = c->saturation;
-        at[j] = (joint_place){.measure = 0};
-        if (c->limits->joint[j].bound) {
-            himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
-            at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
-            at[j].spin = himc_mat3_apply_transposed(&s->rotation[p], spin);
-            place_joint(c->limits, j, at[j].rotate, &at[j]);
-            at[j].beyond = himc_vec3_length(at[j].back);
-        }
-        if (!counts)
-            continue;
-        counts->measure[j] = at[j].measure;
-        if (counts->farthest[j] < at[j].beyond)
-            counts->farthest[j] = at[j].beyond;
-        counts->held[j] = counts->held[j] && at[j].measure > FREE_MEASURE;
-    }
-}
-
-// missing acceleration of a joint, in its parent's frame (rad/s^2)
-static himc_vec3 correction(const himc_limits *limits, int j, joint_place *at, himc_vec3 alpha)
-{
-    himc_vec3 rotate =
-        himc_vec3_madd(himc_vec3_scale(at->spin, HORIZON), 0.5 * HORIZON * HORIZON, alpha);
-    double moved = himc_vec3_length(himc_vec3_sub(rotate, at->rotate));
-    if (moved > 0 && moved >= himc_limit_room(limits, j, at->measure))
-        place_joint(limits, j, rotate, at);
-    double angle = himc_vec3_length(at->back), late = at->beyond - RETURN_SPEED * HORIZON;
-    late = late > 0 ? late : 0;
-    if (angle <= late)
-        return himc_vec3_make(0, 0, 0);
-    return himc_vec3_scale(at->back, (1 - late / angle) * 2 / (HORIZON * HORIZON));
-}
-
-// the joints that these accelerations would move out of their bounds
-static void find_stops(const himc_controller *c, const himc_skeleton *skeleton,
-                       const himc_body_state *s, joint_place at[HIMC_JOINTS],
-                       const himc_vec3 *relative, double least, limit_stops *found)
-{
-    found->count = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (!c->limits->joint[j].bound)
             continue;
         int p = skeleton->segment[j + 1].parent;
-        // relative to the rotating parent
         himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
-        himc_vec3 alpha = himc_vec3_sub(relative[j], himc_vec3_cross(s->spin[p], spin));
-        alpha = himc_mat3_apply_transposed(&s->rotation[p], alpha);
-        himc_vec3 more = himc_mat3_apply(&s->rotation[p], correction(c->limits, j, &at[j], alpha));
-        double size = himc_vec3_length(more);
-        if (size < least)
+        himc_vec3 carried = himc_vec3_cross(s->spin[p], spin); // by the rotating parent
+        at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+        at[j].parent = &s->rotation[p];
+        at[j].coast = himc_vec3_madd(himc_vec3_scale(spin, HORIZON), -HALF_SQUARE, carried);
+        find_place(c, j, least, &at[j]);
+    }
+}
+
+// the joints that these accelerations would move out of their bounds by `least` (rad) and more
+static void find_stops(const himc_limits *limits, joint_place at[HIMC_JOINTS],
+                       const himc_vec3 *relative, double least, limit_stops *found)
+{
+    found->count = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        if (!limits->joint[j].bound)
+            continue;
+        himc_vec3 rotate = himc_vec3_madd(at[j].coast, HALF_SQUARE, relative[j]);
+        himc_vec3 moved = himc_vec3_sub(rotate, at[j].rotate);
+        double square = himc_vec3_dot(moved, moved);
+        if (square > 0 && square >= at[j].room * at[j].room)
+            place_joint(limits, j, rotate, least, &at[j]);
+        double angle = himc_vec3_length(at[j].back), late = at[j].beyond - RETURN_SPEED * HORIZON;
+        double now = late > 0 ? angle - late : angle;
+        if (now < least)
             continue;
         found->joint[found->count] = j;
-        found->inward[found->count] = himc_vec3_scale(more, 1 / size);
-        found->more[found->count++] = size;
+        found->inward[found->count] = himc_vec3_scale(at[j].back, 1 / angle);
+        found->more[found->count++] = now / HALF_SQUARE;
     }
 }
 
@@ -141,17 +142,18 @@ static void count_hit(himc_saturation_counts *saturation, int j)
 static void give_back(const limit_stops *stop, const himc_arm_jacobian *jacobian, himc_hand hand,
                       himc_vec3 lost, himc_vec3 wanted[HIMC_JOINTS])
 {
-    himc_vec3 way[HIMC_ARM_JOINTS] = {{0, 0, 0}};
+    himc_vec3 way[HIMC_ARM_JOINTS];
     himc_mat3 gram = jacobian->gram;
-    for (int h = 0; h < stop->count; h++)
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        way[k] = himc_vec3_make(0, 0, 0);
+        for (int h = 0; h < stop->count; h++)
             if (stop->joint[h] == himc_arm_joint(hand, k))
                 way[k] = stop->inward[h];
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_vec3 v = himc_vec3_cross(way[k], jacobian->lever[k]);
         const double b[3] = {v.x, v.y, v.z};
-        for (int i = 0; i < 9; i++)
-            gram.m[i / 3][i % 3] -= jacobian->weight[k] * b[i / 3] * b[i % 3];
+        for (int i = 0; i < 3; i++)
+            for (int n = 0; n < 3; n++)
+                gram.m[i][n] -= jacobian->weight[k] * b[i] * b[n];
     }
     for (int i = 0; i < 3; i++)
         gram.m[i][i] += LOST_DAMPING * LOST_DAMPING;
@@ -182,15 +184,15 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
                             himc_vec3 wanted[HIMC_JOINTS])
 {
     joint_place at[HIMC_JOINTS];
-    limit_stops stop = {.count = 0};
+    limit_stops stop;
     himc_vec3 before[HIMC_JOINTS];
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
-    find_places(c, skeleton, s, at);
+    find_places(c, skeleton, s, RETURN_SPEED * HORIZON, at);
     memcpy(before, wanted, sizeof before);
     for (int pass = 0; pass <= COMPENSATION_PASSES; pass++) {
         double least = pass == 0 ? LEAST_CORRECTION : LEAST_AGAIN;
-        find_stops(c, skeleton, s, at, wanted, least, &stop);
+        find_stops(c->limits, at, wanted, least, &stop);
         if (stop.count == 0)
             break;
         for (int h = 0; h < stop.count; h++) {
@@ -206,25 +208,26 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
 }
 
 // twice the energy of a rotation in the parent's frame
-static double energy(const joint_place *at, himc_vec3 inertia, himc_vec3 spin)
+static double energy(himc_quat q, himc_vec3 inertia, himc_vec3 spin)
 {
-    himc_vec3 v = himc_quat_rotate(himc_quat_conj(at->q), spin);
+    himc_vec3 v = himc_quat_rotate(himc_quat_conj(q), spin);
     return inertia.x * v.x * v.x + inertia.y * v.y * v.y + inertia.z * v.z * v.z;
 }
 
 // the rotation to the nearest orientation within, and its rate, in the parent's frame
-static void find_way(const himc_limits *limits, int j, const joint_place *at, himc_vec3 inertia,
-                     himc_vec3 *way, himc_vec3 *rate)
+static void find_way(const himc_limits *limits, int j, const joint_place *at, himc_vec3 spin,
+                     himc_vec3 inertia, himc_vec3 *way, himc_vec3 *rate)
 {
-    himc_quat near = himc_limit_closest(limits, j, at->q);
-    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(at->spin, SLIDE_STEP)), at->q);
+    *way = himc_mat3_apply_transposed(at->parent, at->back);
+    spin = himc_mat3_apply_transposed(at->parent, spin);
+    himc_quat near = himc_quat_mul(himc_quat_exp(*way), at->q);
+    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(spin, SLIDE_STEP)), at->q);
     himc_quat moved = himc_quat_mul(himc_limit_closest(limits, j, next), himc_quat_conj(near));
-    *way = himc_quat_log(himc_quat_mul(near, himc_quat_conj(at->q)));
-    *way = himc_vec3_scale(*way, fmin(1, LARGEST_BEYOND / himc_vec3_length(*way)));
+    *way = himc_vec3_scale(*way, fmin(1, LARGEST_BEYOND / at->beyond));
     // far outside, the nearest orientation may run away or jump to the other side
     himc_vec3 along = himc_vec3_scale(himc_quat_log(moved), 1 / SLIDE_STEP);
-    double most = energy(at, inertia, at->spin), has = energy(at, inertia, along);
-    *rate = himc_vec3_madd(at->spin, has > most ? -sqrt(most / has) : -1, along);
+    double most = energy(at->q, inertia, spin), has = energy(at->q, inertia, along);
+    *rate = himc_vec3_madd(spin, has > most ? -sqrt(most / has) : -1, along);
 }
 
 void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
@@ -235,14 +238,15 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
     joint_place at[HIMC_JOINTS];
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
-    find_places(c, skeleton, s, at);
+    find_places(c, skeleton, s, 0, at);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 way, rate;
-        if (at[j].beyond < LEAST_BEYOND)
+        if (!c->limits->joint[j].bound || at[j].beyond < LEAST_BEYOND)
             continue;
         count_hit(c->saturation, j);
-        find_way(c->limits, j, &at[j], c->inertia[j], &way, &rate);
-        const himc_mat3 *parent = &s->rotation[skeleton->segment[j + 1].parent];
+        find_way(c->limits, j, &at[j], himc_relative_spin(skeleton, s, j), c->inertia[j], &way,
+                 &rate);
+        const himc_mat3 *parent = at[j].parent;
         const himc_mat3 *child = &s->rotation[j + 1];
         himc_vec3 i = c->inertia[j], light = himc_vec3_make(1 / i.x, 1 / i.y, 1 / i.z);
         himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);

@@ -99,6 +99,7 @@ void himc_body_set_limits(performance_body *b, const himc_limits *limits)
     if (limits)
         b->limits = *limits;
     b->controller.limits = limits ? &b->limits : NULL;
+    memset(b->saturation.measure, 0, sizeof b->saturation.measure);
 }
 
 void himc_body_clear_limit_counts(performance_body *b)
@@ -165,14 +166,13 @@ void himc_body_clamp(performance_body *b, himc_pose *pose, himc_vec3 rate[HIMC_J
 {
     himc_saturation_counts *s = &b->saturation;
     for (int j = 0; b->controller.limits && j < HIMC_JOINTS; j++) {
-        himc_quat near = himc_limit_closest(&b->limits, j, pose->joint[j]);
-        double measure = himc_limit_measure(&b->limits, j, pose->joint[j]);
-        himc_quat beyond = himc_quat_mul(himc_quat_conj(near), pose->joint[j]);
-        s->measure[j] = measure;
-        if (measure <= 1) {
+        s->measure[j] = himc_limit_measure(&b->limits, j, pose->joint[j]);
+        if (s->measure[j] <= 1) {
             s->held[j] = false;
             continue;
         }
+        himc_quat near = himc_limit_closest(&b->limits, j, pose->joint[j]);
+        himc_quat beyond = himc_quat_mul(himc_quat_conj(near), pose->joint[j]);
         s->hits[j] += !s->held[j];
         s->held[j] = true;
         s->farthest[j] = fmax(s->farthest[j], himc_vec3_length(himc_quat_log(beyond)));
