@@ -22,8 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: seven of its own, those of each output, those of each strike point
-#define ARRAYS (7 + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: ten of its own, those of each output, each patch and each strike point
+#define ARRAYS (10 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
@@ -85,12 +85,15 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
         return false;
     }
     memset(memory, 0, bytes);
-    double **arrays[] = {&c->on_q, &c->on_v, &c->on_force, &c->scratch, &c->stretch};
+    double **arrays[] = {&c->on_q,    &c->on_v, &c->on_force,      &c->scratch,
+                         &c->stretch, &c->wave, &c->per_stiffness, &c->per_mass};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         c->outputs[i] = take_output(&memory, padded);
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].weight = take(&memory, padded);
     for (int i = 0; i < STRIKE_POINTS; i++)
         points[i] = (strike_point){.shape = take(&memory, padded),
                                    .readout = take_readout(&memory, padded)};
@@ -109,15 +112,21 @@ static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
     return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
 }
 
-// Oscillators of all modes, and a_i = sqrt(2 kappa) Lam_i of the film; Lam_i is a bare mode's
-// stiffness per tension.
+// Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
+// of the film; Lam_i is a bare mode's stiffness per tension.
 static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
+    bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode bare = himc_modes_get(c->modes, &m->head, i);
         c->stretch[i] = root * bare.stiffness / m->head.tension;
+        c->wave[i] = smooth ? bare.zero / m->head.radius : 0;
+        c->per_stiffness[i] = 1 / bare.stiffness;
+        c->per_mass[i] = 1 / bare.mass;
         // the sine of a pair equals its cosine
         if (bare.sine && i > 0) {
             c->oscillators[i] = c->oscillators[i - 1];
@@ -289,7 +298,7 @@ static void add_forces(himc_membrane *m, int index, sound_pair *sound)
         c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
     for (int i = 0; i < m->applied_count; i++) {
         const push *p = &m->applied[i];
-        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y);
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
         sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
         sound->next += p->force * s->response[HIMC_STEP_SAMPLE].sound[index];
     }
@@ -399,7 +408,7 @@ static void bend_new(himc_membrane *m, int first)
         double q = 0;
         for (int k = 0; k < m->applied_count; k++) {
             const push *p = &m->applied[k];
-            q += himc_membrane_strike_point(m, p->x, p->y)->shape[i] * p->force;
+            q += himc_membrane_strike_point(m, p->x, p->y, p->b)->shape[i] * p->force;
         }
         if (q != 0)
             himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
