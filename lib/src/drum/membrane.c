@@ -28,6 +28,11 @@
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
 #define SLACK 1e-6            // rise per tension; chosen: 0.001 cent
+// Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as it
+// should whatever its angle w t in one, unless that is near pi, where its velocity would be met at
+// the same phase again and again.
+#define INTERVAL 0.00075 // (s) chosen: 32 samples of 44.1 and 48 kHz
+#define SHARED_ANGLE 2.0 // most of w t of a mode that is shared; chosen: up to 477 Hz
 
 static void core_free(core *c)
 {
@@ -123,6 +128,28 @@ static void find_oscillators(himc_membrane *m)
     }
 }
 
+// the modes that other heads hear, and what the air between takes of their decay
+static void find_shared(himc_membrane *m)
+{
+    int interval = himc_membrane_interval(m->rate);
+    bool shares = m->shares && m->head.air;
+    double highest = SHARED_ANGLE * m->rate / (2 * HIMC_PI * interval);
+    m->revision++;
+    m->shared_count =
+        shares ? himc_shared_find(&m->head, m->core.modes, &m->air, highest, m->shared) : 0;
+    for (int i = 0; i < m->shared_count; i++)
+        m->core.oscillators[m->shared[i].index].decay -= m->shared[i].decay;
+    himc_bank_set_pass(m->core.bank, shares ? interval : HIMC_BANK_PASS);
+}
+
+int himc_membrane_interval(double rate)
+{
+    int samples = HIMC_BANK_PASS;
+    while (samples > 8 && samples > INTERVAL * rate)
+        samples /= 2;
+    return samples;
+}
+
 // responses of an output to modal forces: through the state and, for accelerations, direct ones
 static void find_responses(himc_membrane *m, output *o, const double *direct)
 {
@@ -209,6 +236,7 @@ static void retune(himc_membrane *m)
     keep_pickups_on_head(m);
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
+    find_shared(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
     himc_bank_set(c->bank, c->oscillators, himc_membrane_modes(m), m->rate);
     set_film(m);
@@ -322,6 +350,7 @@ himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *
     memcpy(m->pickups, form->pickups, sizeof m->pickups);
     m->pickup_count = form->pickup_count;
     m->rays = form->rays;
+    m->shares = form->shares;
     m->ends_sample = true;
     m->rate = form->rate;
     m->watch_x = form->watch_x;
@@ -465,6 +494,39 @@ const himc_pickup *himc_membrane_rays(const himc_membrane *membrane)
     return membrane->rays ? membrane->pickups + HIMC_PICKUPS : NULL;
 }
 
+void himc_membrane_share(himc_membrane *m, bool shares)
+{
+    if (m->shares == shares)
+        return;
+    sounds before = read_sounds(m);
+    m->shares = shares;
+    retune(m);
+    declick_from(m, &before, 0, HIMC_OUTPUTS);
+}
+
+const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)
+{
+    *count = membrane->shared_count;
+    return membrane->shared;
+}
+
+unsigned himc_membrane_revision(const himc_membrane *membrane)
+{
+    return membrane->revision;
+}
+
+double himc_membrane_velocity(const himc_membrane *membrane, int index)
+{
+    double q, v;
+    himc_bank_state(membrane->core.bank, index, &q, &v);
+    return v;
+}
+
+void himc_membrane_kick(himc_membrane *membrane, int index, double change)
+{
+    himc_bank_kick(membrane->core.bank, index, change);
+}
+
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
 {
     membrane->muted = mute;
@@ -504,6 +566,7 @@ himc_membrane_form himc_membrane_form_of(const himc_membrane *m)
                                .head = m->head,
                                .pickup_count = m->pickup_count,
                                .rays = m->rays,
+                               .shares = m->shares,
                                .rate = m->rate,
                                .watch_x = m->watch_x,
                                .watch_y = m->watch_y};
@@ -533,7 +596,7 @@ static bool is_alike(const himc_membrane *m, const himc_shape *shape, const himc
 
 bool himc_membrane_has_form(const himc_membrane *m, const himc_membrane_form *form)
 {
-    return m->rate == form->rate &&
+    return m->rate == form->rate && m->shares == form->shares &&
            is_alike(m, &form->shape, &form->head, form->pickups, form->pickup_count, form->rays);
 }
 
@@ -576,6 +639,10 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     memcpy(m->pickups, made->pickups, sizeof m->pickups);
     m->pickup_count = made->pickup_count;
     m->rays = made->rays;
+    m->shares = made->shares;
+    memcpy(m->shared, made->shared, sizeof m->shared);
+    m->shared_count = made->shared_count;
+    m->revision++;
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);

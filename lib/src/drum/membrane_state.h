@@ -5,6 +5,7 @@
 
 #include "drum/bank.h"
 #include "drum/membrane_form.h"
+#include "drum/shared.h"
 #include "drum/strike_point.h"
 #include "head/air.h"
 
@@ -75,8 +76,12 @@ struct himc_membrane {
     himc_air air;                      ///< around it
     himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
-    bool rays;  ///< it has them
-    bool muted; ///< the pickups' sound is not wanted
+    bool rays;   ///< it has them
+    bool muted;  ///< the pickups' sound is not wanted
+    bool shares; ///< air between heads takes what the shared modes radiate
+    himc_shared_mode shared[HIMC_SHARED];
+    int shared_count;
+    unsigned revision; ///< grows with every change of head or rate
     double rate;
     himc_step_length step; ///< of the next step
     bool ends_sample;      ///< the next step is the last one of a sample
