@@ -173,19 +173,23 @@ HIMC_RT void himc_membrane_state(const himc_membrane *membrane, int index, doubl
 /// Brings the head to rest; the sound ends in 5 ms.
 HIMC_RT void himc_membrane_rest(himc_membrane *membrane);
 
-// Contact: a mallet against a head, Hertz's law with loss, solved passively sample by sample.
+// Contact: a mallet against a head, solved passively sample by sample.
 //
-// F = k c^alpha (1 + mu c') for c > 0 (2012 paper, equation 6; Hunt and Crossley 1975). The step is
+// F = f (1 + mu c') + tau df/dt, f = k c^alpha + k_2 (c - 3 mm)^2.5, each term for a positive base
+// (k, alpha: 2012 paper, equation 6; mu: Hunt and Crossley 1975; tau: Stulov 1995). F presses on a
+// patch of the head, whose radius follows from the mallet's at the speed of the blow. The step is
 // exact for the modes and gives back just the contact's potential energy, so energy never grows,
 // whatever k.
 
 /// The head of a stick.
 typedef struct himc_mallet_head {
-    double stiffness; ///< k (N/m^alpha)
-    double exponent;  ///< alpha, without unit
-    double loss;      ///< mu (s/m)
-    double mass;      ///< of a free mallet (kg)
-    double radius;    ///< (m)
+    double stiffness;  ///< k (N/m^alpha)
+    double exponent;   ///< alpha, without unit
+    double loss;       ///< mu (s/m)
+    double mass;       ///< of a free mallet (kg)
+    double radius;     ///< (m); 0 touches the head at a point
+    double relaxation; ///< tau (s)
+    double core;       ///< k_2 (N/m^2.5), 0 for none
 } himc_mallet_head;
 
 /// A stick's end, moving along the head's normal. Heights are above the head at rest, less the
@@ -206,16 +210,21 @@ typedef struct himc_stick {
     double velocity;       ///< up positive (m/s); the step changes it
     bool one_way; ///< the stick meets a head at rest; the head's vibration does not push back
 
-    double force;       ///< mean of the last sample (N, >= 0, on the stick upwards)
-    bool touching;      ///< c > 0 after the last sample
-    double contact_x;   ///< x of the point of first contact, while touching (m)
-    double contact_y;   ///< y of it (m)
-    double dent;        ///< displacement of the head there after the last sample (m)
-    double compression; ///< c after the last sample (m, negative: a gap)
-    double peak;        ///< largest force of this contact (N)
-    unsigned contacts;  ///< begun so far, chatter counted once
-    double chatter;     ///< a force within this time (s) belongs to the same contact
-    double impact;      ///< downward velocity at the beginning of the contact (m/s)
+    double force;          ///< mean of the last sample (N, >= 0, on the stick upwards)
+    bool touching;         ///< c > 0 after the last sample
+    double contact_x;      ///< x of the point of first contact, while touching (m)
+    double contact_y;      ///< y of it (m)
+    double dent;           ///< displacement of the head there after the last sample (m)
+    double compression;    ///< c after the last sample (m, negative: a gap)
+    double peak;           ///< largest force of this contact (N)
+    unsigned contacts;     ///< begun so far, chatter counted once
+    double chatter;        ///< a force within this time (s) belongs to the same contact
+    double impact;         ///< downward velocity at the beginning of the contact (m/s)
+    double patch;          ///< radius of the disc of the head that it presses in this blow (m)
+    double residual_root;  ///< of the compliance that the head has beside its modes ((m/N)^1/2)
+    double residual_omega; ///< frequency of that (rad/s)
+    double residual_x;     ///< its state: it adds residual_root residual_x to the displacement ...
+    double residual_y;     ///< ... and has (residual_x^2 + residual_y^2)/2 of energy (J^1/2)
 } himc_stick;
 
 #define HIMC_STICKS 8 ///< of a performer at one head; its own mallets are as many; chosen

@@ -22,8 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: seven of its own, those of each output, those of each strike point
-#define ARRAYS (7 + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: ten of its own, those of each output, each patch and each strike point
+#define ARRAYS (10 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
@@ -85,12 +85,15 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
         return false;
     }
     memset(memory, 0, bytes);
-    double **arrays[] = {&c->on_q, &c->on_v, &c->on_force, &c->scratch, &c->stretch};
+    double **arrays[] = {&c->on_q,    &c->on_v, &c->on_force,      &c->scratch,
+                         &c->stretch, &c->wave, &c->per_stiffness, &c->per_mass};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         c->outputs[i] = take_output(&memory, padded);
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].weight = take(&memory, padded);
     for (int i = 0; i < STRIKE_POINTS; i++)
         points[i] = (strike_point){.shape = take(&memory, padded),
                                    .readout = take_readout(&memory, padded)};
@@ -109,15 +112,21 @@ static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
     return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
 }
 
-// Oscillators of all modes, and a_i = sqrt(2 kappa) Lam_i of the film; Lam_i is a bare mode's
-// stiffness per tension.
+// Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
+// of the film; Lam_i is a bare mode's stiffness per tension.
 static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
+    bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode bare = himc_modes_get(c->modes, &m->head, i);
         c->stretch[i] = root * bare.stiffness / m->head.tension;
+        c->wave[i] = smooth ? bare.zero / m->head.radius : 0;
+        c->per_stiffness[i] = 1 / bare.stiffness;
+        c->per_mass[i] = 1 / bare.mass;
         // the sine of a pair equals its cosine
         if (bare.sine && i > 0) {
             c->oscillators[i] = c->oscillators[i - 1];
@@ -289,7 +298,7 @@ static void add_forces(himc_membrane *m, int index, sound_pair *sound)
         c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
     for (int i = 0; i < m->applied_count; i++) {
         const push *p = &m->applied[i];
-        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y);
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
         sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
         sound->next += p->force * s->response[HIMC_STEP_SAMPLE].sound[index];
     }
@@ -377,34 +386,40 @@ void himc_membrane_free(himc_membrane *membrane)
     free(membrane);
 }
 
-// other modes; those that remain, `common`, keep their state
-static bool resize(himc_membrane *m, int modes, int *common, himc_error *error)
+// Adds `times` the static displacement under the pressing forces to all modes. It is taken away
+// before a change of the head and put back after it: the bend follows the head, and only what rings
+// keeps its energy. A bend of another head would be let go, and heard.
+static void bend(himc_membrane *m, double times)
+{
+    for (int k = 0; k < m->applied_count; k++) {
+        const push *p = &m->applied[k];
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
+        for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
+            const himc_oscillator *o = &m->core.oscillators[i];
+            double q, v, force = times * p->force * s->shape[i];
+            himc_bank_state(m->core.bank, i, &q, &v);
+            if (force != 0)
+                himc_bank_excite(m->core.bank, i, q + force / (o->mass * o->omega * o->omega), v);
+        }
+    }
+    himc_bank_find_film(m->core.bank);
+}
+
+// other modes; those that remain keep their state, without the bend of pressing forces
+static bool resize(himc_membrane *m, int modes, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!core_new(&fresh, m->points, himc_modes_shape(old.modes), modes, error))
+    strike_point points[STRIKE_POINTS];
+    if (!core_new(&fresh, points, himc_modes_shape(old.modes), modes, error))
         return false;
-    *common = himc_modes_common(old.modes, fresh.modes);
-    himc_bank_set(fresh.bank, old.oscillators, *common, m->rate);
-    himc_bank_continue(fresh.bank, old.bank, *common);
+    bend(m, -1);
+    int common = himc_modes_common(old.modes, fresh.modes);
+    himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
+    himc_bank_continue(fresh.bank, old.bank, common);
+    memcpy(m->points, points, sizeof points);
     m->core = fresh;
     core_free(&old);
     return true;
-}
-
-// Modes from `first` on are new. Under a pressing force they begin with their static displacement.
-static void bend_new(himc_membrane *m, int first)
-{
-    for (int i = first; i < himc_bank_count(m->core.bank); i++) {
-        const himc_oscillator *o = &m->core.oscillators[i];
-        double q = 0;
-        for (int k = 0; k < m->applied_count; k++) {
-            const push *p = &m->applied[k];
-            q += himc_membrane_strike_point(m, p->x, p->y)->shape[i] * p->force;
-        }
-        if (q != 0)
-            himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
-    }
-    himc_bank_find_film(m->core.bank);
 }
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
@@ -413,12 +428,13 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
         return false;
     sounds before = read_sounds(membrane);
     double energy = himc_membrane_energy(membrane);
-    int known = himc_membrane_modes(membrane);
-    if (head->modes != membrane->head.modes && !resize(membrane, head->modes, &known, error))
+    if (head->modes == membrane->head.modes)
+        bend(membrane, -1);
+    else if (!resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
     retune(membrane);
-    bend_new(membrane, known);
+    bend(membrane, 1);
     keep_energy(membrane, energy);
     declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     return true;
@@ -616,21 +632,15 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
-// a head of the same outline goes on after a change from `known` modes and that energy
-static void go_on(himc_membrane *m, int known, double energy)
-{
-    himc_bank_find_film(m->core.bank);
-    bend_new(m, known);
-    keep_energy(m, energy);
-}
-
 void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
 {
     sounds before = read_sounds(m);
     double energy = himc_membrane_energy(m);
-    core old = m->core;
     bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
-    bool head = same_head(&m->head, &made->head);
+    bool bends = outline && !same_head(&m->head, &made->head);
+    if (bends)
+        bend(m, -1);
+    core old = m->core;
     m->core = made->core;
     made->core = old;
     memcpy(m->points, made->points, sizeof m->points);
@@ -646,11 +656,11 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
-    if (outline) {
-        int known = himc_modes_common(old.modes, m->core.modes);
-        himc_bank_continue(m->core.bank, old.bank, known);
-        if (!head)
-            go_on(m, known, energy);
+    if (outline)
+        himc_bank_continue(m->core.bank, old.bank, himc_modes_common(old.modes, m->core.modes));
+    if (bends) {
+        bend(m, 1);
+        keep_energy(m, energy);
     }
     declick_from(m, &before, 0, HIMC_OUTPUTS);
 }

@@ -343,7 +343,8 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     double height = over_head(s, c->drum, s->body->state.tip[hand]).z;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
-    double quiet = t - c->last_force;
+    // both are whole samples; half of one, so that the rounding of times does not decide
+    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
     if ((quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP)
         end_strike(c, s, hand, t);
     else if (c->released && t >= c->strike.time + LONGEST_RELEASE)
