@@ -55,7 +55,7 @@ typedef struct himc_mode {
 #define HIMC_DAMP 69.0
 
 /// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
-/// 200 modes.
+/// HIMC_MODES_AUTO.
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
