@@ -105,9 +105,9 @@ static void test_gain_scales_the_sound_and_changes_no_motion(void)
         himc_contact_report report;
         TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, gain[i], &error) &&
                          himc_drum_command(drum, &c, &error));
-        TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 480, -0.24, 0, 2, &error));
+        TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 4800, -0.24, 0, 2, &error));
         peak[i] = 0;
-        for (int block = 0; block < 40; block++) {
+        for (int block = 0; block < 50; block++) {
             himc_drum_advance(drum, 480, NULL, NULL, NULL);
             himc_drum_read(drum, himc_drum_time(drum) - 480, 480, sound, pushed);
             for (int k = 0; k < 480; k++) {

@@ -266,7 +266,7 @@ static int channels(const himc_drum *drum)
 static void next_levels(himc_drum *drum, int n, double *levels)
 {
     double goal = drum->technique == HIMC_TECHNIQUE_MODAL ? drum->gain : 0,
-           step = 1 / (LEVEL_RAMP * drum->rate);
+           step = fmax(drum->gain, 1) / (LEVEL_RAMP * drum->rate);
     for (int i = 0; i < n && (levels || drum->level != goal); i++) {
         if (drum->level != goal)
             drum->level += fmin(fmax(goal - drum->level, -step), step);
