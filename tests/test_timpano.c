@@ -189,7 +189,8 @@ static void test_timpano_without_air_is_the_ideal_membrane(void)
 {
     says("air 0");
     const himc_head *head = himc_membrane_head(himc_drum_membrane(drum));
-    for (int i = 0; i < head->modes; i++) {
+    TEST_ASSERT_EQUAL_INT(-1, himc_membrane_mode(himc_drum_membrane(drum), 600).m);
+    for (int i = 0; i < 601; i++) {
         himc_mode m = himc_membrane_mode(himc_drum_membrane(drum), i);
         double ideal = m.zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12 * ideal, ideal, m.frequency);

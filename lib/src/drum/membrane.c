@@ -380,15 +380,37 @@ void himc_membrane_free(himc_membrane *membrane)
     free(membrane);
 }
 
-// other modes; those that remain, `common`, keep their state
-static bool resize(himc_membrane *m, int modes, int *common, himc_error *error)
+// Adds `times` the static displacement under the pressing forces to all modes. It is taken away
+// before a change of the head and put back after it: the bend follows the head, and only what rings
+// keeps its energy. A bend of another head would be let go, and heard.
+static void bend(himc_membrane *m, double times)
+{
+    for (int k = 0; k < m->applied_count; k++) {
+        const push *p = &m->applied[k];
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
+        for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
+            const himc_oscillator *o = &m->core.oscillators[i];
+            double q, v, force = times * p->force * s->shape[i];
+            himc_bank_state(m->core.bank, i, &q, &v);
+            if (force != 0)
+                himc_bank_excite(m->core.bank, i, q + force / (o->mass * o->omega * o->omega), v);
+        }
+    }
+    himc_bank_find_film(m->core.bank);
+}
+
+// other modes; those that remain keep their state, without the bend of pressing forces
+static bool resize(himc_membrane *m, int modes, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!core_new(&fresh, m->points, himc_modes_shape(old.modes), modes, error))
+    strike_point points[STRIKE_POINTS];
+    if (!core_new(&fresh, points, himc_modes_shape(old.modes), modes, error))
         return false;
-    *common = himc_modes_common(old.modes, fresh.modes);
-    himc_bank_set(fresh.bank, old.oscillators, *common, m->rate);
-    himc_bank_continue(fresh.bank, old.bank, *common);
+    bend(m, -1);
+    int common = himc_modes_common(old.modes, fresh.modes);
+    himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
+    himc_bank_continue(fresh.bank, old.bank, common);
+    memcpy(m->points, points, sizeof points);
     m->core = fresh;
     core_free(&old);
     return true;
@@ -419,37 +441,22 @@ static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
     }
 }
 
-// Modes from `first` on are new. Under a pressing force they begin with their static displacement.
-static void bend_new(himc_membrane *m, int first)
-{
-    for (int i = first; i < himc_bank_count(m->core.bank); i++) {
-        const himc_oscillator *o = &m->core.oscillators[i];
-        double q = 0;
-        for (int k = 0; k < m->applied_count; k++) {
-            const push *p = &m->applied[k];
-            q += himc_membrane_strike_point(m, p->x, p->y, p->b)->shape[i] * p->force;
-        }
-        if (q != 0)
-            himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
-    }
-    himc_bank_find_film(m->core.bank);
-}
-
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
 {
     if (!check_head(head, himc_membrane_shape(membrane)->kind, error))
         return false;
     sounds before = read_sounds(membrane);
     double energy = himc_membrane_energy(membrane);
-    int known = himc_membrane_modes(membrane);
     himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
     memcpy(pairs, himc_modes_pairs(membrane->core.modes), sizeof pairs);
-    if (head->modes != membrane->head.modes && !resize(membrane, head->modes, &known, error))
+    if (head->modes == membrane->head.modes)
+        bend(membrane, -1);
+    else if (!resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
     retune(membrane);
     turn_pairs(membrane, pairs);
-    bend_new(membrane, known);
+    bend(membrane, 1);
     keep_energy(membrane, energy);
     declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     return true;
@@ -648,21 +655,15 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
-// a head of the same outline goes on after a change from `known` modes and that energy
-static void go_on(himc_membrane *m, int known, double energy)
-{
-    himc_bank_find_film(m->core.bank);
-    bend_new(m, known);
-    keep_energy(m, energy);
-}
-
 void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
 {
     sounds before = read_sounds(m);
     double energy = himc_membrane_energy(m);
-    core old = m->core;
     bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
-    bool head = same_head(&m->head, &made->head);
+    bool bends = outline && !same_head(&m->head, &made->head);
+    if (bends)
+        bend(m, -1);
+    core old = m->core;
     m->core = made->core;
     made->core = old;
     memcpy(m->points, made->points, sizeof m->points);
@@ -678,12 +679,12 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
-    if (outline) {
-        int known = himc_modes_common(old.modes, m->core.modes);
-        himc_bank_continue(m->core.bank, old.bank, known);
+    if (outline)
+        himc_bank_continue(m->core.bank, old.bank, himc_modes_common(old.modes, m->core.modes));
+    if (bends) {
         turn_pairs(m, himc_modes_pairs(old.modes));
-        if (!head)
-            go_on(m, known, energy);
+        bend(m, 1);
+        keep_energy(m, energy);
     }
     declick_from(m, &before, 0, HIMC_OUTPUTS);
 }

@@ -72,7 +72,7 @@ himc_head himc_head_default(void)
                        .density = 0.2653,
                        .decay_constant = 0.5,
                        .decay_square = 3e-7,
-                       .modes = 200,
+                       .modes = HIMC_MODES_AUTO,
                        .air = true,
                        .glide = 1,
                        .uniformity = 0.3};
