@@ -36,6 +36,7 @@ void setUp(void)
     head.density = 0.2653 / (0.66 * 0.66);
     head.glide = 0.66 * 0.66;
     head.air = false;
+    head.uniformity = 1;
     mallet_radius = 0.0175;
     membrane = NULL;
     remake(RATE);
@@ -256,21 +257,22 @@ static void ring(double velocity, double k, bool fine)
 
 static void test_glide_of_every_mode_is_that_of_steps_of_a_sample_within_half_a_cent(void)
 {
-    static double q[400], v[400];
+    static double q[1000], v[1000];
     double worst = 0;
-    head.modes = 400;
     head.decay_constant = 2.2;
     head.decay_square = 0.15e-6;
     for (double k = 1e6; k < 2e12; k *= 1000)
         for (double velocity = 2; velocity < 13; velocity *= 2.3) {
             double most = 0;
             head.radius = head.radius > 0.2 ? 0.1 : 0.328;
+            head.modes = head.radius > 0.2 ? HIMC_MODES_AUTO : 400;
             ring(velocity, k, true);
-            for (int i = 0; i < 400; i++)
+            int count = himc_membrane_audible(membrane);
+            for (int i = 0; i < count; i++)
                 himc_membrane_state(membrane, i, &q[i], &v[i]);
             ring(velocity, k, false);
             for (int pass = 0; pass < 2; pass++)
-                for (int i = 0; i < 400; i++) {
+                for (int i = 0; i < count; i++) {
                     himc_mode mode = himc_membrane_mode(membrane, i);
                     double omega = 2 * HIMC_PI * mode.frequency, got_q, got_v;
                     double part = mode.mass * (v[i] * v[i] + omega * omega * q[i] * q[i]);

@@ -355,7 +355,7 @@ static void test_rectangle_has_the_modes_of_a_string_in_both_directions(void)
     himc_membrane *m = himc_drum_membrane(drum);
     const himc_head *head = himc_membrane_head(m);
     double c = sqrt(head->tension / head->density), before = 0;
-    for (int i = 0; i < head->modes; i++) {
+    for (int i = 0; i < 200; i++) {
         himc_mode mode = himc_membrane_mode(m, i);
         double f = 0.5 * c * hypot(mode.m / 0.6, mode.n / 0.4);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6 * f, f, mode.frequency);

@@ -157,9 +157,9 @@ static void test_what_comes_behind_a_load_waits_for_it(void)
     TEST_ASSERT_TRUE(ask_drum(loader, drum, "place 1 0 0.9"));
     TEST_ASSERT_TRUE(ask_drum(loader, drum, "modes 40"));
     TEST_ASSERT_TRUE(ask(loader, p, "player 1.7 60"));
-    TEST_ASSERT_EQUAL_INT(200, modes_of(p));
+    TEST_ASSERT_EQUAL_INT(HIMC_MODES_AUTO, modes_of(p));
     TEST_ASSERT_FALSE(himc_drum_head_frame(drum)->center.x == 1);
-    while (modes_of(p) == 200)
+    while (modes_of(p) == HIMC_MODES_AUTO)
         himc_loader_run(loader);
     TEST_ASSERT_EQUAL_INT(300, modes_of(p));
     himc_loader_finish(loader);
@@ -190,7 +190,7 @@ static void test_a_failed_load_is_told_in_its_line_and_the_next_go_on(void)
     TEST_ASSERT_EQUAL_STRING("record: stop: nothing is being recorded, allowed FILE", told[2]);
     TEST_ASSERT_EQUAL_STRING("done", told[3]);
     TEST_ASSERT_NOT_NULL(strstr(told[4], "missing.txt"));
-    TEST_ASSERT_EQUAL_INT(200, modes_of(p)); // nothing of the score was installed
+    TEST_ASSERT_EQUAL_INT(HIMC_MODES_AUTO, modes_of(p)); // nothing of the score was installed
     himc_loader_free(loader);
     himc_performance_free(p);
 }
