@@ -35,6 +35,7 @@ void setUp(void)
     head.modes = 500;
     head.air = false;
     head.glide = 0;
+    head.uniformity = 1;
     membrane = NULL;
     himc_drum *drum = himc_drum_new("kettle", 26, RATE, NULL);
     for (int i = 0; i < MALLETS; i++) {
