@@ -100,7 +100,8 @@ static void test_any_change_while_ringing_makes_no_larger_step_than_the_ringing(
         "damp 1",           "mallet wood",        "air 0",          "kettle 0.06",
         "glide 0",          "density 0.4",        "radius 0.35",    "tension 6000",
         "tune A3",          "decay 20 1e-6",      "shape circle",   "shape rectangle 0.5 0.4",
-        "pickup air 2 1 1", "pickup air 0 0.2 3", "technique clip", "pickups 3"};
+        "pickup air 2 1 1", "pickup air 0 0.2 3", "technique clip", "pickups 3",
+        "uniformity 0.3 9"};
     for (size_t i = 0; i < sizeof change / sizeof *change; i++) {
         double own, own_bend, then, then_bend, step, bend;
         ring_on(change[i], &then, &then_bend);

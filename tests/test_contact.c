@@ -26,6 +26,7 @@ static void christian(int modes)
     head.density = 0.2653 / (0.66 * 0.66);
     head.modes = modes;
     head.air = false;
+    head.uniformity = 1;
     head.glide = 0;
 }
 

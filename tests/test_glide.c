@@ -36,6 +36,7 @@ void setUp(void)
     head.density = 0.2653 / (0.66 * 0.66);
     head.glide = 0.66 * 0.66;
     head.air = false;
+    head.uniformity = 1;
     mallet_radius = 0.0175;
     membrane = NULL;
     remake(RATE);

@@ -36,6 +36,7 @@ static himc_head d3(int modes)
     head.decay_constant = 0.5;
     head.decay_square = 3e-7;
     head.glide = 0;
+    head.uniformity = 1;
     head.modes = modes;
     return head;
 }

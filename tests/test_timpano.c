@@ -31,6 +31,7 @@ void setUp(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
     says("air 1");
     says("tension 3528");
+    says("uniformity 1");
     says("decay 0.5 0.0000003");
 }
 
@@ -174,6 +175,7 @@ static void test_timpano_no_mode_of_the_kettle_takes_over_at_any_tuning_of_four_
         says("modes 120");
         says("air 1");
         says("decay 0.5 0.0000003");
+        says("uniformity 1");
         double most = 0;
         for (double hz = set[i].low; hz < set[i].high * 1.001; hz *= pow(2, 1 / 12.0))
             most = fmax(most, share_of_inner_circles(hz));

@@ -258,12 +258,12 @@ static bool play_as(himc_performance *p, const trial_config *config, himc_take *
 /// 6 m/s, the paper's 62 .. 65 and 106.9 N.
 static himc_drum *published_drum(himc_error *error)
 {
-    static const char *const setting[] = {"air 0", "decay 2.2 3e-7", "tension 3700",
+    static const char *const setting[] = {"air 0", "decay 2.2 3e-7", "tension 3700", "uniformity 1",
                                           "mallet 1.6e8 2.54 0.03"};
     himc_drum *drum = himc_drum_new("kettle", 23, RATE, error);
     himc_command command;
     bool good = drum;
-    for (int i = 0; good && i < 4; i++)
+    for (int i = 0; good && i < 5; i++)
         good = himc_command_parse_text(&command, HIMC_DRUM, setting[i], error) &&
                himc_drum_command(drum, &command, error);
     if (good)

@@ -28,19 +28,23 @@ typedef struct himc_head {
     double kettle;         ///< volume under it (m^3), half to twice the usual; 0 is the usual
     double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's
     double damp;           ///< a hand on the head: 0 none .. 1 dead at once
+    double uniformity;     ///< of the lugs' tension, 0 (2 % off) .. 1 even; of round heads only
+    int uniformity_seed;   ///< which lugs are off, 0 .. HIMC_SEED_MAX
 } himc_head;
 
 /// As `modes` of a head: on a round head 209 exact modes, up to about 1.6 kHz on a timpano, and 392
 /// statistical ones for all others up to 8 kHz and more; on others 200, or as many as it has.
 #define HIMC_MODES_AUTO 0
 
-/// One mode of the list. Modes with m > 0 come as a pair of equal frequency: cosine, then sine. If
-/// the list ends within a pair, it has the cosine, which is the one that a blow on the x axis
-/// excites.
+/// One mode of the list. Modes with m > 0 come as a pair: cosine, then sine. On an even head their
+/// frequency is equal; else the sine's is higher, and each order m has an axis of its own. If the
+/// list ends within a pair, it has the cosine, which on an even head is the one that a blow on the x
+/// axis excites.
 typedef struct himc_mode {
     int m; ///< nodal diameters; of a rectangle half waves along x; of a grid 0; statistical: -1
     int n; ///< nodal circles with the rim; half waves along y; of a grid or statistical 1, 2, ...
-    bool sine;        ///< the second one of a pair: sin(m azimuth) in place of cos(m azimuth)
+    bool sine;        ///< the second one of a pair: sin(m (azimuth - axis)) in place of cos
+    double axis;      ///< (rad), 0 on an even head
     double zero;      ///< j_mn; of other outlines its counterpart, wave number times radius
     double norm;      ///< integral of phi^2 over the head, per pi a^2
     double frequency; ///< undamped (Hz)
@@ -55,7 +59,7 @@ typedef struct himc_mode {
 #define HIMC_DAMP 69.0
 
 /// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
-/// HIMC_MODES_AUTO.
+/// HIMC_MODES_AUTO, lugs 1.4 % off (uniformity 0.3).
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).

@@ -99,6 +99,20 @@ static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
     return set_field(drum, c, offsetof(himc_head, damp), error);
 }
 
+// other heads have no pairs to split
+static bool do_uniformity(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    bool round = himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE;
+    head.uniformity = number(c, 0);
+    if (c->count == 2)
+        head.uniformity_seed = (int)number(c, 1);
+    if (head.uniformity < 1 && !round)
+        return himc_error_set(error, "uniformity: %.6g, allowed 1 on a head that is not round",
+                              head.uniformity);
+    return set_head(drum, &head, error);
+}
+
 static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
@@ -322,11 +336,11 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
     double principal = himc_membrane_principal(drum->membrane, head);
     snprintf(text, size,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
-             "%d modes (%d audible), "
+             "%d modes (%d audible), uniformity %.3g, seed %d, "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
              drum->name, head->radius, head->tension, head->density, principal,
              himc_membrane_modes(drum->membrane), himc_membrane_audible(drum->membrane),
-             drum->mallet_name.text,
+             head->uniformity, head->uniformity_seed, drum->mallet_name.text,
              himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, p->center.x,
              p->center.y, p->center.z);
 }

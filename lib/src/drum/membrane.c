@@ -106,33 +106,26 @@ static double kettle_of(const himc_head *head)
     return head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius);
 }
 
-// a bare mode as it sounds: in air, if the head has any
-static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
-{
-    return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
-}
-
 // Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
-// of the film; Lam_i is a bare mode's stiffness per tension.
+// of the film; Lam_i is a bare mode's stiffness per tension. The members of a pair have one load.
 static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
     bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    himc_air_load load = {0};
     for (int i = 0; i < PATCHES; i++)
         c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
-        himc_mode bare = himc_modes_get(c->modes, &m->head, i);
-        c->stretch[i] = root * bare.stiffness / m->head.tension;
-        c->wave[i] = smooth ? bare.zero / m->head.radius : 0;
-        c->per_stiffness[i] = 1 / bare.stiffness;
-        c->per_mass[i] = 1 / bare.mass;
-        // the sine of a pair equals its cosine
-        if (bare.sine && i > 0) {
-            c->oscillators[i] = c->oscillators[i - 1];
-            continue;
-        }
-        himc_mode mode = loaded(m, &bare);
+        himc_mode mode = himc_modes_get(c->modes, &m->head, i);
+        c->stretch[i] = root * mode.stiffness / m->head.tension;
+        c->wave[i] = smooth ? mode.zero / m->head.radius : 0;
+        c->per_stiffness[i] = 1 / mode.stiffness;
+        c->per_mass[i] = 1 / mode.mass;
+        if (m->head.air && !mode.sine)
+            load = himc_air_on(&m->air, mode.m, mode.n, mode.zero);
+        if (m->head.air)
+            mode = himc_air_loaded(&load, &m->head, &mode);
         c->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
 }
@@ -243,6 +236,7 @@ static void retune(himc_membrane *m)
 {
     core *c = &m->core;
     keep_pickups_on_head(m);
+    himc_modes_set_lugs(c->modes, m->head.uniformity, m->head.uniformity_seed);
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
     find_shared(m);
@@ -422,18 +416,46 @@ static bool resize(himc_membrane *m, int modes, himc_error *error)
     return true;
 }
 
+// Pairs whose axis was another in `before` go on in the same shape: what vibrated along the old axes
+// is taken apart along the new ones. Of amplitudes times frequency and of velocities, as here, a
+// rotation keeps the energy, since both members have one mass.
+static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
+{
+    const himc_lugs_pair *after = himc_modes_pairs(m->core.modes);
+    if (memcmp(before, after, sizeof *before * HIMC_LUGS_ORDERS) == 0)
+        return;
+    for (int i = 1; i < himc_bank_count(m->core.bank); i++) {
+        himc_mode mode = himc_modes_get(m->core.modes, &m->head, i);
+        if (!mode.sine || before[mode.m].axis == after[mode.m].axis)
+            continue;
+        const himc_lugs_pair *a = &before[mode.m], *b = &after[mode.m];
+        double c = b->cosine * a->cosine + b->sine * a->sine;
+        double s = b->sine * a->cosine - b->cosine * a->sine, q[2], v[2];
+        double first = m->core.oscillators[i - 1].omega, second = m->core.oscillators[i].omega;
+        himc_bank_state(m->core.bank, i - 1, &q[0], &v[0]);
+        himc_bank_state(m->core.bank, i, &q[1], &v[1]);
+        himc_bank_excite(m->core.bank, i - 1, (c * first * q[0] + s * second * q[1]) / first,
+                         c * v[0] + s * v[1]);
+        himc_bank_excite(m->core.bank, i, (c * second * q[1] - s * first * q[0]) / second,
+                         c * v[1] - s * v[0]);
+    }
+}
+
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
 {
     if (!check_head(head, himc_membrane_shape(membrane)->kind, error))
         return false;
     sounds before = read_sounds(membrane);
     double energy = himc_membrane_energy(membrane);
+    himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
+    memcpy(pairs, himc_modes_pairs(membrane->core.modes), sizeof pairs);
     if (head->modes == membrane->head.modes)
         bend(membrane, -1);
     else if (!resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
     retune(membrane);
+    turn_pairs(membrane, pairs);
     bend(membrane, 1);
     keep_energy(membrane, energy);
     declick_from(membrane, &before, 0, HIMC_OUTPUTS);
@@ -573,7 +595,8 @@ static bool same_head(const himc_head *a, const himc_head *b)
     return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
            a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
            a->modes == b->modes && a->air == b->air && a->kettle == b->kettle &&
-           a->glide == b->glide && a->damp == b->damp;
+           a->glide == b->glide && a->damp == b->damp && a->uniformity == b->uniformity &&
+           a->uniformity_seed == b->uniformity_seed;
 }
 
 himc_membrane_form himc_membrane_form_of(const himc_membrane *m)
@@ -659,6 +682,7 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     if (outline)
         himc_bank_continue(m->core.bank, old.bank, himc_modes_common(old.modes, m->core.modes));
     if (bends) {
+        turn_pairs(m, himc_modes_pairs(old.modes));
         bend(m, 1);
         keep_energy(m, energy);
     }
@@ -691,7 +715,7 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
     if (index >= himc_membrane_modes(membrane))
         return (himc_mode){0};
     himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
-    return loaded(membrane, &bare);
+    return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
 }
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
@@ -738,6 +762,29 @@ void himc_membrane_watch(himc_membrane *membrane, double x, double y)
 void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
 {
     himc_bank_state(membrane->core.bank, index, q, v);
+}
+
+void himc_membrane_upright(const himc_membrane *membrane, int count, double *displacement)
+{
+    const himc_modes *modes = membrane->core.modes;
+    double v, pair[2] = {0, 0};
+    for (int i = 0; i < count; i++) {
+        himc_mode mode = himc_modes_get(modes, &membrane->head, i);
+        himc_membrane_state(membrane, i, &displacement[i], &v);
+        if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
+            continue;
+        const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
+        bool whole =
+            i + 1 < himc_modes_count(modes) && himc_modes_get(modes, &membrane->head, i + 1).sine;
+        if (!mode.sine) {
+            pair[0] = displacement[i];
+            pair[1] = 0;
+            if (whole)
+                himc_membrane_state(membrane, i + 1, &pair[1], &v);
+        }
+        displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
+                                    : pair[0] * axis->cosine - pair[1] * axis->sine;
+    }
 }
 
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)

@@ -64,7 +64,7 @@ double himc_pickup_pressure(const himc_pickup *pickup, const himc_head *head,
 {
     double x =
         2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED * head->radius * cos(pickup->elevation);
-    double angle = mode->m * pickup->azimuth,
+    double angle = mode->m * (pickup->azimuth - mode->axis),
            scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
     if (mode->m < 0)
         return scale * himc_modes_pressure(modes, index, x, pickup->azimuth);
