@@ -55,6 +55,7 @@ static void add(double inches, double x, double y, double hz, const char *modes)
     says(d, "air 1");
     says(d, "decay 0.5 3e-7");
     says(d, "glide 0");
+    says(d, "uniformity 1");
     snprintf(text, sizeof text, "tune %.9g", hz);
     says(d, text);
     himc_drum_watch(d, false);
