@@ -59,7 +59,7 @@ typedef struct himc_mode {
 #define HIMC_DAMP 69.0
 
 /// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
-/// HIMC_MODES_AUTO, lugs 1.4 % off (uniformity 0.3).
+/// HIMC_MODES_AUTO, lugs 1.6 % off (uniformity 0.2).
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
@@ -168,8 +168,6 @@ HIMC_RT double himc_membrane_sound(const himc_membrane *membrane, int pickup);
 /// The displacement of the watched point now (m).
 HIMC_RT double himc_membrane_watched(const himc_membrane *membrane);
 
-/// Displacement at (x, y) (m, up positive).
-HIMC_RT double himc_membrane_displacement(const himc_membrane *membrane, double x, double y);
 /// Kinetic and potential energy, the film's stretching included (J).
 HIMC_RT double himc_membrane_energy(const himc_membrane *membrane);
 /// Displacement q and velocity v of mode `index` (0 ..) (m, m/s); 0 past the last audible one.
