@@ -17,7 +17,8 @@ static inline himc_head dry_head(void)
                        .decay_constant = 2.2,
                        .decay_square = 3e-7,
                        .modes = 200,
-                       .glide = 1};
+                       .glide = 1,
+                       .uniformity = 1};
 }
 
 /// The same for a drum of any size.

@@ -325,12 +325,15 @@ check test_full_disk_under_stdout_is_an_error [ "$?$(grep -c 'No space left' err
 "$himc" modes >out
 check test_modes_header_is_that_of_the_contract [ "$(head -n 1 out)" = \
     m,n,frequency_hz,ratio,t60_s ]
-printf 'drum d;\nd air 0;\n' >ideal.txt
+printf 'drum d;\nd air 0;\nd uniformity 1;\n' >ideal.txt
 "$himc" modes ideal.txt >out
 check test_second_mode_ratio_without_air_is_1_340297 [ "$(awk -F, '$1 == 2 && $2 == 1 {print $4}' out)" = \
     1.340297 ]
 check test_each_pair_is_one_row [ "$(sed 1d out | cut -d, -f 1-2 | sort | uniq -d)" = "" ]
-tuned=$("$himc" modes piece.txt | awk -F, '$1 == 1 && $2 == 1 {print $3}')
+"$himc" modes >out
+check test_pair_of_an_uneven_drum_is_two_rows [ "$(grep -c '^1,1,' out)" = 2 ]
+{ cat piece.txt; echo 'kettle uniformity 1;'; } >even.txt
+tuned=$("$himc" modes even.txt | awk -F, '$1 == 1 && $2 == 1 {print $3}')
 check test_tuned_drum_sounds_there [ "$tuned" = 110.000000 ]
 "$himc" info piece.txt >out
 check test_info_counts_strokes [ "$(sed -n 's/^strokes *//p; s/^right *//p' out | tr '\n' ' ')" = \

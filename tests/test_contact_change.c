@@ -34,6 +34,8 @@ static const char *const changes[] = {"tension 6000",
                                       "kettle 0.1",
                                       "glide 0",
                                       "glide 1",
+                                      "uniformity 0 5",
+                                      "uniformity 0.5 6",
                                       "tune A3",
                                       "damp 1",
                                       "decay 0.1",
@@ -140,7 +142,7 @@ static double between(unsigned *seed, double low, double high)
 static void random_change(char *text, size_t size, unsigned *seed)
 {
     double x = chance(seed);
-    switch (choose(seed, 10)) {
+    switch (choose(seed, 11)) {
     case 0: snprintf(text, size, "tension %.5g", between(seed, 10.1, 9.9e4)); break;
     case 1: snprintf(text, size, "radius %.4f", 0.06 + 0.9 * x); break;
     case 2: snprintf(text, size, "density %.4g", between(seed, 0.011, 9.9)); break;
@@ -153,6 +155,7 @@ static void random_change(char *text, size_t size, unsigned *seed)
         break;
     case 7: snprintf(text, size, "air %d", choose(seed, 2)); break;
     case 8: snprintf(text, size, "decay %.3g %.3g", 100 * x, 1e-4 * chance(seed)); break;
+    case 9: snprintf(text, size, "uniformity %.3f %d", x, choose(seed, 1000)); break;
     default: snprintf(text, size, "glide %.3f", x);
     }
 }

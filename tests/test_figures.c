@@ -141,6 +141,27 @@ static void test_head_that_swings_into_a_resting_stick_is_no_strike(void)
     himc_performance_free(p);
 }
 
+// control lets go of the head's normal for 60 ms of a contact, and then takes it up again
+static void test_stick_pressed_onto_the_head_stays_in_contact_and_comes_free(void)
+{
+    himc_performance *p = session_new();
+    const stick_contact *c = &p->contacts.hand[HIMC_LEFT];
+    session_do(p, "drum kettle 26");
+    session_drum(p, 0, "place 0.48 0 0.85");
+    session_do(p, "target left 0.48 0.05 %g", 0.85 + p->body->skeleton.mallet_radius - 0.004);
+    session_play(p, 0.55, NULL);
+    session_do(p, "push left-stick 0 0 -4 0.6");
+    session_play(p, 0.6, NULL);
+    TEST_ASSERT_TRUE(c->touching && !c->released);
+    TEST_ASSERT_TRUE(c->strike.impulse > 0.5 && c->strike.duration > 0.3);
+    session_do(p, "target left 0.48 0.05 1");
+    session_play(p, 1, NULL);
+    TEST_ASSERT_FALSE(c->touching);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 1, p->body->state.tip[HIMC_LEFT].z);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+    himc_performance_free(p);
+}
+
 static void keep_largest(void *user, const himc_motion_row *row)
 {
     double *largest = user;
@@ -154,6 +175,7 @@ static void test_tips_are_measured_outside_contact_only(void)
     himc_performance *p = session_new();
     double largest = 0;
     session_do(p, "drum kettle");
+    session_drum(p, 0, "mallet soft"); // its contact is longer than planned
     session_do(p, "tempo 60");
     for (int i = 0; i < 12; i++)
         session_do(p, "stroke %g %s accent ff", 2 + 0.2 * i, i & 1 ? "right" : "left");
@@ -213,6 +235,7 @@ int main(void)
     RUN_TEST(test_stroke_without_contact_is_given_up_15_ms_after_its_time);
     RUN_TEST(test_strike_is_one_contact_from_its_first_sample_of_force_to_its_last);
     RUN_TEST(test_head_that_swings_into_a_resting_stick_is_no_strike);
+    RUN_TEST(test_stick_pressed_onto_the_head_stays_in_contact_and_comes_free);
     RUN_TEST(test_tips_are_measured_outside_contact_only);
     RUN_TEST(test_each_recovery_is_counted_and_a_note_tells_the_first);
     RUN_TEST(test_body_that_the_engine_refuses_is_put_back_once);

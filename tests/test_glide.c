@@ -17,6 +17,7 @@ static himc_membrane *membrane;
 static himc_head head;
 static himc_error error;
 static himc_stick stick[STICKS], *sticks[STICKS] = {&stick[0], &stick[1], &stick[2], &stick[3]};
+static double mallet_radius; // 0 where points are published, or nothing may lose energy
 
 static void remake(double rate)
 {
@@ -35,6 +36,8 @@ void setUp(void)
     head.density = 0.2653 / (0.66 * 0.66);
     head.glide = 0.66 * 0.66;
     head.air = false;
+    head.uniformity = 1;
+    mallet_radius = 0.0175;
     membrane = NULL;
     remake(RATE);
 }
@@ -47,7 +50,7 @@ void tearDown(void)
 
 static void place(int i, double x, double y, double velocity, double k)
 {
-    stick[i] = (himc_stick){.head = {k, 2.54, 0, 0.030, 0.0175},
+    stick[i] = (himc_stick){.head = {k, 2.54, 0, 0.030, mallet_radius},
                             .mass = 0.030,
                             .x = x * head.radius,
                             .y = y * head.radius,
@@ -70,6 +73,7 @@ static void test_glide_of_a_struck_head_agrees_with_the_published_within_15_perc
 {
     static const double expected[4][2] = {{2, 0.8}, {4, 4.1}, {8, 18}, {12, 40}};
     head.decay_constant = 2.2; // about what the principal modes radiate
+    mallet_radius = 0;
     for (int i = 0; i < 4; i++) {
         remake(RATE);
         place(0, -0.75, 0, expected[i][0], 1.6e8);
@@ -167,6 +171,7 @@ static void test_glide_without_losses_keeps_energy_with_any_sticks(void)
 {
     double worst = 0;
     head.decay_constant = head.decay_square = 0;
+    mallet_radius = 0;
     for (int count = 1; count <= STICKS; count++) {
         for (double k = 1e6; k < 2e12; k *= 100) {
             double drift, growth;
@@ -252,21 +257,22 @@ static void ring(double velocity, double k, bool fine)
 
 static void test_glide_of_every_mode_is_that_of_steps_of_a_sample_within_half_a_cent(void)
 {
-    static double q[400], v[400];
+    static double q[1000], v[1000];
     double worst = 0;
-    head.modes = 400;
     head.decay_constant = 2.2;
     head.decay_square = 0.15e-6;
     for (double k = 1e6; k < 2e12; k *= 1000)
         for (double velocity = 2; velocity < 13; velocity *= 2.3) {
             double most = 0;
             head.radius = head.radius > 0.2 ? 0.1 : 0.328;
+            head.modes = head.radius > 0.2 ? HIMC_MODES_AUTO : 400;
             ring(velocity, k, true);
-            for (int i = 0; i < 400; i++)
+            int count = himc_membrane_audible(membrane);
+            for (int i = 0; i < count; i++)
                 himc_membrane_state(membrane, i, &q[i], &v[i]);
             ring(velocity, k, false);
             for (int pass = 0; pass < 2; pass++)
-                for (int i = 0; i < 400; i++) {
+                for (int i = 0; i < count; i++) {
                     himc_mode mode = himc_membrane_mode(membrane, i);
                     double omega = 2 * HIMC_PI * mode.frequency, got_q, got_v;
                     double part = mode.mass * (v[i] * v[i] + omega * omega * q[i] * q[i]);

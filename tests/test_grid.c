@@ -6,7 +6,7 @@
 #include "disc_mesh.h"
 #include "head/bessel.h"
 #include "drum/contact.h"
-#include "drum/drum_performer.h"
+#include "drum/drum_state.h"
 #include "drum/membrane_probe.h"
 #include "head/modes.h"
 #include "heads.h"
@@ -108,6 +108,7 @@ static void test_grid_of_a_disc_sounds_as_the_round_head_when_struck(void)
         TEST_ASSERT_TRUE(k == 1 ? shape_of("head.txt") : say(text));
         snprintf(text, sizeof text, "tension %g", TENSION);
         TEST_ASSERT_TRUE(say(text) && (k == 1 || say("density 0.26")));
+        drum->mallet.radius = 0; // a place of a grid is a point
         TEST_ASSERT_TRUE(say("strike -0.2 0.03 4"));
         himc_drum_advance(drum, 9600, NULL, NULL, NULL);
         himc_drum_read(drum, 0, 9600, sound[k], NULL);
@@ -354,7 +355,7 @@ static void test_rectangle_has_the_modes_of_a_string_in_both_directions(void)
     himc_membrane *m = himc_drum_membrane(drum);
     const himc_head *head = himc_membrane_head(m);
     double c = sqrt(head->tension / head->density), before = 0;
-    for (int i = 0; i < head->modes; i++) {
+    for (int i = 0; i < 200; i++) {
         himc_mode mode = himc_membrane_mode(m, i);
         double f = 0.5 * c * hypot(mode.m / 0.6, mode.n / 0.4);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6 * f, f, mode.frequency);

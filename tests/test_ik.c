@@ -20,14 +20,6 @@ void tearDown(void)
 {
 }
 
-static void random_state(himc_body_state *s)
-{
-    himc_pose pose;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        pose.joint[j] = himc_quat_exp(random_vector(1.5));
-    himc_pose_to_state(&skeleton, &pose, NULL, s);
-}
-
 static double distance(himc_vec3 a, himc_vec3 b)
 {
     return himc_vec3_length(himc_vec3_sub(a, b));
@@ -49,7 +41,7 @@ static void test_jacobian_is_the_difference_of_the_tip(void)
     double h = 1e-6;
     for (int n = 0; n < 100; n++) {
         himc_body_state s;
-        random_state(&s);
+        random_state(&s, 0);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             for (int c = 0; c < COLUMNS; c++) {
                 himc_arm_jacobian j;
@@ -117,7 +109,7 @@ static void test_gram_is_j_times_j_transposed(void)
         himc_body_state s;
         himc_arm_jacobian j;
         double a[3][COLUMNS];
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
         dense(&j, a);
         for (int k = 0; k < 9; k++) {
@@ -139,7 +131,7 @@ static void test_damped_least_squares_is_the_dense_solution(void)
         himc_arm_jacobian j;
         himc_vec3 e = random_vector(0.05), got[HIMC_ARM_JOINTS];
         double a[3][COLUMNS], x[COLUMNS], error[3] = {e.x, e.y, e.z}, lambda = damping[n % 3];
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_weighted(&s, (himc_hand)(n / 2 % 2), weight, &j);
         dense(&j, a);
         dense_damped(a, weight, lambda, error, x);
@@ -156,7 +148,7 @@ static void test_pseudo_inverse_reaches_the_tip_with_the_least_rotation(void)
         himc_body_state s;
         himc_arm_jacobian j;
         himc_vec3 e = random_vector(0.05), got[HIMC_ARM_JOINTS], other[HIMC_ARM_JOINTS];
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
         himc_ik_solve(&j, HIMC_SOLVER_PINV, 0, e, got);
         TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0, distance(e, himc_ik_forward(&j, got)));
@@ -221,7 +213,7 @@ static void test_transpose_step_is_the_best_along_its_direction(void)
         himc_body_state s;
         himc_arm_jacobian j;
         himc_vec3 e = random_vector(0.05), got[HIMC_ARM_JOINTS];
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_at(&s, HIMC_LEFT, &j);
         himc_ik_solve(&j, HIMC_SOLVER_TRANSPOSE, 0, e, got);
         himc_vec3 moved = himc_ik_forward(&j, got), left = himc_vec3_sub(e, moved);
@@ -256,7 +248,7 @@ static void test_selective_damping_is_the_pseudo_inverse_for_small_errors_only(v
         himc_body_state s;
         himc_arm_jacobian j;
         himc_vec3 got[HIMC_ARM_JOINTS], small = random_vector(1e-4), large = random_vector(3);
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
         himc_ik_solve(&j, HIMC_SOLVER_SDLS, 0, small, got);
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0, distance(small, himc_ik_forward(&j, got)));
@@ -279,7 +271,7 @@ static void test_elbow_comes_after_the_tip_and_before_the_posture(void)
         himc_elbow_task task;
         himc_hand hand = (himc_hand)(n % 2);
         himc_vec3 x[HIMC_ARM_JOINTS], posture[HIMC_ARM_JOINTS], e = random_vector(0.05);
-        random_state(&s);
+        random_state(&s, 0);
         int shoulder = himc_arm_joint(hand, 0) + 1, elbow = himc_arm_joint(hand, 1) + 1;
         himc_vec3 lever = himc_vec3_sub(s.origin[elbow], s.origin[shoulder]);
         himc_vec3 demand = himc_vec3_cross(random_vector(0.05), lever);
@@ -308,7 +300,7 @@ static void test_null_space_leaves_the_tip_alone_and_projects_once(void)
         himc_vec3 none[HIMC_ARM_JOINTS] = {{0, 0, 0}};
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             desired[k] = random_vector(1);
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_weighted(&s, (himc_hand)(n % 2), weights[n % 3 == 0], &j);
         himc_ik_add_null(&j, desired, got);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(himc_ik_forward(&j, got)));
@@ -331,7 +323,7 @@ static void test_release_keeps_the_allowed_remainder_and_the_tangential_motion(v
         double remain = n % 3 ? random_vector(1).x : 0;
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             x[k] = random_vector(1);
-        random_state(&s);
+        random_state(&s, 0);
         himc_arm_jacobian_at(&s, (himc_hand)(n % 2), &j);
         himc_vec3 want = himc_ik_forward(&j, x);
         want = himc_vec3_madd(want, remain - himc_vec3_dot(normal, want), normal);

@@ -30,6 +30,7 @@ void setUp(void)
 {
     head = dry_head();
     head.air = false; // a bare head is known in closed form
+    head.uniformity = 1;
     head.glide = 0;
     membrane = NULL;
     remake(RATE);

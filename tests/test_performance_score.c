@@ -130,6 +130,20 @@ static void test_repairs_of_a_take_are_told_when_it_is_loaded(void)
     himc_performance_free(p);
 }
 
+static void test_a_take_of_three_frames_is_refused(void)
+{
+    himc_performance *p = session_new();
+    FILE *file = fopen(TRC, "w");
+    fputs("PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t3\t1\tmm\n"
+          "Frame#\tTime\tR_Stick_Tip\t\t\n\n"
+          "1\t0\t500\t900\t0\n2\t0.01\t500\t910\t0\n3\t0.02\t500\t930\t0\n",
+          file);
+    fclose(file);
+    TEST_ASSERT_FALSE(session_try(p, "take " TRC));
+    TEST_ASSERT_EQUAL_STRING(TRC ": 3 frames, allowed 8 or more", error.text);
+    himc_performance_free(p);
+}
+
 static void test_units_of_a_take_without_strokes_and_too_many_units_are_refused(void)
 {
     himc_performance *p = session_new();
@@ -193,6 +207,7 @@ int main(void)
     RUN_TEST(test_a_take_in_a_score_with_strokes_is_refused_with_its_line);
     RUN_TEST(test_a_line_that_fails_when_it_is_carried_out_is_named);
     RUN_TEST(test_repairs_of_a_take_are_told_when_it_is_loaded);
+    RUN_TEST(test_a_take_of_three_frames_is_refused);
     RUN_TEST(test_units_of_a_take_without_strokes_and_too_many_units_are_refused);
     RUN_TEST(test_a_take_with_left_and_right_exchanged_is_refused);
     return UNITY_END();

@@ -119,6 +119,31 @@ static void test_loop_begins_again_on_its_whole_beat_and_ends_when_told(void)
     himc_performance_free(p);
 }
 
+// a stroke that can no longer be taken back brings its whole round with it
+static void test_loop_that_ends_just_before_a_round_plays_that_round(void)
+{
+    static const double before[] = {0.2, 0.04};
+    for (int i = 0; i < 2; i++) {
+        himc_performance *p = with_kettle();
+        heard h = {0};
+        session_do(p, "tempo 120");
+        session_do(p, "stroke 0 left legato mf");
+        session_do(p, "stroke 1 right legato mf");
+        session_do(p, "loop 1");
+        session_do(p, "play");
+        while (h.strikes < 1)
+            session_play(p, 0.01, &h);
+        session_play(p, h.strike[0].time + 1 - before[i] - himc_performance_measure(p).seconds, &h);
+        TEST_ASSERT_EQUAL_INT(2, h.strikes);
+        session_do(p, "loop 0");
+        session_play(p, 4, &h);
+        TEST_ASSERT_EQUAL_INT(2 + 2 * i, h.strikes);
+        TEST_ASSERT_EQUAL_INT(1, h.dones);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 static void test_tempo_bends_a_loop_without_losing_a_stroke(void)
 {
     himc_performance *p = with_kettle();
@@ -192,7 +217,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         {"kettle shape /no/such/grid.txt;", ":5: kettle: /no/such/grid.txt"},
         {"record /no/such/folder/x.bvh;", ":5: record: /no/such/folder/x.bvh"},
         {"stroke 1 left legato loud;", ":5: stroke: DYNAMIC: loud"},
-        {"kettle modes 0;", ":5: kettle: modes: COUNT: 0"}};
+        {"kettle modes 0;", ":5: kettle: modes: 0, allowed 1 .. 2000"}};
     himc_performance *p = with_kettle();
     char before[4096] = "", after[4096], text[400];
     session_do(p, "stroke 1 left legato mf");
@@ -350,6 +375,7 @@ int main(void)
     RUN_TEST(test_roll_of_14_a_second_is_even);
     RUN_TEST(test_roll_makes_a_crescendo_of_10_dB);
     RUN_TEST(test_loop_begins_again_on_its_whole_beat_and_ends_when_told);
+    RUN_TEST(test_loop_that_ends_just_before_a_round_plays_that_round);
     RUN_TEST(test_tempo_bends_a_loop_without_losing_a_stroke);
     RUN_TEST(test_scores_that_are_queued_follow_each_other_at_their_own_tempi);
     RUN_TEST(test_score_with_an_error_anywhere_changes_nothing);

@@ -229,6 +229,25 @@ static void test_describe_lists_contents_units_and_axes(void)
     himc_take_free(take);
 }
 
+static himc_vec3 far_to_the_left(double t)
+{
+    himc_vec3 x = left_roll(t);
+    return himc_vec3_make(x.x, 1.4, x.z);
+}
+
+static void test_describe_tells_of_strikes_too_far_apart_for_one_drum(void)
+{
+    const char *const names[2] = {"R_Stick_Tip", "L_Stick_Tip"};
+    motion *const motions[2] = {right_roll, far_to_the_left};
+    himc_take *take = read_motions("two.trc", names, motions, 250, 600);
+    told[0] = 0;
+    himc_take_describe(take, NULL, hear, NULL);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "drum: 15 strikes are more than 0.45 m from that "
+                                              "centre, but a take is played on one drum\n"),
+                                 told);
+    himc_take_free(take);
+}
+
 static void test_two_readings_of_a_file_are_equal_bit_by_bit(void)
 {
     himc_take *a = read_roll(600), *b = read_roll(600);
@@ -255,6 +274,7 @@ int main(void)
     RUN_TEST(test_a_marker_that_hardly_moves_keeps_its_unit);
     RUN_TEST(test_files_of_other_formats_are_refused);
     RUN_TEST(test_describe_lists_contents_units_and_axes);
+    RUN_TEST(test_describe_tells_of_strikes_too_far_apart_for_one_drum);
     RUN_TEST(test_two_readings_of_a_file_are_equal_bit_by_bit);
     return UNITY_END();
 }

@@ -31,6 +31,7 @@ void setUp(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
     says("air 1");
     says("tension 3528");
+    says("uniformity 1");
     says("decay 0.5 0.0000003");
 }
 
@@ -174,6 +175,7 @@ static void test_timpano_no_mode_of_the_kettle_takes_over_at_any_tuning_of_four_
         says("modes 120");
         says("air 1");
         says("decay 0.5 0.0000003");
+        says("uniformity 1");
         double most = 0;
         for (double hz = set[i].low; hz < set[i].high * 1.001; hz *= pow(2, 1 / 12.0))
             most = fmax(most, share_of_inner_circles(hz));
@@ -187,7 +189,8 @@ static void test_timpano_without_air_is_the_ideal_membrane(void)
 {
     says("air 0");
     const himc_head *head = himc_membrane_head(himc_drum_membrane(drum));
-    for (int i = 0; i < head->modes; i++) {
+    TEST_ASSERT_EQUAL_INT(-1, himc_membrane_mode(himc_drum_membrane(drum), 600).m);
+    for (int i = 0; i < 601; i++) {
         himc_mode m = himc_membrane_mode(himc_drum_membrane(drum), i);
         double ideal = m.zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12 * ideal, ideal, m.frequency);

@@ -67,17 +67,6 @@ static void random_skeleton(unsigned seed)
     }
 }
 
-static void random_state(himc_body_state *s, double spin)
-{
-    himc_pose pose;
-    himc_vec3 rate[HIMC_JOINTS];
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        pose.joint[j] = himc_quat_exp(random_vector(1.5));
-        rate[j] = random_vector(spin);
-    }
-    himc_pose_to_state(&skeleton, &pose, rate, s);
-}
-
 typedef struct blow {
     himc_vec3 force;
     int start; // step

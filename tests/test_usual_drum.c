@@ -90,10 +90,10 @@ static void test_a_drum_as_made_is_a_timpano_of_26_inches_that_sounds_d3(void)
 {
     himc_head head = himc_head_default();
     himc_membrane *membrane = himc_membrane_new(&head, RATE, &error);
-    himc_mode principal = himc_membrane_mode(membrane, 1);
-    TEST_ASSERT_EQUAL_INT(1, principal.m);
-    TEST_ASSERT_EQUAL_INT(1, principal.n);
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, 146.832, principal.frequency);
+    himc_mode low = himc_membrane_mode(membrane, 1), high = himc_membrane_mode(membrane, 2);
+    TEST_ASSERT_TRUE(low.m == 1 && low.n == 1 && high.m == 1 && high.n == 1);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 146.832, 0.5 * (low.frequency + high.frequency));
+    TEST_ASSERT_TRUE(high.frequency > low.frequency + 0.1); // it beats
     TEST_ASSERT_TRUE(head.air);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, HIMC_INCHES_USUAL * 0.0254 / 2, head.radius);
     himc_membrane_free(membrane);

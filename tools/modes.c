@@ -1,8 +1,8 @@
 /// modes.c: `himc modes`: the frequencies and decays of a drum as a score tunes it before the first
 /// stroke.
 ///
-/// The two members of a pair (cosine and sine) sound alike and are one row. T60 is the time in
-/// which a mode falls by 60 dB: ln(1000) over its decay rate.
+/// The two members of a pair (cosine and sine) are one row if they sound alike, else two. T60 is the
+/// time in which a mode falls by 60 dB: ln(1000) over its decay rate.
 #include "cli.h"
 #include "himc/drum.h"
 #include "himc/membrane.h"
@@ -54,11 +54,13 @@ static int run(const cli_arguments *arguments)
         return cli_fail(&cli_modes, "%s", error.text);
     const himc_membrane *membrane = himc_drum_membrane(drum);
     const himc_head *head = himc_membrane_head(membrane);
-    double reference = himc_membrane_principal(membrane, head);
+    double reference = himc_membrane_principal(membrane, head), frequency = 0;
     printf("m,n,frequency_hz,ratio,t60_s\n");
     for (int i = 0; himc_membrane_mode(membrane, i).mass > 0; i++) {
         himc_mode mode = himc_membrane_mode(membrane, i);
-        if (mode.m >= 0 && !mode.sine) // not the statistical ones
+        bool repeated = mode.sine && mode.frequency == frequency;
+        frequency = mode.frequency;
+        if (mode.m >= 0 && !repeated) // not the statistical ones
             printf("%d,%d,%.6f,%.6f,%.6f\n", mode.m, mode.n, mode.frequency,
                    mode.frequency / reference, log(1000) / mode.decay);
     }
@@ -74,8 +76,8 @@ const cli_call cli_modes = {
     "",
     "lists the modes of a drum: m,n,frequency_hz,ratio,t60_s",
     "The drum is the first that SCORE makes, tuned as its lines say; without SCORE the default\n"
-    "one of 26 inches. One row for each pair of nodal diameters m and circles n; the ratio is to\n"
-    "the principal mode (1,1).",
+    "one of 26 inches. One row for each pair of nodal diameters m and circles n, or two where an\n"
+    "uneven head splits it; the ratio is to the principal mode (1,1).",
     options,
     run,
 };

@@ -130,6 +130,9 @@ HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
 HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT",
                  "sets how much the tension rises as the head bows out")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT", "lays a hand on the head")
+HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
+                 "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
+                 "split and beat, each seed in its own way")
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, "circle | rectangle LENGTH WIDTH | FILE",
     "makes a head of another outline, or one of up to 800 masses on springs from a file")

@@ -28,19 +28,23 @@ typedef struct himc_head {
     double kettle;         ///< volume under it (m^3), half to twice the usual; 0 is the usual
     double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's
     double damp;           ///< a hand on the head: 0 none .. 1 dead at once
+    double uniformity;     ///< of the lugs' tension, 0 (2 % off) .. 1 even; of round heads only
+    int uniformity_seed;   ///< which lugs are off, 0 .. HIMC_SEED_MAX
 } himc_head;
 
 /// As `modes` of a head: on a round head 209 exact modes, up to about 1.6 kHz on a timpano, and 392
 /// statistical ones for all others up to 8 kHz and more; on others 200, or as many as it has.
 #define HIMC_MODES_AUTO 0
 
-/// One mode of the list. Modes with m > 0 come as a pair of equal frequency: cosine, then sine. If
-/// the list ends within a pair, it has the cosine, which is the one that a blow on the x axis
-/// excites.
+/// One mode of the list. Modes with m > 0 come as a pair: cosine, then sine. On an even head their
+/// frequency is equal; else the sine's is higher, and each order m has an axis of its own. If the
+/// list ends within a pair, it has the cosine, which on an even head is the one that a blow on the x
+/// axis excites.
 typedef struct himc_mode {
     int m; ///< nodal diameters; of a rectangle half waves along x; of a grid 0; statistical: -1
     int n; ///< nodal circles with the rim; half waves along y; of a grid or statistical 1, 2, ...
-    bool sine;        ///< the second one of a pair: sin(m azimuth) in place of cos(m azimuth)
+    bool sine;        ///< the second one of a pair: sin(m (azimuth - axis)) in place of cos
+    double axis;      ///< (rad), 0 on an even head
     double zero;      ///< j_mn; of other outlines its counterpart, wave number times radius
     double norm;      ///< integral of phi^2 over the head, per pi a^2
     double frequency; ///< undamped (Hz)
@@ -55,7 +59,7 @@ typedef struct himc_mode {
 #define HIMC_DAMP 69.0
 
 /// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
-/// 200 modes.
+/// HIMC_MODES_AUTO, lugs 1.4 % off (uniformity 0.3).
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
@@ -173,19 +177,23 @@ HIMC_RT void himc_membrane_state(const himc_membrane *membrane, int index, doubl
 /// Brings the head to rest; the sound ends in 5 ms.
 HIMC_RT void himc_membrane_rest(himc_membrane *membrane);
 
-// Contact: a mallet against a head, Hertz's law with loss, solved passively sample by sample.
+// Contact: a mallet against a head, solved passively sample by sample.
 //
-// F = k c^alpha (1 + mu c') for c > 0 (2012 paper, equation 6; Hunt and Crossley 1975). The step is
+// F = f (1 + mu c') + tau df/dt, f = k c^alpha + k_2 (c - 3 mm)^2.5, each term for a positive base
+// (k, alpha: 2012 paper, equation 6; mu: Hunt and Crossley 1975; tau: Stulov 1995). F presses on a
+// patch of the head, whose radius follows from the mallet's at the speed of the blow. The step is
 // exact for the modes and gives back just the contact's potential energy, so energy never grows,
 // whatever k.
 
 /// The head of a stick.
 typedef struct himc_mallet_head {
-    double stiffness; ///< k (N/m^alpha)
-    double exponent;  ///< alpha, without unit
-    double loss;      ///< mu (s/m)
-    double mass;      ///< of a free mallet (kg)
-    double radius;    ///< (m)
+    double stiffness;  ///< k (N/m^alpha)
+    double exponent;   ///< alpha, without unit
+    double loss;       ///< mu (s/m)
+    double mass;       ///< of a free mallet (kg)
+    double radius;     ///< (m); 0 touches the head at a point
+    double relaxation; ///< tau (s)
+    double core;       ///< k_2 (N/m^2.5), 0 for none
 } himc_mallet_head;
 
 /// A stick's end, moving along the head's normal. Heights are above the head at rest, less the
@@ -206,16 +214,21 @@ typedef struct himc_stick {
     double velocity;       ///< up positive (m/s); the step changes it
     bool one_way; ///< the stick meets a head at rest; the head's vibration does not push back
 
-    double force;       ///< mean of the last sample (N, >= 0, on the stick upwards)
-    bool touching;      ///< c > 0 after the last sample
-    double contact_x;   ///< x of the point of first contact, while touching (m)
-    double contact_y;   ///< y of it (m)
-    double dent;        ///< displacement of the head there after the last sample (m)
-    double compression; ///< c after the last sample (m, negative: a gap)
-    double peak;        ///< largest force of this contact (N)
-    unsigned contacts;  ///< begun so far, chatter counted once
-    double chatter;     ///< a force within this time (s) belongs to the same contact
-    double impact;      ///< downward velocity at the beginning of the contact (m/s)
+    double force;          ///< mean of the last sample (N, >= 0, on the stick upwards)
+    bool touching;         ///< c > 0 after the last sample
+    double contact_x;      ///< x of the point of first contact, while touching (m)
+    double contact_y;      ///< y of it (m)
+    double dent;           ///< displacement of the head there after the last sample (m)
+    double compression;    ///< c after the last sample (m, negative: a gap)
+    double peak;           ///< largest force of this contact (N)
+    unsigned contacts;     ///< begun so far, chatter counted once
+    double chatter;        ///< a force within this time (s) belongs to the same contact
+    double impact;         ///< downward velocity at the beginning of the contact (m/s)
+    double patch;          ///< radius of the disc of the head that it presses in this blow (m)
+    double residual_root;  ///< of the compliance that the head has beside its modes ((m/N)^1/2)
+    double residual_omega; ///< frequency of that (rad/s)
+    double residual_x;     ///< its state: it adds residual_root residual_x to the displacement ...
+    double residual_y;     ///< ... and has (residual_x^2 + residual_y^2)/2 of energy (J^1/2)
 } himc_stick;
 
 #define HIMC_STICKS 8 ///< of a performer at one head; its own mallets are as many; chosen

@@ -102,18 +102,19 @@ typedef struct film {
 
 struct himc_bank {
     const himc_bank_kernel *loops;
-    int capacity;  // a multiple of LANES
-    int count;     // oscillators that are not silent
-    int live;      // of these, the first `live` (a multiple of LANES) are not at rest
-    int age;       // samples since the last search for quiet oscillators
-    uint64_t pass; // number of the present pass
-    int at;        // samples that have passed in it
-    int length;    // of the present pass; 0 before it begins
-    uint64_t part; // number of the film's present step
-    int low;       // the first `low` oscillators make the film's steps, the others the pass
-    int step_at;   // samples that have passed in the film's step
-    int step;      // its length
-    bool forced;   // a force has acted: the next step is a single sample
+    int capacity;   // a multiple of LANES
+    int count;      // oscillators that are not silent
+    int live;       // of these, the first `live` (a multiple of LANES) are not at rest
+    int age;        // samples since the last search for quiet oscillators
+    uint64_t pass;  // number of the present pass
+    int at;         // samples that have passed in it
+    int length;     // of the present pass; 0 before it begins
+    int whole_pass; // length of a pass that no force ends
+    uint64_t part;  // number of the film's present step
+    int low;        // the first `low` oscillators make the film's steps, the others the pass
+    int step_at;    // samples that have passed in the film's step
+    int step;       // its length
+    bool forced;    // a force has acted: the next step is a single sample
     double *memory;
     double *p, *s;          // state at the start of the pass
     rotation power[POWERS]; // of 2^k samples
@@ -188,6 +189,7 @@ himc_bank *himc_bank_new(int capacity, himc_error *error)
     *bank = (himc_bank){.loops = himc_bank_kernel_fastest(),
                         .capacity = capacity,
                         .pass = 1,
+                        .whole_pass = PASS,
                         .memory = memory,
                         .substeps = 1};
     share_memory(bank);
@@ -644,7 +646,7 @@ static void look_ahead(himc_bank *bank, himc_readout *readout)
 {
     if (readout->pass != bank->pass) {
         memset(readout->ahead, 0, sizeof readout->ahead);
-        add_waves(bank, readout, bank->low, bank->live, 0, PASS, readout->ahead);
+        add_waves(bank, readout, bank->low, bank->live, 0, bank->length, readout->ahead);
         readout->pass = bank->pass;
         readout->part = 0;
     }
@@ -769,8 +771,8 @@ static void begin_pass(himc_bank *bank)
         tidy(bank);
     if (f->on && (due || f->moved))
         anchor(bank);
-    bank->length = PASS;
-    bank->step = f->on ? steps[f->level] : PASS;
+    bank->length = bank->whole_pass;
+    bank->step = f->on && steps[f->level] < bank->length ? steps[f->level] : bank->length;
     bank->low = f->on ? coupled(bank) : 0;
 }
 
@@ -835,6 +837,21 @@ void himc_bank_push(himc_bank *bank, const double *shape, double force)
         slacken(bank);
     bank->film.on = bank->film.moved = bank->film.set;
     bank->loops->push(bank->p, bank->s, bank->push.p, bank->push.s, shape, force, bank->live);
+}
+
+void himc_bank_set_pass(himc_bank *bank, int samples)
+{
+    bank->whole_pass = samples;
+}
+
+void himc_bank_kick(himc_bank *bank, int index, double change)
+{
+    if (index >= bank->count)
+        return;
+    arrive(bank);
+    bank->s[index] += change;
+    if (index >= bank->live)
+        bank->live = (int)round_up((size_t)index + 1, LANES);
 }
 
 void himc_bank_step_response(const himc_bank *bank, const himc_readout *readout, double *response)

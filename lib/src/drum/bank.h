@@ -93,6 +93,12 @@ HIMC_RT double himc_bank_film(const himc_bank *bank);
 /// After a step was run: adds the effect of `force` (N) during that step, spread over the
 /// oscillators by the weights `shape` (padded).
 HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);
+/// Length of a pass that no force ends: 8, 16, 32 or HIMC_BANK_PASS samples, as at first. Kicks in
+/// such intervals cost least.
+HIMC_RT void himc_bank_set_pass(himc_bank *bank, int samples);
+/// Between two samples: adds `change` (m/s) to the velocity of one oscillator; no effect on a silent
+/// one.
+HIMC_RT void himc_bank_kick(himc_bank *bank, int index, double change);
 /// Value of `readout` at the end of a step per newton through `shape` (padded) during it. For a
 /// readout of the displacement at a and the shape at b this is the compliance sum phi_a phi_b b1
 /// (m/N).

@@ -43,7 +43,7 @@ typedef struct himc_bank_kernel {
     /// sum (rp p + rs s)
     double (*read)(const double *rp, const double *rs, const double *p, const double *s,
                    int length);
-    /// adds samples 1 .. n to `out`, n being 8, 16 or HIMC_BANK_PASS
+    /// adds samples 1 .. n to `out`, n being 8, 16, 32 or HIMC_BANK_PASS
     void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
 } himc_bank_kernel;
 

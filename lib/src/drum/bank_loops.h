@@ -117,7 +117,7 @@ TARGET static double NAMED(read)(const double *rp, const double *rs, const doubl
 }
 
 // Two oscillators at a time, one part of the eight samples after the other: so the sums of a whole
-// pass stay in registers. `eights` is a constant in each of the three calls.
+// pass stay in registers. `eights` is a constant in each of the four calls.
 TARGET static inline __attribute__((always_inline)) void
 NAMED(look)(const himc_bank_waves *waves, int length, int eights, double *out)
 {
@@ -160,6 +160,8 @@ TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, int n,
         NAMED(look)(waves, length, 1, out);
     else if (n == 2 * HIMC_BANK_LANES)
         NAMED(look)(waves, length, 2, out);
+    else if (n == 4 * HIMC_BANK_LANES)
+        NAMED(look)(waves, length, 4, out);
     else
         NAMED(look)(waves, length, HIMC_BANK_PASS / HIMC_BANK_LANES, out);
 }

@@ -1,13 +1,11 @@
 /// contact.c: one sample of head and sticks.
 ///
-/// One pair. Over a step of length h the compression goes from c0 to c0 + r and the force is
-/// constant,
-///     F(r) = max(0, (V(c0 + r) - V(c0)) (1/r + mu/h)),    V(c) = k c^(alpha+1)/(alpha+1),
-/// so its elastic part does exactly the work V(c0 + r) - V(c0), and the rest only takes energy (V
-/// does not decrease). The bodies respond linearly: r = b - G F(r). V is convex, so F does not
-/// decrease with r: the residual r - b + G F(r) of one pair rises with slope >= 1 and has one root,
-/// between b - G F(b) and b; Newton steps kept inside that bracket find it. (Discrete gradient:
-/// Chatziioannou & van Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
+/// One pair. Over a step of length h the compression goes from c0 to c0 + r and the force F(r) is
+/// constant (felt.c). Its elastic part does exactly the work V(c0 + r) - V(c0), the rest only takes
+/// energy, and F does not decrease with r. The bodies respond linearly: r = b - G F(r). So the
+/// residual r - b + G F(r) of one pair rises with slope >= 1 and has one root, between b - G F(b)
+/// and b; Newton steps kept inside that bracket find it. (Discrete gradient: Chatziioannou & van
+/// Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
 ///
 /// Several pairs on one head. The residual is G times the gradient of the strictly convex
 ///     Psi(r) = (r - b)' G^-1 (r - b)/2 + sum_i int F_i dr_i,
@@ -16,14 +14,19 @@
 /// The sample. All forces are constant over a step; the head's modes respond exactly (bank.c), a
 /// stick of mass M as a free body:
 ///     free head and sticks: d_f, x_f;  c0 = d - x before;  b = (d_f - x_f) - c0;
-///     G_ij = sum_modes phi_i phi_j b1 + (i = j) h^2/(2 M_i);
+///     G_ij = sum_modes phi_i phi_j b1 + (i = j) (C_res (1 - a11) + h^2/(2 M_i));
 ///     solve r = b - G F(r);  push the head by -F, the sticks by F.
 /// The film's stretching acts between two steps (bank.c), so it is not in these equations.
 ///
-/// Passivity. With E the energy of head, sticks and contacts, E' - E = work of the sticks' own
-/// acceleration - losses of the modes - sum mu (V(c1) - V(c0)) r/h <= that work: a linear passive
-/// body under constant force gains just force times displacement, and the forces' work on head and
-/// sticks together is -F r. No step size restricts it.
+/// The size. phi is a mode's mean over the patch that the mallet covers, and d has one silent
+/// oscillator more for each stick, which yields as the modes do that the list lacks (patch.c). The
+/// patch's radius is found while a stick comes down onto the head and holds for the blow; the
+/// oscillator begins at rest. Then neither changes what is stored, as V = 0.
+///
+/// Passivity. With E the energy of head, sticks, contacts and their oscillators, E' - E = work of
+/// the sticks' own acceleration - losses of the modes - losses of the felt <= that work: a linear
+/// passive body under constant force gains just force times displacement, and the forces' work on
+/// head and sticks together is -F r. No step size restricts it.
 ///
 /// Wood meets the head in a spike of a few samples, of which steps of 1/48000 s make 3 % less. So
 /// while a stiff mallet is near, a sample is divided into substeps of 5 microseconds (the head's
@@ -39,31 +42,33 @@
 /// F_s = k_s c^alpha, c = d - x, k_s proportional to the largest F_m so far (2012 paper, equation
 /// 6). When the stick has left, F_m = 0 and F_s with it.
 #include "drum/contact.h"
+#include "drum/felt.h"
 #include "drum/strike_point.h"
 
 #include <math.h>
 #include <string.h>
 
 #define MAX_PAIRS (2 * HIMC_STICKS)
-#define NEWTON_STEPS 60       // chosen: bisection alone converges in them
-#define LINE_STEPS 30         // halvings of a line search; chosen
-#define ROUNDING 4e-16        // relative; two units in the last place of a double
-#define SMALL_STEP 1e-3       // r per compression below which a series replaces the difference
-#define CHATTER 0.0015        // (s) forces less than this apart are one contact; chosen
-#define STIFF_FORCE 100.0     // (N) at 1 mm, from which substeps are needed; hard has 32, wood 316
-#define REACH_ROUNDING 1e-6   // (m) allowance in an estimate of future heights
+#define NEWTON_STEPS 60     // chosen: bisection alone converges in them
+#define LINE_STEPS 30       // halvings of a line search; chosen
+#define ROUNDING 4e-16      // relative; two units in the last place of a double
+#define CHATTER 0.0015      // (s) forces less than this apart are one contact; chosen
+#define STIFF_FORCE 100.0   // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
+#define CLOSE 0.001         // (m) nearer than this and two steps, a stick's patch is found; chosen
+#define REACH_ROUNDING 1e-6 // (m) allowance in an estimate of future heights
 #define HEIGHT_ROUNDING 1e-12 // (m) of a height that is computed again by the caller
 #define REGULAR 1e-12         // of a compliance, added for a one-way stick, ...
 #define REGULAR_LEAST 1e-30   // ... (m/N) at least: so G is regular with two sticks at one point
 
 // the pair of a stick's head and the drumhead during one step
 typedef struct contact_pair {
-    double k, alpha, mu; // F = k c^alpha (1 + mu c')
-    double c0;           // compression before (m, negative: a gap)
-    double b;            // change without force (m)
-    double guess;        // of the force (N)
-    double force;        // result (N)
-    double potential0;   // V(c0) (J), set by the solver
+    const himc_mallet_head *head;
+    double scale; // of its forces
+    double c0;    // compression before (m, negative: a gap)
+    double b;     // change without force (m)
+    double guess; // of the force (N)
+    double force; // result (N)
+    felt felt;    // at c0, set by the solver
 } contact_pair;
 
 // a stick near the head in this sample
@@ -71,50 +76,15 @@ typedef struct near_stick {
     himc_stick *stick;
     strike_point *point;
     double before; // displacement of the head there (m)
+    himc_residual_step residual;
 } near_stick;
-
-// V(c) (J)
-static double potential(double k, double alpha, double c)
-{
-    return c > 0 ? k * pow(c, alpha + 1) / (alpha + 1) : 0;
-}
-
-// (V(c0 + r) - V(c0))/r and its derivative
-static double gradient(const contact_pair *m, double r, double *slope)
-{
-    double c1 = m->c0 + r, mid = m->c0 + 0.5 * r;
-    *slope = 0;
-    if (c1 <= 0 && m->c0 <= 0)
-        return 0;
-    // small steps, where the difference would cancel: V' at the midpoint and its second derivative
-    // are exact to (r/mid)^4
-    if (fabs(r) < SMALL_STEP * mid) {
-        double force = m->k * pow(mid, m->alpha), t = r / mid;
-        *slope = 0.5 * m->alpha * force / mid;
-        return force * (1 + m->alpha * (m->alpha - 1) / 24 * t * t);
-    }
-    double force1 = c1 > 0 ? m->k * pow(c1, m->alpha) : 0;
-    double mean = (force1 * fmax(c1, 0) / (m->alpha + 1) - m->potential0) / r;
-    *slope = (force1 - mean) / r;
-    return mean;
-}
-
-static double force_of(const contact_pair *m, double r, double h, double *slope)
-{
-    double change, mean = gradient(m, r, &change), loss = 1 + m->mu * r / h;
-    *slope = change * loss + mean * m->mu / h;
-    if (mean * loss > 0)
-        return mean * loss;
-    *slope = 0;
-    return 0;
-}
 
 static void solve_one(contact_pair *m, double g, double h)
 {
-    double slope, high = m->b, low = m->b - g * force_of(m, m->b, h, &slope);
+    double slope, high = m->b, low = m->b - g * himc_felt_force(&m->felt, m->b, h, &slope);
     double r = fmin(fmax(m->b - g * m->guess, low), high);
     for (int i = 0; i < NEWTON_STEPS; i++) {
-        m->force = force_of(m, r, h, &slope);
+        m->force = himc_felt_force(&m->felt, r, h, &slope);
         double residual = r - m->b + g * m->force;
         if (residual > 0)
             high = r;
@@ -173,7 +143,7 @@ static bool evaluate(search *s)
 {
     bool done = true;
     for (int i = 0; i < s->n; i++)
-        s->force[i] = force_of(&s->m[i], s->r[i], s->h, &s->slope[i]);
+        s->force[i] = himc_felt_force(&s->m[i].felt, s->r[i], s->h, &s->slope[i]);
     for (int i = 0; i < s->n; i++) {
         double pushed = 0;
         for (int j = 0; j < s->n; j++)
@@ -257,11 +227,12 @@ static void solve_pairs(contact_pair *pairs, int count, double (*g)[MAX_PAIRS], 
     for (int i = 0; i < count; i++) {
         contact_pair *m = &pairs[i];
         m->force = 0;
-        m->potential0 = potential(m->k, m->alpha, m->c0);
         apart = apart && m->c0 <= 0 && m->c0 + m->b <= 0;
     }
     if (apart)
         return;
+    for (int i = 0; i < count; i++)
+        pairs[i].felt = himc_felt_at(pairs[i].head, pairs[i].scale, pairs[i].c0);
     if (count == 1)
         solve_one(pairs, g[0][0], h);
     else
@@ -288,6 +259,7 @@ void himc_stick_fly(himc_stick *stick, double h)
     stick->velocity += h * stick->acceleration;
     stick->force = 0;
     stick->peak = 0;
+    stick->residual_x = stick->residual_y = 0; // no blow lasts so long
 }
 
 static bool within_reach(const himc_stick *stick, double h)
@@ -340,9 +312,8 @@ static void hold_point(himc_stick *stick, bool touching)
 static void strike_rigid(himc_stick *stick, double h)
 {
     double g[1][MAX_PAIRS] = {{0.5 * h * h / stick->mass}};
-    contact_pair m = {.k = stick->head.stiffness,
-                      .alpha = stick->head.exponent,
-                      .mu = stick->head.loss,
+    contact_pair m = {.head = &stick->head,
+                      .scale = 1,
                       .c0 = -stick->height,
                       .b = -h * (stick->velocity + 0.5 * h * stick->acceleration),
                       .guess = stick->force};
@@ -351,20 +322,32 @@ static void strike_rigid(himc_stick *stick, double h)
     hold_point(stick, stick->height < 0);
 }
 
+// displacement of the head under a stick, with what its residual oscillator adds
+static double displacement(const himc_membrane *m, const himc_stick *s, strike_point *point)
+{
+    return himc_strike_point_displacement(m, point) + s->residual_root * s->residual_x;
+}
+
+// a step of a stick's residual oscillator without force
+static void swing(const near_stick *n)
+{
+    const himc_residual_step *r = &n->residual;
+    himc_stick *s = n->stick;
+    double x = s->residual_x;
+    s->residual_x = r->stay * x + r->turn * s->residual_y;
+    s->residual_y = r->back * s->residual_y - r->turn * x;
+}
+
 // The pair of one stick and the head. A one-way stick has moved already, from `from` to its height.
 static contact_pair make_pair(const himc_membrane *m, const near_stick *n, double from, double h)
 {
     const himc_stick *s = n->stick;
     double to = s->one_way ? s->height : from + h * (s->velocity + 0.5 * h * s->acceleration);
-    double k = s->head.stiffness * (s->one_way ? s->peak / HIMC_ONE_WAY_FORCE : 1);
-    if (s->one_way && s->force == 0)
-        k = 0;
-    return (contact_pair){.k = k,
-                          .alpha = s->head.exponent,
-                          .mu = s->head.loss,
+    double scale = !s->one_way ? 1 : s->force > 0 ? s->peak / HIMC_ONE_WAY_FORCE : 0;
+    return (contact_pair){.head = &s->head,
+                          .scale = scale,
                           .c0 = n->before - from,
-                          .b =
-                              himc_strike_point_displacement(m, n->point) - n->before - (to - from),
+                          .b = displacement(m, s, n->point) - n->before - (to - from),
                           .guess = s->one_way ? 0 : s->force};
 }
 
@@ -374,12 +357,22 @@ static void find_compliances(const himc_membrane *m, const near_stick *near, int
 {
     for (int i = 0; i < count; i++) {
         const himc_stick *s = near[i].stick;
-        double at_point = himc_strike_point_compliance(m, near[i].point, near[i].point);
+        double at_point = himc_strike_point_compliance(m, near[i].point, near[i].point) +
+                          (1 - near[i].residual.stay) * s->residual_root * s->residual_root;
         double own = s->one_way ? REGULAR * at_point + REGULAR_LEAST : 0.5 * h * h / s->mass;
         g[i][i] = at_point + own;
         for (int j = 0; j < i; j++)
             g[i][j] = g[j][i] = himc_strike_point_compliance(m, near[i].point, near[j].point);
     }
+}
+
+// pushes the head under a stick, and its residual oscillator
+static void push_head(himc_membrane *m, const near_stick *n, double force)
+{
+    himc_stick *s = n->stick;
+    himc_strike_point_apply(m, n->point, -force);
+    s->residual_x -= (1 - n->residual.stay) * s->residual_root * force;
+    s->residual_y -= n->residual.turn * s->residual_root * force;
 }
 
 // solves the sticks near the head
@@ -393,6 +386,7 @@ static void step_near(himc_membrane *membrane, const near_stick *near, int count
         from[i] = s->height;
         if (s->one_way)
             strike_rigid(s, h);
+        swing(&near[i]);
         pairs[i] = make_pair(membrane, &near[i], from[i], h);
         apart = apart && pairs[i].c0 <= 0 && pairs[i].c0 + pairs[i].b <= 0;
     }
@@ -404,7 +398,7 @@ static void step_near(himc_membrane *membrane, const near_stick *near, int count
         // the path of a one-way stick is rigid: the force is limited to that of the motion
         if (s->one_way)
             pairs[i].force = fmin(pairs[i].force, s->force);
-        himc_strike_point_apply(membrane, near[i].point, -pairs[i].force);
+        push_head(membrane, &near[i], pairs[i].force);
         if (!s->one_way)
             move(s, pairs[i].force, h);
     }
@@ -421,6 +415,34 @@ static void keep_compression(himc_stick *s, double before)
         s->height = surface - most;
 }
 
+// The strike point under a stick. Until a blow has begun, its patch is that of a blow as fast as
+// the stick comes down; it is found anew in the last two steps.
+static strike_point *point_under(himc_membrane *m, himc_stick *s, double h)
+{
+    double x = s->touching ? s->contact_x : s->x, y = s->touching ? s->contact_y : s->y;
+    strike_point *point = himc_membrane_strike_point(m, x, y, s->patch);
+    if (s->touching || s->chatter > 0)
+        return point;
+    double speed = fmax(-s->velocity, 0), last = 2 * h * speed;
+    double gap = s->height - (s->one_way ? 0 : himc_strike_point_displacement(m, point));
+    if (gap > CLOSE + last)
+        s->patch = 0;
+    else if (s->patch == 0 || !(gap > last))
+        s->patch = himc_patch_radius(himc_membrane_head(m), &s->head, s->mass, hypot(x, y), speed);
+    point = himc_membrane_strike_point(m, x, y, s->patch);
+    himc_residual residual = himc_strike_point_residual(point);
+    s->residual_root = residual.root;
+    s->residual_omega = residual.omega;
+    s->residual_x = s->residual_y = 0;
+    return point;
+}
+
+void himc_stick_put(himc_membrane *membrane, himc_stick *stick)
+{
+    stick->height = 0;
+    stick->height = displacement(membrane, stick, point_under(membrane, stick, 0));
+}
+
 // a step of length h: a sample or a substep
 static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, double h)
 {
@@ -433,18 +455,18 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
             himc_stick_fly(s, h);
             continue;
         }
-        double x = s->touching ? s->contact_x : s->x, y = s->touching ? s->contact_y : s->y;
-        strike_point *point = himc_membrane_strike_point(membrane, x, y);
-        double before = himc_strike_point_displacement(membrane, point);
+        strike_point *point = point_under(membrane, s, h);
+        double before = displacement(membrane, s, point);
         keep_compression(s, before);
-        near[near_count++] = (near_stick){s, point, before};
+        himc_residual residual = {s->residual_root, s->residual_omega};
+        near[near_count++] = (near_stick){s, point, before, himc_residual_in(&residual, h)};
     }
     himc_membrane_free_step(membrane);
     if (near_count > 0)
         step_near(membrane, near, near_count, h);
     for (int i = 0; i < near_count; i++) {
         himc_stick *s = near[i].stick;
-        s->dent = himc_strike_point_displacement(membrane, near[i].point);
+        s->dent = displacement(membrane, s, near[i].point);
         s->compression = (s->one_way ? 0 : s->dent) - s->height;
         if (!s->one_way)
             hold_point(s, s->compression > 0);
@@ -480,6 +502,7 @@ void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int c
 
 double himc_contact_energy(const himc_stick *stick)
 {
-    return 0.5 * stick->mass * stick->velocity * stick->velocity +
-           potential(stick->head.stiffness, stick->head.exponent, stick->compression);
+    felt pressed = himc_felt_at(&stick->head, 1, stick->compression);
+    return 0.5 * stick->mass * stick->velocity * stick->velocity + himc_felt_potential(&pressed) +
+           0.5 * (stick->residual_x * stick->residual_x + stick->residual_y * stick->residual_y);
 }

@@ -14,8 +14,12 @@ HIMC_RT int himc_contact_clear(const himc_membrane *membrane, himc_stick *const 
 /// of reach.
 HIMC_RT void himc_stick_fly(himc_stick *stick, double h);
 
-/// Energy in a stick and its contact after its last sample: m v^2/2 + k c^(alpha+1)/(alpha+1) (J);
-/// gravity not counted.
+/// Puts a stick that touches nothing onto the head as it is now: the height of the surface under
+/// its patch.
+HIMC_RT void himc_stick_put(himc_membrane *membrane, himc_stick *stick);
+
+/// Energy in a stick and its contact after its last sample (J): m v^2/2, the felt's V(c) and that of
+/// the residual oscillator; gravity not counted.
 HIMC_RT double himc_contact_energy(const himc_stick *stick);
 
 #endif

@@ -53,6 +53,15 @@ static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc
     return drum;
 }
 
+// of uneven lugs: another for another name (G. Fowler, L. C. Noll & K.-P. Vo: FNV-1a)
+static int seed_of(const char *name)
+{
+    uint32_t hash = 2166136261u;
+    for (; *name; name++)
+        hash = (hash ^ (unsigned char)*name) * 16777619u;
+    return (int)(hash % ((uint32_t)HIMC_SEED_MAX + 1));
+}
+
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error)
 {
     if (strlen(name) >= HIMC_NAME_SIZE) {
@@ -69,6 +78,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
         return NULL;
     himc_head head = himc_head_default();
     head.radius = inches * METRES_PER_INCH / 2;
+    head.uniformity_seed = seed_of(name);
     himc_head_frame place = {.center = FIRST_PLACE, .radius = head.radius};
     return drum_new(name, himc_membrane_new(&head, sample_rate, error), &place, error);
 }

@@ -13,19 +13,36 @@
 // chosen: a room; larger numbers are mistakes of unit
 #define FARTHEST_PLACE 10.0 // on each axis (m)
 
-// Felt after Rhaouti, Chaigne & Joly 1999 (medium); the others span an open drum engine's range. A
-// softer felt loses more. The head of a free stick and the part that moves with it are about 30 g.
+// Stiffness and exponent of medium felt after Rhaouti, Chaigne & Joly 1999, the hard one's from an
+// open drum engine's range. The rest is chosen: a softer felt is heavier and loses more; the soft
+// one's core nearly doubles the centroid of its sound from pp to ff; wood is as light and narrow as
+// makes its contact last the 5 ms of a wooden stick's (3 to 6 ms: Wagner 2006). Medium felt of
+// Rhaouti's 28 g touches so long that the highest notes of a 23 inch drum fall into the first gap of
+// its pulse's spectrum, and (2,1) is louder than (1,1).
 // In the order of the words of `mallet`.
 static const himc_mallet_head presets[] = {
-    [DRUM_MALLET_SOFT] =
-        {.stiffness = 1e7, .exponent = 2.54, .loss = 0.15, .mass = 0.030, .radius = 0.0175},
-    [DRUM_MALLET_MEDIUM] =
-        {.stiffness = 1.6e8, .exponent = 2.54, .loss = 0.10, .mass = 0.030, .radius = 0.0175},
-    [DRUM_MALLET_HARD] =
-        {.stiffness = 1e9, .exponent = 2.5, .loss = 0.05, .mass = 0.030, .radius = 0.0175},
+    [DRUM_MALLET_SOFT] = {.stiffness = 1e7,
+                          .exponent = 2.54,
+                          .mass = 0.035,
+                          .radius = 0.017,
+                          .relaxation = 0.3e-3,
+                          .core = 1e8},
+    [DRUM_MALLET_MEDIUM] = {.stiffness = 1.6e8,
+                            .exponent = 2.54,
+                            .mass = 0.026,
+                            .radius = 0.017,
+                            .relaxation = 0.2e-3,
+                            .core = 1e9},
+    [DRUM_MALLET_HARD] = {.stiffness = 1e10,
+                          .exponent = 2.54,
+                          .mass = 0.026,
+                          .radius = 0.017,
+                          .relaxation = 0.15e-3},
     [DRUM_MALLET_WOOD] =
-        {.stiffness = 1e10, .exponent = 2.5, .loss = 0.02, .mass = 0.030, .radius = 0.0175},
+        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 0.1e-3},
 };
+
+#define OWN_RADIUS 0.0175 // (m) of a mallet given by numbers; chosen: a usual felt's
 
 void himc_drum_take_mallet(himc_drum *drum, drum_mallet_preset preset)
 {
@@ -82,6 +99,20 @@ static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
     return set_field(drum, c, offsetof(himc_head, damp), error);
 }
 
+// other heads have no pairs to split
+static bool do_uniformity(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    bool round = himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE;
+    head.uniformity = number(c, 0);
+    if (c->count == 2)
+        head.uniformity_seed = (int)number(c, 1);
+    if (head.uniformity < 1 && !round)
+        return himc_error_set(error, "uniformity: %.6g, allowed 1 on a head that is not round",
+                              head.uniformity);
+    return set_head(drum, &head, error);
+}
+
 static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_head head = *himc_membrane_head(drum->membrane);
@@ -117,8 +148,10 @@ static bool do_mallet(himc_drum *drum, const himc_command *c, himc_error *error)
     enum { PRESET, NUMBERS };
     (void)error;
     if (c->form == NUMBERS) {
-        drum->mallet =
-            (himc_mallet_head){number(c, 0), number(c, 1), 0, number(c, 2), drum->mallet.radius};
+        drum->mallet = (himc_mallet_head){.stiffness = number(c, 0),
+                                          .exponent = number(c, 1),
+                                          .mass = number(c, 2),
+                                          .radius = OWN_RADIUS};
         drum->mallet_name = (himc_word){"own"};
     } else {
         himc_drum_take_mallet(drum, (drum_mallet_preset)c->choice[0]);
@@ -303,11 +336,11 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
     double principal = himc_membrane_principal(drum->membrane, head);
     snprintf(text, size,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
-             "%d modes (%d audible), "
+             "%d modes (%d audible), uniformity %.3g, seed %d, "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
              drum->name, head->radius, head->tension, head->density, principal,
              himc_membrane_modes(drum->membrane), himc_membrane_audible(drum->membrane),
-             drum->mallet_name.text,
+             head->uniformity, head->uniformity_seed, drum->mallet_name.text,
              himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, p->center.x,
              p->center.y, p->center.z);
 }

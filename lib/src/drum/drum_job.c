@@ -176,6 +176,7 @@ static void copy_leader(follow_job *j)
 {
     himc_membrane_form_free(&j->form);
     j->form = himc_membrane_form_of(j->leader);
+    j->form.shares = false; // no other head is near the follower
     j->form.rate = himc_membrane_rate(j->follower);
 }
 

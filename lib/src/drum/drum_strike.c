@@ -10,6 +10,7 @@
 /// contact is over and its force known. So an onset has the position, the velocity, and the pitch
 /// to which the head is tuned. Contact, head and body are the same with every technique; the head's
 /// own sound goes off in 10 ms, and comes back, as far as the head still vibrates, with `modal`.
+#include "drum/contact.h"
 #include "drum/drum_state.h"
 
 #include <math.h>
@@ -88,8 +89,8 @@ static void launch(himc_drum *drum, drum_mallet *m, const drum_waiting *w)
                             .mass = drum->mallet.mass,
                             .x = w->x,
                             .y = w->y,
-                            .height = himc_membrane_displacement(drum->membrane, w->x, w->y),
                             .velocity = -w->velocity};
+    himc_stick_put(drum->membrane, &m->stick);
     m->report = (himc_contact_report){.x = w->x, .y = w->y, .velocity = w->velocity};
 }
 

@@ -22,12 +22,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: seven of its own, those of each output, those of each strike point
-#define ARRAYS (7 + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: ten of its own, those of each output, each patch and each strike point
+#define ARRAYS (10 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
 #define SLACK 1e-6            // rise per tension; chosen: 0.001 cent
+// Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as it
+// should whatever its angle w t in one, unless that is near pi, where its velocity would be met at
+// the same phase again and again.
+#define INTERVAL 0.00075 // (s) chosen: 32 samples of 44.1 and 48 kHz
+#define SHARED_ANGLE 2.0 // most of w t of a mode that is shared; chosen: up to 477 Hz
 
 static void core_free(core *c)
 {
@@ -80,12 +85,15 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
         return false;
     }
     memset(memory, 0, bytes);
-    double **arrays[] = {&c->on_q, &c->on_v, &c->on_force, &c->scratch, &c->stretch};
+    double **arrays[] = {&c->on_q,    &c->on_v, &c->on_force,      &c->scratch,
+                         &c->stretch, &c->wave, &c->per_stiffness, &c->per_mass};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         c->outputs[i] = take_output(&memory, padded);
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].weight = take(&memory, padded);
     for (int i = 0; i < STRIKE_POINTS; i++)
         points[i] = (strike_point){.shape = take(&memory, padded),
                                    .readout = take_readout(&memory, padded)};
@@ -98,29 +106,50 @@ static double kettle_of(const himc_head *head)
     return head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius);
 }
 
-// a bare mode as it sounds: in air, if the head has any
-static himc_mode loaded(const himc_membrane *m, const himc_mode *bare)
-{
-    return m->head.air ? himc_air_mode(&m->air, &m->head, bare) : *bare;
-}
-
-// Oscillators of all modes, and a_i = sqrt(2 kappa) Lam_i of the film; Lam_i is a bare mode's
-// stiffness per tension.
+// Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
+// of the film; Lam_i is a bare mode's stiffness per tension. The members of a pair have one load.
 static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
+    bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    himc_air_load load = {0};
+    for (int i = 0; i < PATCHES; i++)
+        c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
-        himc_mode bare = himc_modes_get(c->modes, &m->head, i);
-        c->stretch[i] = root * bare.stiffness / m->head.tension;
-        // the sine of a pair equals its cosine
-        if (bare.sine && i > 0) {
-            c->oscillators[i] = c->oscillators[i - 1];
-            continue;
-        }
-        himc_mode mode = loaded(m, &bare);
+        himc_mode mode = himc_modes_get(c->modes, &m->head, i);
+        c->stretch[i] = root * mode.stiffness / m->head.tension;
+        c->wave[i] = smooth ? mode.zero / m->head.radius : 0;
+        c->per_stiffness[i] = 1 / mode.stiffness;
+        c->per_mass[i] = 1 / mode.mass;
+        if (m->head.air && !mode.sine)
+            load = himc_air_on(&m->air, mode.m, mode.n, mode.zero);
+        if (m->head.air)
+            mode = himc_air_loaded(&load, &m->head, &mode);
         c->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
+}
+
+// the modes that other heads hear, and what the air between takes of their decay
+static void find_shared(himc_membrane *m)
+{
+    int interval = himc_membrane_interval(m->rate);
+    bool shares = m->shares && m->head.air;
+    double highest = SHARED_ANGLE * m->rate / (2 * HIMC_PI * interval);
+    m->revision++;
+    m->shared_count =
+        shares ? himc_shared_find(&m->head, m->core.modes, &m->air, highest, m->shared) : 0;
+    for (int i = 0; i < m->shared_count; i++)
+        m->core.oscillators[m->shared[i].index].decay -= m->shared[i].decay;
+    himc_bank_set_pass(m->core.bank, shares ? interval : HIMC_BANK_PASS);
+}
+
+int himc_membrane_interval(double rate)
+{
+    int samples = HIMC_BANK_PASS;
+    while (samples > 8 && samples > INTERVAL * rate)
+        samples /= 2;
+    return samples;
 }
 
 // responses of an output to modal forces: through the state and, for accelerations, direct ones
@@ -207,8 +236,10 @@ static void retune(himc_membrane *m)
 {
     core *c = &m->core;
     keep_pickups_on_head(m);
+    himc_modes_set_lugs(c->modes, m->head.uniformity, m->head.uniformity_seed);
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
     find_oscillators(m);
+    find_shared(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
     himc_bank_set(c->bank, c->oscillators, himc_membrane_modes(m), m->rate);
     set_film(m);
@@ -261,7 +292,7 @@ static void add_forces(himc_membrane *m, int index, sound_pair *sound)
         c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
     for (int i = 0; i < m->applied_count; i++) {
         const push *p = &m->applied[i];
-        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y);
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
         sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
         sound->next += p->force * s->response[HIMC_STEP_SAMPLE].sound[index];
     }
@@ -322,6 +353,7 @@ himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *
     memcpy(m->pickups, form->pickups, sizeof m->pickups);
     m->pickup_count = form->pickup_count;
     m->rays = form->rays;
+    m->shares = form->shares;
     m->ends_sample = true;
     m->rate = form->rate;
     m->watch_x = form->watch_x;
@@ -348,34 +380,65 @@ void himc_membrane_free(himc_membrane *membrane)
     free(membrane);
 }
 
-// other modes; those that remain, `common`, keep their state
-static bool resize(himc_membrane *m, int modes, int *common, himc_error *error)
+// Adds `times` the static displacement under the pressing forces to all modes. It is taken away
+// before a change of the head and put back after it: the bend follows the head, and only what rings
+// keeps its energy. A bend of another head would be let go, and heard.
+static void bend(himc_membrane *m, double times)
+{
+    for (int k = 0; k < m->applied_count; k++) {
+        const push *p = &m->applied[k];
+        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
+        for (int i = 0; i < himc_bank_count(m->core.bank); i++) {
+            const himc_oscillator *o = &m->core.oscillators[i];
+            double q, v, force = times * p->force * s->shape[i];
+            himc_bank_state(m->core.bank, i, &q, &v);
+            if (force != 0)
+                himc_bank_excite(m->core.bank, i, q + force / (o->mass * o->omega * o->omega), v);
+        }
+    }
+    himc_bank_find_film(m->core.bank);
+}
+
+// other modes; those that remain keep their state, without the bend of pressing forces
+static bool resize(himc_membrane *m, int modes, himc_error *error)
 {
     core old = m->core, fresh;
-    if (!core_new(&fresh, m->points, himc_modes_shape(old.modes), modes, error))
+    strike_point points[STRIKE_POINTS];
+    if (!core_new(&fresh, points, himc_modes_shape(old.modes), modes, error))
         return false;
-    *common = himc_modes_common(old.modes, fresh.modes);
-    himc_bank_set(fresh.bank, old.oscillators, *common, m->rate);
-    himc_bank_continue(fresh.bank, old.bank, *common);
+    bend(m, -1);
+    int common = himc_modes_common(old.modes, fresh.modes);
+    himc_bank_set(fresh.bank, old.oscillators, common, m->rate);
+    himc_bank_continue(fresh.bank, old.bank, common);
+    memcpy(m->points, points, sizeof points);
     m->core = fresh;
     core_free(&old);
     return true;
 }
 
-// Modes from `first` on are new. Under a pressing force they begin with their static displacement.
-static void bend_new(himc_membrane *m, int first)
+// Pairs whose axis was another in `before` go on in the same shape: what vibrated along the old axes
+// is taken apart along the new ones. Of amplitudes times frequency and of velocities, as here, a
+// rotation keeps the energy, since both members have one mass.
+static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
 {
-    for (int i = first; i < himc_bank_count(m->core.bank); i++) {
-        const himc_oscillator *o = &m->core.oscillators[i];
-        double q = 0;
-        for (int k = 0; k < m->applied_count; k++) {
-            const push *p = &m->applied[k];
-            q += himc_membrane_strike_point(m, p->x, p->y)->shape[i] * p->force;
-        }
-        if (q != 0)
-            himc_bank_excite(m->core.bank, i, q / (o->mass * o->omega * o->omega), 0);
+    const himc_lugs_pair *after = himc_modes_pairs(m->core.modes);
+    if (memcmp(before, after, sizeof *before * HIMC_LUGS_ORDERS) == 0)
+        return;
+    for (int i = 1; i < himc_bank_count(m->core.bank); i++) {
+        himc_mode mode = himc_modes_get(m->core.modes, &m->head, i);
+        if (!mode.sine || before[mode.m].axis == after[mode.m].axis)
+            continue;
+        const himc_lugs_pair *a = &before[mode.m], *b = &after[mode.m];
+        double c = b->cosine * a->cosine + b->sine * a->sine;
+        double s = b->sine * a->cosine - b->cosine * a->sine, q[2], v[2];
+        double first = m->core.oscillators[i - 1].omega, second = m->core.oscillators[i].omega;
+        himc_bank_state(m->core.bank, i - 1, &q[0], &v[0]);
+        himc_bank_state(m->core.bank, i, &q[1], &v[1]);
+        himc_bank_excite(m->core.bank, i - 1, (c * first * q[0] + s * second * q[1]) / first,
+                         c * v[0] + s * v[1]);
+        himc_bank_excite(m->core.bank, i, (c * second * q[1] - s * first * q[0]) / second,
+                         c * v[1] - s * v[0]);
     }
-    himc_bank_find_film(m->core.bank);
 }
 
 bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
@@ -384,12 +447,16 @@ bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc
         return false;
     sounds before = read_sounds(membrane);
     double energy = himc_membrane_energy(membrane);
-    int known = himc_membrane_modes(membrane);
-    if (head->modes != membrane->head.modes && !resize(membrane, head->modes, &known, error))
+    himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
+    memcpy(pairs, himc_modes_pairs(membrane->core.modes), sizeof pairs);
+    if (head->modes == membrane->head.modes)
+        bend(membrane, -1);
+    else if (!resize(membrane, head->modes, error))
         return false;
     membrane->head = *head;
     retune(membrane);
-    bend_new(membrane, known);
+    turn_pairs(membrane, pairs);
+    bend(membrane, 1);
     keep_energy(membrane, energy);
     declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     return true;
@@ -465,6 +532,39 @@ const himc_pickup *himc_membrane_rays(const himc_membrane *membrane)
     return membrane->rays ? membrane->pickups + HIMC_PICKUPS : NULL;
 }
 
+void himc_membrane_share(himc_membrane *m, bool shares)
+{
+    if (m->shares == shares)
+        return;
+    sounds before = read_sounds(m);
+    m->shares = shares;
+    retune(m);
+    declick_from(m, &before, 0, HIMC_OUTPUTS);
+}
+
+const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)
+{
+    *count = membrane->shared_count;
+    return membrane->shared;
+}
+
+unsigned himc_membrane_revision(const himc_membrane *membrane)
+{
+    return membrane->revision;
+}
+
+double himc_membrane_velocity(const himc_membrane *membrane, int index)
+{
+    double q, v;
+    himc_bank_state(membrane->core.bank, index, &q, &v);
+    return v;
+}
+
+void himc_membrane_kick(himc_membrane *membrane, int index, double change)
+{
+    himc_bank_kick(membrane->core.bank, index, change);
+}
+
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
 {
     membrane->muted = mute;
@@ -495,7 +595,8 @@ static bool same_head(const himc_head *a, const himc_head *b)
     return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
            a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
            a->modes == b->modes && a->air == b->air && a->kettle == b->kettle &&
-           a->glide == b->glide && a->damp == b->damp;
+           a->glide == b->glide && a->damp == b->damp && a->uniformity == b->uniformity &&
+           a->uniformity_seed == b->uniformity_seed;
 }
 
 himc_membrane_form himc_membrane_form_of(const himc_membrane *m)
@@ -504,6 +605,7 @@ himc_membrane_form himc_membrane_form_of(const himc_membrane *m)
                                .head = m->head,
                                .pickup_count = m->pickup_count,
                                .rays = m->rays,
+                               .shares = m->shares,
                                .rate = m->rate,
                                .watch_x = m->watch_x,
                                .watch_y = m->watch_y};
@@ -533,7 +635,7 @@ static bool is_alike(const himc_membrane *m, const himc_shape *shape, const himc
 
 bool himc_membrane_has_form(const himc_membrane *m, const himc_membrane_form *form)
 {
-    return m->rate == form->rate &&
+    return m->rate == form->rate && m->shares == form->shares &&
            is_alike(m, &form->shape, &form->head, form->pickups, form->pickup_count, form->rays);
 }
 
@@ -553,21 +655,15 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
-// a head of the same outline goes on after a change from `known` modes and that energy
-static void go_on(himc_membrane *m, int known, double energy)
-{
-    himc_bank_find_film(m->core.bank);
-    bend_new(m, known);
-    keep_energy(m, energy);
-}
-
 void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
 {
     sounds before = read_sounds(m);
     double energy = himc_membrane_energy(m);
-    core old = m->core;
     bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
-    bool head = same_head(&m->head, &made->head);
+    bool bends = outline && !same_head(&m->head, &made->head);
+    if (bends)
+        bend(m, -1);
+    core old = m->core;
     m->core = made->core;
     made->core = old;
     memcpy(m->points, made->points, sizeof m->points);
@@ -576,14 +672,19 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     memcpy(m->pickups, made->pickups, sizeof m->pickups);
     m->pickup_count = made->pickup_count;
     m->rays = made->rays;
+    m->shares = made->shares;
+    memcpy(m->shared, made->shared, sizeof m->shared);
+    m->shared_count = made->shared_count;
+    m->revision++;
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
-    if (outline) {
-        int known = himc_modes_common(old.modes, m->core.modes);
-        himc_bank_continue(m->core.bank, old.bank, known);
-        if (!head)
-            go_on(m, known, energy);
+    if (outline)
+        himc_bank_continue(m->core.bank, old.bank, himc_modes_common(old.modes, m->core.modes));
+    if (bends) {
+        turn_pairs(m, himc_modes_pairs(old.modes));
+        bend(m, 1);
+        keep_energy(m, energy);
     }
     declick_from(m, &before, 0, HIMC_OUTPUTS);
 }
@@ -614,7 +715,7 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
     if (index >= himc_membrane_modes(membrane))
         return (himc_mode){0};
     himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
-    return loaded(membrane, &bare);
+    return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
 }
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
@@ -661,6 +762,29 @@ void himc_membrane_watch(himc_membrane *membrane, double x, double y)
 void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
 {
     himc_bank_state(membrane->core.bank, index, q, v);
+}
+
+void himc_membrane_upright(const himc_membrane *membrane, int count, double *displacement)
+{
+    const himc_modes *modes = membrane->core.modes;
+    double v, pair[2] = {0, 0};
+    for (int i = 0; i < count; i++) {
+        himc_mode mode = himc_modes_get(modes, &membrane->head, i);
+        himc_membrane_state(membrane, i, &displacement[i], &v);
+        if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
+            continue;
+        const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
+        bool whole =
+            i + 1 < himc_modes_count(modes) && himc_modes_get(modes, &membrane->head, i + 1).sine;
+        if (!mode.sine) {
+            pair[0] = displacement[i];
+            pair[1] = 0;
+            if (whole)
+                himc_membrane_state(membrane, i + 1, &pair[1], &v);
+        }
+        displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
+                                    : pair[0] * axis->cosine - pair[1] * axis->sine;
+    }
 }
 
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)

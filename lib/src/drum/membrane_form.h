@@ -3,7 +3,7 @@
 #ifndef HIMC_MEMBRANE_FORM_H
 #define HIMC_MEMBRANE_FORM_H
 
-#include "himc/membrane.h"
+#include "drum/shared.h"
 
 /// Rays: what ears (ears.h) need of a head beside its pickups, the sound it sends out in the
 /// direction of the left ear, of the right ear, and of the floor's mirror image.
@@ -17,6 +17,7 @@ typedef struct himc_membrane_form {
     himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
     bool rays;               ///< it has them
+    bool shares;             ///< himc_membrane_share
     double rate;             ///< (Hz)
     double watch_x, watch_y; ///< the watched point (m)
 } himc_membrane_form;
@@ -37,6 +38,19 @@ himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *
 HIMC_RT void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays);
 /// Its rays, borrowed; NULL if it has none.
 HIMC_RT const himc_pickup *himc_membrane_rays(const himc_membrane *membrane);
+/// Whether the air between this head and others takes what its shared modes radiate; they decay by
+/// so much less.
+HIMC_RT void himc_membrane_share(himc_membrane *membrane, bool shares);
+/// The shared modes (*count), none if it does not share. Borrowed.
+HIMC_RT const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count);
+/// Interval between two exchanges with other heads at a rate (Hz): 8, 16, 32 or 64 samples.
+HIMC_RT int himc_membrane_interval(double rate);
+/// Grows by one with every change of head or rate.
+HIMC_RT unsigned himc_membrane_revision(const himc_membrane *membrane);
+/// Between two samples: the velocity of mode `index` (m/s), and a change of it.
+HIMC_RT double himc_membrane_velocity(const himc_membrane *membrane, int index);
+HIMC_RT void himc_membrane_kick(himc_membrane *membrane, int index, double change);
+
 /// himc_membrane_run with a row for each of the HIMC_OUTPUTS.
 HIMC_RT void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound,
                                    double *watched);

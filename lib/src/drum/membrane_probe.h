@@ -1,4 +1,4 @@
-/// membrane_probe.h: the inner state of a head, set and read by tests; private.
+/// membrane_probe.h: the inner state of a head, for tests and for those who draw it; private.
 #ifndef HIMC_MEMBRANE_PROBE_H
 #define HIMC_MEMBRANE_PROBE_H
 
@@ -6,6 +6,9 @@
 
 /// Sets displacement q and velocity v of mode `index` (m, m/s); no effect on a silent mode.
 HIMC_RT void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v);
+
+/// Displacement (m) of the first `count` modes; of a pair as if its axis were the x axis.
+HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, double *displacement);
 
 /// Rise of the tension as the head bows out (N/m).
 HIMC_RT double himc_membrane_rise(const himc_membrane *membrane);

@@ -5,11 +5,13 @@
 
 #include "drum/bank.h"
 #include "drum/membrane_form.h"
+#include "drum/shared.h"
 #include "drum/strike_point.h"
 #include "head/air.h"
 
 #define MAX_PUSHES 8       ///< forces of himc_membrane_push in one sample; himc/membrane.h
 #define STRIKE_POINTS 24   ///< all sticks and mallets of a drum (16) and all pushes (8)
+#define PATCHES 4          ///< of different radii, kept; chosen: two hands and two mallets
 #define DECLICK_TIME 0.005 ///< (s) chosen: no click, and shorter than a stroke's onset
 
 /// A pickup's sound, which is read from the modes.
@@ -18,6 +20,13 @@ typedef struct output {
     double *response[HIMC_STEP_LENGTHS]; ///< per newton of modal force during a step (padded)
 } output;
 
+/// The weights of all modes under patches of one radius.
+typedef struct patch {
+    double b;          ///< (m); 0 if not in use
+    unsigned long age; ///< the larger, the more recently used
+    double *weight;    ///< W(k_i b), owned by the membrane (padded)
+} patch;
+
 /// All that depends on the number of modes and is allocated with it.
 typedef struct core {
     himc_modes *modes;
@@ -25,7 +34,10 @@ typedef struct core {
     himc_oscillator *oscillators; ///< (modes)
     double *memory;               ///< all arrays below, (padded) each, and those of strike points
     double *on_q, *on_v, *on_force, *scratch;
-    double *stretch; ///< a_i of the film's stretching
+    double *stretch;                  ///< a_i of the film's stretching
+    double *wave;                     ///< wave numbers of the bare modes (1/m); 0 of a grid's
+    double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
+    patch patches[PATCHES];
     output outputs[HIMC_OUTPUTS];
     himc_readout watched;
 } core;
@@ -36,20 +48,21 @@ typedef struct unit_response {
     double sound[HIMC_OUTPUTS]; ///< (1/N)
 } unit_response;
 
-/// A point of the head and its coupling to each mode. A pure function of place and head, so caching
-/// it does not change results.
+/// A point of the head and its coupling to each mode. A pure function of place, patch and head, so
+/// caching it does not change results.
 struct strike_point {
     bool used;
-    double x, y;          ///< (m)
+    double x, y, b;       ///< place and radius of the patch (m)
     unsigned long age;    ///< the larger, the more recently used
-    double *shape;        ///< phi_i there, owned by the membrane (padded)
+    double *shape;        ///< phi_i W_i there, owned by the membrane (padded)
     himc_readout readout; ///< of the displacement there
+    himc_residual residual;
     unit_response response[HIMC_STEP_LENGTHS];
 };
 
-/// A force at a point of the head (m, N).
+/// A force at a strike point of the head (m, N).
 typedef struct push {
-    double x, y, force;
+    double x, y, b, force;
 } push;
 
 /// When head, pickup or rate change, the sound would jump by a step, and its slope by another. The
@@ -75,15 +88,19 @@ struct himc_membrane {
     himc_air air;                      ///< around it
     himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
-    bool rays;  ///< it has them
-    bool muted; ///< the pickups' sound is not wanted
+    bool rays;   ///< it has them
+    bool muted;  ///< the pickups' sound is not wanted
+    bool shares; ///< air between heads takes what the shared modes radiate
+    himc_shared_mode shared[HIMC_SHARED];
+    int shared_count;
+    unsigned revision; ///< grows with every change of head or rate
     double rate;
     himc_step_length step; ///< of the next step
     bool ends_sample;      ///< the next step is the last one of a sample
     core core;
     double watch_x, watch_y;
     strike_point points[STRIKE_POINTS];
-    unsigned long clock; ///< of the use of strike points
+    unsigned long clock; ///< of the use of strike points and patches
     push pushes[MAX_PUSHES];
     int push_count;
     push applied[STRIKE_POINTS]; ///< forces of the last step, up positive

@@ -21,14 +21,68 @@
 #define POISSON 0.38
 #define FILM 1390.0 // (kg/m^3)
 
+// the weights of all modes under a patch of that radius
+static const double *weights(himc_membrane *m, double b)
+{
+    core *c = &m->core;
+    patch *oldest = &c->patches[0];
+    for (int i = 0; i < PATCHES; i++) {
+        patch *p = &c->patches[i];
+        if (p->b == b) {
+            p->age = ++m->clock;
+            return p->weight;
+        }
+        if (p->b == 0 || (oldest->b > 0 && p->age < oldest->age))
+            oldest = p;
+    }
+    oldest->b = b;
+    oldest->age = ++m->clock;
+    for (int i = 0; i < himc_modes_count(m->core.modes); i++)
+        oldest->weight[i] = i > 0 && c->wave[i] == c->wave[i - 1]
+                                ? oldest->weight[i - 1]
+                                : himc_patch_weight(c->wave[i] * b);
+    return oldest->weight;
+}
+
+// what the modes of the list do not yield under a patch of radius b
+static himc_residual find_residual(const himc_membrane *m, const strike_point *s, double b)
+{
+    const core *c = &m->core;
+    double compliance = himc_patch_compliance(&m->head, hypot(s->x, s->y), b);
+    double per_mass = 1 / (m->head.density * HIMC_PI * b * b);
+    for (int i = 0; i < himc_bank_count(c->bank); i++) {
+        double square = s->shape[i] * s->shape[i];
+        compliance -= square * c->per_stiffness[i];
+        per_mass -= square * c->per_mass[i];
+    }
+    return himc_residual_of(compliance, per_mass);
+}
+
+// spreads a force at the point over its patch
+static void spread(himc_membrane *m, strike_point *s)
+{
+    bool round = himc_membrane_shape(m)->kind == HIMC_CIRCLE;
+    double b = round ? fmin(s->b, m->head.radius - hypot(s->x, s->y)) : s->b;
+    s->residual = (himc_residual){0};
+    if (!(b > 0))
+        return;
+    const double *weight = weights(m, b);
+    for (int i = 0; i < himc_modes_count(m->core.modes); i++)
+        s->shape[i] *= weight[i];
+    if (round)
+        s->residual = find_residual(m, s, b);
+}
+
 // finds the point's shapes and the responses to a newton there
-static void move_point(himc_membrane *m, strike_point *s, double x, double y)
+static void move_point(himc_membrane *m, strike_point *s, double x, double y, double b)
 {
     const core *c = &m->core;
     s->used = true;
     s->x = x;
     s->y = y;
+    s->b = b;
     himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
+    spread(m, s);
     himc_bank_readout(c->bank, s->shape, NULL, NULL, &s->readout);
     for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
         unit_response *e = &s->response[k];
@@ -53,19 +107,19 @@ void himc_membrane_set_substep(himc_membrane *membrane, int index, int count)
     himc_bank_set_step(membrane->core.bank, membrane->step);
 }
 
-strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y)
+strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y, double b)
 {
     strike_point *oldest = &membrane->points[0];
     for (int i = 0; i < STRIKE_POINTS; i++) {
         strike_point *s = &membrane->points[i];
-        if (s->used && s->x == x && s->y == y) {
+        if (s->used && s->x == x && s->y == y && s->b == b) {
             s->age = ++membrane->clock;
             return s;
         }
         if (!s->used || (oldest->used && s->age < oldest->age))
             oldest = s;
     }
-    move_point(membrane, oldest, x, y);
+    move_point(membrane, oldest, x, y, b);
     oldest->age = ++membrane->clock;
     return oldest;
 }
@@ -73,6 +127,11 @@ strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, doub
 double himc_strike_point_displacement(const himc_membrane *membrane, strike_point *s)
 {
     return himc_bank_read(membrane->core.bank, &s->readout);
+}
+
+himc_residual himc_strike_point_residual(const strike_point *s)
+{
+    return s->residual;
 }
 
 double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
@@ -98,7 +157,7 @@ void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, dou
         if (is_wanted(membrane, i))
             membrane->sound[i] += e->sound[i] * force;
     if (membrane->applied_count < STRIKE_POINTS)
-        membrane->applied[membrane->applied_count++] = (push){s->x, s->y, force};
+        membrane->applied[membrane->applied_count++] = (push){s->x, s->y, s->b, force};
 }
 
 double himc_membrane_film_stiffness(const himc_membrane *m)
@@ -156,7 +215,7 @@ void himc_membrane_free_step(himc_membrane *membrane)
     run_free(membrane, 1, into, NULL);
     for (int i = 0; i < membrane->push_count; i++) {
         const push *p = &membrane->pushes[i];
-        himc_strike_point_apply(membrane, himc_membrane_strike_point(membrane, p->x, p->y),
+        himc_strike_point_apply(membrane, himc_membrane_strike_point(membrane, p->x, p->y, p->b),
                                 -p->force);
     }
     if (membrane->ends_sample)
@@ -193,7 +252,7 @@ void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, dou
 void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)
 {
     if (membrane->push_count < MAX_PUSHES)
-        membrane->pushes[membrane->push_count++] = (push){x, y, force};
+        membrane->pushes[membrane->push_count++] = (push){x, y, 0, force};
 }
 
 double himc_membrane_sound(const himc_membrane *membrane, int pickup)
@@ -211,7 +270,7 @@ double himc_membrane_displacement(const himc_membrane *membrane, double x, doubl
 {
     // only the cache of points changes, which nobody can see
     return himc_strike_point_displacement(
-        membrane, himc_membrane_strike_point((himc_membrane *)membrane, x, y));
+        membrane, himc_membrane_strike_point((himc_membrane *)membrane, x, y, 0));
 }
 
 double himc_membrane_energy(const himc_membrane *membrane)

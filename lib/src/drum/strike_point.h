@@ -8,20 +8,24 @@
 #ifndef HIMC_STRIKE_POINT_H
 #define HIMC_STRIKE_POINT_H
 
-#include "himc/membrane.h"
+#include "drum/patch.h"
 
 typedef struct strike_point strike_point;
 
-/// The strike point at (x, y) (m). Borrowed; valid until 23 others have been asked for, or the head
-/// changes.
-HIMC_RT strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y);
-/// Displacement now (m, up positive).
+/// The strike point at (x, y) with a patch of radius b (m), 0 for a point; the patch ends at the rim
+/// of a round head, and a grid's places have none. Borrowed; valid until 23 others have been asked
+/// for, or the head changes.
+HIMC_RT strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y,
+                                                 double b);
+/// Mean displacement of the patch now (m, up positive), without the residual's.
 HIMC_RT double himc_strike_point_displacement(const himc_membrane *membrane, strike_point *s);
 /// Number of substeps of a sample with a stiff contact: each lasts 5.2 microseconds or less.
 HIMC_RT int himc_membrane_substeps(const himc_membrane *membrane);
 /// The next step is substep `index` (0 .. count - 1) of `count` in a sample. Substep 0 of 1 is a
 /// whole sample: the state at the beginning, and to return to.
 HIMC_RT void himc_membrane_set_substep(himc_membrane *membrane, int index, int count);
+/// What gives way there beside the head's modes: on a round head, under a patch.
+HIMC_RT himc_residual himc_strike_point_residual(const strike_point *s);
 /// Displacement at `a` at the end of a step per newton at `b` during it (m/N).
 HIMC_RT double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
                                             const strike_point *b);

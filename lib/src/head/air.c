@@ -340,15 +340,20 @@ himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
     };
 }
 
+himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head, const himc_mode *bare)
+{
+    himc_mode mode = *bare;
+    mode.frequency *= load->frequency;
+    mode.mass *= load->mass;
+    mode.stiffness *= load->stiffness;
+    double omega = 2 * HIMC_PI * mode.frequency;
+    mode.decay = fmin(himc_head_decay(head, omega, load->mass) + load->radiation,
+                      HIMC_LARGEST_DECAY * omega);
+    return mode;
+}
+
 himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_mode *bare)
 {
     himc_air_load load = himc_air_on(air, bare->m, bare->n, bare->zero);
-    himc_mode mode = *bare;
-    mode.frequency *= load.frequency;
-    mode.mass *= load.mass;
-    mode.stiffness *= load.stiffness;
-    double omega = 2 * HIMC_PI * mode.frequency;
-    mode.decay =
-        fmin(himc_head_decay(head, omega, load.mass) + load.radiation, HIMC_LARGEST_DECAY * omega);
-    return mode;
+    return himc_air_loaded(&load, head, bare);
 }

@@ -50,10 +50,12 @@ typedef struct himc_air_load {
 /// For mode (m, n) with the zero j_mn; a statistical one has m = -1.
 HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero);
 
-/// The mode in air: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new frequency plus
-/// radiation, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic film's (Rhaouti,
-/// Chaigne & Joly 1999), S0 = 0.5 1/s the rest. Of a pair both are alike, so it may be called once
-/// for both.
+/// The mode with that load: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new
+/// frequency plus radiation, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic
+/// film's (Rhaouti, Chaigne & Joly 1999), S0 = 0.5 1/s the rest.
+HIMC_RT himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head,
+                                  const himc_mode *bare);
+/// The same, with the load found first; that of both members of a pair is equal.
 HIMC_RT himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_mode *bare);
 
 // The table (air_table.c), computed by tools/air/table.c.

@@ -1,13 +1,14 @@
 /// modes.h: the modes of an ideal membrane in order of frequency, and their shapes.
 ///
 /// Round: mode (m, n) has m nodal diameters and n nodal circles, phi = J_m(j_mn r/a) cos(m th) or
-/// sin(m th), and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse & Ingard 1968, section 5.2; Fletcher
+/// sin(m th), th from an axis of its order, and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse & Ingard 1968, section 5.2; Fletcher
 /// & Rossing 1998, section 3.3). A list depends on its outline and length alone: radius, tension
 /// and density scale all frequencies alike.
 #ifndef HIMC_MODES_H
 #define HIMC_MODES_H
 
 #include "head/grid.h"
+#include "head/lugs.h"
 #include "himc/membrane.h"
 
 typedef struct himc_modes himc_modes;
@@ -22,6 +23,11 @@ HIMC_RT int himc_modes_count(const himc_modes *modes);
 HIMC_RT const himc_shape *himc_modes_shape(const himc_modes *modes);
 /// So many modes at the beginning of both lists, of the same outline, are the same.
 HIMC_RT int himc_modes_common(const himc_modes *a, const himc_modes *b);
+/// How evenly a round head is tensioned, as its fields say (himc/membrane.h); a list begins with an
+/// even one.
+HIMC_RT void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed);
+/// The pairs of each order (HIMC_LUGS_ORDERS), borrowed; they change with himc_modes_set_lugs.
+HIMC_RT const himc_lugs_pair *himc_modes_pairs(const himc_modes *modes);
 /// Area of the head (m^2).
 HIMC_RT double himc_modes_area(const himc_modes *modes, double radius);
 

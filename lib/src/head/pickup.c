@@ -59,13 +59,12 @@ static double per_pascal(const himc_head *head)
     return (head->air ? 1 : BARE) / HIMC_PICKUP_PRESSURE;
 }
 
-// pressure per (m/s^2) of the mode's acceleration, phase aside
-static double radiation(const himc_mode *mode, const himc_head *head, const himc_pickup *pickup,
-                        const himc_modes *modes, int index)
+double himc_pickup_pressure(const himc_pickup *pickup, const himc_head *head,
+                            const himc_modes *modes, int index, const himc_mode *mode)
 {
     double x =
         2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED * head->radius * cos(pickup->elevation);
-    double angle = mode->m * pickup->azimuth,
+    double angle = mode->m * (pickup->azimuth - mode->axis),
            scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
     if (mode->m < 0)
         return scale * himc_modes_pressure(modes, index, x, pickup->azimuth);
@@ -95,7 +94,7 @@ pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *h
         return (pickup_weights){.velocity = point_shape / HIMC_PICKUP_VELOCITY};
     if (himc_modes_shape(modes)->kind != HIMC_CIRCLE)
         return of_outline(pickup, head, modes, index, mode);
-    double weight = radiation(mode, head, pickup, modes, index) * per_pascal(head);
+    double weight = himc_pickup_pressure(pickup, head, modes, index, mode) * per_pascal(head);
     double omega = 2 * HIMC_PI * mode->frequency;
     double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;
     if (mode->m % 2 != 0)

@@ -13,6 +13,7 @@
 /// counts what does not fit; so a flood costs this thread no more than its share.
 #define _GNU_SOURCE // setpriority of one thread is Linux's own
 #include "drum/drum_performer.h"
+#include "drum/membrane_probe.h"
 #include "himc/osc.h"
 #include "himc/body.h"
 #include "himc/membrane.h"
@@ -224,11 +225,10 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
         return;
     put_name(state->head.name, drum);
     state->head.count = modes < HEAD_MODES ? modes : HEAD_MODES;
-    for (int i = 0; i < state->head.count; i++) {
-        double q, v;
-        himc_membrane_state(membrane, i, &q, &v);
-        state->head.amplitude[i] = (float)q;
-    }
+    double displacement[HEAD_MODES];
+    himc_membrane_upright(membrane, state->head.count, displacement);
+    for (int i = 0; i < state->head.count; i++)
+        state->head.amplitude[i] = (float)displacement[i];
     end(osc);
 }
 

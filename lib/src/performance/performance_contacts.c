@@ -267,22 +267,44 @@ static void find_near(performance_contacts *c, const contact_scene *s, near_stic
     himc_forward_dynamics(&b->plant, &b->state, near->art, b->torque, NULL, near->relative);
 }
 
-static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int n,
-                         near_sticks *near)
+static void load_sticks(performance_contacts *c, const contact_scene *s, near_sticks *near)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        stick_contact *contact = &c->hand[hand];
+        if (near->below[hand] < 0)
+            continue;
+        contact->drum = near->below[hand];
+        load_stick(contact, s, (himc_hand)hand, near->local[hand], near->art, near->relative);
+        near->velocity[hand] = contact->stick.velocity;
+    }
+}
+
+// n samples from sample `done` of the step on
+static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int done, int n,
+                         const near_sticks *near)
 {
     himc_stick *sticks[HIMC_HANDS];
     double *forces[HIMC_HANDS];
     int count = 0;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (near->below[hand] == drum) {
-            stick_contact *contact = &c->hand[hand];
-            contact->drum = drum;
-            load_stick(contact, s, (himc_hand)hand, near->local[hand], near->art, near->relative);
-            near->velocity[hand] = contact->stick.velocity;
-            sticks[count] = &contact->stick;
-            forces[count++] = c->force[hand];
+            sticks[count] = &c->hand[hand].stick;
+            forces[count++] = c->force[hand] + done;
         }
     himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
+}
+
+// all drums, together from one exchange through the air between them to the next
+static void advance_drums(performance_contacts *c, const contact_scene *s, int n,
+                          const near_sticks *near)
+{
+    for (int done = 0, run; done < n; done += run) {
+        int64_t now = s->clock->made + done;
+        himc_air_between_exchange(&s->drums->air, now);
+        run = himc_air_between_until(&s->drums->air, now, n - done);
+        for (int i = 0; i < s->drums->count; i++)
+            advance_drum(c, s, i, done, run, near);
+    }
 }
 
 void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int n,
@@ -293,8 +315,8 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         memset(c->force[hand], 0, (size_t)n * sizeof(double));
     c->force_count = n;
-    for (int i = 0; i < s->drums->count; i++)
-        advance_drum(c, s, i, n, &near);
+    load_sticks(c, s, &near);
+    advance_drums(c, s, n, &near);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         tip_force[hand] = himc_vec3_make(0, 0, 0);
         if (near.below[hand] < 0)
@@ -326,7 +348,8 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     double height = over_head(s, c->drum, s->body->state.tip[hand]).z;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
-    double quiet = t - c->last_force;
+    // both are whole samples; half of one, so that the rounding of times does not decide
+    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
     if ((quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP)
         end_strike(c, s, hand, t);
     else if (c->released && t >= c->strike.time + LONGEST_RELEASE)

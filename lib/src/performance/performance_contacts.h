@@ -34,7 +34,7 @@ typedef struct contact_scene {
     const performance_clock *clock;
     const performance_settings *settings;
     const performance_body *body;
-    const performance_drums *drums;
+    performance_drums *drums;
     performance_motion *motion;
     performance_statistics *statistics;
     performance_events *events;

@@ -88,9 +88,18 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     himc_drum_listen(drum, &d->listener);
 }
 
-// gives a drum back
-static void release(himc_drum *drum)
+void himc_drums_join(performance_drums *d)
 {
+    himc_drum *drums[HIMC_DRUMS];
+    for (int i = 0; i < d->count; i++)
+        drums[i] = d->slot[i].drum;
+    himc_air_between_join(&d->air, drums, d->count);
+}
+
+// gives a drum back
+static void release(performance_drums *d, himc_drum *drum)
+{
+    himc_air_between_leave(&d->air, drum);
     himc_drum_listen(drum, &(himc_listener){.on = false});
     himc_drum_release(drum);
 }
@@ -117,7 +126,7 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         return true;
     }
     if (d->slot[i].drum)
-        release(d->slot[i].drum);
+        release(d, d->slot[i].drum);
     fill_slot(d, i, drum, source);
     return true;
 }
@@ -138,11 +147,12 @@ void himc_drums_put_back(performance_drums *d)
     for (int i = 0; i < old.count; i++) {
         himc_drum *drum = old.slot[i].drum;
         if (old.slot[i].source != DRUM_GIVEN) {
-            release(drum);
+            release(&old, drum);
             continue;
         }
         if (is_where_put(&old.slot[i]))
             himc_drum_stand(drum, old.slot[i].found);
+        himc_air_between_leave(&old.air, drum);
         himc_drum_rest(drum);
         fill_slot(d, d->count++, drum, DRUM_GIVEN);
     }
@@ -151,7 +161,7 @@ void himc_drums_put_back(performance_drums *d)
 void himc_drums_release(performance_drums *d)
 {
     while (d->count > 0)
-        release(d->slot[--d->count].drum);
+        release(d, d->slot[--d->count].drum);
 }
 
 void himc_drums_listen(performance_drums *d, const himc_listener *listener)

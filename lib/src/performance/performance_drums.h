@@ -2,6 +2,7 @@
 #ifndef HIMC_PERFORMANCE_DRUMS_H
 #define HIMC_PERFORMANCE_DRUMS_H
 
+#include "drum/air_between.h"
 #include "drum/drum_performer.h"
 #include "himc/drum.h"
 #include "performance/performance_events.h"
@@ -30,6 +31,7 @@ typedef struct performance_drums {
     drum_slot slot[HIMC_DRUMS];
     int count;
     himc_listener listener; ///< of all of them
+    himc_air_between air;   ///< between those that are near
 } performance_drums;
 
 /// Slot of the drum with that name, -1 if there is none.
@@ -55,6 +57,8 @@ himc_job *himc_drums_listen_job(performance_drums *drums, const himc_listener *l
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
 
+/// After a change of places or of the set: finds the drums that hear each other.
+HIMC_RT void himc_drums_join(performance_drums *drums);
 /// Whether a drum has changed since the last call.
 HIMC_RT bool himc_drums_noticed(performance_drums *drums, int index);
 /// Reports the place of each auto-placed drum once.

@@ -226,8 +226,10 @@ void himc_performance_notice_drums(himc_performance *p)
         himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
         changed = true;
     }
-    if (changed)
-        himc_performance_renew_limits(p);
+    if (!changed)
+        return;
+    himc_drums_join(&p->drums);
+    himc_performance_renew_limits(p);
 }
 
 bool himc_performance_adopt_drum(himc_performance *p, himc_drum *drum, drum_source source,

@@ -1,0 +1,299 @@
+/// air_between.c: the losses by sound of several heads, as one matrix.
+///
+/// Shared mode i of a drum at r sends a_i(q) exp(-i k q.r) v_i in the direction q (shared.h). All
+/// together lose the power v'C v/2,
+///     C_ij = sum_b w_b(f_i) w_b(f_j) Re sum_q a_i conj(a_j) exp(-i k_b q.(r_i - r_j)),
+/// a Gram sum over directions q and bands b of frequency: no velocities can make it negative,
+/// whatever the places, sizes and tunings. A frequency lies between two bands, half an octave apart,
+/// with w^2 + w^2 = 1, so that modes in tune have the k of their frequency, and modes far out of
+/// tune, which cannot move each other, no C_ij. Two drums in unison, d apart, have the ratio j_0(kd)
+/// for (0,1), 3 j_1(kd)/kd for (1,1) across the line between them, as two poles and two dipoles have.
+/// The reactive part and the time between them (2 ms) are left out.
+///
+/// The modes themselves are without these losses (himc_membrane_share). In its place, every
+/// `himc_membrane_interval` samples t, all velocities change at once by the trapezoidal rule,
+///     m (v' - v) = -t C (v + v')/2,
+/// so that the kinetic energy changes by -t (v + v')'C(v + v')/8 <= 0, and no displacement changes.
+/// Between exchanges each head is passive by itself. So the energy of all never grows.
+///
+/// The table of directions holds for distances up to REACH; drums farther apart do not hear each
+/// other: there less than a tenth of a loss is shared.
+#include "drum/air_between.h"
+
+#include "base/head_frame.h"
+#include "drum/strike_point.h"
+
+#include <math.h>
+#include <string.h>
+
+#define REACH 2.0          // (m) between the centres; chosen: a set of four, with room
+#define AZIMUTHS 32        // of the directions; chosen: exact to 1e-4 for k d up to 15
+#define LOWEST 30.0        // (Hz) of the bands; chosen: below the deepest timpano ...
+#define BANDS 10           // ... to 680 Hz, above all shared modes
+#define BANDS_PER_OCTAVE 2 // chosen: k d hardly changes between two
+#define LEAST 1e-13 // (m/s) a head at rest does not notice less; chosen: 260 dB below a stroke
+#define MODES (HIMC_NEIGHBOURS * HIMC_SHARED)
+
+static const himc_shared_mode *shared(const himc_air_between *air, int i, int *count)
+{
+    return himc_membrane_shared(himc_drum_membrane(air->drum[i]), count);
+}
+
+static double distance(const himc_drum *a, const himc_drum *b)
+{
+    return himc_vec3_length(
+        himc_vec3_sub(himc_drum_head_frame(a)->center, himc_drum_head_frame(b)->center));
+}
+
+static bool in_air(himc_drum *drum)
+{
+    return himc_membrane_head(himc_drum_membrane(drum))->air;
+}
+
+static bool is_near(himc_drum *const *drums, int count, int i)
+{
+    bool near = false;
+    for (int k = 0; k < count; k++)
+        near = near || (k != i && distance(drums[i], drums[k]) < REACH && in_air(drums[k]));
+    return near && in_air(drums[i]);
+}
+
+// w_b of a frequency (rad/s)
+static double weight_in(int band, double omega)
+{
+    double place = BANDS_PER_OCTAVE * log2(omega / (2 * HIMC_PI * LOWEST));
+    double away = fabs(fmin(fmax(place, 0), BANDS - 1) - band);
+    return away < 1 ? cos(HIMC_PI / 2 * away) : 0;
+}
+
+// a shared mode with a part in a band
+typedef struct sender {
+    int at, drum; // in the matrix, in the air
+    const himc_shared_mode *mode;
+    double weight;
+} sender;
+
+// all of them; returns their number
+static int find_senders(const himc_air_between *air, int band, sender *senders)
+{
+    int found = 0, count;
+    for (int drum = 0; drum < air->count; drum++) {
+        const himc_shared_mode *mode = shared(air, drum, &count);
+        for (int i = 0; i < count; i++) {
+            double weight = weight_in(band, mode[i].omega) * sqrt(2 * HIMC_PI / AZIMUTHS);
+            if (weight > 0)
+                senders[found++] = (sender){air->first[drum] + i, drum, &mode[i], weight};
+        }
+    }
+    return found;
+}
+
+// a drum as seen from a direction: cos and sin of m times its azimuth, exp(-i k q.r)
+typedef struct view {
+    double cosine[3], sine[3], re, im;
+} view;
+
+static view view_from(const himc_drum *drum, himc_vec3 to, double k)
+{
+    himc_head_frame level = *himc_drum_head_frame(drum);
+    level.tilt = 0; // a tilt of some degrees turns no low mode's sound
+    himc_vec3 x = himc_head_frame_away(&level);
+    double across = hypot(to.x, to.y), way = k * himc_vec3_dot(level.center, to);
+    double c = (x.x * to.x + x.y * to.y) / across, s = (x.x * to.y - x.y * to.x) / across;
+    return (view){{1, c, c * c - s * s}, {0, s, 2 * s * c}, cos(way), -sin(way)};
+}
+
+// adds what all send in a direction of that ring to C
+static void add_direction(const sender *senders, int n, const view *views, int ring,
+                          double c[MODES][MODES])
+{
+    double re[MODES], im[MODES];
+    for (int i = 0; i < n; i++) {
+        const himc_shared_mode *mode = senders[i].mode;
+        const view *v = &views[senders[i].drum];
+        int m = mode->order;
+        double a = senders[i].weight *
+                   (mode->along[ring] * v->cosine[m] + mode->across[ring] * v->sine[m]);
+        re[i] = a * (m == 1 ? v->im : m == 2 ? -v->re : v->re); // times (-i)^m
+        im[i] = a * (m == 1 ? -v->re : m == 2 ? -v->im : v->im);
+    }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            c[senders[i].at][senders[j].at] += re[i] * re[j] + im[i] * im[j];
+}
+
+static void add_band(const himc_air_between *air, int band, double c[MODES][MODES])
+{
+    sender senders[MODES];
+    view views[HIMC_NEIGHBOURS];
+    int n = find_senders(air, band, senders);
+    double k = 2 * HIMC_PI * LOWEST * exp2((double)band / BANDS_PER_OCTAVE) / HIMC_AIR_SPEED;
+    for (int i = 0; n > 0 && i < HIMC_SHARED_RINGS * AZIMUTHS; i++) {
+        int ring = i / AZIMUTHS;
+        double up = himc_shared_sine[ring], across = sqrt(1 - up * up);
+        double azimuth = 2 * HIMC_PI * (i % AZIMUTHS) / AZIMUTHS;
+        himc_vec3 to = {across * cos(azimuth), across * sin(azimuth), up};
+        for (int drum = 0; drum < air->count; drum++)
+            views[drum] = view_from(air->drum[drum], to, k);
+        add_direction(senders, n, views, ring, c);
+    }
+}
+
+// C
+static void find_losses(const himc_air_between *air, double c[MODES][MODES])
+{
+    for (int i = 0; i < air->first[air->count]; i++)
+        memset(c[i], 0, sizeof c[i]);
+    for (int band = 0; band < BANDS; band++)
+        add_band(air, band, c);
+}
+
+// solves (lower lower') x = b for each of the n columns of b, in place
+static void solve(int n, double lower[MODES][MODES], double b[MODES][MODES])
+{
+    for (int i = 0; i < n; i++)
+        for (int column = 0; column < n; column++) {
+            for (int k = 0; k < i; k++)
+                b[i][column] -= lower[i][k] * b[k][column];
+            b[i][column] /= lower[i][i];
+        }
+    for (int i = n - 1; i >= 0; i--)
+        for (int column = 0; column < n; column++) {
+            for (int k = i + 1; k < n; k++)
+                b[i][column] -= lower[k][i] * b[k][column];
+            b[i][column] /= lower[i][i];
+        }
+}
+
+// in place, Cholesky's factor of a symmetric matrix whose eigenvalues are 1 and more
+static void factor(int n, double a[MODES][MODES])
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j <= i; j++) {
+            double sum = a[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= a[i][k] * a[j][k];
+            a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
+        }
+}
+
+// With u = sqrt(m) v and S = C/sqrt(m_i m_j): u' - u = -t (1 + t S/2)^-1 S u.
+static void find_change(himc_air_between *air)
+{
+    double lower[MODES][MODES], root[MODES];
+    double t = himc_membrane_interval(himc_drum_rate(air->drum[0])) / himc_drum_rate(air->drum[0]);
+    int n = 0, count;
+    for (int drum = 0; drum < air->count; drum++) {
+        const himc_shared_mode *mode = shared(air, drum, &count);
+        air->first[drum] = n;
+        air->revision[drum] = himc_membrane_revision(himc_drum_membrane(air->drum[drum]));
+        for (int i = 0; i < count; i++)
+            root[n++] = sqrt(mode[i].mass);
+    }
+    air->first[air->count] = n;
+    find_losses(air, air->change);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            air->change[i][j] /= root[i] * root[j];
+            lower[i][j] = (i == j) + 0.5 * t * air->change[i][j];
+        }
+    factor(n, lower);
+    solve(n, lower, air->change);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            air->change[i][j] *= -t * root[j] / root[i];
+}
+
+void himc_air_between_join(himc_air_between *air, himc_drum *const *drums, int count)
+{
+    air->count = 0;
+    for (int i = 0; i < count; i++) {
+        bool near = air->count < HIMC_NEIGHBOURS && is_near(drums, count, i);
+        himc_membrane_share(himc_drum_membrane(drums[i]), near);
+        if (near)
+            air->drum[air->count++] = drums[i];
+    }
+    if (air->count > 0)
+        find_change(air);
+}
+
+void himc_air_between_leave(himc_air_between *air, himc_drum *drum)
+{
+    for (int i = 0; i < air->count; i++)
+        if (air->drum[i] == drum) {
+            himc_membrane_share(himc_drum_membrane(drum), false);
+            air->drum[i] = air->drum[--air->count];
+        }
+}
+
+static int interval(const himc_air_between *air)
+{
+    return himc_membrane_interval(himc_drum_rate(air->drum[0]));
+}
+
+int himc_air_between_until(const himc_air_between *air, int64_t now, int n)
+{
+    if (air->count == 0)
+        return n;
+    int left = interval(air) - (int)(now % interval(air));
+    return n < left ? n : left;
+}
+
+// the heads have changed since `change` was found
+static bool is_stale(const himc_air_between *air)
+{
+    bool stale = false;
+    for (int i = 0; i < air->count; i++)
+        stale =
+            stale || air->revision[i] != himc_membrane_revision(himc_drum_membrane(air->drum[i]));
+    return stale;
+}
+
+// velocities of all shared modes; false if all heads are at rest
+static bool read_velocities(const himc_air_between *air, double *v)
+{
+    bool moves = false;
+    int count;
+    for (int drum = 0; drum < air->count; drum++) {
+        const himc_membrane *head = himc_drum_membrane(air->drum[drum]);
+        const himc_shared_mode *mode = shared(air, drum, &count);
+        moves = moves || !himc_membrane_at_rest(head);
+        for (int i = 0; i < count; i++)
+            v[air->first[drum] + i] = himc_membrane_velocity(head, mode[i].index);
+    }
+    return moves;
+}
+
+// changes a drum's velocities
+static void kick(const himc_air_between *air, int drum, const double *change)
+{
+    int count;
+    const himc_shared_mode *mode = shared(air, drum, &count);
+    himc_membrane *head = himc_drum_membrane(air->drum[drum]);
+    double most = 0;
+    for (int i = 0; i < count; i++)
+        most = fmax(most, fabs(change[i]));
+    if (himc_membrane_at_rest(head) && most < LEAST)
+        return;
+    for (int i = 0; i < count; i++)
+        himc_membrane_kick(head, mode[i].index, change[i]);
+}
+
+void himc_air_between_exchange(himc_air_between *air, int64_t now)
+{
+    double v[MODES], change[MODES];
+    if (air->count == 0 || now % interval(air) != 0)
+        return;
+    if (is_stale(air))
+        find_change(air);
+    if (!read_velocities(air, v))
+        return;
+    int n = air->first[air->count];
+    for (int i = 0; i < n; i++) {
+        change[i] = 0;
+        for (int j = 0; j < n; j++)
+            change[i] += air->change[i][j] * v[j];
+    }
+    for (int drum = 0; drum < air->count; drum++)
+        kick(air, drum, change + air->first[drum]);
+}

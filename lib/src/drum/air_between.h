@@ -1,0 +1,31 @@
+/// air_between.h: drums hear each other: what one radiates moves the heads beside it.
+#ifndef HIMC_AIR_BETWEEN_H
+#define HIMC_AIR_BETWEEN_H
+
+#include "drum/drum_performer.h"
+
+#define HIMC_NEIGHBOURS 8 ///< most drums that hear each other; chosen: two sets of timpani
+
+/// The air between some drums. 0: there is none. It costs nothing while no two are near.
+typedef struct himc_air_between {
+    int count;                          ///< of drums that hear each other
+    himc_drum *drum[HIMC_NEIGHBOURS];   ///< borrowed
+    unsigned revision[HIMC_NEIGHBOURS]; ///< of the heads that `change` is for
+    int first[HIMC_NEIGHBOURS + 1];     ///< where a drum's shared modes begin in `change`
+    /// of all velocities in an exchange, per velocity
+    double change[HIMC_NEIGHBOURS * HIMC_SHARED][HIMC_NEIGHBOURS * HIMC_SHARED];
+} himc_air_between;
+
+/// Finds the drums among these (at most HIMC_DRUMS, one rate) that hear each other. To be called
+/// after any change of a place or of the set of drums; changes of heads are noticed. Drums that no
+/// longer belong to it must be let go before.
+HIMC_RT void himc_air_between_join(himc_air_between *air, himc_drum *const *drums, int count);
+/// From now on this drum, if it belongs to it, is alone; `join` follows, or the end.
+HIMC_RT void himc_air_between_leave(himc_air_between *air, himc_drum *drum);
+
+/// Samples from `now` to the next exchange, at most n; all drums are then to be advanced so far.
+HIMC_RT int himc_air_between_until(const himc_air_between *air, int64_t now, int n);
+/// The exchange, if one is due at sample `now`.
+HIMC_RT void himc_air_between_exchange(himc_air_between *air, int64_t now);
+
+#endif
