@@ -1,5 +1,6 @@
 /// test_contact.c: energy, forces, times and rebounds of sticks on a head.
 #include "drum/contact.h"
+#include "drum/membrane_probe.h"
 
 #include "unity.h"
 #include "heads.h"

@@ -129,7 +129,6 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_membrane_run, run_head())                                                            \
     CALL(himc_membrane_sound, himc_membrane_sound(head, 0))                                        \
     CALL(himc_membrane_watched, himc_membrane_watched(head))                                       \
-    CALL(himc_membrane_displacement, himc_membrane_displacement(head, 0.1, 0.1))                   \
     CALL(himc_membrane_energy, himc_membrane_energy(head))                                         \
     CALL(himc_membrane_state, himc_membrane_state(head, 3, &x, &y))                                \
     CALL(himc_membrane_rest, himc_membrane_rest(other))                                            \

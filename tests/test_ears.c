@@ -375,6 +375,54 @@ static void test_listener_is_loaded_to_the_same_result(void)
     himc_performance_free(performance);
 }
 
+// two poles below or above `hz`, in place
+static void filter(double *x, int n, double hz, bool above)
+{
+    double w = tan(HIMC_PI * hz / RATE), norm = 1 / (1 + sqrt(2) * w + w * w);
+    double a1 = 2 * (w * w - 1) * norm, a2 = (1 - sqrt(2) * w + w * w) * norm;
+    double gain = (above ? 1 : w * w) * norm, middle = above ? -2 : 2;
+    double x1 = 0, x2 = 0, y1 = 0, y2 = 0;
+    for (int i = 0; i < n; i++) {
+        double y = gain * (x[i] + middle * x1 + x2) - a1 * y1 - a2 * y2;
+        x2 = x1, x1 = x[i], y2 = y1, y1 = x[i] = y;
+    }
+}
+
+// correlation of what both ears of a drum have heard in its last n samples, below or above `hz`
+static double correlation(const himc_drum *d, int n, double hz, bool above)
+{
+    static double x[HIMC_EARS][HIMC_DRUM_RING];
+    double sum[3] = {0};
+    for (int ear = 0; ear < HIMC_EARS; ear++) {
+        himc_drum_read_channel(d, ear, himc_drum_time(d) - (uint64_t)n, n, x[ear]);
+        for (int k = 0; k < 3; k++)
+            filter(x[ear], n, hz, above);
+    }
+    for (int i = 0; i < n; i++) {
+        sum[0] += x[0][i] * x[1][i];
+        sum[1] += x[0][i] * x[0][i];
+        sum[2] += x[1][i] * x[1][i];
+    }
+    return sum[0] / sqrt(sum[1] * sum[2]);
+}
+
+// a stroke on a drum as it is made, from the place where himc render listens
+static void test_ears_beside_a_drum_hear_two_sounds(void)
+{
+    himc_listener l = facing(1, 1.7, 1.4);
+    himc_drum *timpano = himc_drum_new("timpano", 26, RATE, &error);
+    himc_drum_listen(timpano, &l);
+    himc_drum_strike_at(timpano, 0, -0.75 * 0.33, 0.015, 2, &error);
+    himc_drum_advance(timpano, 32000, NULL, NULL, NULL);
+    double low = correlation(timpano, 32000, 800, false);
+    double high = correlation(timpano, 32000, 800, true);
+    char text[80];
+    snprintf(text, sizeof text, "%.3f below 800 Hz, %.3f above", low, high);
+    TEST_ASSERT_TRUE_MESSAGE(low > 0.45 && low < 0.9, text);
+    TEST_ASSERT_TRUE_MESSAGE(high > 0 && high < 0.6, text);
+    himc_drum_release(timpano);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -390,6 +438,7 @@ int main(void)
     RUN_TEST(test_pickups_sound_as_if_nobody_had_listened_once_ears_have_left);
     RUN_TEST(test_ears_find_a_drum_that_was_moved);
     RUN_TEST(test_a_drum_hears_as_another);
+    RUN_TEST(test_ears_beside_a_drum_hear_two_sounds);
     RUN_TEST(test_listener_refuses_what_is_no_place);
     RUN_TEST(test_listener_hears_all_drums_of_a_performance_until_reset);
     RUN_TEST(test_listener_is_loaded_to_the_same_result);

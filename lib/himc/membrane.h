@@ -168,8 +168,6 @@ HIMC_RT double himc_membrane_sound(const himc_membrane *membrane, int pickup);
 /// The displacement of the watched point now (m).
 HIMC_RT double himc_membrane_watched(const himc_membrane *membrane);
 
-/// Displacement at (x, y) (m, up positive).
-HIMC_RT double himc_membrane_displacement(const himc_membrane *membrane, double x, double y);
 /// Kinetic and potential energy, the film's stretching included (J).
 HIMC_RT double himc_membrane_energy(const himc_membrane *membrane);
 /// Displacement q and velocity v of mode `index` (0 ..) (m, m/s); 0 past the last audible one.

@@ -71,6 +71,19 @@ report two_runs_in_pd_are_equal_bit_by_bit "$(different pd-64-64 again 0 $end)"
 report sound_is_not_silence \
     "$(head -c 760000 /dev/zero | cmp -s - <(samples "$work/render.wav" | head -c 760000) && echo silent)"
 
+# both ears of a listener in the score
+one_of_two() { # one_of_two FILE COLUMN: every second sample of a stereo file, in hexadecimal
+    samples "$1" | head -c $((8 * 150000)) | od -An -v -t x4 -w8 | awk -v k="$2" '{ print $k }'
+}
+"$build/bin/himc" render ears.txt -o "$work/ears.wav" >"$work/log" 2>&1
+play_pd ears.pd -send "himc-test $work/left.wav $work/right.wav"
+for ear in 1:left 2:right; do
+    report "${ear#*:}_ear_in_pd_equals_himc_render_bit_by_bit" \
+        "$(cmp <(one_of_two "$work/ears.wav" "${ear%:*}") \
+            <(samples "$work/${ear#*:}.wav" | head -c $((4 * 150000)) | od -An -v -t x4 -w4 | tr -d ' ') 2>&1)"
+done
+report ears_hear_two_sounds "$(cmp -s "$work/left.wav" "$work/right.wav" && echo one)"
+
 # every strike that himc render writes is a message, in its order, with the same drum, hand and time
 in_pd=$(awk '/^himc: strike/ { printf "%.3f %s %s\n", $3, $4, $5 }' "$work/pd-64-64.log")
 in_csv=$(awk -F, 'NR > 1 { printf "%.3f %s %s\n", $1, $2, $3 }' "$work/strokes.csv")

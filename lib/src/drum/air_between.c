@@ -253,13 +253,14 @@ static bool is_stale(const himc_air_between *air)
 static bool read_velocities(const himc_air_between *air, double *v)
 {
     bool moves = false;
+    double q;
     int count;
     for (int drum = 0; drum < air->count; drum++) {
         const himc_membrane *head = himc_drum_membrane(air->drum[drum]);
         const himc_shared_mode *mode = shared(air, drum, &count);
         moves = moves || !himc_membrane_at_rest(head);
         for (int i = 0; i < count; i++)
-            v[air->first[drum] + i] = himc_membrane_velocity(head, mode[i].index);
+            himc_membrane_state(head, mode[i].index, &q, &v[air->first[drum] + i]);
     }
     return moves;
 }

@@ -553,13 +553,6 @@ unsigned himc_membrane_revision(const himc_membrane *membrane)
     return membrane->revision;
 }
 
-double himc_membrane_velocity(const himc_membrane *membrane, int index)
-{
-    double q, v;
-    himc_bank_state(membrane->core.bank, index, &q, &v);
-    return v;
-}
-
 void himc_membrane_kick(himc_membrane *membrane, int index, double change)
 {
     himc_bank_kick(membrane->core.bank, index, change);

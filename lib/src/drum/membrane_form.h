@@ -47,8 +47,7 @@ HIMC_RT const himc_shared_mode *himc_membrane_shared(const himc_membrane *membra
 HIMC_RT int himc_membrane_interval(double rate);
 /// Grows by one with every change of head or rate.
 HIMC_RT unsigned himc_membrane_revision(const himc_membrane *membrane);
-/// Between two samples: the velocity of mode `index` (m/s), and a change of it.
-HIMC_RT double himc_membrane_velocity(const himc_membrane *membrane, int index);
+/// Between two samples: changes the velocity of mode `index` (m/s).
 HIMC_RT void himc_membrane_kick(himc_membrane *membrane, int index, double change);
 
 /// himc_membrane_run with a row for each of the HIMC_OUTPUTS.

@@ -10,6 +10,9 @@ HIMC_RT void himc_membrane_excite(himc_membrane *membrane, int index, double q, 
 /// Displacement (m) of the first `count` modes; of a pair as if its axis were the x axis.
 HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, double *displacement);
 
+/// Displacement at (x, y) (m, up positive).
+HIMC_RT double himc_membrane_displacement(const himc_membrane *membrane, double x, double y);
+
 /// Rise of the tension as the head bows out (N/m).
 HIMC_RT double himc_membrane_rise(const himc_membrane *membrane);
 

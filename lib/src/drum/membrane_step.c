@@ -61,7 +61,7 @@ static himc_residual find_residual(const himc_membrane *m, const strike_point *s
 // spreads a force at the point over its patch
 static void spread(himc_membrane *m, strike_point *s)
 {
-    bool round = himc_membrane_shape(m)->kind == HIMC_CIRCLE;
+    bool round = himc_modes_shape(m->core.modes)->kind == HIMC_CIRCLE;
     double b = round ? fmin(s->b, m->head.radius - hypot(s->x, s->y)) : s->b;
     s->residual = (himc_residual){0};
     if (!(b > 0))
