@@ -144,11 +144,15 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
     free(reference);
 }
 
-// a bank of 200 oscillators that is pushed now and then, run in blocks of these sizes in turn
-static void play(const himc_bank_kernel *kernel, bool film, const int *sizes, int kinds,
-                 double *out)
+// what is more about a bank than its oscillators
+enum { FILM = 1, KICKS = 2, KINDS = 4 };
+
+// a bank of 200 oscillators that is pushed now and then, run in blocks of these sizes in turn; with
+// kicks, one is kicked every 32 samples
+static void play(const himc_bank_kernel *kernel, int kind, const int *sizes, int kinds, double *out)
 {
-    enum { MANY = 200, LENGTH = 3000 };
+    enum { MANY = 200, LENGTH = 3000, INTERVAL = 32 };
+    bool film = kind & FILM, kicks = kind & KICKS;
     static _Alignas(64) double weight[4][MANY];
     double stretch[MANY];
     himc_oscillator many[MANY];
@@ -164,6 +168,8 @@ static void play(const himc_bank_kernel *kernel, bool film, const int *sizes, in
     himc_bank_set(large, many, MANY, RATE);
     himc_bank_set_film(large, film ? stretch : NULL, 0);
     himc_bank_readout(large, weight[2], weight[2], film ? weight[2] : NULL, &heard);
+    if (kicks)
+        himc_bank_set_pass(large, INTERVAL);
     for (int at = 0, n, k = 0; at < LENGTH; at += n, k++) {
         static const int pushed[] = {0, 1, 2, 66, 131, 140, 1000, LENGTH};
         int next = 0;
@@ -172,7 +178,10 @@ static void play(const himc_bank_kernel *kernel, bool film, const int *sizes, in
         if (pushed[next] == at)
             himc_bank_push(large, weight[2], 1.0 + at);
         next += pushed[next] == at;
+        if (kicks && at % INTERVAL == 0)
+            himc_bank_kick(large, 2, 100);
         n = sizes[k % kinds] < pushed[next] - at ? sizes[k % kinds] : pushed[next] - at;
+        n = kicks && n > INTERVAL - at % INTERVAL ? INTERVAL - at % INTERVAL : n;
         himc_bank_run(large, n, readouts, 1, (double *[]){out + at});
     }
     out[LENGTH] = himc_bank_energy(large) + himc_bank_film(large);
@@ -182,19 +191,40 @@ static void play(const himc_bank_kernel *kernel, bool film, const int *sizes, in
 static void test_bank_gives_the_same_bits_on_every_vector_unit_and_in_any_blocks(void)
 {
     static const int long_blocks[] = {3000}, short_blocks[] = {1, 5, 4, 13, 64, 100};
-    static double expected[2][3001], got[3001];
+    static double expected[KINDS][3001], got[3001];
     int count = 0;
-    for (int film = 0; film < 2; film++)
-        play(himc_bank_kernel_version(0), film, long_blocks, 1, expected[film]);
+    for (int kind = 0; kind < KINDS; kind++)
+        play(himc_bank_kernel_version(0), kind, long_blocks, 1, expected[kind]);
     TEST_ASSERT_TRUE(expected[0][3000] > 0);
-    TEST_ASSERT_TRUE(fabs(expected[1][2999] / expected[0][2999] - 1) > 0.01);
+    TEST_ASSERT_TRUE(fabs(expected[FILM][2999] / expected[0][2999] - 1) > 0.01);
+    TEST_ASSERT_TRUE(fabs(expected[KICKS][2999] / expected[0][2999] - 1) > 0.01);
     for (; himc_bank_kernel_version(count); count++)
-        for (int film = 0; film < 2; film++) {
-            play(himc_bank_kernel_version(count), film, short_blocks, 6, got);
-            TEST_ASSERT_EQUAL_MEMORY(expected[film], got, sizeof got);
+        for (int kind = 0; kind < KINDS; kind++) {
+            play(himc_bank_kernel_version(count), kind, short_blocks, 6, got);
+            TEST_ASSERT_EQUAL_MEMORY(expected[kind], got, sizeof got);
         }
     printf("%d versions, the fastest %s\n", count, himc_bank_kernel_fastest()->name);
     TEST_ASSERT_EQUAL_PTR(himc_bank_kernel_version(count - 1), himc_bank_kernel_fastest());
+}
+
+// velocities given in an interval are those of an oscillator that starts with them
+static void test_bank_kick_adds_velocity(void)
+{
+    himc_oscillator alone = {900, 5, 0.01};
+    double q[2], v[2];
+    for (int kicked = 0; kicked < 2; kicked++) {
+        himc_bank *one = himc_bank_new(1, NULL);
+        himc_bank_set(one, &alone, 1, RATE);
+        himc_bank_set_pass(one, 32);
+        himc_bank_excite(one, 0, 1e-3, kicked ? 0.2 : 0.5);
+        if (kicked)
+            himc_bank_kick(one, 0, 0.3);
+        himc_bank_run(one, 1000, NULL, 0, NULL);
+        himc_bank_state(one, 0, &q[kicked], &v[kicked]);
+        himc_bank_free(one);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, q[0], q[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, v[0], v[1]);
 }
 
 static int passes;
@@ -326,6 +356,7 @@ int main(void)
     RUN_TEST(test_bank_response_is_the_change_by_one_newton);
     RUN_TEST(test_bank_work_of_a_force_is_the_energy_gained);
     RUN_TEST(test_bank_runs_give_the_same_bits_in_any_blocks);
+    RUN_TEST(test_bank_kick_adds_velocity);
     RUN_TEST(test_bank_gives_the_same_bits_on_every_vector_unit_and_in_any_blocks);
     RUN_TEST(test_bank_computes_64_samples_at_a_time_of_what_is_read_alone);
     RUN_TEST(test_bank_readouts_are_equal_alone_and_together);
