@@ -15,9 +15,12 @@ function say(who, text,   part, n, i) {
         print who, part[i]
 }
 function close_canvas(   i, k, from, to, text, name) {
-    for (i = 0; i < links[depth]; i++) {
-        split(link[depth, i], from, " ")
-        source[depth, from[3]] = kind[depth, from[1]] == "r" ? content[depth, from[1]] : source[depth, from[3]]
+    for (i = 0; i < 2 * links[depth]; i++) { # twice: what goes through [sel] is known in the second round
+        split(link[depth, i % links[depth]], from, " ")
+        if (kind[depth, from[1]] == "r")
+            source[depth, from[3]] = content[depth, from[1]]
+        if (kind[depth, from[1]] == "sel")
+            source[depth, from[3]] = source[depth, from[1]]
     }
     for (i = 0; i < links[depth]; i++) {
         split(link[depth, i], from, " ")

@@ -5,6 +5,7 @@
 
 #include "drum/drum_performer.h"
 #include "drum/ears.h"
+#include "drum/stroke_noise.h"
 
 #define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
 #define DRUM_REPORTS 64
@@ -59,7 +60,8 @@ struct himc_drum {
     drum_queue onset_queue;
     himc_technique technique;
     bool external_sound;
-    double level; ///< of the head's own sound, 0 .. 1
+    double level; ///< of the drum's own sound, 0 .. 1
+    himc_stroke_noise noise;
     himc_listener listener;
     himc_ears ears; ///< of the listener
 };
