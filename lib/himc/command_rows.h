@@ -150,6 +150,8 @@ HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, HIMC_CHANGES_HEAD, "CHANNELS",
 HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
                  "sets where the sound of one pickup is taken")
+HIMC_COMMAND_ROW(DRUM_GAIN, gain, DRUM, NOW, 0, "DB",
+                 "sets how loud the drum is heard, 0 by default: a fader, which changes no motion")
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
                  "chooses how blows become sound: by the head, or by the patch around it in Pure "
                  "Data")

@@ -1,6 +1,6 @@
-/// loudness.c: how loud sound files are: `loudness FILE...`, one line each, three numbers: integrated
-/// loudness (LUFS), loudness range (LU) and true peak of the loudest channel (dBTP), by libebur128
-/// (ITU-R BS.1770-4, EBU Tech 3342).
+/// loudness.c: how loud sound files are: `loudness FILE...`, one line each, three numbers:
+/// integrated loudness (LUFS), loudness range (LU) and true peak of the loudest channel (dBTP), by
+/// libebur128 (ITU-R BS.1770-4, EBU Tech 3342).
 ///
 /// One channel counts once and two count both: the same signal in two channels is 3 LU louder.
 #define _POSIX_C_SOURCE 200809L // fileno

@@ -85,6 +85,7 @@ static const himc_argument arguments[] = {
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
     {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10, "m^3", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
+    {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},
     {"LENGTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
     {"WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},

@@ -42,7 +42,7 @@ static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc
     }
     snprintf(drum->name, sizeof drum->name, "%s", name);
     drum->references = 1;
-    drum->level = 1;
+    drum->level = drum->gain = 1;
     drum->membrane = membrane;
     himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
     drum->place = *place;
@@ -230,7 +230,8 @@ static int channels(const himc_drum *drum)
 // levels of the head's own sound in the coming n samples; `levels` is NULL if nothing sounds
 static void next_levels(himc_drum *drum, int n, double *levels)
 {
-    double goal = drum->technique == HIMC_TECHNIQUE_MODAL, step = 1 / (LEVEL_RAMP * drum->rate);
+    double goal = drum->technique == HIMC_TECHNIQUE_MODAL ? drum->gain : 0,
+           step = fmax(drum->gain, 1) / (LEVEL_RAMP * drum->rate);
     for (int i = 0; i < n && (levels || drum->level != goal); i++) {
         if (drum->level != goal)
             drum->level += fmin(fmax(goal - drum->level, -step), step);

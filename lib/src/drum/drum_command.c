@@ -302,6 +302,13 @@ static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
     return replace_shape(drum, &shape, &head, error);
 }
 
+static bool do_gain(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    drum->gain = pow(10, number(c, 0) / 20);
+    return true;
+}
+
 static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_technique wanted = (himc_technique)c->choice[0];

@@ -60,7 +60,8 @@ struct himc_drum {
     drum_queue onset_queue;
     himc_technique technique;
     bool external_sound;
-    double level; ///< of the drum's own sound, 0 .. 1
+    double gain;  ///< of its sound, set by the command `gain` (factor)
+    double level; ///< of the drum's own sound: on its way to the gain, or to 0
     himc_stroke_noise noise;
     himc_listener listener;
     himc_ears ears; ///< of the listener

@@ -77,7 +77,7 @@ static himc_ear_path path_to(const himc_listener *l, int ear, himc_vec3 source, 
     double around = side > 0 ? -side : angle - HIMC_PI / 2;
     double way = fmax(distance + HEAD_RADIUS * around, NEAREST);
     return (himc_ear_path){.delay = way / HIMC_AIR_SPEED,
-                           .gain = strength / way,
+                           .gain = strength * HIMC_EARS_LEVEL / way,
                            .shelf = SHADOW_MEAN + SHADOW_DEPTH * cos(SHADOW_ANGLE * angle)};
 }
 

@@ -27,8 +27,8 @@ HIMC_RT himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic);
 /// The same with the shape of a unit; the dynamic still sets the speed.
 HIMC_RT himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance, double dynamic);
 
-/// The same stroke with `factor` times its impact speed and height, in the same time, within the limits
-/// of all strokes.
+/// The same stroke with `factor` times its impact speed and height, in the same time, within the
+/// limits of all strokes.
 HIMC_RT himc_gesture himc_gesture_scale(himc_gesture gesture, double factor);
 
 /// Time of the stroke from a tip at rest `height` above the point of contact (s).

@@ -6,7 +6,8 @@
 /// al. 2011), and each stroke corrects a share of the last error, so the player stays with the
 /// written tempo (Vorberg & Wing 1996; Repp 2005). With t_j the written time,
 ///
-///     late_j = K_j + D_j + bias of the hand,    K_j = K_{j-1} - alpha (K_{j-1} + D_{j-1}) + C_j + F_j
+///     late_j = K_j + D_j + bias of the hand
+///     K_j = K_{j-1} - alpha (K_{j-1} + D_{j-1}) + C_j + F_j
 ///
 /// Force has white noise with a small anticorrelation between the hands, and drift (Räsänen et al.
 /// 2015); the place scatters about each hand's own point.

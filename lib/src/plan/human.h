@@ -27,8 +27,8 @@ typedef struct himc_variation {
 HIMC_RT himc_variation himc_human_stroke(const himc_human *human, const planner_score *score,
                                          himc_hand hand, int round, double beat);
 
-/// Of the hit number `count` (0, 1, ..). It is never early, since a hit comes as soon as it can, and
-/// `together`, since what the other hand will be told is not known.
+/// Of the hit number `count` (0, 1, ..). It is never early, since a hit comes as soon as it can,
+/// and `together`, since what the other hand will be told is not known.
 HIMC_RT himc_variation himc_human_hit(const himc_human *human, himc_hand hand, int count);
 
 /// Moves a place on a head (m) to where a hand with that variation strikes. Hands that strike

@@ -117,8 +117,8 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
                                  const himc_target *state);
 
 /// The current stroke of a hand at `t`, its drum and the planned time of contact: the stroke to be
-/// played next, until 50 ms after its time or half way to the one after it. The spot of a stroke that
-/// a player's variation moves is where it will be played. False if there is none.
+/// played next, until 50 ms after its time or half way to the one after it. The spot of a varied
+/// stroke is where it will be played. False if there is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 

@@ -1,7 +1,7 @@
 /// planner_motion.h: the state of the planner, and the functions that plan motion from it.
 ///
-/// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the score,
-/// planner_notes.c the notes, and planner_motion.c the hands and the clock.
+/// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
+/// score, planner_notes.c the notes, and planner_motion.c the hands and the clock.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
 
