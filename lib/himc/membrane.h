@@ -59,7 +59,7 @@ typedef struct himc_mode {
 #define HIMC_DAMP 69.0
 
 /// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
-/// HIMC_MODES_AUTO, lugs 1.4 % off (uniformity 0.3).
+/// HIMC_MODES_AUTO, lugs 1.6 % off (uniformity 0.2).
 himc_head himc_head_default(void);
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).

@@ -3,7 +3,9 @@
 /// L lugs at th_l = 2 pi (l + 1/2)/L (players strike between two lugs) pull with errors of standard
 /// deviation s = 2 % (1 - uniformity) of T, independent of each other. The pull at the rim then has
 /// harmonics T t_k cos k (th - th_k) of RMS t_k = 2 s/sqrt(L). Every head has just these; its seed
-/// gives their directions. Harmonics finer than the lugs, k > L/2, are aliases of coarser ones,
+/// gives their directions, of t_2 only those in which a stroke on the x axis gives each member of
+/// (1, n) at least a quarter of the energy (chosen: every seed can be heard). Harmonics finer than
+/// the lugs, k > L/2, are aliases of coarser ones,
 ///     z_k = t_k exp(i k th_k) ~ sum_l e_l exp(i k th_l):   z_(L-k) = -conj(z_k),   z_(L+k) = -z_k,
 /// which the hoop smooths by 1/(1 + (k/4)^4) (chosen); so z_(L/2) is imaginary and z_L real. k = 0
 /// is tuning and does not count.
@@ -31,7 +33,8 @@
 static void find_phases(int seed, double *phase)
 {
     uint64_t state = (uint64_t)seed, bits = himc_random_bits(&state);
-    double turn = 2 * HIMC_PI * ldexp((double)(himc_random_bits(&state) >> 11), -53);
+    double part = ldexp((double)(himc_random_bits(&state) >> 11), -53);
+    double turn = (bits & 4 ? 1 : -1) * HIMC_PI * (1 + part) / 3;
     phase[0] = bits & 1 ? 0 : HIMC_PI;
     phase[1] = turn;
     phase[2] = bits & 2 ? 0.5 * HIMC_PI : -0.5 * HIMC_PI;

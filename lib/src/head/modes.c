@@ -75,7 +75,7 @@ himc_head himc_head_default(void)
                        .modes = HIMC_MODES_AUTO,
                        .air = true,
                        .glide = 1,
-                       .uniformity = 0.3};
+                       .uniformity = 0.2};
 }
 
 bool himc_head_check(const himc_head *head, himc_error *error)
