@@ -35,6 +35,7 @@ void setUp(void)
     head.modes = 500;
     head.air = false;
     head.glide = 0;
+    head.uniformity = 1;
     membrane = NULL;
     himc_drum *drum = himc_drum_new("kettle", 26, RATE, NULL);
     for (int i = 0; i < MALLETS; i++) {
@@ -124,6 +125,23 @@ static void test_patch_compliance_of_3500_modes_is_its_closed_form(void)
     TEST_ASSERT_TRUE(worst < 0.004);
     head.tension = 3762;
     TEST_ASSERT_DOUBLE_WITHIN(0.1e-6, 115.6e-6, himc_patch_compliance(&head, SPOT, b));
+}
+
+static void test_residual_has_what_the_modes_lack_of_compliance_and_inverse_mass(void)
+{
+    double b = 0.008, sum = 0, per_mass = 0;
+    remake();
+    const strike_point *s = himc_membrane_strike_point(membrane, SPOT, 0, b);
+    for (int m = 0; m < head.modes; m++) {
+        himc_mode mode = himc_membrane_mode(membrane, m);
+        sum += s->shape[m] * s->shape[m] / mode.stiffness;
+        per_mass += s->shape[m] * s->shape[m] / mode.mass;
+    }
+    himc_residual r = himc_strike_point_residual(s);
+    double compliance = r.root * r.root, patch = head.density * HIMC_PI * b * b;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_patch_compliance(&head, SPOT, b) - sum, compliance);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1 / patch - per_mass, compliance * r.omega * r.omega);
+    TEST_ASSERT_TRUE(per_mass > 0.2 / patch && compliance > 0.1 * sum);
 }
 
 // a heavy stick laid onto a damped head
@@ -345,6 +363,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_patch_weight_is_2_j1_of_z_per_z);
     RUN_TEST(test_patch_compliance_of_3500_modes_is_its_closed_form);
+    RUN_TEST(test_residual_has_what_the_modes_lack_of_compliance_and_inverse_mass);
     RUN_TEST(test_a_resting_stick_sinks_in_as_the_closed_form_says_with_any_number_of_modes);
     RUN_TEST(test_patch_radius_follows_from_mallet_speed_and_tension);
     RUN_TEST(test_force_is_the_same_with_200_and_2000_modes_for_each_mallet);

@@ -39,7 +39,7 @@ static const himc_mallet_head presets[] = {
                           .radius = 0.017,
                           .relaxation = 0.15e-3},
     [DRUM_MALLET_WOOD] =
-        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 0.1e-3},
+        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 5e-6},
 };
 
 #define OWN_RADIUS 0.0175 // (m) of a mallet given by numbers; chosen: a usual felt's
@@ -97,6 +97,13 @@ static bool do_glide(himc_drum *drum, const himc_command *c, himc_error *error)
 static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     return set_field(drum, c, offsetof(himc_head, damp), error);
+}
+
+static bool do_noise(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    drum->noise.amount = number(c, 0);
+    return true;
 }
 
 // other heads have no pairs to split
