@@ -208,6 +208,15 @@ levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks bel
 check-levels: all $(BUILD)/tools/sound/loudness
 	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh tests/sound/test_levels.sh
 
+sound-report: deps ## how near the timpano is to recorded ones: table and plot in build/sound-report (two minutes)
+	@tools/deps.sh tools/deps-sound.txt
+	@$(MAKE) check-sound-report
+
+PYTHON ?= python3
+check-sound-report: all $(BUILD)/tools/sound/loudness
+	@$(PYTHON) tools/sound/report.py $(PROGRAM) $(BUILD)/sound-report
+	@gnuplot -e "folder='$(BUILD)/sound-report'" tools/sound/report.gp
+
 bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
 
@@ -259,7 +268,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime levels check-levels bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands

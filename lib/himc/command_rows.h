@@ -138,6 +138,8 @@ HIMC_COMMAND_ROW(
     "makes a head of another outline, or one of up to 800 masses on springs from a file")
 HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0, "soft|medium|hard|wood | K ALPHA MASS",
                  "chooses the mallet, or its stiffness, exponent and mass")
+HIMC_COMMAND_ROW(NOISE, noise, DRUM, NOW, 0, "AMOUNT",
+                 "sets how loud felt, shaft, shell and stand answer a blow")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
                  "sets where the head stands and how it is tilted")
 HIMC_COMMAND_ROW(PICKUP, pickup, DRUM, NOW, HIMC_CHANGES_HEAD,

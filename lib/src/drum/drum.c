@@ -47,6 +47,7 @@ static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc
     himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
     drum->place = *place;
     drum->rate = himc_membrane_rate(membrane);
+    drum->noise = himc_stroke_noise_at(drum->rate);
     drum->outside_x = FIRST_WATCHED * place->radius;
     himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
     return drum;
@@ -116,6 +117,7 @@ const char *himc_drum_name(const himc_drum *drum)
 void himc_drum_rest(himc_drum *drum)
 {
     himc_membrane_rest(drum->membrane);
+    himc_stroke_noise_rest(&drum->noise);
     drum->waiting_count = 0;
     for (int i = 0; i < HIMC_STICKS; i++)
         drum->mallets[i] = (drum_mallet){.used = false};
@@ -175,6 +177,7 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error)
         m->end = drum->time - (uint64_t)llround((double)(drum->time - m->end) * ratio);
     }
     drum->rate = sample_rate;
+    himc_stroke_noise_set_rate(&drum->noise, sample_rate);
     himc_drum_find_ways(drum);
     return true;
 }
@@ -281,6 +284,24 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
     drum->time += (uint64_t)n;
 }
 
+// adds the noise of blows, while `force` acts in each sample, to the pickups in the air and to the
+// rays to a listener
+static void add_noise(himc_drum *drum, int n, double force, double *const *sound)
+{
+    double noise[HIMC_NOISE_ROWS][RUN_BLOCK];
+    int count;
+    const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
+    if (!drum->noise.sounds && force == 0)
+        return;
+    himc_stroke_noise_run(&drum->noise, n, force, (double *[]){noise[0], noise[1]});
+    for (int k = 0; k < count && !himc_ears_alone(&drum->ears); k++)
+        for (int i = 0; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
+            sound[k][i] += noise[0][i] / pickups[k].distance;
+    for (int k = 0; k < HIMC_RAYS && himc_membrane_rays(drum->membrane); k++)
+        for (int i = 0; i < n; i++)
+            sound[HIMC_PICKUPS + k][i] += noise[k == HIMC_RAY_RIGHT][i];
+}
+
 // runs the head without contact; the sticks fly
 static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                       double *const *forces, int at)
@@ -292,9 +313,10 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
         into[k] = sound[k];
         wanted[k] = alone && k < HIMC_PICKUPS ? NULL : sound[k];
     }
-    bool silent = himc_membrane_at_rest(drum->membrane);
+    bool silent = himc_membrane_at_rest(drum->membrane) && !drum->noise.sounds;
     if (!silent)
         himc_membrane_run_all(drum->membrane, n, wanted, seen);
+    add_noise(drum, n, 0, into);
     store(drum, n, into, seen, silent);
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < n; i++)
@@ -302,6 +324,12 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
         for (int i = 0; forces && forces[k] && i < n; i++)
             forces[k][at + i] = 0;
     }
+}
+
+static void begin_contact(himc_drum *drum, const himc_stick *stick)
+{
+    himc_stroke_noise_begin(&drum->noise, stick->x, stick->y);
+    himc_drum_keep_onset(drum, stick);
 }
 
 // runs one sample with everything that may touch the head: `given` sticks and the drum's mallets
@@ -313,12 +341,15 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
         himc_membrane_push(drum->membrane, drum->outside_x, drum->outside_y, force);
     int count = given + himc_drum_add_mallets(drum, all + given);
     unsigned known[2 * HIMC_STICKS];
+    double pressing = 0;
     for (int k = 0; k < count; k++)
         known[k] = all[k]->contacts;
     himc_contact_step(drum->membrane, all, count);
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; k++) {
         if (all[k]->contacts != known[k])
-            himc_drum_keep_onset(drum, all[k]);
+            begin_contact(drum, all[k]);
+        pressing += all[k]->force;
+    }
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
@@ -328,6 +359,7 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
         sound[k] = himc_membrane_sound(drum->membrane, k);
         into[k] = &sound[k];
     }
+    add_noise(drum, 1, pressing, into);
     store(drum, 1, into, drum->unwatched ? NULL : &watched, false);
     himc_drum_follow_mallets(drum);
 }

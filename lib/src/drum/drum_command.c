@@ -99,6 +99,13 @@ static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
     return set_field(drum, c, offsetof(himc_head, damp), error);
 }
 
+static bool do_noise(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    drum->noise.amount = number(c, 0);
+    return true;
+}
+
 // other heads have no pairs to split
 static bool do_uniformity(himc_drum *drum, const himc_command *c, himc_error *error)
 {

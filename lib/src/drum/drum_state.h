@@ -5,6 +5,7 @@
 
 #include "drum/drum_performer.h"
 #include "drum/ears.h"
+#include "drum/stroke_noise.h"
 
 #define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
 #define DRUM_REPORTS 64
@@ -60,7 +61,8 @@ struct himc_drum {
     himc_technique technique;
     bool external_sound;
     double gain;  ///< of its sound, set by the command `gain` (factor)
-    double level; ///< of the head's own sound: on its way to the gain, or to 0
+    double level; ///< of the drum's own sound: on its way to the gain, or to 0
+    himc_stroke_noise noise;
     himc_listener listener;
     himc_ears ears; ///< of the listener
 };

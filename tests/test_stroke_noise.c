@@ -1,0 +1,138 @@
+/// test_stroke_noise.c: the noise of blows: levels, decays, seeds, blocks; none without a blow.
+#include "one_drum.h"
+
+#define LOWEST 500.0 // edge of the lowest octave (Hz)
+
+// the noise alone: a drum with it less the same drum without
+static void noise_of(const char *mallet, double velocity, double x, double *out)
+{
+    static double with[LENGTH];
+    for (int amount = 1; amount >= 0; amount--) {
+        tearDown();
+        setUp();
+        says(mallet);
+        says(amount ? "noise 1" : "noise 0");
+        TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, x, 0, velocity, &error));
+        advance(LENGTH);
+        himc_drum_read(drum, 0, LENGTH, amount ? with : out, NULL);
+    }
+    for (int i = 0; i < LENGTH; i++)
+        out[i] = with[i] - out[i];
+}
+
+// power of n samples between two frequencies (Hz), by Butterworth's filters
+static double power(const double *x, int n, double low, double high)
+{
+    double sum = 0, a[2] = {0}, b[2] = {0}, edge[2] = {low, high};
+    double y = 0;
+    for (int i = 0; i < n; i++) {
+        y = x[i];
+        for (int k = 0; k < 2; k++) {
+            double w = tan(HIMC_PI * edge[k] / RATE), norm = 1 / (1 + w * sqrt(2) + w * w);
+            double g = (k == 0 ? 1 : w * w) * norm, in = y;
+            y = g * in + a[k];
+            a[k] = (k == 0 ? -2 : 2) * g * in - 2 * (w * w - 1) * norm * y + b[k];
+            b[k] = g * in - (1 - w * sqrt(2) + w * w) * norm * y;
+        }
+        sum += y * y;
+    }
+    return sum / n;
+}
+
+static void test_noise_0_leaves_the_head_alone(void)
+{
+    says("noise 0");
+    says("strike -0.2 0 3");
+    for (int i = 0; i < LENGTH; i++) {
+        double heard;
+        advance(1);
+        himc_drum_read(drum, (uint64_t)i, 1, &heard, NULL);
+        TEST_ASSERT_EQUAL_DOUBLE(himc_membrane_sound(himc_drum_membrane(drum), 0), heard);
+    }
+}
+
+// the lowest octave has the longest T60, so at last it is all that is left in the others
+static void test_noise_decays_in_the_lowest_octave_as_it_should_and_faster_above(void)
+{
+    static double x[LENGTH];
+    noise_of("mallet medium", 3, -0.2, x);
+    int at = (int)(0.02 * RATE), n = (int)(0.35 / 4 * RATE);
+    double fall[2];
+    for (int high = 0; high < 2; high++) {
+        double low = high ? 4000 : LOWEST;
+        fall[high] =
+            10 * log10(power(x + at, n, low, 2 * low) / power(x + at + n, n, low, 2 * low));
+        printf("octave from %.0f Hz: %.1f dB in 88 ms\n", low, fall[high]);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(3, 15, fall[0]);
+    TEST_ASSERT_TRUE(fall[1] > fall[0] + 5);
+}
+
+static void test_hard_mallets_and_fast_blows_have_more_noise_for_their_force(void)
+{
+    static double x[LENGTH];
+    double share[4][2];
+    static const char *const mallets[] = {"mallet soft", "mallet medium", "mallet hard",
+                                          "mallet wood"};
+    for (int k = 0; k < 4; k++)
+        for (int fast = 0; fast < 2; fast++) {
+            noise_of(mallets[k], fast ? 4 : 1, -0.2, x);
+            himc_contact_report report;
+            TEST_ASSERT_TRUE(himc_drum_strike_next(drum, &report));
+            share[k][fast] = power(x, LENGTH, LOWEST, 8000) / (report.impulse * report.impulse);
+            TEST_ASSERT_TRUE(k == 0 || share[k][fast] > share[k - 1][fast]);
+        }
+    for (int k = 0; k < 4; k++)
+        TEST_ASSERT_TRUE(share[k][1] > 1.5 * share[k][0]);
+}
+
+static void test_equal_blows_are_equal_and_others_are_not(void)
+{
+    static double first[LENGTH], again[LENGTH], beside[LENGTH];
+    double same = 0, other = 0, own = 0;
+    noise_of("mallet medium", 3, -0.2, first);
+    noise_of("mallet medium", 3, -0.2, again);
+    noise_of("mallet medium", 3, -0.215, beside);
+    for (int i = 0; i < LENGTH; i++) {
+        TEST_ASSERT_EQUAL_DOUBLE(first[i], again[i]);
+        same += first[i] * first[i];
+        own += beside[i] * beside[i];
+        other += first[i] * beside[i];
+    }
+    TEST_ASSERT_TRUE(same > 0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5 * same, same, own);
+    TEST_ASSERT_TRUE(fabs(other) < 0.3 * same);
+}
+
+static void test_noise_is_the_same_in_all_blocks(void)
+{
+    static double one[LENGTH], many[LENGTH], place[LENGTH], force[LENGTH];
+    scene(1, one, place, force);
+    scene(477, many, place, force);
+    for (int i = 0; i < LENGTH; i++)
+        TEST_ASSERT_EQUAL_DOUBLE(one[i], many[i]);
+}
+
+static void test_pickups_on_the_head_hear_none_and_distance_weakens_it(void)
+{
+    static double near[LENGTH], far[LENGTH], x[LENGTH];
+    noise_of("pickup 0 0", 3, -0.2, x);
+    for (int i = 0; i < LENGTH; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0, x[i]);
+    noise_of("pickup air 0 0.2 1", 3, -0.2, near);
+    noise_of("pickup air 0 0.2 4", 3, -0.2, far);
+    for (int i = 0; i < LENGTH; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, near[i], 4 * far[i]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_noise_0_leaves_the_head_alone);
+    RUN_TEST(test_noise_decays_in_the_lowest_octave_as_it_should_and_faster_above);
+    RUN_TEST(test_hard_mallets_and_fast_blows_have_more_noise_for_their_force);
+    RUN_TEST(test_equal_blows_are_equal_and_others_are_not);
+    RUN_TEST(test_noise_is_the_same_in_all_blocks);
+    RUN_TEST(test_pickups_on_the_head_hear_none_and_distance_weakens_it);
+    return UNITY_END();
+}
