@@ -1,7 +1,7 @@
 /// bench.c: `himc bench`: the speed of one core. It measures whole steps of a performance (alone,
 /// with a drum that is struck, with joint limits) and the parts of a step; the solvers of inverse
-/// kinematics; drums without a performer; the performers with their drums that one core plays in
-/// real time. With --peers it runs other programs beside it (bench_peers.h).
+/// kinematics; drums without a performer; the bank alone by its loops for each vector unit; the
+/// performers with their drums that one core plays in real time; the worst of their blocks. With --peers it runs other programs beside it (bench_peers.h).
 ///
 /// It measures processor time, not elapsed time, and each figure is the median of five runs, so
 /// other programs on the machine have little effect.
@@ -13,6 +13,7 @@
 #include "control/controller.h"
 #include "control/setpoint.h"
 #include "body/character.h"
+#include "drum/bank.h"
 #include "himc/membrane.h"
 
 #include <limits.h>
@@ -27,6 +28,9 @@
 #define SECONDS 2          // chosen: of each performance and drum (s)
 #define MODES 1024         // chosen: of the drumhead that is measured alone
 #define MODE_SAMPLES 24000 // chosen: half a second of it
+#define BLOCKS (SECONDS * RATE / BLOCK)
+#define BANK_MODES 960 // chosen: of the bank without a head, below a thousand
+#define VERSIONS 3     // of the bank's loops
 #define PARTS 6
 #define ROWS (PARTS + HIMC_SOLVERS) // the parts of a step, then the solvers
 #define DAMPING 0.01                // chosen: of DLS and Nakamura, in the range of use (m)
@@ -75,10 +79,12 @@ enum { DRUM_200, DRUM_NO_GLIDE, DRUM_AUTO, DRUM_1000, SILENT, DRUMS };
 
 /// Median of the runs.
 typedef struct figures {
-    double piece[PIECES]; ///< a step (us)
-    double row[ROWS];     ///< (us)
-    double drum[DRUMS];   ///< processor time for a second of sound (ms)
-    double modes;         ///< that one core plays in real time
+    double piece[PIECES];  ///< a step (us)
+    double row[ROWS];      ///< (us)
+    double drum[DRUMS];    ///< processor time for a second of sound (ms)
+    double modes;          ///< that one core plays in real time
+    double bank[VERSIONS]; ///< the same by each version of the bank's loops; 0: not on this machine
+    double share, worst;   ///< of one performer with four drums, of the worst block's deadline (%)
 } figures;
 
 static const char *const part_name[PARTS] = {
@@ -136,24 +142,70 @@ static bool add_drums(himc_performance *p, int drums, himc_error *error)
     return true;
 }
 
-/// Processor time of a step (us); negative with the reason.
-static double time_piece(const bench_piece *b, himc_error *error)
+/// A performance that begins with the next sample; NULL with the reason.
+static himc_performance *begin_piece(const bench_piece *b, himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
     config.sample_rate = RATE;
     config.physics_rate = PHYSICS;
     himc_performance *p = himc_performance_new(&config, error);
-    double taken = -1;
     if (p && cli_tell(p, "tempo 120", NULL, error) && add_drums(p, b->drums, error) &&
         cli_tell(p, "limits", b->limits, error) &&
-        (!b->plays || (add_strokes(p, b->drums, error) && cli_tell(p, "play", NULL, error)))) {
-        double start = cpu_seconds();
-        for (int done = 0; done < SECONDS * RATE; done += BLOCK)
-            himc_performance_process(p, BLOCK, NULL);
-        taken = 1e6 * (cpu_seconds() - start) / (SECONDS * PHYSICS);
-    }
+        (!b->plays || (add_strokes(p, b->drums, error) && cli_tell(p, "play", NULL, error))))
+        return p;
     himc_performance_free(p);
-    return taken;
+    return NULL;
+}
+
+/// Processor time of a step (us); negative with the reason.
+static double time_piece(const bench_piece *b, himc_error *error)
+{
+    himc_performance *p = begin_piece(b, error);
+    if (!p)
+        return -1;
+    double start = cpu_seconds();
+    for (int done = 0; done < SECONDS * RATE; done += BLOCK)
+        himc_performance_process(p, BLOCK, NULL);
+    double taken = cpu_seconds() - start;
+    himc_performance_free(p);
+    return 1e6 * taken / (SECONDS * PHYSICS);
+}
+
+static void read_drums(himc_performance *p, uint64_t from)
+{
+    double sound[BLOCK];
+    for (int i = 0; himc_performance_drum(p, i); i++)
+        himc_drum_read(himc_performance_drum(p, i), from, BLOCK, sound, NULL);
+}
+
+/// One performer with four drums, block by block, as a host plays them. Each block counts with its
+/// best of all runs, since what the piece asks of it is the same in all, and the rest is the
+/// machine's.
+static bool time_blocks(figures *f, himc_error *error)
+{
+    static double best[BLOCKS];
+    const double deadline = (double)BLOCK / RATE;
+    double sum = 0, worst = 0;
+    for (int run = 0; run < RUNS; run++) {
+        himc_performance *p = begin_piece(&piece[FOUR_DRUMS], error);
+        if (!p)
+            return false;
+        for (int i = 0; i < BLOCKS; i++) {
+            double start = cpu_seconds();
+            himc_performance_process(p, BLOCK, NULL);
+            read_drums(p, (uint64_t)i * BLOCK);
+            double taken = cpu_seconds() - start;
+            best[i] = run == 0 || taken < best[i] ? taken : best[i];
+        }
+        himc_performance_free(p);
+    }
+    for (int i = 0; i < BLOCKS; i++) {
+        sum += best[i];
+        worst = best[i] > worst ? best[i] : worst;
+    }
+    f->share = 100 * sum / (BLOCKS * deadline);
+    f->worst = 100 * worst / deadline;
+    return true;
 }
 
 /// A body in playing posture, on which the parts of a step work.
@@ -261,6 +313,33 @@ static double time_modes(himc_error *error)
     return MODES * ((double)MODE_SAMPLES / RATE) / taken;
 }
 
+/// Modes that a core computes in real time with these loops: oscillators and one output alone.
+/// Negative without memory.
+static double time_bank(const himc_bank_kernel *kernel, himc_error *error)
+{
+    static _Alignas(64) double p[BANK_MODES], s[BANK_MODES], shape[BANK_MODES];
+    static himc_oscillator many[BANK_MODES];
+    double sound[BLOCK], *const out = sound;
+    himc_readout heard = {.p = p, .s = s}, *const readouts = &heard;
+    himc_bank *bank = himc_bank_new(BANK_MODES, error);
+    if (!bank)
+        return -1;
+    for (int i = 0; i < BANK_MODES; i++) {
+        many[i] = (himc_oscillator){500 + 100 * i, 0.1, 0.01};
+        shape[i] = 1;
+    }
+    himc_bank_use(bank, kernel);
+    himc_bank_set(bank, many, BANK_MODES, RATE);
+    himc_bank_readout(bank, shape, shape, NULL, &heard);
+    himc_bank_push(bank, shape, 1);
+    double start = cpu_seconds();
+    for (int i = 0; i < MODE_SAMPLES; i += BLOCK)
+        himc_bank_run(bank, BLOCK, &readouts, 1, &out);
+    double taken = cpu_seconds() - start;
+    himc_bank_free(bank);
+    return BANK_MODES * ((double)MODE_SAMPLES / RATE) / taken;
+}
+
 /// Processor time of a second of a drum's sound (ms); negative with the reason.
 static double time_drum(const bench_drum *b, himc_error *error)
 {
@@ -289,7 +368,13 @@ static double time_drum(const bench_drum *b, himc_error *error)
 static bool measure_once(figures *f, himc_error *error)
 {
     f->modes = time_modes(error);
+    f->share = f->worst = 0; // time_blocks
     bool good = f->modes >= 0 && time_rows(f->row, error);
+    for (int i = 0; i < VERSIONS; i++) {
+        const himc_bank_kernel *kernel = himc_bank_kernel_version(i);
+        f->bank[i] = good && kernel ? time_bank(kernel, error) : 0;
+        good = good && f->bank[i] >= 0;
+    }
     for (int i = 0; i < PIECES; i++)
         good = good && (f->piece[i] = time_piece(&piece[i], error)) >= 0;
     for (int i = 0; i < DRUMS; i++)
@@ -315,7 +400,7 @@ static bool measure(figures *out, himc_error *error)
         middle.value[k] = median(value);
     }
     *out = middle.f;
-    return true;
+    return time_blocks(out, error);
 }
 
 /// Performers with one struck drum each that a core plays in real time; also the speed of such a
@@ -344,7 +429,13 @@ static void print_table(const figures *f)
         printf("  %-46s %9.3f ms\n", drum[k].name, f->drum[k]);
     puts("one core plays in real time");
     printf("  %-46s %8.0f\n", "modes of a head, without glide and strokes", f->modes);
+    for (int k = 0; k < VERSIONS && f->bank[k] > 0; k++)
+        printf("  modes of the bank alone, %-21s %8.0f\n", himc_bank_kernel_version(k)->name,
+               f->bank[k]);
     printf("  %-46s %8.2f\n", "performers with one drum", performers(f));
+    puts("one performer, four drums, blocks of 64 samples");
+    printf("  %-46s %8.2f %%\n", "of a core", f->share);
+    printf("  %-46s %8.2f %%\n", "worst block, of its deadline", f->worst);
 }
 
 static void print_json(const figures *f)
@@ -353,6 +444,9 @@ static void print_json(const figures *f)
            "\"modes_per_core\": %.0f, \"performers_per_core\": %.3f",
            f->piece[STRUCK], f->row[PARTS - 1], f->piece[STRUCK] / f->row[PARTS - 1], f->modes,
            performers(f));
+    printf(", \"four_drums_percent\": %.3f, \"worst_block_percent\": %.3f", f->share, f->worst);
+    for (int k = 0; k < VERSIONS && f->bank[k] > 0; k++)
+        printf(", \"bank_%s_modes\": %.0f", himc_bank_kernel_version(k)->name, f->bank[k]);
     for (int k = 0; k < PIECES; k++)
         if (k != STRUCK)
             printf(", \"%s\": %.3f", piece[k].key, f->piece[k]);

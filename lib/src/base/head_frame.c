@@ -22,36 +22,40 @@ static himc_vec3 outwards(const himc_head_frame *frame)
     return himc_vec3_make(frame->center.x / distance, frame->center.y / distance, 0);
 }
 
-static himc_vec3 head_y(const himc_head_frame *frame)
+/// The axes of a head's frame.
+typedef struct head_axes {
+    himc_vec3 x, y, normal;
+} head_axes;
+
+static head_axes axes_of(const himc_head_frame *frame)
 {
     himc_vec3 e = outwards(frame);
-    return himc_vec3_make(-e.y, e.x, 0);
+    double c = cos(frame->tilt), s = sin(frame->tilt);
+    return (head_axes){{c * e.x, c * e.y, s}, {-e.y, e.x, 0}, {-s * e.x, -s * e.y, c}};
 }
 
 himc_vec3 himc_head_frame_away(const himc_head_frame *frame)
 {
-    himc_vec3 e = outwards(frame);
-    return himc_vec3_make(cos(frame->tilt) * e.x, cos(frame->tilt) * e.y, sin(frame->tilt));
+    return axes_of(frame).x;
 }
 
 himc_vec3 himc_head_frame_normal(const himc_head_frame *frame)
 {
-    himc_vec3 e = outwards(frame);
-    return himc_vec3_make(-sin(frame->tilt) * e.x, -sin(frame->tilt) * e.y, cos(frame->tilt));
+    return axes_of(frame).normal;
 }
 
 himc_vec3 himc_head_frame_to_world(const himc_head_frame *frame, double x, double y)
 {
-    return himc_vec3_madd(himc_vec3_madd(frame->center, x, himc_head_frame_away(frame)), y,
-                          head_y(frame));
+    head_axes axes = axes_of(frame);
+    return himc_vec3_madd(himc_vec3_madd(frame->center, x, axes.x), y, axes.y);
 }
 
 himc_vec3 himc_head_frame_from_world(const himc_head_frame *frame, himc_vec3 point)
 {
+    head_axes axes = axes_of(frame);
     himc_vec3 d = himc_vec3_sub(point, frame->center);
-    return himc_vec3_make(himc_vec3_dot(d, himc_head_frame_away(frame)),
-                          himc_vec3_dot(d, head_y(frame)),
-                          himc_vec3_dot(d, himc_head_frame_normal(frame)));
+    return himc_vec3_make(himc_vec3_dot(d, axes.x), himc_vec3_dot(d, axes.y),
+                          himc_vec3_dot(d, axes.normal));
 }
 
 void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y)

@@ -14,8 +14,9 @@
 typedef struct himc_modes himc_modes;
 
 /// The lowest `count` modes of a head of that outline: 1 .. HIMC_MODES_MAX, of a grid (retained) as
-/// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y, those of a grid are
-/// numbered by n; both have no pairs. NULL with an error out of range or without memory.
+/// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y,
+/// those of a grid are numbered by n; both have no pairs. NULL with an error out of range or without
+/// memory.
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error);
 void himc_modes_free(himc_modes *modes);
 

@@ -44,13 +44,15 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
     return himc_check_range("pickup place, from the centre", r, 0, head->radius, "m", error);
 }
 
-// the integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2
-static double overlap(int m, double j, double x)
+// The integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2. J_{m+1}(j) is in the mode's norm;
+// its sign changes from zero to zero.
+static double overlap(const himc_mode *mode, double x)
 {
-    double next = himc_bessel_j(m + 1, j);
+    double j = mode->zero, size = sqrt(mode->m > 0 ? 2 * mode->norm : mode->norm);
+    double next = mode->n % 2 ? size : -size;
     if (fabs(x - j) < 1e-6 * j)
         return 0.5 * next * next;
-    return j * next * himc_bessel_j(m, x) / ((j - x) * (j + x));
+    return j * next * himc_bessel_j(mode->m, x) / ((j - x) * (j + x));
 }
 
 // sound per pascal of Rayleigh's integral
@@ -68,7 +70,7 @@ double himc_pickup_pressure(const himc_pickup *pickup, const himc_head *head,
            scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
     if (mode->m < 0)
         return scale * himc_modes_pressure(modes, index, x, pickup->azimuth);
-    return scale * overlap(mode->m, mode->zero, x) * (mode->sine ? sin(angle) : cos(angle));
+    return scale * overlap(mode, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
 // the weights of a head that is not round: the integral itself, in phase and a quarter of a period

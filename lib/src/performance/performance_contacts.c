@@ -132,6 +132,11 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
                     himc_vec3 *local)
 {
     double radius = frame_of(s, drum)->radius;
+    // most sticks are away from most heads, and a distance costs less than a head's frame
+    himc_vec3 away = himc_vec3_sub(s->body->state.tip[hand], frame_of(s, drum)->center);
+    double reach = DEEPEST_CONTACT + s->body->skeleton.mallet_radius;
+    if (himc_vec3_dot(away, away) > radius * radius + reach * reach)
+        return false;
     himc_vec3 at = over_head(s, drum, s->body->state.tip[hand]);
     double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
     *local = at;
