@@ -189,7 +189,7 @@ soak: deps ## a session of HOURS=24 simulated hours (SEED=1 PHYSICS=10000): no d
 	@$(MAKE) $(BUILD)/tests/test_soak
 	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) HIMC_PHYSICS=$(PHYSICS) $(BUILD)/tests/test_soak
 
-mutants: deps ## put a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
+mutants: deps ## put more than a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
 	@$(MAKE) check-mutants
 
 check-mutants: $(UNIT)

@@ -1,9 +1,9 @@
 /// modes.h: the modes of an ideal membrane in order of frequency, and their shapes.
 ///
 /// Round: mode (m, n) has m nodal diameters and n nodal circles, phi = J_m(j_mn r/a) cos(m th) or
-/// sin(m th), th from an axis of its order, and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse & Ingard 1968, section 5.2; Fletcher
-/// & Rossing 1998, section 3.3). A list depends on its outline and length alone: radius, tension
-/// and density scale all frequencies alike.
+/// sin(m th), th from an axis of its order, and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse &
+/// Ingard 1968, section 5.2; Fletcher & Rossing 1998, section 3.3). A list depends on its outline,
+/// length and lugs alone: radius, tension and density scale all frequencies alike.
 #ifndef HIMC_MODES_H
 #define HIMC_MODES_H
 
@@ -14,8 +14,9 @@
 typedef struct himc_modes himc_modes;
 
 /// The lowest `count` modes of a head of that outline: 1 .. HIMC_MODES_MAX, of a grid (retained) as
-/// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y, those of a grid are
-/// numbered by n; both have no pairs. NULL with an error out of range or without memory.
+/// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y,
+/// those of a grid are numbered by n; both have no pairs. NULL with an error out of range or without
+/// memory.
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error);
 void himc_modes_free(himc_modes *modes);
 
