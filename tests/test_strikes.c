@@ -42,15 +42,19 @@ static void test_two_strikes_at_one_sample_begin_in_the_order_asked_for(void)
     }
 }
 
-static void test_force_of_a_wooden_strike_is_its_peak_within_the_sample(void)
+// a ball of steel meets the head in a spike shorter than a sample; its mean is 1 % less
+static void test_force_of_a_stiff_strike_is_its_peak_within_the_sample(void)
 {
-    says("mallet wood");
+    says("glide 0"); // the film acts once a sample
+    says("mallet 1e13 1.5 0.02");
     double force = report_of(3).force;
     tearDown();
     drum = himc_drum_new("fine", 23, 192000, &error); // four samples to each of 48000 Hz
-    says("mallet wood");
+    says("glide 0");
+    says("mallet 1e13 1.5 0.02");
     double fine = report_of(3).force;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * fine, fine, force); // the sample's mean is 0.3 % less
+    printf("peak %.2f N, at 192 kHz %.2f N\n", force, fine);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * fine, fine, force);
 }
 
 static void test_head_raised_into_a_resting_stick_is_no_onset(void)
@@ -126,7 +130,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_strikes_on_a_ringing_head_begin_on_their_sample);
     RUN_TEST(test_two_strikes_at_one_sample_begin_in_the_order_asked_for);
-    RUN_TEST(test_force_of_a_wooden_strike_is_its_peak_within_the_sample);
+    RUN_TEST(test_force_of_a_stiff_strike_is_its_peak_within_the_sample);
     RUN_TEST(test_head_raised_into_a_resting_stick_is_no_onset);
     RUN_TEST(test_strike_that_waits_keeps_its_time_when_the_rate_changes);
     RUN_TEST(test_sound_and_place_of_a_strike_are_read_together);
