@@ -129,8 +129,8 @@ static const struct {
     double radius, low, high;
 } SET[4] = {{.292, 146.8, 220}, {.328, 116.5, 174.6}, {.368, 87.3, 130.8}, {.406, 73.4, 110}};
 
-// But (0,n), which the kettle's spring moves and which decay at once, and n = 4. A pedal is heard as
-// one drum.
+// But (0,n), which the kettle's spring moves and which decay at once, and n = 4. A pedal is heard
+// as one drum.
 static void test_ratios_move_less_than_30_cents_from_semitone_to_semitone(void)
 {
     for (int i = 0; i < COUNT(SET); i++) {

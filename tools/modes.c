@@ -1,8 +1,8 @@
 /// modes.c: `himc modes`: the frequencies and decays of a drum as a score tunes it before the first
 /// stroke.
 ///
-/// The two members of a pair (cosine and sine) are one row if they sound alike, else two. T60 is the
-/// time in which a mode falls by 60 dB: ln(1000) over its decay rate.
+/// The two members of a pair (cosine and sine) are one row if they sound alike, else two. T60 is
+/// the time in which a mode falls by 60 dB: ln(1000) over its decay rate.
 #include "cli.h"
 #include "himc/drum.h"
 #include "himc/membrane.h"

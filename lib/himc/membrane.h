@@ -86,8 +86,8 @@ typedef enum himc_pickup_kind {
     HIMC_PICKUP_POINT ///< velocity of a point of the head; a sound of 1.0 is HIMC_PICKUP_VELOCITY
 } himc_pickup_kind;
 
-/// (Pa) chosen: a stroke of 110 N heard from one metre peaks at 0.5 to 0.8
-#define HIMC_PICKUP_PRESSURE 100.0
+/// (Pa) chosen: the strongest stroke on a timpano, heard from one metre, peaks at 0.7 to 0.9
+#define HIMC_PICKUP_PRESSURE 130.0
 #define HIMC_PICKUP_VELOCITY 10.0 ///< (m/s) chosen
 
 /// Where the sound is read. Azimuth 0 is beyond the drum as the performer sees it, positive to

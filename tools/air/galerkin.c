@@ -12,7 +12,8 @@
 /// (Morse & Ingard 1968; the drum is that of Christian et al. 1984). For m = 0 the uniform cavity
 /// mode is a spring, K = x C C' 2 cot(x L/a), added to the tension: as a mass it would be negative.
 ///
-/// The kettle's air has a quality Q: inside, x is x (1 + i/(2 Q)), with the time factor exp(-i w t).
+/// The kettle's air has a quality Q: inside, x is x (1 + i/(2 Q)), with the time factor exp(-i w
+/// t).
 ///
 /// Without loss, A's poles are the kettle's own resonances, x^2 = beta_s^2 + (q pi a/L)^2. Between
 /// two of them the eigenvalues of the real part of D(x) fall as x grows (Foster 1924), so sign

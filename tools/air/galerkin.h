@@ -50,8 +50,8 @@ void himc_air_outside(const himc_air_order *order, double x,
                       double real[HIMC_AIR_BASIS][HIMC_AIR_BASIS],
                       double imag[HIMC_AIR_BASIS][HIMC_AIR_BASIS]);
 
-/// Load of the air in a rigid cylinder of depth L/a without loss, per rho a^3; for m = 0 without the
-/// change of volume.
+/// Load of the air in a rigid cylinder of depth L/a without loss, per rho a^3; for m = 0 without
+/// the change of volume.
 void himc_air_inside(const himc_air_order *order, double x, double depth,
                      double load[HIMC_AIR_BASIS][HIMC_AIR_BASIS]);
 

@@ -27,7 +27,6 @@ RATIOS = {(1, 1): 150, (2, 1): 227, (3, 1): 298, (4, 1): 366, (5, 1): 434,
           (0, 1): 127, (0, 2): 252, (1, 2): 314, (2, 2): 401, (0, 3): 418}
 MALLETS = ['soft', 'medium', 'hard', 'wood']
 LONGEST = 4  # (s) of a stroke; the recordings have 3.5
-EARS = 'listener -0.5 0 1.7'  # of the player, who stands; he faces the drum
 BANDS = [(40, 200), (200, 800), (800, 3000)]  # of the ears' correlation (Hz)
 
 
@@ -44,22 +43,22 @@ class Himc:
             sys.exit(f'sound-report: {" ".join(arguments)}: {done.stderr.strip()}')
         return done.stdout
 
-    def render(self, name, *lines):
+    def render(self, name, *lines, channels=1):
         """channels and rate of a score, and the rows of its strokes"""
         score, sound, table = (os.path.join(self.folder, name + end)
                                for end in ('.txt', '.wav', '.csv'))
         with open(score, 'w', encoding='utf-8') as file:
             file.write(';\n'.join(lines) + ';\n')
-        self.call('render', score, '-o', sound, '--strokes', table)
+        self.call('render', score, '-o', sound, '--strokes', table, '--channels', str(channels))
         with open(table, encoding='utf-8') as file:
             strokes = list(csv.DictReader(file))
         x, rate = measure.load(sound)
         return x, rate, strokes
 
-    def stroke(self, name, inches, hz, *lines, dynamic='f'):
+    def stroke(self, name, inches, hz, *lines, dynamic='f', channels=1):
         """one accent on a drum of its own: sound and rate, with the strokes"""
-        return self.render(name, f'drum timpano {inches}', f'timpano tune {hz}', *lines,
-                           f'stroke 1 right accent {dynamic} normal timpano')
+        return self.render(name, f'drum kettle {inches}', f'kettle tune {hz}', *lines,
+                           f'stroke 1 right accent {dynamic} normal kettle', channels=channels)
 
 
 class Report:
@@ -131,7 +130,7 @@ def between_ears(sound, rate, low, high):
 def ear_rows(report, himc):
     found = []
     for name, (inches, hz) in STROKES.items():
-        sound, rate, _ = himc.stroke(name + '-ears', inches, hz, EARS)
+        sound, rate, _ = himc.stroke(name + '-ears', inches, hz, channels=2)
         found.append([between_ears(sound, rate, *band) for band in BANDS])
     below, above = [v for f in found for v in f[:2]], [f[2] for f in found]
     names = ', '.join(STROKES)
@@ -170,8 +169,8 @@ def repetition_rows(report, himc):
 
 
 def peak(himc, mallet, modes):
-    _, _, strokes = himc.stroke(f'force-{mallet}-{modes}', 26, 146.83, f'timpano mallet {mallet}',
-                                f'timpano modes {modes}', 'human 0')
+    _, _, strokes = himc.stroke(f'force-{mallet}-{modes}', 26, 146.83, f'kettle mallet {mallet}',
+                                f'kettle modes {modes}')
     return float(strokes[0]['peak_force_n'])
 
 
@@ -182,7 +181,7 @@ def force_row(report, himc):
 
 def brightness_rows(report, himc):
     def mean_frequency(name, dynamic, mallet):
-        sound, rate, _ = himc.stroke(name, 26, 146.83, f'timpano mallet {mallet}', dynamic=dynamic)
+        sound, rate, _ = himc.stroke(name, 26, 146.83, f'kettle mallet {mallet}', dynamic=dynamic)
         return measure.centroid(sound[0], rate)
 
     soft_loud = [mean_frequency(d, d, 'medium') for d in ('pp', 'ff')]
@@ -195,8 +194,7 @@ def brightness_rows(report, himc):
 def ratio_row(report, himc):
     score = os.path.join(himc.folder, 'modes.txt')
     with open(score, 'w', encoding='utf-8') as file:
-        file.write('drum timpano 26; timpano tension 3990; timpano kettle 0.14; '
-                   'timpano uniformity 0 0;\n')
+        file.write('drum d 26; d tension 3990; d kettle 0.14; d uniformity 1;\n')
     modes = {(int(r['m']), int(r['n'])): float(r['frequency_hz'])
              for r in csv.DictReader(io.StringIO(himc.call('modes', score)))}
     cents = {k: 1200 * np.log2(modes[k] / modes[1, 1] / (hz / RATIOS[1, 1]))

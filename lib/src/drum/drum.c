@@ -19,6 +19,7 @@
 #define OUTSIDE_LIMIT 1e5 // (N) larger outside forces are clamped; chosen: the sound stays finite
 #define RUN_BLOCK 64      // samples of a pass of the free head; chosen: bank.c's
 #define WATCHED HIMC_PICKUPS // index of the ring of displacements
+#define NOISE_UNIT (100 / HIMC_PICKUP_PRESSURE) // the noise was fitted where 1.0 was 100 Pa
 #define LEVEL_RAMP 0.010     // (s) of the head's own sound from on to off; chosen: no click
 #define METRES_PER_INCH 0.0254
 #define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
@@ -296,10 +297,10 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     himc_stroke_noise_run(&drum->noise, n, force, (double *[]){noise[0], noise[1]});
     for (int k = 0; k < count && !himc_ears_alone(&drum->ears); k++)
         for (int i = 0; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
-            sound[k][i] += noise[0][i] / pickups[k].distance;
+            sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
     for (int k = 0; k < HIMC_RAYS && himc_membrane_rays(drum->membrane); k++)
         for (int i = 0; i < n; i++)
-            sound[HIMC_PICKUPS + k][i] += noise[k == HIMC_RAY_RIGHT][i];
+            sound[HIMC_PICKUPS + k][i] += NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i];
 }
 
 // runs the head without contact; the sticks fly

@@ -6,14 +6,16 @@
 ///     sound = amount sqrt(E_b) x unit noise,
 /// with a level that rises in RISE, and G the part of F' above EDGE: most of F' is the slow rise of
 /// a contact, the same for all mallets, and what lies above is large where a mallet is hard or
-/// comes fast. Above G1 the power grows with G only, as that of rubbing does. So wood is brighter than felt without another table. The noise is taken at 1 m, and
-/// is weaker with distance as the head's sound is.
+/// comes fast. Above G1 the power grows with G only, as that of rubbing does. So wood is brighter
+/// than felt without another table. The noise is taken at 1 m, and is weaker with distance as the
+/// head's sound is.
 ///
 /// Unit noise is white, from a counter that is scrambled (random.h), through Butterworth filters of
-/// second order at the lower edge of the octave and of fourth order at the upper one. Its sequence begins anew with each contact, from a
-/// seed that is the place in whole centimetres: equal blows are equal to the last bit, and as soon
-/// as the place varies no two are. All is counted in samples, so how many are asked for at a time
-/// does not matter. It takes no energy from the head and gives it none.
+/// second order at the lower edge of the octave and of fourth order at the upper one. Its sequence
+/// begins anew with each contact, from a seed that is the place in whole centimetres: equal blows
+/// are equal to the last bit, and as soon as the place varies no two are. All is counted in
+/// samples, so how many are asked for at a time does not matter. It takes no energy from the head
+/// and gives it none.
 #include "drum/stroke_noise.h"
 
 #include "base/random.h"
@@ -22,8 +24,8 @@
 #include <string.h>
 
 #define FORCE 25.0    // F1 (N): of a medium blow
-#define BETA 0.5      // chosen: between felt's friction, 0, and its core, 1
-#define SLOPE 5e3     // G1 (N/s): of a medium blow; chosen: a wooden stick is not all noise
+#define BETA 0.8      // chosen: 1 is a felt core, 0 its friction; brightness with force
+#define SLOPE 1e4     // G1 (N/s): of a loud medium blow; chosen: a wooden stick is not all noise
 #define EDGE 500.0    // (Hz) of G; chosen: where the lowest octave begins
 #define RISE 0.002    // (s) chosen: as the recordings rise
 #define TOP 0.45      // of the sample rate; an octave above it is silent
@@ -38,7 +40,7 @@
 static const struct {
     double low, t60, drive; // edge (Hz), decay (s)
 } octave[HIMC_NOISE_BANDS] = {
-    {500, 0.35, 9e-8}, {1000, 0.20, 4.5e-8}, {2000, 0.12, 1.6e-8}, {4000, 0.06, 1.6e-9}};
+    {500, 0.35, 1.25e-7}, {1000, 0.20, 6.2e-8}, {2000, 0.12, 2e-8}, {4000, 0.06, 1.6e-9}};
 
 // a low or high pass with damping d = 1/Q, by the bilinear transform
 static himc_biquad edge(double hz, double rate, bool high, double d)

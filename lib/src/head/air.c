@@ -15,10 +15,10 @@
 /// sin^2 t for small x, where this is the monopole, dipole ... in x^(2m+1).
 ///
 /// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension. Between its nodes:
-/// monotone cubics (Fritsch & Butland 1984) along the tension; lines between drums. The ratio of table and closed
-/// form at the table's kettle multiplies the closed form at the actual kettle. Outside the table
-/// this ratio goes to 1 over a factor of four in tension, or two in epsilon: no step and no bend
-/// while the pedal moves.
+/// monotone cubics (Fritsch & Butland 1984) along the tension; lines between drums. The ratio of
+/// table and closed form at the table's kettle multiplies the closed form at the actual kettle.
+/// Outside the table this ratio goes to 1 over a factor of four in tension, or two in epsilon: no
+/// step and no bend while the pedal moves.
 ///
 /// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, the kettle's slow spring 4
 /// epsilon/(l j^2); its mass follows from the frequency. Thus static deflections are exact and, for

@@ -1,9 +1,10 @@
 /// air.h: the effect of the air on both sides of a head, and of the kettle, on its modes.
 ///
 /// Air moves with the head and makes it heavier, the low modes most; it carries sound away;
-/// enclosed in the kettle it is a spring to the modes of order m = 0, and it has losses. A loaded mode keeps its shape
-/// and its stiffness T (j/a)^2 int phi^2 dS, so a slow push and a change of tension act on the same
-/// head; its mass and decay change. A head without air needs none of these functions.
+/// enclosed in the kettle it is a spring to the modes of order m = 0, and it has losses. A loaded
+/// mode keeps its shape and its stiffness T (j/a)^2 int phi^2 dS, so a slow push and a change of
+/// tension act on the same head; its mass and decay change. A head without air needs none of these
+/// functions.
 ///
 /// In the head's own measures a drum is three numbers, tau = T/(sigma c^2), epsilon = rho a/sigma
 /// and L/a = V/(pi a^3). A table, made once by solving the whole problem for the 23, 26, 29 and 32

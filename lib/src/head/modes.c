@@ -17,10 +17,10 @@
 /// weights are infinite at a place and 0 at the ninth, so the surface passes through the places and
 /// has no steps as the neighbours change (moving least squares: Lancaster & Salkauskas 1981).
 ///
-/// The default head: a timpano of 26 inches, the commonest one, with Christian et al.'s Mylar (1984)
-/// in air, at the tension that sounds D3, the middle of its range. S0 and S1 are what air.h says of
-/// a film; the loss by radiation comes on top. Its lugs are uneven enough to beat as recorded heads
-/// do: the strongest partials ripple by 1 to 3 dB about a straight decay.
+/// The default head: a timpano of 26 inches, the commonest one, with Christian et al.'s Mylar
+/// (1984) in air, at the tension that sounds D3, the middle of its range. S0 and S1 are what air.h
+/// says of a film; the loss by radiation comes on top. Its lugs are uneven enough to beat as
+/// recorded heads do: the strongest partials ripple by 1 to 3 dB about a straight decay.
 #include "head/modes.h"
 
 #include "head/bessel.h"

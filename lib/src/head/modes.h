@@ -1,9 +1,9 @@
 /// modes.h: the modes of an ideal membrane in order of frequency, and their shapes.
 ///
 /// Round: mode (m, n) has m nodal diameters and n nodal circles, phi = J_m(j_mn r/a) cos(m th) or
-/// sin(m th), th from an axis of its order, and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse & Ingard 1968, section 5.2; Fletcher
-/// & Rossing 1998, section 3.3). A list depends on its outline and length alone: radius, tension
-/// and density scale all frequencies alike.
+/// sin(m th), th from an axis of its order, and sounds at j_mn/(2 pi a) sqrt(T/sigma) (Morse &
+/// Ingard 1968, section 5.2; Fletcher & Rossing 1998, section 3.3). A list depends on its outline,
+/// length and lugs alone: radius, tension and density scale all frequencies alike.
 #ifndef HIMC_MODES_H
 #define HIMC_MODES_H
 
