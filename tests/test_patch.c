@@ -138,10 +138,10 @@ static void test_residual_has_what_the_modes_lack_of_compliance_and_inverse_mass
         per_mass += s->shape[m] * s->shape[m] / mode.mass;
     }
     himc_residual r = himc_strike_point_residual(s);
-    double compliance = r.root * r.root, patch = head.density * HIMC_PI * b * b;
+    double compliance = r.root * r.root, film = head.density * HIMC_PI * b * b;
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_patch_compliance(&head, SPOT, b) - sum, compliance);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1 / patch - per_mass, compliance * r.omega * r.omega);
-    TEST_ASSERT_TRUE(per_mass > 0.2 / patch && compliance > 0.1 * sum);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1 / film - per_mass, compliance * r.omega * r.omega);
+    TEST_ASSERT_TRUE(per_mass > 0.2 / film && compliance > 0.1 * sum);
 }
 
 // a heavy stick laid onto a damped head

@@ -46,7 +46,8 @@ def prepare(folder, program='build/bin/himc'):
             file.write(';\n'.join(['human 0.5', f'drum timpano {inches}', f'timpano tune {note}',
                                    *lines]) + ';\n')
         sound = os.path.join(folder, name + '-computed.wav')
-        subprocess.run([program, 'render', score, '-o', sound, '--channels', '1'], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([program, 'render', score, '-o', sound, '--channels', '1'], check=True,
+                       stdout=subprocess.DEVNULL)
         print(f'{sound}: a recording to stand beside it is {name}-recorded.wav')
 
 

@@ -6,14 +6,16 @@
 ///     sound = amount sqrt(E_b) x unit noise,
 /// with a level that rises in RISE, and G the part of F' above EDGE: most of F' is the slow rise of
 /// a contact, the same for all mallets, and what lies above is large where a mallet is hard or
-/// comes fast. Above G1 the power grows with G only, as that of rubbing does. So wood is brighter than felt without another table. The noise is taken at 1 m, and
-/// is weaker with distance as the head's sound is.
+/// comes fast. Above G1 the power grows with G only, as that of rubbing does. So wood is brighter
+/// than felt without another table. The noise is taken at 1 m, and is weaker with distance as the
+/// head's sound is.
 ///
 /// Unit noise is white, from a counter that is scrambled (random.h), through Butterworth filters of
-/// second order at the lower edge of the octave and of fourth order at the upper one. Its sequence begins anew with each contact, from a
-/// seed that is the place in whole centimetres: equal blows are equal to the last bit, and as soon
-/// as the place varies no two are. All is counted in samples, so how many are asked for at a time
-/// does not matter. It takes no energy from the head and gives it none.
+/// second order at the lower edge of the octave and of fourth order at the upper one. Its sequence
+/// begins anew with each contact, from a seed that is the place in whole centimetres: equal blows
+/// are equal to the last bit, and as soon as the place varies no two are. All is counted in
+/// samples, so how many are asked for at a time does not matter. It takes no energy from the head
+/// and gives it none.
 #include "drum/stroke_noise.h"
 
 #include "base/random.h"
