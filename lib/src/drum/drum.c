@@ -18,9 +18,9 @@
 
 #define OUTSIDE_LIMIT 1e5 // (N) larger outside forces are clamped; chosen: the sound stays finite
 #define RUN_BLOCK 64      // samples of a pass of the free head; chosen: bank.c's
-#define WATCHED HIMC_PICKUPS // index of the ring of displacements
+#define WATCHED HIMC_PICKUPS                    // index of the ring of displacements
 #define NOISE_UNIT (100 / HIMC_PICKUP_PRESSURE) // the noise was fitted where 1.0 was 100 Pa
-#define LEVEL_RAMP 0.010     // (s) of the head's own sound from on to off; chosen: no click
+#define LEVEL_RAMP 0.010 // (s) of the head's own sound from on to off; chosen: no click
 #define METRES_PER_INCH 0.0254
 #define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
 
