@@ -36,7 +36,7 @@ PROGRAM   := $(BUILD)/bin/himc
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture plan control head drum performance osc
+ROOMS     := base body capture plan control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/$(room)/*.c)))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))

@@ -1,5 +1,5 @@
 /// test_bank.c: the exact step of oscillators, readouts, responses, and equal bits in any blocks.
-#include "drum/bank.h"
+#include "bank/bank.h"
 
 #include "unity.h"
 

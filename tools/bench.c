@@ -13,7 +13,7 @@
 #include "control/controller.h"
 #include "control/setpoint.h"
 #include "body/character.h"
-#include "drum/bank.h"
+#include "bank/bank.h"
 #include "himc/membrane.h"
 
 #include <limits.h>

@@ -9,7 +9,7 @@ function fault(text)
 }
 
 BEGIN {
-    rooms = split("base body capture plan control head drum performance osc", order, " ")
+    rooms = split("base body capture plan control bank head drum performance osc", order, " ")
     for (i = 1; i <= rooms; i++)
         rank[order[i]] = i
     # the room of a public header
@@ -25,7 +25,7 @@ BEGIN {
     # a host's process and its terminal are not the library's
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
     # these may be embedded anywhere: they and all that they call need libm and the C library alone
-    alone = "^(drum/(membrane|contact|bank)|head/modes)"
+    alone = "^(drum/(membrane|contact)|bank/|head/modes)"
 }
 
 FILENAME != "-" {

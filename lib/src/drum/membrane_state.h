@@ -3,7 +3,7 @@
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H
 
-#include "drum/bank.h"
+#include "bank/bank.h"
 #include "drum/membrane_form.h"
 #include "drum/shared.h"
 #include "drum/strike_point.h"

@@ -2,7 +2,7 @@
 ///
 /// A blow also shakes what is not the head: felt rubs, the shaft bends, shell and stand ring, in
 /// more modes than anyone has measured. So each octave b has an energy (docs/model.md),
-///     E_b' = -E_b 13.8/T60_b + q_b (F/F1)^BETA G^2/sqrt(1 + (G/G1)^2),
+///     E_b' = -E_b 13.8/T60_b + q_b (min(F, STRONGEST)/F1)^BETA G^2/sqrt(1 + (G/G1)^2),
 ///     sound = amount sqrt(E_b) x unit noise,
 /// with a level that rises in RISE, and G the part of F' above EDGE: most of F' is the slow rise of
 /// a contact, the same for all mallets, and what lies above is large where a mallet is hard or
@@ -23,16 +23,17 @@
 #include <math.h>
 #include <string.h>
 
-#define FORCE 25.0    // F1 (N): of a medium blow
-#define BETA 0.8      // chosen: 1 is a felt core, 0 its friction; brightness with force
-#define SLOPE 1e4     // G1 (N/s): of a loud medium blow; chosen: a wooden stick is not all noise
-#define EDGE 500.0    // (Hz) of G; chosen: where the lowest octave begins
-#define RISE 0.002    // (s) chosen: as the recordings rise
-#define TOP 0.45      // of the sample rate; an octave above it is silent
-#define SILENT 1e-14  // sum of energies; chosen: -140 dB
-#define PLACE 100     // seeds a metre; chosen: how well a player finds a place again
-#define COHERENCE 0.5 // of the two rows; chosen: shell and stand are larger than a head
-#define MEASURED 0.1  // (s) of a filter's response; chosen: the lowest octave's is over
+#define FORCE 25.0     // F1 (N): of a medium blow
+#define BETA 0.8       // chosen: 1 is a felt core, 0 its friction; brightness with force
+#define STRONGEST 55.0 // (N) chosen: fff is louder than ff, not noisier
+#define SLOPE 1e4      // G1 (N/s): of a loud medium blow; chosen: a wooden stick is not all noise
+#define EDGE 500.0     // (Hz) of G; chosen: where the lowest octave begins
+#define RISE 0.002     // (s) chosen: as the recordings rise
+#define TOP 0.45       // of the sample rate; an octave above it is silent
+#define SILENT 1e-14   // sum of energies; chosen: -140 dB
+#define PLACE 100      // seeds a metre; chosen: how well a player finds a place again
+#define COHERENCE 0.5  // of the two rows; chosen: shell and stand are larger than a head
+#define MEASURED 0.1   // (s) of a filter's response; chosen: the lowest octave's is over
 
 // q_b, fitted once on numbers of two recordings, hall included: with the head's own sound an accent
 // f of the medium mallet, at C2 on 32 inches and at G2 on 29, has about -13 -18 -25 -38 dB in its
@@ -112,7 +113,8 @@ static void drive(himc_stroke_noise *noise, double force)
     noise->force = force;
     if (stronger <= 0)
         return;
-    double power = pow(stronger / FORCE, BETA) * g * g / sqrt(1 + g * g / (SLOPE * SLOPE));
+    double power =
+        pow(fmin(stronger, STRONGEST) / FORCE, BETA) * g * g / sqrt(1 + g * g / (SLOPE * SLOPE));
     power /= noise->rate;
     for (int i = 0; i < HIMC_NOISE_BANDS; i++)
         noise->band[i].energy += octave[i].drive * power;

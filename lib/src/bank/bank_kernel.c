@@ -2,7 +2,7 @@
 ///
 /// The same source is compiled once for each vector unit; the machine is asked at run time. Other
 /// processors than x86-64 have one version, which each compiler turns into what they have.
-#include "drum/bank_kernel.h"
+#include "bank/bank_kernel.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,19 +18,19 @@
 #define WIDTH 2
 #define TARGET
 #define NAMED(x) x##_base
-#include "drum/bank_loops.h"
+#include "bank/bank_loops.h"
 
 #ifdef __x86_64__
 
 #define WIDTH 4
 #define TARGET __attribute__((target("avx2")))
 #define NAMED(x) x##_avx2
-#include "drum/bank_loops.h"
+#include "bank/bank_loops.h"
 
 #define WIDTH 8
 #define TARGET __attribute__((target("avx512f")))
 #define NAMED(x) x##_avx512
-#include "drum/bank_loops.h"
+#include "bank/bank_loops.h"
 
 static const himc_bank_kernel versions[] = {ALL_OF(base), ALL_OF(avx2), ALL_OF(avx512)};
 

@@ -50,7 +50,7 @@
 /// The order of all sums is fixed (bank_kernel.h): the same bits on any machine. About every 1024
 /// samples the oscillators at the top that have fallen below 1e-15 m/s are set to rest and skipped
 /// until the next force: high modes die first, and denormal numbers never arise.
-#include "drum/bank.h"
+#include "bank/bank.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 
 #include "himc/base.h"
 
-#include "drum/bank_kernel.h"
+#include "bank/bank_kernel.h"
 
 typedef struct himc_oscillator {
     double omega; ///< w, undamped (rad/s)
