@@ -13,7 +13,7 @@
 
 static himc_drum *drum;
 static himc_error error;
-static double sound[LENGTH], seen[LENGTH];
+double sound[LENGTH], seen[LENGTH];
 
 void setUp(void)
 {

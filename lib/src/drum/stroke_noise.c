@@ -33,6 +33,7 @@
 #define SILENT 1e-14   // sum of energies; chosen: -140 dB
 #define PLACE 100      // seeds a metre; chosen: how well a player finds a place again
 #define COHERENCE 0.5  // of the two rows; chosen: shell and stand are larger than a head
+#define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
 #define MEASURED 0.1   // (s) of a filter's response; chosen: the lowest octave's is over
 
 // q_b, fitted once on numbers of two recordings, hall included: with the head's own sound an accent
@@ -43,27 +44,49 @@ static const struct {
 } octave[HIMC_NOISE_BANDS] = {
     {500, 0.35, 1.25e-7}, {1000, 0.20, 6.2e-8}, {2000, 0.12, 2e-8}, {4000, 0.06, 1.6e-9}};
 
-// a low or high pass with damping d = 1/Q, by the bilinear transform
-static himc_biquad edge(double hz, double rate, bool high, double d)
+// a low or high pass with damping d = 1/Q, by the bilinear transform, for an octave of both rows
+static void set_edge(himc_noise_edge *e, int octave_index, double k, bool high, double d)
 {
-    double k = tan(HIMC_PI * hz / rate), n = 1 / (1 + k * d + k * k), b = (high ? 1 : k * k) * n;
-    return (himc_biquad){{b, high ? -2 * b : 2 * b, b},
-                         {2 * (k * k - 1) * n, (1 - k * d + k * k) * n}};
+    double n = 1 / (1 + k * d + k * k), b = (high ? 1 : k * k) * n;
+    for (int i = octave_index; i < HIMC_NOISE_LANES; i += HIMC_NOISE_BANDS) {
+        e->b[0][i] = e->b[2][i] = b;
+        e->b[1][i] = high ? -2 * b : 2 * b;
+        e->a[0][i] = 2 * (k * k - 1) * n;
+        e->a[1][i] = (1 - k * d + k * k) * n;
+    }
 }
 
-static double filter(const himc_biquad *f, double past[2], double x)
+// x through all filters; `lanes` is constant where this is inlined, so that vectors do it
+static inline void filter(himc_noise_edge edge[3], int lanes, double x[HIMC_NOISE_LANES])
 {
-    double y = f->b[0] * x + past[0];
-    past[0] = f->b[1] * x - f->a[0] * y + past[1];
-    past[1] = f->b[2] * x - f->a[1] * y;
-    return y;
+    for (int k = 0; k < 3; k++) {
+        himc_noise_edge *e = &edge[k];
+        for (int i = 0; i < lanes; i++) {
+            double y = e->b[0][i] * x[i] + e->past[0][i];
+            e->past[0][i] = e->b[1][i] * x[i] - e->a[0][i] * y + e->past[1][i];
+            e->past[1][i] = e->b[2][i] * x[i] - e->a[1][i] * y;
+            x[i] = y;
+        }
+    }
 }
 
-static double filter_all(const himc_noise_band *b, double past[3][2], double x)
+static void set_units(himc_stroke_noise *noise)
 {
-    for (int i = 0; i < 3; i++)
-        x = filter(&b->edge[i], past[i], x);
-    return x;
+    himc_noise_edge edge[3];
+    double power[HIMC_NOISE_BANDS] = {0};
+    memcpy(edge, noise->edge, sizeof edge);
+    for (int k = 0; k < 3; k++)
+        memset(edge[k].past, 0, sizeof edge[k].past);
+    for (int k = 0; k < MEASURED * noise->rate; k++) {
+        double x[HIMC_NOISE_LANES];
+        for (int i = 0; i < HIMC_NOISE_LANES; i++)
+            x[i] = k == 0;
+        filter(edge, HIMC_NOISE_BANDS, x);
+        for (int i = 0; i < HIMC_NOISE_BANDS; i++)
+            power[i] += x[i] * x[i];
+    }
+    for (int i = 0; i < HIMC_NOISE_BANDS; i++)
+        noise->band[i].unit = power[i] > 0 ? 1 / sqrt(power[i]) : 0;
 }
 
 void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
@@ -71,22 +94,19 @@ void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
     noise->rate = rate;
     noise->follow = 1 - exp(-1 / (RISE * rate));
     noise->pole = exp(-2 * HIMC_PI * EDGE / rate);
+    for (int k = 0; k < 3; k++)
+        memset(noise->edge[k].b, 0, sizeof noise->edge[k].b);
     for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
-        himc_noise_band *b = &noise->band[i];
-        double past[3][2] = {{0}}, power = 0, top = fmin(2 * octave[i].low, TOP * rate);
-        b->keep = exp(-13.8 / (octave[i].t60 * rate));
-        b->unit = 0;
+        double top = fmin(2 * octave[i].low, TOP * rate);
+        double low_k = tan(HIMC_PI * octave[i].low / rate), top_k = tan(HIMC_PI * top / rate);
+        noise->band[i].keep = exp(-6.9 / (octave[i].t60 * rate));
         if (octave[i].low >= top)
             continue;
-        b->edge[0] = edge(octave[i].low, rate, true, sqrt(2));
-        b->edge[1] = edge(top, rate, false, 2 * cos(HIMC_PI / 8));
-        b->edge[2] = edge(top, rate, false, 2 * sin(HIMC_PI / 8));
-        for (int k = 0; k < MEASURED * rate; k++) {
-            double y = filter_all(b, past, k == 0);
-            power += y * y;
-        }
-        b->unit = 1 / sqrt(power);
+        set_edge(&noise->edge[0], i, low_k, true, sqrt(2));
+        set_edge(&noise->edge[1], i, top_k, false, 2 * cos(HIMC_PI / 8));
+        set_edge(&noise->edge[2], i, top_k, false, 2 * sin(HIMC_PI / 8));
     }
+    set_units(noise);
 }
 
 himc_stroke_noise himc_stroke_noise_at(double rate)
@@ -117,7 +137,8 @@ static void drive(himc_stroke_noise *noise, double force)
         pow(fmin(stronger, STRONGEST) / FORCE, BETA) * g * g / sqrt(1 + g * g / (SLOPE * SLOPE));
     power /= noise->rate;
     for (int i = 0; i < HIMC_NOISE_BANDS; i++)
-        noise->band[i].energy += octave[i].drive * power;
+        noise->band[i].root =
+            sqrt(noise->band[i].root * noise->band[i].root + octave[i].drive * power);
 }
 
 void himc_stroke_noise_rest(himc_stroke_noise *noise)
@@ -125,11 +146,10 @@ void himc_stroke_noise_rest(himc_stroke_noise *noise)
     noise->sounds = false;
     noise->state = 0;
     noise->force = noise->slope[0] = noise->slope[1] = noise->slope[2] = 0;
-    for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
-        himc_noise_band *b = &noise->band[i];
-        b->energy = b->level = 0;
-        memset(b->past, 0, sizeof b->past);
-    }
+    for (int i = 0; i < HIMC_NOISE_BANDS; i++)
+        noise->band[i].root = noise->band[i].level = 0;
+    for (int k = 0; k < 3; k++)
+        memset(noise->edge[k].past, 0, sizeof noise->edge[k].past);
 }
 
 // white noise of power 1 for an octave, from 16 of 64 bits
@@ -139,39 +159,82 @@ static double white(uint64_t bits, int octave_index)
     return sqrt(12) * ((part + 0.5) / 65536 - 0.5);
 }
 
-// one sample of both rows
-static void step(himc_stroke_noise *noise, double sample[HIMC_NOISE_ROWS])
+// white noise for all octaves of one row or two
+static inline void draw(himc_stroke_noise *noise, int lanes, double x[HIMC_NOISE_LANES])
 {
-    uint64_t bits[HIMC_NOISE_ROWS];
-    double x[HIMC_NOISE_ROWS], heard = 0;
-    for (int k = 0; k < HIMC_NOISE_ROWS; k++)
-        bits[k] = himc_random_bits(&noise->state);
-    sample[0] = sample[1] = 0;
-    for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
-        himc_noise_band *b = &noise->band[i];
-        b->level += noise->follow * (noise->amount * sqrt(b->energy) - b->level);
-        b->energy *= b->keep;
-        heard += b->energy + b->level * b->level;
-        x[0] = white(bits[0], i);
-        x[1] = COHERENCE * x[0] + sqrt(1 - COHERENCE * COHERENCE) * white(bits[1], i);
-        for (int k = 0; k < HIMC_NOISE_ROWS; k++)
-            sample[k] += b->level * b->unit * filter_all(b, b->past[k], x[k]);
-    }
-    if (!(heard > SILENT) && noise->force == 0)
-        himc_stroke_noise_rest(noise);
+    uint64_t bits = himc_random_bits(&noise->state), other = himc_random_bits(&noise->state);
+    for (int i = 0; i < HIMC_NOISE_BANDS; i++)
+        x[i] = white(bits, i);
+    for (int i = HIMC_NOISE_BANDS; i < lanes; i++)
+        x[i] = COHERENCE * x[i - HIMC_NOISE_BANDS] +
+               sqrt(1 - COHERENCE * COHERENCE) * white(other, i - HIMC_NOISE_BANDS);
 }
 
-void himc_stroke_noise_run(himc_stroke_noise *noise, int n, double force,
+// the levels of the next samples, at most n, until the noise is no longer heard; then it rests
+static int find_levels(himc_stroke_noise *noise, int n, double force, bool *rests,
+                       double level[CHUNK][HIMC_NOISE_BANDS])
+{
+    for (int k = 0; k < n; k++) {
+        double heard = 0;
+        drive(noise, force);
+        for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
+            himc_noise_band *b = &noise->band[i];
+            double goal = noise->amount * b->root;
+            b->level += noise->follow * (goal - b->level);
+            b->root *= b->keep;
+            heard += goal * goal + b->level * b->level;
+            level[k][i] = b->level * b->unit;
+        }
+        *rests = !(heard > SILENT) && (force == 0 || noise->amount == 0);
+        if (*rests)
+            return k + 1;
+    }
+    return n;
+}
+
+// one row of samples or two
+static inline void sound(himc_stroke_noise *noise, int lanes, int n, double *const *row,
+                         double level[CHUNK][HIMC_NOISE_BANDS])
+{
+    double x[CHUNK][HIMC_NOISE_LANES];
+    for (int k = 0; k < n; k++)
+        draw(noise, lanes, x[k]);
+    for (int k = 0; k < n; k++)
+        filter(noise->edge, lanes, x[k]);
+    for (int j = 0; j * HIMC_NOISE_BANDS < lanes; j++)
+        for (int k = 0; k < n; k++) {
+            const double *y = x[k] + j * HIMC_NOISE_BANDS, *l = level[k];
+            row[j][k] = (l[0] * y[0] + l[1] * y[1]) + (l[2] * y[2] + l[3] * y[3]);
+        }
+}
+
+// up to CHUNK samples; returns how many
+static int run_chunk(himc_stroke_noise *noise, int n, double force, int rows, double *const *row)
+{
+    double level[CHUNK][HIMC_NOISE_BANDS];
+    bool rests;
+    n = find_levels(noise, n < CHUNK ? n : CHUNK, force, &rests, level);
+    if (rows > 1)
+        sound(noise, HIMC_NOISE_LANES, n, row, level);
+    else
+        sound(noise, HIMC_NOISE_BANDS, n, row, level);
+    if (rests)
+        himc_stroke_noise_rest(noise);
+    return n;
+}
+
+void himc_stroke_noise_run(himc_stroke_noise *noise, int n, double force, int rows,
                            double *const row[HIMC_NOISE_ROWS])
 {
-    for (int i = 0; i < n; i++) {
-        double sample[HIMC_NOISE_ROWS] = {0};
-        noise->sounds = noise->sounds || force > 0;
-        if (noise->sounds) {
-            drive(noise, force);
-            step(noise, sample);
+    double *at[HIMC_NOISE_ROWS] = {row[0], row[1]};
+    for (int more; n > 0; n -= more) {
+        noise->sounds = noise->sounds || (force > 0 && noise->amount > 0);
+        bool silent = !noise->sounds;
+        more = silent ? n : run_chunk(noise, n, force, rows, at);
+        for (int k = 0; k < rows; k++) {
+            if (silent)
+                memset(at[k], 0, (size_t)more * sizeof *at[k]);
+            at[k] += more;
         }
-        for (int k = 0; k < HIMC_NOISE_ROWS; k++)
-            row[k][i] = sample[k];
     }
 }
