@@ -34,7 +34,7 @@
 #define PLACE 100      // seeds a metre; chosen: how well a player finds a place again
 #define COHERENCE 0.5  // of the two rows; chosen: shell and stand are larger than a head
 #define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
-#define MEASURED 0.1   // (s) of a filter's response; chosen: the lowest octave's is over
+#define MEASURED 0.02  // (s) of a filter's response; chosen: the lowest octave's is over
 
 // q_b, fitted once on numbers of two recordings, hall included: with the head's own sound an accent
 // f of the medium mallet, at C2 on 32 inches and at G2 on 29, has about -13 -18 -25 -38 dB in its
