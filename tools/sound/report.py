@@ -194,7 +194,7 @@ def brightness_rows(report, himc):
 def ratio_row(report, himc):
     score = os.path.join(himc.folder, 'modes.txt')
     with open(score, 'w', encoding='utf-8') as file:
-        file.write('drum d 26; d tension 3990; d kettle 0.14; d uniformity 1;\n')
+        file.write('drum d 26; d radius 0.328; d tension 3990; d kettle 0.14; d uniformity 1;\n')
     modes = {(int(r['m']), int(r['n'])): float(r['frequency_hz'])
              for r in csv.DictReader(io.StringIO(himc.call('modes', score)))}
     cents = {k: 1200 * np.log2(modes[k] / modes[1, 1] / (hz / RATIOS[1, 1]))
