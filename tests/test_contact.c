@@ -33,7 +33,7 @@ static void christian(int modes)
 
 static void place(int i, double x, double y, double velocity)
 {
-    stick[i] = (himc_stick){.head = {1.6e8, 2.54, 0, 0.030, 0.0175},
+    stick[i] = (himc_stick){.head = {1.6e8, 2.54, 0, 0.030, 0.0175, 0, 0},
                             .mass = 0.030,
                             .x = x * head.radius,
                             .y = y * head.radius,

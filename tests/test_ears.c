@@ -407,7 +407,7 @@ static double correlation(const himc_drum *d, int n, double hz, bool above)
     return sum[0] / sqrt(sum[1] * sum[2]);
 }
 
-// a stroke on a drum as it is made, from the place where himc render listens
+// a stroke on a drum as it is made, from the side
 static void test_ears_beside_a_drum_hear_two_sounds(void)
 {
     himc_listener l = facing(1, 1.7, 1.4);

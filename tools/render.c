@@ -25,10 +25,10 @@
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
-/// Where a piece is heard if it does not say; chosen: on the left of the first drum, 1.7 m from its
-/// centre, facing the player. From the front both ears hear the same; there they differ, and the
-/// partials are about as strong as recorded ones: (1,1) leads, (2,1) and (3,1) are 3 and 6 dB below.
-#define LISTENER "listener 1 1.7 1.4"
+/// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the left,
+/// 1.7 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
+/// its noise strong; from the front both ears hear the same.
+#define LISTENER "listener 2 0.8 1.4"
 
 enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
 
