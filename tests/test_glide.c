@@ -50,7 +50,7 @@ void tearDown(void)
 
 static void place(int i, double x, double y, double velocity, double k)
 {
-    stick[i] = (himc_stick){.head = {k, 2.54, 0, 0.030, mallet_radius},
+    stick[i] = (himc_stick){.head = {k, 2.54, 0, 0.030, mallet_radius, 0, 0},
                             .mass = 0.030,
                             .x = x * head.radius,
                             .y = y * head.radius,

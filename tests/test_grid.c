@@ -132,7 +132,7 @@ static double growth_of(int count, double k)
     double start = 0, lowest, growth = 0;
     himc_membrane_rest(m);
     for (int i = 0; i < count; i++) {
-        stick[i] = (himc_stick){.head = {k, 2.54, 0.1, 0.03, 0.0175},
+        stick[i] = (himc_stick){.head = {k, 2.54, 0.1, 0.03, 0.0175, 0, 0},
                                 .mass = 0.03,
                                 .x = -0.15 + 0.02 * i,
                                 .y = 0.03 * i,
@@ -250,8 +250,7 @@ static void test_grid_matrices_in_any_form_are_the_same_head(void)
         "1 0 0\n0 1 0.5\n0 0.5 2\n",
         "%%MatrixMarket matrix array real general\n% by columns\n3 3\n1\n0\n0\n0\n1\n0.5\n0\n0.5\n2\n",
         "%%MatrixMarket matrix array real symmetric\n3 3\n1\n0\n0\n1\n0.5\n2\n",
-        "%%MatrixMarket matrix coordinate real general\n3 3 5\n1 1 1\n2 2 1\n3 3 2\n2 3 0.5\n3 2 "
-        "0.5\n",
+        "%%MatrixMarket matrix coordinate real general\n3 3 5\n1 1 1\n2 2 1\n3 3 2\n2 3 .5\n3 2 .5\n",
         "%%MatrixMarket matrix coordinate integer symmetric\n3 3 4\n1 1 1\n2 2 1\n3 3 2\n3 2 0.5\n"};
     double zero[3] = {0};
     put("p", "0 0\n0.2 0\n0 0.2\n0.2 0.2\n");
