@@ -286,6 +286,9 @@ static himc_drum *drum_like(const himc_drum *d)
     c->place = d->place;
     c->placed = d->placed;
     c->technique = d->technique;
+    c->gain = d->gain;
+    c->level = d->level;
+    c->noise.amount = d->noise.amount;
     return c;
 }
 
