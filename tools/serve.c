@@ -17,7 +17,7 @@
 #define RATE 48000         // (Hz)
 #define BLOCK 96           // samples; chosen: 2 ms, short against a reaction to a message
 #define GIVE_UP 0.2        // (s); chosen: catching up with more would be seen as a jump
-#define COMMANDS_A_BLOCK 3 // chosen: retuning a drum takes 0.3 ms, and none makes a block late
+#define COMMANDS_A_BLOCK 8 // chosen: none makes a block late
 
 enum { PORT, BIND, FILES, ALLOW };
 
