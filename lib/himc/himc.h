@@ -24,8 +24,19 @@
 /// Two further headers are tables: himc/command_rows.h, a row for each command, and himc/ranges.h,
 /// the ranges that structs share with commands.
 ///
-/// docs/api.md states what each tier promises. The sources in lib/src stand in folders in the order
-/// of the data flow: base, body, capture, plan, control, drum, performance, osc.
+/// docs/api.md states what each tier promises. The sources in lib/src stand in rooms, a folder each,
+/// in the order of the data flow (docs/overview.md):
+///
+///     base         errors, files, vectors, the table and the parser of commands
+///     body         skeleton, pose, joint limits, dynamics
+///     capture      motion captures and the player in them
+///     plan         the trajectories of the drumstick tips, from a score or a take
+///     control      inverse kinematics and inverse dynamics
+///     bank         many damped oscillators
+///     head         what a drumhead's modes are: membrane, air and kettle, uneven lugs, pickups
+///     drum         membrane, contact, stroke noise, ears, the air between drums
+///     performance  performer and drums under one sample clock
+///     osc          the network
 #ifndef HIMC_H
 #define HIMC_H
 

@@ -50,12 +50,13 @@
 #include <string.h>
 
 #define MAX_PAIRS (2 * HIMC_STICKS)
-#define NEWTON_STEPS 60     // chosen: bisection alone converges in them
-#define LINE_STEPS 30       // halvings of a line search; chosen
-#define ROUNDING 4e-16      // relative; two units in the last place of a double
-#define CHATTER 0.0015      // (s) forces less than this apart are one contact; chosen
-#define STIFF_POINT 100.0   // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
-#define STIFF_PATCH 5e3     // the same for a mallet that has a patch; wood has 9487
+#define NEWTON_STEPS 60       // chosen: bisection alone converges in them
+#define LINE_STEPS 30         // halvings of a line search; chosen
+#define ROUNDING 4e-16        // relative; two units in the last place of a double
+#define PUSH_ROUNDING 1.6e-15 // relative, a pair; chosen: with less the search ends in rounding
+#define CHATTER 0.0015        // (s) forces less than this apart are one contact; chosen
+#define STIFF_POINT 100.0     // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
+#define STIFF_PATCH 5e3       // the same for a mallet that has a patch; wood has 9487
 #define CLOSE 0.001         // (m) nearer than this and two steps, a stick's patch is found; chosen
 #define REACH_ROUNDING 1e-6 // (m) allowance in an estimate of future heights
 #define HEIGHT_ROUNDING 1e-12 // (m) of a height that is computed again by the caller
@@ -152,7 +153,7 @@ static bool evaluate(search *s)
             pushed += s->g[i][j] * s->force[j];
         s->residual[i] = s->r[i] - s->m[i].b + pushed;
         double size = fabs(s->r[i]) + fabs(s->m[i].b) + fabs(s->m[i].c0) + fabs(pushed);
-        done = done && fabs(s->residual[i]) <= ROUNDING * size;
+        done = done && fabs(s->residual[i]) <= s->n * PUSH_ROUNDING * size;
     }
     return done;
 }
