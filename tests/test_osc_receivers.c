@@ -107,11 +107,9 @@ static void test_an_unreachable_address_is_removed_after_a_minute(void)
     TEST_ASSERT_EQUAL_INT(0, lines_of_vanished());
 }
 
-static void test_subscriptions_outlive_listening_elsewhere(void)
+static void listen_elsewhere_and_play(void)
 {
     himc_error error;
-    subscribe("pose");
-    play(0.2);
     himc_osc *other = himc_osc_reopen(osc, &(himc_osc_config){.port = 0}, &error);
     TEST_ASSERT_NOT_NULL(other);
     osc = other;
@@ -119,6 +117,14 @@ static void test_subscriptions_outlive_listening_elsewhere(void)
     himc_performance_on_tick(performance, himc_osc_tick, osc);
     forget();
     play(0.5);
+}
+
+static void test_subscriptions_outlive_listening_elsewhere(void)
+{
+    himc_error error;
+    subscribe("pose");
+    play(0.2);
+    listen_elsewhere_and_play();
     TEST_ASSERT_INT_WITHIN(20, 20 * 16, count("/himc/body"));
     himc_osc_config taken = {.port = himc_osc_port(osc)};
     TEST_ASSERT_NULL(himc_osc_reopen(osc, &taken, &error));
@@ -136,13 +142,7 @@ static void test_a_subscription_that_waits_outlives_listening_elsewhere(void)
     snprintf(text, sizeof text, "subscribe 127.0.0.1 %d targets 50", ear_port);
     TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER, text, &error));
     TEST_ASSERT_TRUE(himc_osc_command(osc, &command, &error));
-    himc_osc *other = himc_osc_reopen(osc, &(himc_osc_config){.port = 0}, &error);
-    TEST_ASSERT_NOT_NULL(other);
-    osc = other;
-    said = heard_packets = 0;
-    himc_performance_on_tick(performance, himc_osc_tick, osc);
-    forget();
-    play(0.5);
+    listen_elsewhere_and_play();
     TEST_ASSERT_INT_WITHIN(4, 2 * 25, count("/himc/targets"));
 }
 
