@@ -33,7 +33,11 @@
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds one stroke to the score")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
-                 "plays a stroke as soon as it can be prepared")
+                 "plays a stroke so long after the message as `latency` says; any: with the hand "
+                 "that suits better")
+HIMC_COMMAND_ROW(LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
+                 "has every hit land exactly so long after its message, 150 by default, as strong "
+                 "as that allows; auto: 330, as long as any hit needs; 0: each as soon as it can")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
 HIMC_COMMAND_ROW(GRIP, grip, PERFORMER, NOW, 0, "german|french",

@@ -12,6 +12,8 @@
 #include <string.h>
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
+/// That any hit needs from rest (s): measured, an accent at ff.
+#define LONGEST_PREPARATION 0.33
 
 // playing
 
@@ -23,6 +25,16 @@ static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *er
 static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return himc_performance_hit(p, &c->stroke, error);
+}
+
+static bool do_latency(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    enum { TIME, AUTO };
+    (void)error;
+    s.latency = c->form == AUTO ? LONGEST_PREPARATION : 1e-3 * c->atom[0].number;
+    himc_performance_adopt(p, &s);
+    return true;
 }
 
 static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
