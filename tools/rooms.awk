@@ -21,7 +21,7 @@ BEGIN {
     only["^lo_"] = "^osc/"
     only["^_Z"] = "^base/linear$"
     only["^(socket|bind|sendto|recvfrom)$"] = "^osc/"
-    only["^pthread_create$"] = "^(osc/|performance/loader$)"
+    only["^pthread_create$"] = "^(osc/|drum/loader$)"
     # a host's process and its terminal are not the library's
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
     # these may be embedded anywhere: they and all that they call need libm and the C library alone
