@@ -13,8 +13,8 @@
 /// the number of falls.
 #include "capture/strike_heads.h"
 
-#include "base/order.h"
 #include "base/random.h"
+#include "capture/order.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -22,7 +22,7 @@
 #include "himc/mocap.h"
 
 #include "base/noise.h"
-#include "base/order.h"
+#include "capture/order.h"
 #include "capture/strike_heads.h"
 #include "capture/take.h"
 
