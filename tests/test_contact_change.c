@@ -268,8 +268,7 @@ static void test_a_drum_put_over_a_stick_does_not_press_it_in(void)
         double most = himc_performance_measure(p).peak_force;
         const himc_stick *s = &p->contacts.hand[HIMC_LEFT].stick;
         printf("%.0f mm below the head: %.1f N\n", 1e3 * deep[i], most);
-        // the stick has been simulated, unless its mallet is more under the head than over it
-        TEST_ASSERT_TRUE((s->mass > 0) == (deep[i] < p->body->skeleton.mallet_radius));
+        TEST_ASSERT_TRUE(s->mass > 0); // the stick has been simulated
         TEST_ASSERT_TRUE(most < 1);
         himc_performance_free(p);
     }

@@ -128,7 +128,7 @@ void himc_contacts_release(performance_contacts *c, const contact_scene *s, doub
 }
 
 // true if a tip is on that head or near it; `local` is its place and height over the head
-static bool is_over(stick_contact *c, const contact_scene *s, himc_hand hand, int drum,
+static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand hand, int drum,
                     himc_vec3 *local)
 {
     double radius = frame_of(s, drum)->radius;
@@ -140,26 +140,12 @@ static bool is_over(stick_contact *c, const contact_scene *s, himc_hand hand, in
     himc_vec3 at = over_head(s, drum, s->body->state.tip[hand]);
     double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
     *local = at;
-    bool inside = at.x * at.x + at.y * at.y < radius * radius;
-    if (inside && at.z <= lowest)
-        c->under |= 1u << drum;
-    else if (!inside || at.z > 0)
-        c->under &= ~(1u << drum);
-    return inside && at.z < NEAR_HEAD && !(c->under >> drum & 1u);
-}
-
-void himc_contacts_drum_moved(performance_contacts *c, const contact_scene *s, int drum)
-{
-    double half = s->body->skeleton.mallet_radius;
-    for (int i = 0; i < HIMC_HANDS; i++) {
-        bool touches = c->hand[i].touching && c->hand[i].drum == drum;
-        if (!touches && over_head(s, drum, s->body->state.tip[i]).z < -half)
-            c->hand[i].under |= 1u << drum;
-    }
+    return at.x * at.x + at.y * at.y < radius * radius && at.z < NEAR_HEAD && at.z > lowest;
 }
 
 // the drum below a tip, or -1; of two drums at one place, the planned one
-static int drum_below(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 *local)
+static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand hand,
+                      himc_vec3 *local)
 {
     planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, himc_clock_time(s->clock));
     int meant = c->touching ? c->drum : next.any ? next.drum : -1;

@@ -16,7 +16,6 @@ typedef struct stick_contact {
     bool touching;      ///< from the first force to separation
     bool released;      ///< control does not act along the normal
     int drum;           ///< slot
-    unsigned under;     ///< bit of each slot whose head is above the stick: no contact from below
     himc_stick stick;   ///< in micro-contact
     double offset;      ///< of the stick's height from the body's tip (m); decays after contact
     double last_force;  ///< time of the last force (s)
@@ -43,10 +42,6 @@ typedef struct contact_scene {
 
 /// Sets all sticks to the air, without a history; forces not yet played remain.
 HIMC_RT void himc_contacts_clear(performance_contacts *contacts);
-/// The head of a drum has been moved: a mallet more than half below it now does not
-/// touch it.
-HIMC_RT void himc_contacts_drum_moved(performance_contacts *contacts, const contact_scene *scene,
-                                      int drum);
 /// Decides for each hand at `t` whether control releases the head's normal; gives up strokes that
 /// are past their contact time without a contact.
 HIMC_RT void himc_contacts_release(performance_contacts *contacts, const contact_scene *scene,

@@ -234,7 +234,6 @@ void himc_performance_renew_limits(himc_performance *p)
 
 void himc_performance_notice_drums(himc_performance *p)
 {
-    contact_scene scene = {.body = p->body, .drums = &p->drums};
     bool noticed[HIMC_DRUMS], changed = false, unseen = p->clock.made == 0;
     for (int i = 0; i < p->drums.count; i++) {
         noticed[i] = himc_drums_noticed(&p->drums, i);
@@ -245,10 +244,8 @@ void himc_performance_notice_drums(himc_performance *p)
     if (unseen)
         fit_stool(p->motion, p->body, &p->drums, &p->settings);
     for (int i = 0; i < p->drums.count; i++)
-        if (noticed[i]) {
-            himc_contacts_drum_moved(&p->contacts, &scene, i);
+        if (noticed[i])
             himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
-        }
     if (unseen)
         put_together(p->motion, p->body, &p->settings, 0);
     himc_drums_join(&p->drums);
