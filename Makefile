@@ -18,8 +18,8 @@ ifeq ($(origin CXX),default)
 CXX := $(subst gcc,g++,$(subst clang,clang++,$(CC)))
 endif
 
-# what every C file is compiled with; CPPFLAGS, CFLAGS and LDFLAGS of the user come last
-OPTIMIZE = -O2 -g $(ARCH)
+# what every C file is compiled with (no flag changes a result); CPPFLAGS, CFLAGS and LDFLAGS of the user come last
+OPTIMIZE = -O3 -fno-math-errno -fno-trapping-math -g $(ARCH)
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow
 HOW      = $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interposition -ffp-contract=off -fPIC $(SANITIZE) \
            -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
