@@ -67,6 +67,8 @@ HIMC_RT himc_pose himc_motion_mean_pose(const performance_motion *motion, double
 
 /// Reads the setpoints again at the next step.
 HIMC_RT void himc_motion_replan(performance_motion *motion);
+/// The stool has this height (m); himc_motion_build then gives it to the postures.
+HIMC_RT void himc_motion_seat(performance_motion *motion, double height);
 /// Sets the head frame of drum `index`.
 HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
                                   const himc_head_frame *frame);
@@ -116,6 +118,9 @@ HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
 /// not the requested place, `first` true if the target before was reachable.
 HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand hand, himc_vec3 asked,
                                         bool *reachable, bool *first);
+/// From the nearest place in reach of either hand to the usual strike point of a head (m); 0 if that
+/// is in reach.
+HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const himc_head_frame *head);
 /// Refuses a live target, because the take moves the hand. True for the first one.
 HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
 
