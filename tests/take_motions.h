@@ -82,8 +82,8 @@ static inline int strikes_of(himc_take *take, himc_take_strike *strikes, int cap
     TEST_ASSERT_TRUE_MESSAGE(himc_take_tips(take, NULL, tips, &error), error.text);
     himc_take_strike *all = himc_take_find_strikes(take, tips, &count);
     TEST_ASSERT_NOT_NULL(all);
-    for (int i = 0; i < count && i < capacity; i++)
-        strikes[i] = all[i];
+    for (int i = 0; i < capacity; i++)
+        strikes[i] = i < count ? all[i] : (himc_take_strike){.frame = -1};
     free(all);
     return count;
 }
