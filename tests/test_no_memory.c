@@ -500,7 +500,7 @@ static bool make_files(void)
 int main(void)
 {
     dl_iterate_phdr(spare_library, NULL);
-    puts("LAPACKE prints lines of its own:"); // so that stdout has its buffer before any count
+    puts("without memory:"); // so that stdout has its buffer before any count
     UNITY_BEGIN();
     if (!make_files())
         return 1;

@@ -2,7 +2,7 @@
 /// table of lib/src/head/air.c.
 ///
 /// Frequencies are x = w a/c, and a drum is three numbers: epsilon = rho a/sigma, L/a and the
-/// tension tau = T/(sigma c^2). Setup functions; they need LAPACK.
+/// tension tau = T/(sigma c^2). Setup functions; they allocate.
 #ifndef HIMC_AIR_GALERKIN_H
 #define HIMC_AIR_GALERKIN_H
 

@@ -20,7 +20,7 @@
 #include "himc/mocap.h"
 
 #include "base/noise.h"
-#include "base/order.h"
+#include "capture/order.h"
 #include "capture/take.h"
 
 #include <stdlib.h>

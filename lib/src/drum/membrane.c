@@ -17,13 +17,14 @@
 #include "head/bessel.h"
 #include "drum/membrane_probe.h"
 #include "head/pickup.h"
+#include "head/statistical.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: ten of its own, those of each output, each patch and each strike point
-#define ARRAYS (10 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: eleven of its own, those of each output, each patch and each strike point
+#define ARRAYS (11 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 #define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
 #define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
@@ -31,8 +32,9 @@
 // Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as it
 // should whatever its angle w t in one, unless that is near pi, where its velocity would be met at
 // the same phase again and again.
-#define INTERVAL 0.00075 // (s) chosen: 32 samples of 44.1 and 48 kHz
-#define SHARED_ANGLE 2.0 // most of w t of a mode that is shared; chosen: up to 477 Hz
+#define INTERVAL 0.00075     // (s) chosen: 32 samples of 44.1 and 48 kHz
+#define LARGEST_BESSEL 0.582 // of |J_m| with m > 0
+#define SHARED_ANGLE 2.0     // most of w t of a mode that is shared; chosen: up to 477 Hz
 
 static void core_free(core *c)
 {
@@ -85,8 +87,8 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
         return false;
     }
     memset(memory, 0, bytes);
-    double **arrays[] = {&c->on_q,    &c->on_v, &c->on_force,      &c->scratch,
-                         &c->stretch, &c->wave, &c->per_stiffness, &c->per_mass};
+    double **arrays[] = {&c->on_q, &c->on_v, &c->on_force,      &c->scratch, &c->stretch,
+                         &c->wave, &c->most, &c->per_stiffness, &c->per_mass};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
@@ -119,6 +121,7 @@ static void find_oscillators(himc_membrane *m)
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
         c->stretch[i] = root * mode.stiffness / m->head.tension;
+        c->most[i] = mode.m > 0 ? LARGEST_BESSEL : mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
         c->wave[i] = smooth ? mode.zero / m->head.radius : 0;
         c->per_stiffness[i] = 1 / mode.stiffness;
         c->per_mass[i] = 1 / mode.mass;

@@ -279,6 +279,12 @@ double himc_membrane_energy(const himc_membrane *membrane)
     return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
 }
 
+double himc_membrane_swing(himc_membrane *membrane)
+{
+    bool known = himc_modes_shape(membrane->core.modes)->kind != HIMC_GRID;
+    return known ? himc_bank_swing(membrane->core.bank, membrane->core.most) : INFINITY;
+}
+
 bool himc_membrane_at_rest(const himc_membrane *membrane)
 {
     bool rest = membrane->push_count == 0 && himc_bank_at_rest(membrane->core.bank);

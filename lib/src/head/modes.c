@@ -615,7 +615,7 @@ void himc_modes_transform(const himc_modes *modes, double radius, int index, dou
     *odd *= radius * radius;
 }
 
-// here and not in grid.c, so that a membrane needs no LAPACK
+// here and not in grid.c, so that a membrane needs no Eigen
 himc_grid *himc_grid_retain(himc_grid *grid)
 {
     if (grid)

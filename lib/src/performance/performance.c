@@ -139,6 +139,14 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
     }
 }
 
+himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)
+{
+    himc_performance *p = himc_performance_make(config, error);
+    if (p)
+        p->runner = himc_performance_runner;
+    return p;
+}
+
 uint64_t himc_performance_time(const himc_performance *p)
 {
     return (uint64_t)(p->clock.played - p->clock.aligned);

@@ -93,7 +93,7 @@ static void begin(himc_performance *p, const performance_settings *s, const made
     himc_performance_restart_steps(p);
 }
 
-himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)
+himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
 {
     made_parts parts;
     if (!config_valid(config, error))
