@@ -80,6 +80,11 @@ void himc_motion_replan(performance_motion *m)
     m->replan = true;
 }
 
+void himc_motion_seat(performance_motion *m, double height)
+{
+    m->posture.skeleton.root.z = height;
+}
+
 void himc_motion_set_drum(performance_motion *m, int index, const himc_head_frame *frame)
 {
     himc_planner_set_drum(m->planner, index, frame);
@@ -363,8 +368,13 @@ void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
     m->crossfade_due = false;
     himc_posture_crossfade_cancel(&m->crossfade);
     himc_motion_init_posture(&m->posture, skeleton, &s->captured, m->posture.level);
-    if (m->course.time == 0)
-        m->course.from = m->course.goal = m->posture.trunk_posture;
+    himc_planner_set_body(m->planner);
+    if (m->course.time == 0) {
+        himc_vec3 tip[HIMC_HANDS];
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
+        m->course.from = m->course.goal = himc_posture_trunk(tip, s->grip);
+    }
     fill_tick(m, s, &m->from, t);
     memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
     m->reference.posture = m->from.posture;
@@ -486,6 +496,23 @@ himc_vec3 himc_motion_ease_down(performance_motion *m, himc_hand hand, double t,
     live->x = target;
     live->time = t;
     return target;
+}
+
+himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame *head)
+{
+    himc_vec3 least = {INFINITY, 0, 0};
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_stroke usual = {.hand = (himc_hand)i, .spot = HIMC_SPOT_NORMAL};
+        double x, y;
+        himc_stroke_spot(&usual, head->radius, &x, &y);
+        himc_vec3 tip =
+            himc_vec3_madd(himc_head_frame_to_world(head, x, y), m->posture.skeleton.mallet_radius,
+                           himc_head_frame_normal(head));
+        himc_vec3 way = himc_vec3_sub(tip, himc_posture_reachable(&m->posture, usual.hand, tip));
+        if (himc_vec3_length(way) < himc_vec3_length(least))
+            least = way;
+    }
+    return least;
 }
 
 bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)

@@ -76,6 +76,8 @@ HIMC_RT himc_pose himc_motion_mean_pose(const performance_motion *motion, double
 
 /// Reads the setpoints again at the next step.
 HIMC_RT void himc_motion_replan(performance_motion *motion);
+/// The stool has this height (m); himc_motion_build then gives it to the postures.
+HIMC_RT void himc_motion_seat(performance_motion *motion, double height);
 /// Sets the head frame of drum `index`.
 HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
                                   const himc_head_frame *frame);
@@ -137,6 +139,9 @@ HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand ha
 /// comes down to it slowly: returns where it is meanwhile.
 HIMC_RT himc_vec3 himc_motion_ease_down(performance_motion *motion, himc_hand hand, double t,
                                         himc_vec3 target, const himc_head_frame *head);
+/// From the nearest place in reach of either hand to the usual strike point of a head (m); 0 if that
+/// is in reach.
+HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const himc_head_frame *head);
 /// Refuses a live target, because the take moves the hand. True for the first one.
 HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
 

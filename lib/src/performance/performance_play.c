@@ -10,6 +10,10 @@
 #define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
 #define UNDER_THE_HEAD 0.3  // a target deeper than this is under the drum, not in its head (m)
 
+// chosen: a stroke so little out of reach is played
+#define OUT_OF_REACH 0.01 // (m)
+#define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
+
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
 static bool check_stroke(const himc_stroke *s, himc_error *error)
@@ -39,6 +43,34 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
     return himc_planner_add(p->motion->planner, stroke, drum.index, error);
 }
 
+// "too low" and so on, from the direction in which the reach ends
+static const char *direction_of(himc_vec3 beyond, himc_vec3 center)
+{
+    if (fabs(beyond.z) > hypot(beyond.x, beyond.y))
+        return beyond.z < 0 ? "too low" : "too high";
+    if (center.x < BEHIND * fabs(center.y))
+        return "too far behind";
+    return beyond.x * center.x + beyond.y * center.y < 0 ? "too near" : "too far";
+}
+
+// one line for each drum that stands where it was not asked to, or out of reach
+static void tell_places(himc_performance *p)
+{
+    himc_performance_notice_drums(p);
+    himc_drums_tell_places(&p->drums, &p->events);
+    for (int i = 0; i < p->drums.count; i++) {
+        drum_slot *slot = &p->drums.slot[i];
+        const himc_head_frame *head = himc_drums_frame(&p->drums, i);
+        himc_vec3 beyond = himc_motion_beyond(p->motion, head);
+        double distance = himc_vec3_length(beyond);
+        if (distance < OUT_OF_REACH || slot->reach_told)
+            continue;
+        slot->reach_told = true;
+        himc_events_note(&p->events, "drum %s is %s by %.2f m: strokes on it are given up",
+                         himc_drum_name(slot->drum), direction_of(beyond, head->center), distance);
+    }
+}
+
 bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
@@ -49,7 +81,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
     if (!himc_performance_ensure_drum(p, stroke->drum, &drum, error))
         return false;
-    himc_drums_tell_places(&p->drums, &p->events);
+    tell_places(p);
     double at = himc_planner_hit(p->motion->planner, now, stroke, drum);
     if (isfinite(at))
         himc_statistics_hit(&p->statistics, at - now);
@@ -71,7 +103,7 @@ bool himc_performance_play(himc_performance *p, himc_error *error)
     int first;
     if (!himc_performance_ensure_drum(p, "", &first, error))
         return false;
-    himc_drums_tell_places(&p->drums, &p->events);
+    tell_places(p);
     if (!p->motion->track && himc_planner_length(p->motion->planner) <= 0)
         himc_events_note(&p->events, "play: nothing to play: no strokes, no take");
     himc_motion_play(p->motion, step_time(p));

@@ -335,6 +335,7 @@ static performance_settings settings_of(const take_job *j)
     memset(s.captured.known, 0, sizeof s.captured.known);
     if (j->player->lengths > 0) {
         s.skeleton = j->player->config;
+        s.skeleton.seat = himc_skeleton_seat(&s.skeleton); // as captured, whatever the drum
         s.captured = captured_of(j->player);
     }
     return s;
