@@ -6,6 +6,7 @@ PREFIX    ?= /usr/local
 LIBDIR    ?= $(PREFIX)/lib
 PDEXTRA   ?= $(PREFIX)/lib/pd-externals
 UNITY_DIR ?= build/unity/src
+EIGEN     ?= /usr/include/eigen3
 ARCH      ?=
 SANITIZE  ?=
 V         ?=
@@ -13,16 +14,22 @@ JOBS      ?= $(shell nproc 2>/dev/null || echo 1)
 ifeq ($(origin CC),default)
 CC := gcc
 endif
+ifeq ($(origin CXX),default)
+CXX := $(subst gcc,g++,$(subst clang,clang++,$(CC)))
+endif
 
-# what every C file is compiled with; CPPFLAGS, CFLAGS and LDFLAGS of the user come last
-OPTIMIZE = -O2 -g $(ARCH)
-WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wmissing-prototypes
-COMPILE  = $(CC) -std=c17 $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interposition -ffp-contract=off \
-           -fPIC $(SANITIZE) -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
+# what every C file is compiled with (no flag changes a result); CPPFLAGS, CFLAGS and LDFLAGS of the user come last
+OPTIMIZE = -O3 -fno-math-errno -fno-trapping-math -g $(ARCH)
+WARNINGS = -Wall -Wextra -Wpedantic -Wshadow
+HOW      = $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interposition -ffp-contract=off -fPIC $(SANITIZE) \
+           -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
+COMPILE  = $(CC) -std=c17 -Wmissing-prototypes $(HOW)
+# Eigen, which linear.cpp alone knows
+COMPILE_CXX = $(CXX) -std=c++17 -fno-rtti -isystem $(EIGEN) $(HOW)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
-LIB_LIBS = -lode -llo -llapacke -llapack -lblas -lpthread -lm
+LIB_LIBS = -lode -llo -lstdc++ -lpthread -lm
 LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
 
 # what is built from what is there
@@ -36,8 +43,8 @@ PROGRAM   := $(BUILD)/bin/himc
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture plan control bank head drum performance osc
-LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%.c,$(BUILD)/lib/%.o,$(wildcard lib/src/$(room)/*.c)))
+ROOMS     := base body capture plan midi control bank head drum performance osc
+LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
@@ -49,7 +56,7 @@ SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*/*.[ch] tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*/*.[ch] lib/src/*/*.cpp tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
              tests/*.[ch] tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
@@ -201,6 +208,13 @@ test-realtime: deps ## what only the wall clock can show: rates, latencies, comp
 check-realtime: all $(REALTIME)
 	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh $(REALTIME) $(wildcard tests/realtime/test_*.sh)
 
+# how much of each file is played (s)
+MIDI_SECONDS ?= 15
+test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; two minutes)
+	@tools/deps.sh tools/deps-midi.txt
+	@$(MAKE) $(PROGRAM)
+	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid
+
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
 	@tools/deps.sh tools/deps-sound.txt
 	@$(MAKE) check-levels
@@ -268,7 +282,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -293,6 +307,10 @@ $(BUILD)/lib/%.o: lib/src/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
 
+$(BUILD)/lib/%.o: lib/src/%.cpp
+	$(call say,c++ )
+	$(Q)$(COMPILE_CXX) -c $< -o $@
+
 $(BUILD)/tools/%.o: tools/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
@@ -313,7 +331,7 @@ $(BUILD)/viewer/%.o: viewer/%.c
 
 # names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
 # room base, the skeleton and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter $(BUILD)/lib/base/%,$(LIB_O))
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/base/%,$(LIB_O)))
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
@@ -330,7 +348,7 @@ $(VIEWER_O): $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
-$(VIEWER): $(VIEWER_O) $(filter $(BUILD)/lib/base/%,$(LIB_O))
+$(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
 

@@ -2,10 +2,11 @@
 /// full Jacobian (Buss & Kim 2005, section 4).
 #include "himc/body.h"
 
+#include "base/linear.h"
+
 #include "bodies.h"
 #include "unity.h"
 
-#include <lapacke.h>
 #include <string.h>
 
 #define COLUMNS (3 * HIMC_ARM_JOINTS)
@@ -54,23 +55,45 @@ static void clamp_max_abs(double *v, double most)
         v[c] *= scale;
 }
 
+static double singular[3], left[3][3], right[3][COLUMNS];
+
+// J = sum s_i u_i v_i', from the three largest eigenvalues s_i^2 and eigenvectors v_i of J' J
+static void singular_values(void)
+{
+    double square[COLUMNS][COLUMNS], lambda[COLUMNS], v[COLUMNS][COLUMNS];
+    for (int i = 0; i < COLUMNS; i++)
+        for (int k = 0; k < COLUMNS; k++) {
+            const double *a = jacobian[i], *b = jacobian[k];
+            square[i][k] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        }
+    TEST_ASSERT_EQUAL_INT(HIMC_LINEAR_SOLVED,
+                          himc_linear_eigenvalues(COLUMNS, square[0], lambda, v[0]));
+    memset(left, 0, sizeof left);
+    for (int i = 0; i < 3; i++) {
+        singular[i] = sqrt(lambda[COLUMNS - 1 - i]);
+        memcpy(right[i], v[COLUMNS - 1 - i], sizeof right[i]);
+        for (int c = 0; c < COLUMNS; c++)
+            for (int k = 0; k < 3; k++)
+                left[i][k] += jacobian[c][k] * right[i][c] / singular[i];
+    }
+}
+
 // J = sum s_i u_i v_i'; with one end effector N_i = |u_i| = 1 and
 //     M_i = 1 / s_i sum_j |v_ji| |ds / dq_j|,   gamma_i = min(1, N_i / M_i) gamma_max
 //     dq = clamp(sum clamp(1 / s_i (u_i . e) v_i, gamma_i), gamma_max)
 // returns the smallest gamma_i / gamma_max that clamped
 static double buss_and_kim(const double e[3], double dq[COLUMNS])
 {
-    double a[COLUMNS][3], s[3], u[3][3], v[COLUMNS][COLUMNS], super[3], share = 1;
-    memcpy(a, jacobian, sizeof a);
-    TEST_ASSERT_EQUAL_INT(0, LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', 3, COLUMNS, a[0], 3, s,
-                                            u[0], 3, v[0], COLUMNS, super));
+    double share = 1;
+    singular_values();
     memset(dq, 0, COLUMNS * sizeof *dq);
     for (int i = 0; i < 3; i++) {
-        double along = u[i][0] * e[0] + u[i][1] * e[1] + u[i][2] * e[2], m = 0, phi[COLUMNS];
+        double along = left[i][0] * e[0] + left[i][1] * e[1] + left[i][2] * e[2];
+        double m = 0, phi[COLUMNS];
         for (int c = 0; c < COLUMNS; c++) {
             const double *j = jacobian[c];
-            m += fabs(v[c][i]) * sqrt(j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) / s[i];
-            phi[c] = along * v[c][i] / s[i];
+            m += fabs(right[i][c]) * sqrt(j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) / singular[i];
+            phi[c] = along * right[i][c] / singular[i];
         }
         double gamma = fmin(1, 1 / m) * MOST_TURN;
         if (largest(phi) > gamma)

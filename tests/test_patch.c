@@ -2,6 +2,7 @@
 /// number of modes, contact times of each mallet, energy.
 #include "drum/contact.h"
 #include "drum/drum_performer.h"
+#include "drum/membrane_probe.h"
 #include "drum/membrane_state.h"
 #include "drum/patch.h"
 #include "head/bessel.h"
@@ -307,6 +308,75 @@ static void test_a_patch_holds_for_a_blow(void)
         himc_patch_radius(&head, &mallet[MEDIUM], mallet[MEDIUM].mass, SPOT, 1), stick.patch);
 }
 
+// A blow, and another while the head rings: `flies` runs head and stick apart where they are clear.
+// Returns the samples that it ran so within HIMC_CONTACT_REACH.
+static int strike_twice(const himc_mallet_head *with, double velocity, bool flies, double *sound,
+                        himc_stick *end)
+{
+    enum { SAMPLES = 4800 };
+    int saved = 0;
+    remake();
+    place(with, SPOT, velocity);
+    for (int n = 0, run; n < SAMPLES; n += run) {
+        if (n == SAMPLES / 2) // 8 mm above the head at rest
+            stick = (himc_stick){
+                .head = *with, .mass = with->mass, .x = SPOT, .height = 8e-3, .velocity = -0.5};
+        int most = (n < SAMPLES / 2 ? SAMPLES / 2 : SAMPLES) - n;
+        run = flies ? himc_contact_clear(membrane, sticks, 1, most < 64 ? most : 64) : 0;
+        saved += stick.height < HIMC_CONTACT_REACH ? run : 0;
+        if (run > 0)
+            himc_membrane_run(membrane, run, (double *[]){sound + n}, NULL);
+        for (int i = 0; i < run; i++)
+            himc_stick_fly(&stick, 1 / RATE);
+        if (run > 0)
+            continue;
+        himc_contact_step(membrane, sticks, 1);
+        sound[n] = himc_membrane_sound(membrane, 0);
+        run = 1;
+    }
+    *end = stick;
+    return saved;
+}
+
+static void test_a_stick_near_a_head_that_it_does_not_meet_flies_with_the_same_bits(void)
+{
+    static double sound[2][4800];
+    himc_stick end[2];
+    head = himc_head_default();
+    for (int i = 0; i < MALLETS; i++)
+        for (double velocity = 0.5; velocity < 10; velocity *= 4) {
+            strike_twice(&mallet[i], velocity, false, sound[0], &end[0]);
+            int saved = strike_twice(&mallet[i], velocity, true, sound[1], &end[1]);
+            TEST_ASSERT_EQUAL_MEMORY(sound[0], sound[1], sizeof *sound);
+            TEST_ASSERT_EQUAL_DOUBLE(end[0].height, end[1].height);
+            TEST_ASSERT_EQUAL_DOUBLE(end[0].velocity, end[1].velocity);
+            TEST_ASSERT_EQUAL_UINT(end[0].contacts, end[1].contacts);
+            TEST_ASSERT_TRUE(i == WOOD ? saved == 0 : saved > 30);
+        }
+}
+
+static void test_no_place_of_a_ringing_head_swings_farther_than_its_bound(void)
+{
+    double least = INFINITY;
+    head = himc_head_default();
+    for (int loud = 0; loud < 3; loud++) {
+        strike(&mallet[HARD], 2 + 4 * loud);
+        double bound = himc_membrane_swing(membrane);
+        for (int n = 0; n < 48; n++) {
+            himc_membrane_run(membrane, 5, (double *[]){NULL}, NULL);
+            for (double r = 0; r < 1; r += 0.1)
+                for (double angle = 0; angle < 6; angle += 1) {
+                    double x = r * head.radius * cos(angle), y = r * head.radius * sin(angle);
+                    double here = fabs(himc_membrane_displacement(membrane, x, y));
+                    TEST_ASSERT_TRUE(here <= bound);
+                    least = fmin(least, bound / here);
+                }
+        }
+    }
+    printf("the bound is %.2f of the largest displacement\n", least);
+    TEST_ASSERT_TRUE(least < 10); // and not so large that it is of no use
+}
+
 // outside the head every shape is 0: a rigid wall
 static double rebound(himc_mallet_head with, double velocity, double *force)
 {
@@ -372,6 +442,8 @@ int main(void)
     RUN_TEST(test_a_patch_without_losses_keeps_energy);
     RUN_TEST(test_a_blow_hangs_on_place_head_and_speed_alone);
     RUN_TEST(test_a_patch_holds_for_a_blow);
+    RUN_TEST(test_a_stick_near_a_head_that_it_does_not_meet_flies_with_the_same_bits);
+    RUN_TEST(test_no_place_of_a_ringing_head_swings_farther_than_its_bound);
     RUN_TEST(test_relaxation_of_a_linear_felt_is_a_damped_oscillator);
     RUN_TEST(test_core_stiffens_the_felt_below_3_mm);
     return UNITY_END();

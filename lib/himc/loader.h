@@ -13,9 +13,11 @@
 #ifndef HIMC_LOADER_H
 #define HIMC_LOADER_H
 
-#include "himc/performance.h"
+#include "himc/drum.h"
 
 HIMC_BEGIN
+
+typedef struct himc_performance himc_performance; ///< performance.h
 
 /// A helper thread and the commands that wait for it. Opaque.
 typedef struct himc_loader himc_loader;

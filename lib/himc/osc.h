@@ -16,6 +16,7 @@
 #define HIMC_OSC_H
 
 #include "himc/loader.h"
+#include "himc/performance.h"
 
 HIMC_BEGIN
 

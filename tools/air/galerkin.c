@@ -32,11 +32,11 @@
 /// ratio to (1,1) changes by 30 cents in a semitone.
 #include "galerkin.h"
 
+#include "base/linear.h"
 #include "head/bessel.h"
 #include "head/air.h"
 
 #include <complex.h>
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -197,13 +197,13 @@ static void real_part(const himc_air_order *order, const himc_air_problem *p, do
             d[i][j] = o.stiffness[i][j] - x * x * o.mass[i][j];
 }
 
-// its eigenvalues, rising; NaN if LAPACK fails, which then brackets nothing
+// its eigenvalues, rising; NaN if they are not found, which then brackets nothing
 static void eigenvalues(const himc_air_order *order, const himc_air_problem *p, double x,
                         double *values)
 {
     matrix d;
     real_part(order, p, x, d);
-    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', SIZE, d[0], SIZE, values) != 0)
+    if (himc_linear_eigenvalues(SIZE, d[0], values, NULL) != HIMC_LINEAR_SOLVED)
         for (int i = 0; i < SIZE; i++)
             values[i] = NAN;
 }
@@ -266,24 +266,23 @@ typedef struct find {
 // shape and inertias at f->x: the eigenvector is the one of the smallest eigenvalue
 static bool describe(const himc_air_order *order, const himc_air_problem *p, find *f)
 {
-    matrix d, above, below;
+    matrix d, above, below, shapes;
     double values[SIZE], h = 1e-5 * f->x, fall = 0;
     real_part(order, p, f->x, d);
     real_part(order, p, f->x + h, above);
     real_part(order, p, f->x - h, below);
-    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', SIZE, d[0], SIZE, values) != 0)
+    if (himc_linear_eigenvalues(SIZE, d[0], values, shapes[0]) != HIMC_LINEAR_SOLVED)
         return false;
     int k = 0;
     for (int i = 1; i < SIZE; i++)
         k = fabs(values[i]) < fabs(values[k]) ? i : k;
-    for (int i = 0; i < SIZE; i++) {
-        f->shape[i] = d[i][k];
+    memcpy(f->shape, shapes[k], sizeof f->shape);
+    for (int i = 0; i < SIZE; i++)
         for (int j = 0; j < SIZE; j++)
-            fall += d[i][k] * d[j][k] * (below[i][j] - above[i][j]) / (2 * h);
-    }
+            fall += f->shape[i] * f->shape[j] * (below[i][j] - above[i][j]) / (2 * h);
     for (int n = 0; n < SHAPES; n++) {
         double norm = order->next[n] * order->next[n] / 2;
-        f->inertia[n] = fall / (2 * f->x * norm * d[n][k] * d[n][k]);
+        f->inertia[n] = fall / (2 * f->x * norm * f->shape[n] * f->shape[n]);
     }
     return true;
 }
@@ -335,6 +334,38 @@ static double complex product(complex_matrix m, const double complex *v)
     return sum;
 }
 
+static void swap(double complex *a, double complex *b)
+{
+    double complex kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+// D x = v by Gauss's elimination with partial pivoting: x replaces v, and D is lost; false if D is
+// singular
+static bool solve(complex_matrix d, double complex *v)
+{
+    for (int k = 0; k < SIZE; k++) {
+        int pivot = k;
+        for (int i = k + 1; i < SIZE; i++)
+            pivot = cabs(d[i][k]) > cabs(d[pivot][k]) ? i : pivot;
+        if (d[pivot][k] == 0)
+            return false;
+        swap(&v[k], &v[pivot]);
+        for (int j = k; j < SIZE; j++)
+            swap(&d[k][j], &d[pivot][j]);
+        for (int i = 0; i < SIZE; i++) {
+            double complex share = i == k ? 0 : d[i][k] / d[k][k];
+            for (int j = k; j < SIZE; j++)
+                d[i][j] -= share * d[k][j];
+            v[i] -= share * v[k];
+        }
+    }
+    for (int k = 0; k < SIZE; k++)
+        v[k] /= d[k][k];
+    return true;
+}
+
 // The complex root of D near a root of Re D: inverse iteration for the shape v, whose quotient v D
 // v/(v D' v) is the step of w.
 static bool polish(const himc_air_order *order, const himc_air_problem *p, const find *f,
@@ -342,13 +373,12 @@ static bool polish(const himc_air_order *order, const himc_air_problem *p, const
 {
     complex_matrix d, slope, kept;
     double complex w = f->x, v[SIZE], step = w;
-    lapack_int pivots[SIZE];
     for (int i = 0; i < SIZE; i++)
         v[i] = f->shape[i];
     for (int i = 0; i < MOST_STEPS && cabs(step) > 1e-11 * f->x; i++) {
         complex_problem(order, p, w, d, slope);
         memcpy(kept, d, sizeof d);
-        if (LAPACKE_zgesv(LAPACK_ROW_MAJOR, SIZE, 1, d[0], SIZE, pivots, v, 1) != 0)
+        if (!solve(d, v))
             return false;
         double largest = 0;
         for (int k = 0; k < SIZE; k++)
@@ -436,6 +466,8 @@ bool himc_air_solve(const himc_air_order *order, const himc_air_problem *p, int 
         i = own(&f, n, i);
         solved = i >= 0 && polish(order, p, &f.at[i], &roots[n]);
         roots[n].inertia = solved ? f.at[i].inertia[n] : 0;
+        for (int k = 0; k < HIMC_AIR_BASIS && solved; k++)
+            roots[n].shape[k] = f.at[i].shape[k];
     }
     return solved || unsolved(order, p, error);
 }
@@ -481,7 +513,8 @@ static bool merge(const himc_air_order *order, const himc_air_problem *p, int n,
         inverse += part / f->at[i].inertia[n];
         above = rest;
     }
-    *one = (himc_air_root){exp(x), exp(decay) - HIMC_AIR_FLOOR, 1 / inverse};
+    *one =
+        (himc_air_root){.x = exp(x), .decay = exp(decay) - HIMC_AIR_FLOOR, .inertia = 1 / inverse};
     return all > 0;
 }
 

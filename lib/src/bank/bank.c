@@ -68,6 +68,8 @@
 #define TIDY_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
 #define HIGHEST 0.49       // of the sample rate; chosen: just below half, where aliasing begins
 #define ALIGNMENT 64       // (bytes) a cache line
+#define SWING_TIME 256     // samples between two searches for the swing; chosen: they cost nothing
+#define FILM_SWING 2.0     // growth of a swing by what the film gives back; the comment there
 
 // coefficients for a number of samples, or for a substep
 typedef struct rotation {
@@ -123,8 +125,10 @@ struct himc_bank {
     rotation present;       // of a step of the present length
     effect push;            // in it
     himc_step_length kind;
-    int substeps; // of a sample
-    double h;     // a sample (s)
+    int substeps;   // of a sample
+    double h;       // a sample (s)
+    double swing;   // of himc_bank_swing, found ...
+    int swing_left; // ... so that it holds for this number of samples
     film film;
     double *omega, *decay, *mass, *damped;         // w, d, m, w_d
     double *q_per_p;                               // 1/w_d
@@ -440,6 +444,7 @@ static void go_on_as(himc_bank *bank, const himc_bank *from)
     f->lead = g->lead;
     f->level = g->level;
     f->due = g->due;
+    bank->swing_left = 0;
     bank->pass++;
     bank->part++;
 }
@@ -683,6 +688,18 @@ double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
            (f->lead - bank->step_at - 1) * film_slope(bank, readout, sum);
 }
 
+double himc_bank_swing(himc_bank *bank, const double *most)
+{
+    if (bank->forced || bank->swing_left <= 0) {
+        bank->swing = 0;
+        for (int i = 0; i < bank->live; i++)
+            bank->swing += most[i] * bank->q_per_p[i] *
+                           sqrt(bank->p[i] * bank->p[i] + bank->s[i] * bank->s[i]);
+        bank->swing_left = SWING_TIME;
+    }
+    return (bank->film.on ? FILM_SWING : 1) * bank->swing;
+}
+
 // Chooses the film's steps, sets s to what the state makes of it, and scales the velocities so that
 // the energy stays. Ends the film when the oscillators' energy has become small.
 static void anchor(himc_bank *bank)
@@ -698,6 +715,7 @@ static void anchor(himc_bank *bank)
         potential += 0.5 * bank->mass[i] * u * u;
     }
     f->moved = false;
+    bank->swing_left = 0;
     if (kinetic + potential <= f->least) {
         slacken(bank);
         return;
@@ -742,6 +760,7 @@ static void single_step(himc_bank *bank)
     bank->film.lead -= samples;
     bank->age++;
     bank->forced = false;
+    bank->swing_left = 0;
 }
 
 // turns the oscillators on which the film does not act by what its pull has been
@@ -824,6 +843,7 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
         bank->at += single ? 0 : run;
         bank->step_at += single ? 0 : run;
         bank->age += single ? 0 : run;
+        bank->swing_left -= run;
     }
 }
 
@@ -850,6 +870,7 @@ void himc_bank_kick(himc_bank *bank, int index, double change)
         return;
     arrive(bank);
     bank->s[index] += change;
+    bank->swing += HIMC_BANK_MOST * fabs(change) * bank->q_per_p[index];
     if (index >= bank->live)
         bank->live = (int)round_up((size_t)index + 1, LANES);
 }

@@ -7,7 +7,7 @@
 #ifndef HIMC_JOB_H
 #define HIMC_JOB_H
 
-#include "himc/base.h"
+#include "himc/command.h"
 
 /// What `install` says.
 typedef enum himc_job_state {
@@ -28,6 +28,14 @@ struct himc_job {
     himc_job_state (*install)(himc_job *job, himc_error *error); ///< bounded time
     void (*free)(himc_job *job); ///< frees the job and what `install` has replaced
 };
+
+/// The first member of what takes commands, some of which take long.
+typedef struct himc_runner {
+    bool (*takes_long)(const void *receiver, const himc_command *command); ///< HIMC_RT
+    /// carries it out `delay` samples from now; false with the reason
+    bool (*run)(void *receiver, const himc_command *command, int delay, himc_error *error);
+    himc_job *(*job)(void *receiver, const himc_command *command, himc_error *error);
+} himc_runner;
 
 /// Carries out a job at once and frees it. NULL: false; whoever made none has said why.
 static inline bool himc_job_carry_out(himc_job *job, himc_error *why)

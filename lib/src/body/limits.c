@@ -17,10 +17,10 @@
 /// whatever the radii.
 #include "body/limits.h"
 
-#include "base/euler.h"
+#include "body/euler.h"
+#include "base/linear.h"
 #include "base/rotations.h"
 
-#include <lapacke.h>
 #include <stdlib.h>
 
 // least semi-axis and half interval (rad). Chosen: 0.06 degrees, below the noise of captures
@@ -270,23 +270,28 @@ himc_pose himc_limits_mean(const himc_pose *pose, int frames)
     return mean;
 }
 
-// axes and radii of the ellipsoid around the tangent vectors `t` (count), which LAPACK overwrites;
-// `kept` is a copy of them
-static bool fit_ellipsoid(himc_limit *l, himc_vec3 *t, const himc_vec3 *kept, int count)
+// axes and radii of the ellipsoid around the tangent vectors `t` (count): the singular values of T
+// are the roots of the eigenvalues of T T'
+static bool fit_ellipsoid(himc_limit *l, const himc_vec3 *t, int count)
 {
-    double axis[3][3], value[3] = {0, 0, 0}, none[3], super[3], farthest = 0;
-    int failed = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', 3, count, &t[0].x, 3, value, axis[0], 3,
-                                none, 1, super);
-    if (failed)
+    double square[9] = {0}, lambda[3], axis[3][3], value[3], farthest = 0;
+    for (int f = 0; f < count; f++) {
+        const double x[3] = {t[f].x, t[f].y, t[f].z};
+        for (int i = 0; i < 9; i++)
+            square[i] += x[i / 3] * x[i % 3];
+    }
+    if (himc_linear_eigenvalues(3, square, lambda, axis[0]) != HIMC_LINEAR_SOLVED)
         return false;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            l->axes.m[i][k] = axis[k][i];
+    for (int k = 0; k < 3; k++) { // the largest first
+        value[k] = sqrt(fmax(lambda[2 - k], 0));
+        for (int i = 0; i < 3; i++)
+            l->axes.m[i][k] = axis[2 - k][i];
+    }
     double root = sqrt(count);
     himc_vec3 sigma = himc_vec3_make(value[0] / root, value[1] / root, value[2] / root);
     sigma = at_least(sigma, THINNEST);
     for (int f = 0; f < count; f++) {
-        himc_vec3 z = divide(himc_mat3_apply_transposed(&l->axes, kept[f]), sigma);
+        himc_vec3 z = divide(himc_mat3_apply_transposed(&l->axes, t[f]), sigma);
         farthest = fmax(farthest, himc_vec3_length(z));
     }
     l->radius = himc_vec3_scale(sigma, farthest);
@@ -322,6 +327,7 @@ void himc_limits_loosen(himc_limits *limits, double least)
     }
 }
 
+// `tangent` has room for the frames
 static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int joint,
                         himc_vec3 *tangent)
 {
@@ -329,11 +335,11 @@ static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int jo
     *l = (himc_limit){.mean = mean_rotation(pose, frames, joint)};
     for (int f = 0; f < frames; f++) {
         himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]);
-        tangent[f] = tangent[frames + f] = himc_quat_log(away);
+        tangent[f] = himc_quat_log(away);
         most = fmax(most, himc_vec3_length(tangent[f]));
     }
     l->bound = most > THINNEST;
-    if (!fit_ellipsoid(l, tangent, tangent + frames, frames))
+    if (!fit_ellipsoid(l, tangent, frames))
         return false;
     fit_box(l, pose, frames, joint);
     return true;
@@ -362,7 +368,7 @@ bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, d
     if (!himc_check_range("limits: margin", margin, 0, 1, "", error) ||
         !poses_valid(pose, frames, error))
         return false;
-    himc_vec3 *tangent = malloc(2 * sizeof *tangent * (size_t)frames);
+    himc_vec3 *tangent = malloc(sizeof *tangent * (size_t)frames);
     bool fitted = tangent != NULL;
     for (int j = 0; fitted && j < HIMC_JOINTS; j++) {
         fitted = learn_joint(&learned.joint[j], pose, frames, j, tangent);

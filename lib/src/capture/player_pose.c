@@ -20,8 +20,8 @@
 #include "capture/player.h"
 
 #include "base/limb_frame.h"
+#include "base/linear.h"
 
-#include <lapacke.h>
 #include <stdlib.h>
 
 #define SIDEWAYS 0.5 // chosen: sideways share of an arm's direction that makes a zero pose a T-pose
@@ -374,8 +374,7 @@ static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand ha
             add_point(&a, joints, joints < HIMC_ARM_JOINTS ? 1 : TIP_WEIGHT, matrix, theta);
         for (int i = 0; i < ANGLES; i++)
             matrix[ANGLES * i + i] += ROTATION_COST;
-        // symmetric, so both orders of storage are the same; this one needs no memory
-        if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', ANGLES, 1, matrix, ANGLES, theta, ANGLES) != 0)
+        if (himc_linear_solve(ANGLES, matrix, theta) != HIMC_LINEAR_SOLVED)
             return;
         rotate_arm(&a, hand, theta, pose);
     }

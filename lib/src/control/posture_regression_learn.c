@@ -2,8 +2,7 @@
 ///
 /// A player is described by the means of his takes (rotations.h) and his measures. The weights W
 /// are the least squares solution over all frames of all players, each relative to his own means
-/// (LAPACK's dgelsd; singular values below 1e-3 of the largest are left out: the solution of least
-/// norm). A regression has smaller amplitude than its data: its mean square is that of the
+/// (singular values below 1e-3 of the largest are left out: the solution of least norm). A regression has smaller amplitude than its data: its mean square is that of the
 /// explained part. So the weights of each joint are then scaled until its rotations have the mean
 /// square of the captured ones (reduced major axis). So the elbow moves as far as the captured
 /// one, at almost no cost in angle.
@@ -12,9 +11,9 @@
 ///     min sum |u - (W + D) phi|^2 + PRIOR_FRAMES^2 |D|^2.
 #include "control/posture_regression.h"
 
+#include "base/linear.h"
 #include "base/rotations.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -169,8 +168,7 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
 
 // Least squares
 
-/// A least squares problem; dgelsd overwrites both arrays, the first rows of `angle` by the
-/// weights.
+/// A least squares problem; once solved, the first rows of `angle` are the weights.
 typedef struct problem {
     double *term;  // (rows x terms)
     double *angle; // the angles to explain (rows x angles)
@@ -240,18 +238,16 @@ static void add_trunk_rows(problem *p, const himc_posture_regression_player *pla
 // solves for the weights, into the first rows of `angle`; `tips` names them in errors
 static bool solve(problem *p, const char *tips, himc_error *error)
 {
-    double singular[TRUNK_TERMS];
-    lapack_int rank = 0;
+    int rank = 0;
     p->moves = false;
     if (p->rows == 0) // not captured
         return true;
-    lapack_int info =
-        LAPACKE_dgelsd(LAPACK_ROW_MAJOR, p->rows, p->terms, p->angles, p->term, p->terms, p->angle,
-                       p->angles, singular, NEGLIGIBLE_SINGULAR, &rank);
-    p->no_memory = info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR;
+    himc_linear outcome = himc_linear_least_squares(p->rows, p->terms, p->angles, p->term, p->angle,
+                                                    NEGLIGIBLE_SINGULAR, p->angle, &rank);
+    p->no_memory = outcome == HIMC_LINEAR_NO_MEMORY;
     if (p->no_memory)
         return himc_error_set(error, "posture regression: out of memory for %d frames", p->rows);
-    if (info != 0)
+    if (outcome != HIMC_LINEAR_SOLVED)
         return himc_error_set(error, "posture regression: no singular values for the %s", tips);
     p->moves = rank >= LEAST_RANK;
     return true;
@@ -357,7 +353,7 @@ static bool allocate(problem *p, int rows, int terms, int angles, himc_error *er
 {
     *p = (problem){.terms = terms, .angles = angles};
     p->term = malloc((size_t)rows * (size_t)terms * sizeof *p->term);
-    p->angle = malloc((size_t)rows * (size_t)angles * sizeof *p->angle);
+    p->angle = malloc((size_t)(rows > terms ? rows : terms) * (size_t)angles * sizeof *p->angle);
     p->no_memory = !p->term || !p->angle;
     return !p->no_memory ||
            himc_error_set(error, "posture regression: out of memory for %d frames", rows);
@@ -369,7 +365,7 @@ static double *weights_of(himc_posture_regression *regression, int i)
     return i < HIMC_HANDS ? &regression->weight[i][0][0][0] : &regression->trunk[0][0];
 }
 
-// adds the solutions, which dgelsd left in the first rows, to the weights
+// adds the solutions to the weights
 static void add_solutions(himc_posture_regression *regression, const problem p[PROBLEMS])
 {
     for (int i = 0; i < PROBLEMS; i++)

@@ -179,7 +179,8 @@ static double descent(const search *s, const double *dual)
     return sum;
 }
 
-// goes along `step` until Psi's slope has fallen, nearly always all the way; true at the solution
+// Goes along `step` until Psi's slope has fallen, nearly always all the way. True at the solution, and
+// where no part of the step lowers the slope: what remains is rounding.
 static bool line_search(search *s, const double *step)
 {
     double a[MAX_PAIRS][MAX_PAIRS], dual[MAX_PAIRS], from[MAX_PAIRS];
@@ -202,7 +203,7 @@ static bool line_search(search *s, const double *step)
             low = t;
         t = 0.5 * (low + high);
     }
-    return false;
+    return true;
 }
 
 static void solve_together(contact_pair *pairs, int n, double (*g)[MAX_PAIRS], double h)
@@ -262,7 +263,7 @@ void himc_stick_fly(himc_stick *stick, double h)
     stick->velocity += h * stick->acceleration;
     stick->force = 0;
     stick->peak = 0;
-    stick->residual_x = stick->residual_y = 0; // no blow lasts so long
+    stick->patch = stick->residual_x = stick->residual_y = 0; // no blow lasts so long
 }
 
 static bool within_reach(const himc_stick *stick, double h)
@@ -271,19 +272,35 @@ static bool within_reach(const himc_stick *stick, double h)
     return stick->touching || stick->height < HIMC_CONTACT_REACH || next < HIMC_CONTACT_REACH;
 }
 
-int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks, int count, int n)
+static bool is_stiff(const himc_mallet_head *head)
+{
+    double stiff = head->radius > 0 ? STIFF_PATCH : STIFF_POINT;
+    return head->stiffness * pow(0.001, head->exponent) > stiff;
+}
+
+// A stick above this height does what one in the air does. The substeps of a stiff one change the
+// last digits of the head, so their beginning must not hang on an estimate; nor must a blow's end.
+static double reach(himc_membrane *membrane, const himc_stick *s, double fastest, double h)
+{
+    if (s->height > HIMC_CONTACT_REACH || s->chatter > 0 || is_stiff(&s->head))
+        return HIMC_CONTACT_REACH;
+    double near = himc_membrane_swing(membrane) + CLOSE + 2 * h * fastest;
+    return fmin(near, HIMC_CONTACT_REACH);
+}
+
+int himc_contact_clear(himc_membrane *membrane, himc_stick *const *sticks, int count, int n)
 {
     double h = 1 / himc_membrane_rate(membrane);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
+        if (sticks[i]->touching)
+            return 0;
+    for (int i = 0; i < count && n > 0; i++) {
+        // bounds of speed and height: both velocity and acceleration downward all the time
         const himc_stick *s = sticks[i];
-        // a lower bound of the height: both velocity and acceleration downward all the time
-        double t = n * h;
-        double lowest =
-            s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
-        for (; n > 0 && (s->touching || lowest < HIMC_CONTACT_REACH + REACH_ROUNDING); n /= 2) {
-            t = n / 2 * h;
-            lowest = s->height + t * fmin(s->velocity, 0) + 0.5 * t * t * fmin(s->acceleration, 0);
-        }
+        double down = fmax(-s->velocity, 0), faster = fmax(-s->acceleration, 0), t = n * h;
+        double near = reach(membrane, s, down + t * faster, h) + REACH_ROUNDING;
+        for (; n > 0 && s->height - t * (down + 0.5 * t * faster) < near; t = n * h)
+            n /= 2;
     }
     return n;
 }
@@ -478,12 +495,9 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
 
 static bool any_stiff(himc_stick *const *sticks, int count, double h)
 {
-    for (int i = 0; i < count; i++) {
-        const himc_mallet_head *head = &sticks[i]->head;
-        double stiff = head->radius > 0 ? STIFF_PATCH : STIFF_POINT;
-        if (within_reach(sticks[i], h) && head->stiffness * pow(0.001, head->exponent) > stiff)
+    for (int i = 0; i < count; i++)
+        if (within_reach(sticks[i], h) && is_stiff(&sticks[i]->head))
             return true;
-    }
     return false;
 }
 

@@ -5,9 +5,9 @@
 
 #include "himc/membrane.h"
 
-/// The number of samples, at most `n`, in which certainly no stick comes within HIMC_CONTACT_REACH
-/// of the head.
-HIMC_RT int himc_contact_clear(const himc_membrane *membrane, himc_stick *const *sticks, int count,
+/// The number of samples, at most `n`, in which certainly no stick touches the head, nor comes so
+/// near that himc_contact_step would give another result than himc_stick_fly.
+HIMC_RT int himc_contact_clear(himc_membrane *membrane, himc_stick *const *sticks, int count,
                                int n);
 
 /// Moves a stick by one sample (h in s) without contact, as himc_contact_step does to a stick out

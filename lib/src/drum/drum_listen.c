@@ -9,6 +9,8 @@ static void find_ways(himc_drum *drum, bool rays)
     if (!drum->listener.on) {
         himc_membrane_mute_pickups(drum->membrane, false);
         himc_ears_close(&drum->ears);
+        if (rays && !himc_ears_heard(&drum->ears))
+            himc_membrane_set_rays(drum->membrane, NULL);
         return;
     }
     himc_ear_paths paths = himc_ears_trace(&drum->listener, &drum->place);

@@ -35,6 +35,7 @@ typedef struct core {
     double *memory;               ///< all arrays below, (padded) each, and those of strike points
     double *on_q, *on_v, *on_force, *scratch;
     double *stretch;                  ///< a_i of the film's stretching
+    double *most;                     ///< largest size of a mode's shape; not of a grid's
     double *wave;                     ///< wave numbers of the bare modes (1/m); 0 of a grid's
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     patch patches[PATCHES];

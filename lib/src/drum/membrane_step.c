@@ -83,6 +83,7 @@ static void move_point(himc_membrane *m, strike_point *s, double x, double y, do
     s->b = b;
     himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
     spread(m, s);
+    himc_modes_mix(c->modes, s->shape);
     himc_bank_readout(c->bank, s->shape, NULL, NULL, &s->readout);
     for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
         unit_response *e = &s->response[k];
@@ -277,6 +278,12 @@ double himc_membrane_energy(const himc_membrane *membrane)
 {
     double s = himc_bank_film(membrane->core.bank);
     return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
+}
+
+double himc_membrane_swing(himc_membrane *membrane)
+{
+    bool known = himc_modes_shape(membrane->core.modes)->kind != HIMC_GRID;
+    return known ? himc_bank_swing(membrane->core.bank, membrane->core.most) : INFINITY;
 }
 
 bool himc_membrane_at_rest(const himc_membrane *membrane)

@@ -29,6 +29,8 @@ HIMC_RT himc_residual himc_strike_point_residual(const strike_point *s);
 /// Displacement at `a` at the end of a step per newton at `b` during it (m/N).
 HIMC_RT double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
                                             const strike_point *b);
+/// The head's displacement is nowhere larger until a force acts (m); INFINITY if that is not known.
+HIMC_RT double himc_membrane_swing(himc_membrane *membrane);
 /// Before a step's displacements are read: makes what changes the head between two steps.
 HIMC_RT void himc_membrane_ready(himc_membrane *membrane);
 /// True if the head is at rest, and silent until a force acts.

@@ -5,18 +5,18 @@
 /// of a coordinate file, values column by column of an array; of a symmetric one the lower
 /// triangle.
 ///
-/// Modes. K v = w^2 M v, by LAPACK's dsygvx: Cholesky's M = L L' (which fails if M is not
-/// positive), the standard problem of L^-1 K L^-T, its lowest eigenvalues. A membrane's K grows
+/// Modes. K v = w^2 M v, by Eigen (linear.h): Cholesky's M = L L' (which fails if M is not
+/// positive), the standard problem of L^-1 K L^-T, its eigenvalues. A membrane's K grows
 /// with its tension and its M with its density, so w = z/radius sqrt(T/sigma) with z = radius
 /// sqrt(w0^2 sigma0/T0) serves any other tension and density, as a Bessel zero does for a round
 /// head (modes.c).
 #include "head/grid.h"
 
 #include "base/file.h"
+#include "base/linear.h"
 #include "himc/ranges.h"
 
 #include <ctype.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,7 +28,7 @@
 #define ROWS_AT_ONCE 64 // rows by which memory grows
 #define ASYMMETRY 1e-9  // of the largest entry; chosen: rounding of text files
 #define NEGATIVE 1e-9   // of the highest eigenvalue; chosen: more than rounding of text files
-#define RIGID 1e-11     // of the same; chosen: rounding of dsygvx, below the bending of 800 places
+#define RIGID 1e-11     // of the same; chosen: rounding, below the bending of 800 places
 
 typedef struct matrix {
     int rows, columns;
@@ -352,7 +352,7 @@ static himc_grid *grid_new(int places, int all, int modes)
     g->x = malloc(sizeof(double) * (size_t)all);
     g->y = malloc(sizeof(double) * (size_t)all);
     g->area = malloc(sizeof(double) * (size_t)places);
-    g->zero = malloc(sizeof(double) * (size_t)places); // dsygvx wants room for all
+    g->zero = malloc(sizeof(double) * (size_t)modes);
     g->norm = malloc(sizeof(double) * (size_t)modes);
     g->shape = malloc(sizeof(double) * (size_t)modes * (size_t)places);
     if (g->x && g->y && g->area && g->zero && g->norm && g->shape)
@@ -380,7 +380,7 @@ static void set_places(himc_grid *g, const matrix *places)
     }
 }
 
-// shape k as LAPACK has normalised it, v' M v = 1, to a largest value of 1
+// shape k as it was found, v' M v = 1, to a largest value of 1
 static void set_mode(himc_grid *g, int k, double square)
 {
     double *v = g->shape + (size_t)k * (size_t)g->places, most = 0;
@@ -426,26 +426,20 @@ static bool take_modes(himc_grid *g, himc_error *error)
 
 static bool solve(himc_grid *g, parts *p, himc_error *error)
 {
-    int n = g->places, found = 0;
+    int n = g->places;
     for (int i = 0; i < n; i++) {
         g->area[i] = 0;
         for (int j = 0; j < n; j++)
             g->area[i] += p->mass.value[i * n + j] / (g->density * g->radius * g->radius);
     }
-    lapack_int *failed = malloc(sizeof *failed * (size_t)n);
-    if (!failed)
-        return himc_error_set(error, "no memory for %d places", n);
-    // symmetric, so row-major is column-major
-    int info =
-        LAPACKE_dsygvx(LAPACK_COL_MAJOR, 1, 'V', 'I', 'L', n, p->stiffness.value, n, p->mass.value,
-                       n, 0, 0, 1, g->modes, 0, &found, g->zero, g->shape, n, failed);
-    free(failed);
-    if (info > n)
-        return himc_error_set(error, "mass: not positive: its first %d rows and columns are not",
-                              info - n);
-    if (info != 0 || found < g->modes)
-        return himc_error_set(error, "no modes found (LAPACK dsygvx: %d)", info);
-    return take_modes(g, error);
+    switch (himc_linear_vibrations(n, p->stiffness.value, p->mass.value, g->zero, g->shape)) {
+    case HIMC_LINEAR_SOLVED: return take_modes(g, error);
+    case HIMC_LINEAR_NO_MEMORY: return himc_error_set(error, "no memory for %d places", n);
+    case HIMC_LINEAR_NOT_DEFINITE:
+        return himc_error_set(error, "mass: not positive definite, allowed one that gives every "
+                                     "motion kinetic energy");
+    default: return himc_error_set(error, "no modes found");
+    }
 }
 
 static himc_grid *make(parts *p, himc_error *error)

@@ -9,10 +9,11 @@
 
 #include "himc/base.h"
 
-#define HIMC_STATISTICAL_MODES 392 ///< a multiple of 4
-#define HIMC_STATISTICAL_FROM 30.0 ///< they begin at this radius times wavenumber, ...
-#define HIMC_STATISTICAL_EXACT 209 ///< ... below which a round head has so many modes
-#define HIMC_STATISTICAL_EDGE 0.8  ///< largest square of a wave's speed over sound's in a formula
+#define HIMC_STATISTICAL_MODES 392  ///< a multiple of 4
+#define HIMC_STATISTICAL_FROM 30.0  ///< they begin at this radius times wavenumber, ...
+#define HIMC_STATISTICAL_EXACT 209  ///< ... below which a round head has so many modes
+#define HIMC_STATISTICAL_MOST 1.676 ///< no shape is larger: sqrt(2 (1 - J_0)), J_0 >= -0.4028
+#define HIMC_STATISTICAL_EDGE 0.8   ///< largest square of a wave's speed over sound's in a formula
 
 /// A statistical mode.
 typedef struct himc_statistical_mode {

@@ -4,7 +4,6 @@
 /// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a queue until
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
-#include "performance/performance_job.h"
 #include "base/format.h"
 #include "performance/performance_state.h"
 
@@ -84,7 +83,7 @@ static bool do_seek(himc_performance *p, const himc_command *c, himc_error *erro
 
 static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return himc_job_carry_out(himc_performance_job(p, c, error), error);
+    return himc_job_carry_out(p->runner.job(p, c, error), error);
 }
 
 static bool do_score(himc_performance *p, const himc_command *c, himc_error *error)
@@ -428,13 +427,10 @@ static performance_action *const actions[HIMC_COMMANDS] = {
 #include "himc/command_rows.h"
 };
 
-static bool run_now(himc_performance *p, const himc_command *c, himc_error *error)
+// true if it reads or writes a file, or makes a drum
+static bool takes_long(const void *receiver, const himc_command *c)
 {
-    return himc_performance_command(p, c, 0, error);
-}
-
-bool himc_performance_takes_long(const himc_performance *p, const himc_command *c)
-{
+    const himc_performance *p = receiver;
     int file;
     if (c->id == HIMC_COMMAND_MAKE_DRUM)
         return p->host.make_drums && himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
@@ -443,13 +439,13 @@ bool himc_performance_takes_long(const himc_performance *p, const himc_command *
     return c->id == HIMC_COMMAND_RECORD || himc_command_file(c, &file) != HIMC_FILE_NONE;
 }
 
-himc_job *himc_performance_job(himc_performance *p, const himc_command *c, himc_error *error)
+// a command that takes long; the performance must outlive it
+static himc_job *job_of(void *receiver, const himc_command *c, himc_error *error)
 {
-    static const performance_runner runner = {run_now, himc_performance_takes_long,
-                                              himc_performance_job};
+    himc_performance *p = receiver;
     enum { STOP };
     switch (c->id) {
-    case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, &runner, error);
+    case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, error);
     case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
     case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
     case HIMC_COMMAND_LISTENER: return listener_job(p, c, error);
@@ -459,6 +455,13 @@ himc_job *himc_performance_job(himc_performance *p, const himc_command *c, himc_
                                : himc_performance_record_job(p, c, error);
     }
 }
+
+static bool run(void *receiver, const himc_command *c, int delay, himc_error *error)
+{
+    return himc_performance_command(receiver, c, delay, error);
+}
+
+const himc_runner himc_performance_runner = {takes_long, run, job_of};
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)

@@ -9,8 +9,8 @@
 #include "performance/performance_state.h"
 
 #include "capture/take.h"
+#include "midi/score_file.h"
 #include "performance/confine.h"
-#include "plan/score.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +38,6 @@ typedef struct score_job {
     himc_performance *performance; ///< borrowed
     himc_command command;
     const char *path;
-    const performance_runner *runner;
     // of the performance, when the job was made
     himc_take_options options;
     himc_skeleton skeleton;
@@ -149,7 +148,7 @@ static bool rehearse_command(score_job *j, const himc_command *c, himc_error *er
         return recording || himc_error_prefix(error, "record");
     default: // the network's are always refused
         return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
-               j->runner->run(j->performance, c, error);
+               j->performance->runner.run(j->performance, c, 0, error);
     }
 }
 
@@ -279,9 +278,9 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
         j->line = NULL;
         return state == HIMC_JOB_DONE ? state : failed(j, error);
     }
-    if (!j->runner->takes_long(p, &line->command))
-        return j->runner->run(p, &line->command, error) ? HIMC_JOB_DONE : failed(j, error);
-    j->line = j->runner->job(p, &line->command, error);
+    if (!p->runner.takes_long(p, &line->command))
+        return p->runner.run(p, &line->command, 0, error) ? HIMC_JOB_DONE : failed(j, error);
+    j->line = p->runner.job(p, &line->command, error);
     return j->line ? HIMC_JOB_AGAIN : failed(j, error);
 }
 
@@ -399,11 +398,21 @@ static himc_job_state install_part(score_job *j, himc_error *error)
     }
 }
 
+// of a MIDI file: what is played of it, and what not
+static void tell_report(score_job *j)
+{
+    const char *line = j->score->report ? j->score->report : "", *end;
+    for (; (end = strchr(line, '\n')); line = end + 1)
+        himc_events_note(&j->performance->events, "%.*s", (int)(end - line), line);
+}
+
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     score_job *j = (score_job *)job;
     himc_job_state state = install_part(j, error);
     himc_motion_replan(j->performance->motion);
+    if (state == HIMC_JOB_DONE && j->part == AFTER_STROKES)
+        tell_report(j);
     if (state != HIMC_JOB_DONE || j->part == AFTER_STROKES)
         return state;
     j->part++;
@@ -427,7 +436,7 @@ static void free_job(himc_job *job)
 }
 
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     const performance_runner *runner, himc_error *error)
+                                     himc_error *error)
 {
     score_job *j = calloc(1, sizeof *j);
     if (!j) {
@@ -438,7 +447,6 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
     j->performance = p;
     himc_command_copy(&j->command, command);
     j->path = j->command.atom[0].symbol;
-    j->runner = runner;
     copy_performance(j);
     return &j->job;
 }

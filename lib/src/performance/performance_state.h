@@ -14,6 +14,7 @@
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
 
+#include "base/job.h"
 #include "drum/drum_performer.h"
 #include "himc/mocap.h"
 #include "performance/performance_body.h"
@@ -39,6 +40,7 @@ typedef struct performance_recording {
 } performance_recording;
 
 struct himc_performance {
+    himc_runner runner; ///< the first, for loader.c; a score's lines are carried out by it, too
     performance_host host;
     performance_settings settings;
     performance_clock clock;
@@ -74,6 +76,8 @@ himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_comma
                                            himc_error *error);
 
 // performance_setup.c
+/// A performance that takes no commands yet; NULL with the reason.
+himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error);
 /// Sets other settings for the same body.
 HIMC_RT void himc_performance_adopt(himc_performance *p, const performance_settings *settings);
 /// Sets other settings with these segments of a body, which begins at the targets.
@@ -129,18 +133,13 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
                                    himc_error *error);
 
 // performance_score.c
-/// How the lines of a score for the performer are carried out.
-typedef struct performance_runner {
-    performance_action *run;
-    bool (*takes_long)(const himc_performance *p, const himc_command *command);
-    himc_job *(*job)(himc_performance *p, const himc_command *command, himc_error *error);
-} performance_runner;
-
 /// The command `score` as a job: all of the score, or nothing. NULL without memory.
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     const performance_runner *runner, himc_error *error);
+                                     himc_error *error);
 
 // performance_command.c
+/// How a performance takes commands.
+extern const himc_runner himc_performance_runner;
 /// Commands that are due at the next step.
 void himc_performance_run_due_commands(himc_performance *p);
 

@@ -13,7 +13,7 @@
 /// late, by as little as its way there needs; else the hit is given up. Both are counted. Choosing
 /// changes nothing; only the plan of the hand that plays is cut.
 #include "plan/planner_motion.h"
-#include "base/head_frame.h"
+#include "plan/sticking.h"
 
 #define QUEUED_HITS 4 // without a time; chosen: a player remembers no more
 /// Time a hand has for a hit, at least (s). Chosen: with less a mezzo forte loses more than 5 dB.
@@ -23,22 +23,7 @@
 #define LATER 0.01    // chosen: a hit that is late is tried so much later again (s) ...
 #define LATEST 0.5    // ... up to this; chosen: the longest way at ease
 
-// what a stroke costs a hand; chosen: one drum at 120 ms is played by both hands in turn, pairs on
-// two drums by side, and outer drums by their own hand
-#define NEED_BASE 0.10     // time a stroke needs after the one before (s) ...
-#define NEED_GROWTH 0.1    // ... and more for each doubling of 1 + 2 way / NEED_WAY (s)
-#define NEED_WAY 0.1       // (m)
-#define NEED_ON_SPOT 0.09  // without a way (s)
-#define ON_SPOT 0.03       // ... of so little (m)
-#define WANT_COST 40       // of the missing share of that time
-#define SHARE_COST 0.3     // of need over gap, squared
-#define WAY_COST 1.5       // (1/m)
-#define FAST_GAP 0.22      // one hand is slower than this at ease (s)
-#define FAST_COST 2.0      // of the share by which it is faster
-#define CROSSING_COST 0.6  // of a hand on the other one's far side ...
-#define CROSSING_CLOSE 3.0 // ... and more when that struck ...
-#define CROSSING_TIME 0.15 // ... less than this before (s)
-#define AGAIN_COST 0.02    // of the hand that struck last
+#define ON_SPOT 0.03 // chosen: so short a way is none: a spot scatters as much (m)
 
 /// Strokes of a hand next to a time; their times are infinite if there are none.
 typedef struct neighbours {
@@ -133,21 +118,18 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     return c;
 }
 
-/// What the hit costs a hand; `other` is the other hand's chance.
+/// What the hit costs a hand; `other` is the other hand's chance. The hand that struck last costs a
+/// little more.
 static double cost_of(himc_hand hand, const chance *c, const chance *other)
 {
-    double gap = c->goal.time - c->near.before.time;
-    double since = other->goal.time - other->near.before.time;
     himc_vec3 to = himc_vec3_sub(c->goal.spot, c->from), n = c->goal.normal;
     double way = himc_vec3_length(himc_vec3_madd(to, -himc_vec3_dot(to, n), n)); // along the head
-    double need =
-        way < ON_SPOT ? NEED_ON_SPOT : NEED_BASE + NEED_GROWTH * log2(2 * way / NEED_WAY + 1);
     double aside = c->goal.spot.y - other->from.y; // the left hand is towards +y
-    bool crossed = (hand == HIMC_LEFT ? aside : -aside) < -ON_SPOT;
-    return WANT_COST * fmax(0, need - gap) / need + pow(SHARE_COST * need / gap, 2) +
-           WAY_COST * way + FAST_COST * fmax(0, FAST_GAP / gap - 1) +
-           crossed * (CROSSING_COST + (since < CROSSING_TIME) * CROSSING_CLOSE) +
-           AGAIN_COST * (gap < since);
+    himc_sticking s = {.gap = c->goal.time - c->near.before.time,
+                       .way = way < ON_SPOT ? 0 : way,
+                       .inwards = hand == HIMC_LEFT ? -aside : aside,
+                       .other_gap = other->goal.time - other->near.before.time};
+    return himc_sticking_cost(&s) + (s.gap < s.other_gap ? HIMC_STICKING_HABIT : 0);
 }
 
 /// The hand that plays a hit: the one asked for if it is on time, else the earlier one.

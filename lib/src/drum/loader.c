@@ -10,7 +10,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "himc/loader.h"
 #include "drum/drum_performer.h"
-#include "performance/performance_job.h"
+#include "base/job.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -183,17 +183,23 @@ static void end_first(himc_loader *loader, const char *error)
     himc_drum_release(target.drum);
 }
 
+// a performance's first member: the drum's room does not know the others
+static const himc_runner *runner_of(const himc_load_target *target)
+{
+    return (const himc_runner *)(const void *)target->performance;
+}
+
 static bool takes_long(const himc_load_target *target, const himc_command *command)
 {
     return target->drum ? himc_drum_takes_long(target->drum, command)
-                        : himc_performance_takes_long(target->performance, command);
+                        : runner_of(target)->takes_long(target->performance, command);
 }
 
 static bool carry_out(const himc_load_target *target, const himc_command *command, int delay,
                       himc_error *error)
 {
     return target->drum ? himc_drum_command(target->drum, command, error)
-                        : himc_performance_command(target->performance, command, delay, error);
+                        : runner_of(target)->run(target->performance, command, delay, error);
 }
 
 static himc_job *make_job(const waiting_load *load, himc_error *error)
@@ -202,7 +208,7 @@ static himc_job *make_job(const waiting_load *load, himc_error *error)
         return himc_membrane_job(load->follower, load->leader, error);
     return load->target.drum
                ? himc_drum_job(load->target.drum, &load->command, error)
-               : himc_performance_job(load->target.performance, &load->command, error);
+               : runner_of(&load->target)->job(load->target.performance, &load->command, error);
 }
 
 // begins with the first that waits; true if it was short

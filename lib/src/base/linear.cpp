@@ -1,0 +1,91 @@
+// Eigen's names get our prefix, so that they never meet those of a host with another Eigen. Its
+// assertions would end the process.
+#define Eigen himc_eigen
+#define EIGEN_NO_DEBUG
+#include "base/linear.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <new>
+
+namespace
+{
+
+using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using columns = Eigen::MatrixXd;
+using vector = Eigen::VectorXd;
+using given = Eigen::Map<const matrix>;
+
+himc_linear outcome(Eigen::ComputationInfo info, himc_linear otherwise)
+{
+    return info == Eigen::Success ? HIMC_LINEAR_SOLVED : otherwise;
+}
+
+// what `solve` returns, or that there was no memory for it
+template <class work> himc_linear attempt(work solve)
+{
+    try {
+        return solve();
+    } catch (const std::bad_alloc &) {
+        return HIMC_LINEAR_NO_MEMORY;
+    }
+}
+
+} // namespace
+
+himc_linear himc_linear_solve(int n, double *a, double *x)
+{
+    Eigen::Map<columns> matrix_of(a, n, n);
+    Eigen::LLT<Eigen::Ref<columns>> factors(matrix_of);
+    if (factors.info() == Eigen::Success)
+        factors.solveInPlace(Eigen::Map<vector>(x, n));
+    return outcome(factors.info(), HIMC_LINEAR_NOT_DEFINITE);
+}
+
+himc_linear himc_linear_least_squares(int rows, int terms, int wanted, const double *a,
+                                      const double *b, double negligible, double *x, int *rank)
+{
+    return attempt([=] {
+        given terms_of(a, rows, terms);
+        Eigen::SelfAdjointEigenSolver<columns> squares(terms_of.transpose() * terms_of);
+        if (squares.info() != Eigen::Success)
+            return HIMC_LINEAR_UNSOLVED;
+        // the largest are the last ones
+        double least = negligible * negligible * squares.eigenvalues()[terms - 1];
+        *rank = (int)(squares.eigenvalues().array() > least).count();
+        columns kept = squares.eigenvectors().rightCols(*rank);
+        columns along = kept.transpose() * (terms_of.transpose() * given(b, rows, wanted));
+        along = squares.eigenvalues().tail(*rank).cwiseInverse().asDiagonal() * along;
+        Eigen::Map<matrix>(x, terms, wanted) = kept * along;
+        return HIMC_LINEAR_SOLVED;
+    });
+}
+
+himc_linear himc_linear_eigenvalues(int n, const double *a, double *lambda, double *v)
+{
+    return attempt([=] {
+        Eigen::SelfAdjointEigenSolver<columns> found(given(a, n, n), v ? Eigen::ComputeEigenvectors
+                                                                       : Eigen::EigenvaluesOnly);
+        if (found.info() != Eigen::Success)
+            return HIMC_LINEAR_UNSOLVED;
+        Eigen::Map<vector>(lambda, n) = found.eigenvalues();
+        if (v)
+            Eigen::Map<columns>(v, n, n) = found.eigenvectors();
+        return HIMC_LINEAR_SOLVED;
+    });
+}
+
+himc_linear himc_linear_vibrations(int n, const double *k, const double *m, double *lambda,
+                                   double *v)
+{
+    return attempt([=] {
+        if (Eigen::LLT<columns>(given(m, n, n)).info() != Eigen::Success)
+            return HIMC_LINEAR_NOT_DEFINITE;
+        Eigen::GeneralizedSelfAdjointEigenSolver<columns> modes(given(k, n, n), given(m, n, n));
+        if (modes.info() != Eigen::Success)
+            return HIMC_LINEAR_UNSOLVED;
+        Eigen::Map<vector>(lambda, n) = modes.eigenvalues();
+        Eigen::Map<columns>(v, n, n) = modes.eigenvectors();
+        return HIMC_LINEAR_SOLVED;
+    });
+}
