@@ -90,21 +90,12 @@ deken: deps ## the package for Pd's package manager, in build/package, tried as 
 	@tools/package.sh $(BUILD) $(VERSION)
 	@tests/pd/test_package.sh $(BUILD)/package/*.dek
 
-install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
-	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
-	test ! -x $(VIEWER) || install $(VIEWER) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(LIBRARY) $(SHARED) $(DESTDIR)$(LIBDIR)
-	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(LIBDIR)/libhimc.so.$(MAJOR)
-	ln -sf libhimc.so.$(MAJOR) $(DESTDIR)$(LIBDIR)/libhimc.so
-	install -m 644 $(PKGCONFIG) $(DESTDIR)$(LIBDIR)/pkgconfig
-	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
-	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
-	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
+INSTALL = BUILD=$(BUILD) DESTDIR=$(DESTDIR) PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) PDEXTRA=$(PDEXTRA) VERSION=$(VERSION) tools/install.sh
+install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers)
+	@$(INSTALL) install
 
-uninstall: ## remove what `make install` put there
-	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/bin/himc-viewer $(DESTDIR)$(LIBDIR)/libhimc.* \
-	    $(DESTDIR)$(LIBDIR)/pkgconfig/himc.pc $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+uninstall: all ## remove what `make install` put there, nothing else
+	@$(INSTALL) uninstall
 
 clean: ## remove all that was built
 	rm -rf build
