@@ -92,14 +92,14 @@ version=$(sed -n 's/^#define HIMC_VERSION_[A-Z]* \([0-9]*\)$/\1/p' "$root/lib/hi
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
-    "render evaluate info modes serve bench " ]
+    "render evaluate info modes import serve bench " ]
 for call in $calls; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "allowed: render, evaluate, info, modes, serve, bench"
+refuses test_no_call_is_refused "allowed: render, evaluate, info, modes, import, serve, bench"
 refuses test_unknown_call_is_refused '"play"' play
 refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
     render piece.txt -o x.wav --speed 2
@@ -339,6 +339,41 @@ check test_tuned_drum_sounds_there [ "$tuned" = 110.000000 ]
 check test_info_counts_strokes [ "$(sed -n 's/^strokes *//p; s/^right *//p' out | tr '\n' ' ')" = \
     "4 1 legato, 1 accent " ]
 check test_info_tells_tempi [ "$(sed -n 's/^tempo *//p' out)" = "120, from beat 3 90 BPM" ]
+
+# MIDI files
+# near SECONDS: rows of struck.csv within 10 ms of a note that mido finds (notes.csv), which is played so much later
+near() {
+    awk -F, -v lead="$1" 'FNR == 1 { next } NR == FNR { note[++notes] = $1 + lead; next }
+        { for (i = 1; i <= notes; i++) if (($1 - note[i]) ^ 2 <= 1e-4) { near++; break } } END { print near + 0 }' notes.csv struck.csv
+}
+"$himc" import "$root/tests/midi/groove.mid" -o made.txt >out 2>err
+check test_import_reports_on_stderr [ "$?$(wc -l <out)$(head -n 1 err)" = "0034 of 73 notes for drums are played" ]
+check test_import_comments_the_report [ "$(grep -c '^comment 36 notes are not played: ' made.txt)" = 1 ]
+"$himc" import "$root/tests/midi/groove.mid" -o - 2>/dev/null | cmp -s - made.txt
+check test_import_writes_to_stdout [ $? = 0 ]
+"$himc" import "$root/tests/midi/groove.mid" --curve square:22 -o square.txt 2>/dev/null
+check test_import_has_two_curves [ "$(grep -c '^stroke' square.txt) $(cmp -s made.txt square.txt && echo same)" = "34 " ]
+"$himc" render made.txt -o made.wav --strokes struck.csv >/dev/null
+cp "$root/tests/midi/groove.csv" notes.csv
+check test_imported_strokes_are_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1.0714)" = "34 34" ]
+cp "$root/tests/midi/roll.mid" "$root/tests/midi/roll.csv" .
+"$himc" render roll.mid -o roll.wav --strokes struck.csv >out
+mv roll.csv notes.csv
+check test_render_tells_what_of_a_midi_file_it_plays [ "$(grep -c '^note: 40 of 40 notes for timpani are played' out)" = 1 ]
+check test_a_midi_file_is_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1)" = "40 40" ]
+"$himc" info roll.mid >out
+check test_info_tells_what_of_a_midi_file_is_played [ "$(head -n 1 out) $(sed -n 's/^strokes *//p' out)" = \
+    "40 of 40 notes for timpani are played 40" ]
+refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
+refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid
+refuses test_import_of_text_is_refused "not a MIDI file" import piece.txt -o x.txt
+refuses test_unknown_curve_is_refused "allowed notation, square, square:DB" import roll.mid --curve cube -o x.txt
+refuses test_curve_out_of_range_is_refused "allowed 1 .. 80 dB" import roll.mid --curve square:99 -o x.txt
+refuses test_unknown_part_is_refused "allowed timpani or drums" import roll.mid --part bass -o x.txt
+refuses test_part_that_is_not_there_is_refused "none of a drum (channel 10)" import roll.mid --part drums -o x.txt
+printf 'MThd junk' >junk.mid
+refuses test_bad_midi_file_is_refused_by_render "junk.mid: not a MIDI file" render junk.mid -o x.wav
+
 if [ -r "$stroke" ]; then
     strikes=$("$himc" info "$stroke" | sed -n 's/^strikes: *//p')
     check test_info_finds_the_strike_of_a_take [ "$strikes" = 1 ]

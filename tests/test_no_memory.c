@@ -353,6 +353,11 @@ static void *load_score(himc_error *why)
     return himc_score_load(SCORE, why);
 }
 
+static void *load_midi(himc_error *why)
+{
+    return himc_score_load("tests/midi/pedals.mid", why);
+}
+
 static void *make_player(himc_error *why)
 {
     himc_skeleton_config given = himc_skeleton_default();
@@ -452,6 +457,7 @@ static void test_nothing_is_made_without_memory_and_nothing_is_left(void)
                           {"C3D written", save_c3d, NULL},
                           {"TRC written", save_trc, NULL},
                           {"score", load_score, free_score},
+                          {"MIDI file", load_midi, free_score},
                           {"player", make_player, free_player},
                           {"recording", make_recording, free_recording},
                           {"limits", learn_limits, NULL},

@@ -76,6 +76,8 @@ static bool describe_score(const char *path, himc_error *error)
     himc_score *score = himc_score_load(path, error);
     if (!score)
         return false;
+    if (score->report)
+        printf("%s", score->report);
     print_strokes(score);
     print_length(score);
     print_tempo(score);
@@ -137,9 +139,10 @@ const cli_call cli_info = {
     "info",
     "FILE",
     "",
-    "describes a score or a take (.bvh .c3d .trc)",
-    "Of a take: rate, length, points, gaps, the strikes found in it, the player,\n"
-    "where drumhead and seat are placed.",
+    "describes a score, a MIDI file or a take (.bvh .c3d .trc)",
+    "Of a MIDI file: what of it can be played, and the score made of it. Of a take:\n"
+    "rate, length, points, gaps, the strikes found in it, the player, where drumhead and\n"
+    "seat are placed.",
     options,
     run,
 };

@@ -325,7 +325,7 @@ const cli_call cli_render = {
     "render",
     "SOURCE",
     " -o OUT.wav",
-    "plays a score or a take (.bvh .c3d .trc) into a WAV file",
+    "plays a score, a MIDI file or a take (.bvh .c3d .trc) into a WAV file",
     "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm\n"
     "tip_rms_percent peak_force_n realtime_factor. A score that makes no drum is played on\n"
     "\"kettle\", 26 inches.",

@@ -31,6 +31,7 @@
 ///     body         skeleton, pose, joint limits, dynamics
 ///     capture      motion captures and the player in them
 ///     plan         the trajectories of the drumstick tips, from a score or a take
+///     midi         a score made of a MIDI file
 ///     control      inverse kinematics and inverse dynamics
 ///     bank         many damped oscillators
 ///     head         what a drumhead's modes are: membrane, air and kettle, uneven lugs, pickups

@@ -35,9 +35,12 @@ typedef struct himc_score {
     int tempo_count;          ///< 1 or more
     himc_score_line *lines;   ///< as in the file (line_count), owned; NULL if there are none
     int line_count;           ///< 0 .. 10000
+    char *report; ///< of a MIDI file: what is played and what not, lines that end with \n, owned;
+                  ///< else NULL
 } himc_score;
 
-/// Reads the file; NULL with "file:line: ..." if anything in it is wrong. Free with
+/// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of timpani,
+/// else of drums, become a score. NULL with "file:line: ..." if anything in it is wrong. Free with
 /// himc_score_free.
 himc_score *himc_score_load(const char *path, himc_error *error);
 

@@ -9,8 +9,8 @@
 #include "performance/performance_state.h"
 
 #include "capture/take.h"
+#include "midi/score_file.h"
 #include "performance/confine.h"
-#include "plan/score.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -398,11 +398,21 @@ static himc_job_state install_part(score_job *j, himc_error *error)
     }
 }
 
+// of a MIDI file: what is played of it, and what not
+static void tell_report(score_job *j)
+{
+    const char *line = j->score->report ? j->score->report : "", *end;
+    for (; (end = strchr(line, '\n')); line = end + 1)
+        himc_events_note(&j->performance->events, "%.*s", (int)(end - line), line);
+}
+
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     score_job *j = (score_job *)job;
     himc_job_state state = install_part(j, error);
     himc_motion_replan(j->performance->motion);
+    if (state == HIMC_JOB_DONE && j->part == AFTER_STROKES)
+        tell_report(j);
     if (state != HIMC_JOB_DONE || j->part == AFTER_STROKES)
         return state;
     j->part++;

@@ -45,6 +45,13 @@ static const struct profile {
     [HIMC_STACCATO] = {.36, 2.8, 2.0, .8, .05, .24, .16, 0, .75, 0.8},
 };
 
+double himc_gesture_dynamic(double louder)
+{
+    double d = louder < 1 ? FORTE * log(louder) / log(FORTE_OVER_PPP)
+                          : (1 - FORTE) * log(louder) / log(FFF_OVER_FORTE);
+    return fmax(0, fmin(FORTE + d, 1));
+}
+
 himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
 {
     const struct profile *p = &profile[nuance];

@@ -21,6 +21,9 @@ typedef struct himc_gesture {
     const himc_unit *unit; ///< motion unit that shapes the fall; NULL: the built-in shape
 } himc_gesture;
 
+/// The dynamic (0 .. 1) of strokes `louder` times as fast as those at f.
+HIMC_RT double himc_gesture_dynamic(double louder);
+
 /// The stroke with time enough. `dynamic` 0 .. 1.
 HIMC_RT himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic);
 

@@ -1,4 +1,4 @@
-/// score.c: a score file read in one pass: statements to commands, strokes sorted by beat.
+/// score.c: a score's text read in one pass: statements to commands, strokes sorted by beat.
 ///
 /// text.c splits words and command.c checks them; this file adds lines for drums, the tempo map,
 /// the order, and the check that a player can play the strokes. The tempo map is piecewise
@@ -8,7 +8,6 @@
 #include "plan/score.h"
 
 #include "base/argument.h"
-#include "base/file.h"
 #include "base/text.h"
 
 #include <math.h>
@@ -19,7 +18,6 @@
 // chosen: more than a day of drumming, and small enough for any machine's memory
 #define SCORE_STROKES_MAX 200000
 #define SCORE_LINES_MAX 10000
-#define SCORE_BYTES_MAX ((size_t)64 << 20)
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define STROKE_INTERVAL_MIN \
     0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
@@ -292,24 +290,6 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
     return NULL;
 }
 
-himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
-{
-    size_t size;
-    himc_score *score = NULL;
-    char *text = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
-    if (text && memchr(text, 0, size))
-        himc_error_set(error, "%s: not a text file", path);
-    else if (text)
-        score = himc_score_parse(text, path, error);
-    free(text);
-    return score;
-}
-
-himc_score *himc_score_load(const char *path, himc_error *error)
-{
-    return himc_score_load_in(NULL, path, error);
-}
-
 void himc_score_free(himc_score *score)
 {
     if (!score)
@@ -317,6 +297,7 @@ void himc_score_free(himc_score *score)
     free(score->strokes);
     free(score->tempi);
     free(score->lines);
+    free(score->report);
     free(score);
 }
 

@@ -1,4 +1,4 @@
-/// score.h: the reader of scores behind himc_score_load; private.
+/// score.h: the reader of a score's text; private.
 #ifndef HIMC_PLAN_SCORE_H
 #define HIMC_PLAN_SCORE_H
 
@@ -7,8 +7,5 @@
 /// The score in a string, as himc_score_load reads it from a file; `name` stands for the file in
 /// errors. Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
-
-/// As himc_score_load; with a `folder` (not NULL) only a file inside it (himc_file_load_in).
-himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error);
 
 #endif

@@ -1,0 +1,36 @@
+/// import.h: a score made of a MIDI file.
+#ifndef HIMC_MIDI_IMPORT_H
+#define HIMC_MIDI_IMPORT_H
+
+#include "himc/score.h"
+
+/// Whose notes are played.
+typedef enum midi_choice {
+    MIDI_ANY,     ///< the timpani's if there are any, else the drums'
+    MIDI_TIMPANI, ///< program 48 of General MIDI, or a track of that name
+    MIDI_DRUMS    ///< channel 10
+} midi_choice;
+
+typedef struct midi_options {
+    midi_choice choice;
+    double range; ///< dynamic range of velocities by a square law (dB), 1 .. 80; 0: as notation
+                  ///< programs write dynamics
+} midi_options;
+
+/// The dynamic (0 .. 1) of a velocity (1 .. 127); `range` as in midi_options.
+double himc_midi_dynamic(int velocity, double range);
+
+/// What has been made; both texts end with 0, and are freed with himc_midi_score_free.
+typedef struct midi_score {
+    char *text;   ///< the score; its comments say what the report says
+    char *report; ///< what is played, and for each reason what is not; lines that end with \n
+} midi_score;
+
+/// Makes a score of a MIDI file's bytes. `name` of the file is for its first comment; NULL options
+/// are MIDI_ANY and 0. False with one line if the file cannot be read, or nothing in it is for
+/// drums.
+bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const char *name,
+                      const midi_options *options, himc_error *error);
+void himc_midi_score_free(midi_score *made);
+
+#endif

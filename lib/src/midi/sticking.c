@@ -1,0 +1,161 @@
+/// sticking.c: which hand plays which stroke.
+///
+/// A search over the strokes in time. Its state is the last stroke of each hand; a stroke of a hand
+/// costs as follows, `gap` being the time since that hand's last stroke, D the way between them and
+/// need = .10 + .1 log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot):
+///
+///     40 max(0, need - gap)/need + (.3 need/gap)^2 + 1.5 D + 2 max(0, .22 s/gap - 1)
+///     + .6 if the hands cross, 3 more if the other one has just struck + .02 for the left hand
+///
+/// A stroke nearer to its hand's last than the planner can move (hand.c) is not possible; one that
+/// is left out costs more than any that is played, and the more the louder it is. The WIDTH best
+/// states are kept after each stroke. The weights are chosen: one drum is played hand by hand, two
+/// drums in the middle by sides, outer drums by the hand of their side.
+#include "midi/part.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define WIDTH 64
+#define LEAST_GAP 0.055    // of one hand on a spot (s); the planner refuses 0.04
+#define HARDEST_MOVE 250.0 // of the planner: peak acceleration along the heads (m/s^2) ...
+#define MOVE_MARGIN 1.45   // ... and its margin of time for a stroke's swing, and a little more
+#define QUINTIC_PEAK 5.77  // peak acceleration of a quintic from rest to rest (way/time^2)
+#define NORMAL_SPOT 0.75   // radii from the centre, towards the player
+#define OMIT_COST 45.0
+#define OMIT_LOUD_COST 20.0 // at fff
+
+/// One hand.
+typedef struct hand_state {
+    double at;   ///< of its last stroke (s); far in the past at first
+    double x, y; ///< where it was (m)
+} hand_state;
+
+typedef struct state {
+    double cost;
+    hand_state hand[HIMC_HANDS];
+    int32_t last[HIMC_HANDS]; ///< index of its last stroke, -1 at first
+    int8_t from;              ///< state of the stroke before
+    int8_t choice;            ///< hand of this stroke, or OMIT
+} state;
+
+enum { OMIT = HIMC_HANDS };
+
+typedef struct step {
+    int8_t from, choice;
+} step;
+
+static hand_state place_of(const midi_part *part, const midi_stroke *s)
+{
+    const midi_head *head = &part->head[s->head];
+    return (hand_state){s->note->seconds, head->x - NORMAL_SPOT * head->radius, head->y};
+}
+
+static double least_gap(double way)
+{
+    return fmax(LEAST_GAP, MOVE_MARGIN * sqrt(QUINTIC_PEAK * way / HARDEST_MOVE));
+}
+
+// of a stroke by that hand; infinite if it is not possible
+static double stroke_cost(const state *now, const hand_state *to, int hand)
+{
+    const hand_state *from = &now->hand[hand], *other = &now->hand[1 - hand];
+    double way = hypot(to->x - from->x, to->y - from->y), gap = to->at - from->at;
+    double need = way > 0 ? 0.10 + 0.1 * log2(2 * way / 0.1 + 1) : 0.09;
+    if (gap < least_gap(way))
+        return HUGE_VAL;
+    double cost = 40 * fmax(0, need - gap) / need + pow(0.3 * need / gap, 2) + 1.5 * way +
+                  2 * fmax(0, 0.22 / gap - 1);
+    double inwards = hand == HIMC_LEFT ? other->y - to->y : to->y - other->y; // past the other hand
+    if (inwards > 0.05)
+        cost += to->at - other->at < 0.15 ? 3.6 : 0.6;
+    return cost + (hand == HIMC_LEFT ? 0.02 : 0);
+}
+
+// among the `count` best so far; one for each pair of last strokes
+static int keep(state *best, int count, const state *made)
+{
+    int worst = 0;
+    for (int i = 0; i < count; i++) {
+        if (best[i].last[0] == made->last[0] && best[i].last[1] == made->last[1]) {
+            if (made->cost < best[i].cost)
+                best[i] = *made;
+            return count;
+        }
+        worst = best[i].cost > best[worst].cost ? i : worst;
+    }
+    if (count == WIDTH && made->cost >= best[worst].cost)
+        return count;
+    best[count < WIDTH ? count : worst] = *made;
+    return count < WIDTH ? count + 1 : count;
+}
+
+static int advance(const midi_part *part, const state *now, int count, int index, state *next)
+{
+    const midi_stroke *s = &part->stroke[index];
+    hand_state to = place_of(part, s);
+    int kept = 0;
+    for (int i = 0; i < count; i++)
+        for (int choice = 0; choice <= OMIT; choice++) {
+            state made = now[i];
+            made.from = (int8_t)i;
+            made.choice = (int8_t)choice;
+            made.cost += choice == OMIT ? OMIT_COST + OMIT_LOUD_COST * s->dynamic
+                                        : stroke_cost(&now[i], &to, choice);
+            if (choice != OMIT) {
+                made.hand[choice] = to;
+                made.last[choice] = index;
+            }
+            if (isfinite(made.cost))
+                kept = keep(next, kept, &made);
+        }
+    return kept;
+}
+
+static void walk_back(midi_part *part, const step *steps, int at)
+{
+    for (int i = part->count - 1; i >= 0; i--) {
+        midi_stroke *s = &part->stroke[i];
+        if (s->fate != MIDI_PLAYED)
+            continue;
+        const step *chosen = &steps[(size_t)i * WIDTH + (size_t)at];
+        at = chosen->from;
+        if (chosen->choice == OMIT)
+            s->fate = MIDI_NO_HAND;
+        else
+            s->hand = (himc_hand)chosen->choice;
+    }
+}
+
+static void search(midi_part *part, state *now, state *next, step *steps)
+{
+    // at first each hand is before its own side
+    int count = 1;
+    now[0] = (state){.hand = {{-1e3, 0.5, 0.2}, {-1e3, 0.5, -0.2}}, .last = {-1, -1}};
+    for (int i = 0; i < part->count; i++) {
+        if (part->stroke[i].fate != MIDI_PLAYED)
+            continue;
+        count = advance(part, now, count, i, next);
+        for (int k = 0; k < count; k++)
+            steps[(size_t)i * WIDTH + (size_t)k] = (step){next[k].from, next[k].choice};
+        state *other = now;
+        now = next;
+        next = other;
+    }
+    int best = 0;
+    for (int k = 1; k < count; k++)
+        best = now[k].cost < now[best].cost ? k : best;
+    walk_back(part, steps, best);
+}
+
+bool himc_midi_stick(midi_part *part, himc_error *error)
+{
+    state *states = malloc(2 * WIDTH * sizeof *states);
+    step *steps = malloc(((size_t)part->count * WIDTH + 1) * sizeof *steps);
+    bool good = states && steps;
+    if (good)
+        search(part, states, states + WIDTH, steps);
+    free(states);
+    free(steps);
+    return good || himc_error_set(error, "out of memory for %d strokes", part->count);
+}

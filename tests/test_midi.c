@@ -1,0 +1,477 @@
+/// MIDI files: the reader held against mido's, and the scores made of them.
+#include "unity.h"
+
+#include "midi/import.h"
+#include "midi/part.h"
+#include "midi/score_file.h"
+#include "base/file.h"
+#include "base/line.h"
+#include "plan/score.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static himc_error error;
+static midi_score made;
+static himc_score *score;
+
+void setUp(void)
+{
+    error.text[0] = '\0';
+}
+
+void tearDown(void)
+{
+    himc_midi_score_free(&made);
+    himc_score_free(score);
+    score = NULL;
+}
+
+static char *load(const char *name, size_t *size)
+{
+    char path[128];
+    snprintf(path, sizeof path, "tests/midi/%s.mid", name);
+    char *bytes = himc_file_load(path, 1 << 20, size, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(bytes, error.text);
+    return bytes;
+}
+
+// a file of one track, from its events; 96 ticks a quarter note at 120 a minute: 192 a second
+
+#define QUARTER 96
+
+typedef struct builder {
+    uint8_t bytes[4096];
+    size_t size;
+} builder;
+
+static void put(builder *b, const void *bytes, size_t size)
+{
+    TEST_ASSERT_TRUE(b->size + size <= sizeof b->bytes);
+    memcpy(b->bytes + b->size, bytes, size);
+    b->size += size;
+}
+
+#define PUT(b, ...) put(b, (uint8_t[]){__VA_ARGS__}, sizeof(uint8_t[]){__VA_ARGS__})
+
+static void begin(builder *b)
+{
+    b->size = 0;
+    put(b, "MThd\0\0\0\6\0\0\0\1\0\140MTrk\0\0\0\0", 22);
+}
+
+/// After `delta` ticks (below 128 * 128).
+static void event(builder *b, int delta, int status, int first, int second)
+{
+    PUT(b, 0x80 | (uint8_t)(delta >> 7), delta & 0x7f, (uint8_t)status, (uint8_t)first,
+        (uint8_t)second);
+}
+
+static void end(builder *b)
+{
+    size_t length = b->size - 22;
+    for (int i = 0; i < 4; i++)
+        b->bytes[18 + i] = (uint8_t)(length >> (24 - 8 * i));
+}
+
+/// Notes of timpani, each `length` ticks long, one every `step` ticks.
+static void timpani(builder *b, const int *keys, int count, int step, int length)
+{
+    begin(b);
+    PUT(b, 0, 0xc0, 47);
+    for (int i = 0; i < count; i++) {
+        event(b, i ? step - length : 0, 0x90, keys[i], 80);
+        event(b, length, 0x80, keys[i], 0);
+    }
+    end(b);
+}
+
+static void import(const builder *b, const midi_options *options)
+{
+    TEST_ASSERT_TRUE_MESSAGE(
+        himc_midi_import(&made, b->bytes, b->size, "test.mid", options, &error), error.text);
+    score = himc_score_parse(made.text, "made.txt", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+}
+
+static void refused(const builder *b, const char *expected)
+{
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b->bytes, b->size, "test.mid", NULL, &error));
+    TEST_ASSERT_EQUAL_STRING(expected, error.text);
+}
+
+static void reported(const char *line)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, line), made.report);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "comment "), made.text);
+}
+
+// the reader
+
+static void compare_with_mido(const char *name)
+{
+    size_t size;
+    char *bytes = load(name, &size), path[128], line[200];
+    midi_file file;
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, bytes, size, &error), error.text);
+    free(bytes);
+    snprintf(path, sizeof path, "tests/midi/%s.csv", name);
+    FILE *table = fopen(path, "r");
+    TEST_ASSERT_NOT_NULL_MESSAGE(table, path);
+    int row = -1;
+    for (; fgets(line, sizeof line, table); row++) {
+        double seconds;
+        int channel, key, velocity, program;
+        if (row < 0)
+            continue; // the names of the columns
+        TEST_ASSERT_EQUAL_INT_MESSAGE(
+            5, sscanf(line, "%lf,%d,%d,%d,%d", &seconds, &channel, &key, &velocity, &program),
+            line);
+        TEST_ASSERT_LESS_THAN_INT_MESSAGE(file.note_count, row, name);
+        const midi_note *note = &file.notes[row];
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-8, seconds, note->seconds, line);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(channel, note->channel, line);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(key, note->key, line);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(velocity, note->velocity, line);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(program, note->program, line);
+    }
+    fclose(table);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(row, file.note_count, name);
+    himc_midi_file_free(&file);
+}
+
+static void test_the_reader_finds_the_notes_that_mido_finds(void)
+{
+    static const char *const name[] = {"scherzo", "zarathustra", "roll",
+                                       "pedals",  "groove",      "frames"};
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++)
+        compare_with_mido(name[i]);
+}
+
+static void test_tracks_of_format_2_follow_each_other(void)
+{
+    builder b;
+    midi_file file;
+    begin(&b);
+    b.bytes[9] = 2;
+    event(&b, QUARTER, 0x99, 36, 90);
+    event(&b, QUARTER, 0x99, 36, 0);
+    end(&b);
+    builder one = b;
+    put(&b, one.bytes + 14, one.size - 14);
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, b.bytes, b.size, &error), error.text);
+    TEST_ASSERT_EQUAL_INT(2, file.note_count);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, file.notes[0].seconds);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, file.notes[1].seconds);
+    TEST_ASSERT_EQUAL_DOUBLE(2.0, file.notes[1].off);
+    himc_midi_file_free(&file);
+}
+
+// wherever a file ends, what was there is kept, or one line refuses it
+static void test_a_file_cut_anywhere_is_read_up_to_there_or_refused_in_a_line(void)
+{
+    size_t size;
+    char *bytes = load("zarathustra", &size);
+    int read = 0, notes = 0;
+    for (size_t cut = 0; cut < size; cut++) {
+        midi_file file;
+        char *part = malloc(cut + 1); // of its size, for the address sanitizer
+        memcpy(part, bytes, cut);
+        bool good = himc_midi_file_read(&file, part, cut, &error);
+        TEST_ASSERT_TRUE(good || (error.text[0] && himc_line_is_clean(error.text)));
+        if (good) {
+            TEST_ASSERT_TRUE(file.note_count >= notes);
+            notes = file.note_count;
+            read += file.cut;
+            himc_midi_file_free(&file);
+        }
+        free(part);
+    }
+    free(bytes);
+    TEST_ASSERT_EQUAL_INT(16, notes);
+    TEST_ASSERT_GREATER_THAN_INT(100, read); // cut in the middle of an event
+}
+
+static void test_a_bad_file_is_refused_in_one_line(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 60, 90);
+    end(&b);
+    refused(&b, "track 1: data without a status byte");
+    begin(&b);
+    PUT(&b, 0, 0x90, 60, 200);
+    end(&b);
+    refused(&b, "track 1: a data byte above 127");
+    begin(&b);
+    PUT(&b, 0x81, 0x81, 0x81, 0x81, 0, 0x90, 60, 90);
+    end(&b);
+    refused(&b, "track 1: a number of more than 4 bytes");
+    begin(&b);
+    PUT(&b, 0, 0xf4);
+    end(&b);
+    refused(&b, "track 1: a status byte that files do not have");
+    begin(&b);
+    // data after an exclusive message: it has ended the running status
+    PUT(&b, 0, 0x90, 60, 1, 0, 0xf0, 1, 0xf7, 0, 60, 0);
+    end(&b);
+    refused(&b, "track 1: data without a status byte");
+    begin(&b);
+    b.bytes[9] = 3;
+    refused(&b, "MIDI format 3, allowed 0 .. 2");
+    begin(&b);
+    b.bytes[13] = 0;
+    refused(&b, "a division of 0 ticks, allowed 1 or more");
+    begin(&b);
+    b.bytes[7] = 200;
+    refused(&b, "a header of 200 bytes, allowed 6 .. 14");
+    b.size = 14;
+    b.bytes[7] = 6;
+    refused(&b, "a MIDI file without a track");
+    b.size = 13;
+    refused(&b, "not a MIDI file: it does not begin with MThd and 6 bytes");
+    begin(&b);
+    event(&b, 0, 0x90, 60, 90);
+    end(&b);
+    refused(&b, "nothing to play: 1 note, none of a drum (channel 10)");
+}
+
+// the score
+
+static void test_velocities_become_dynamics_by_both_curves(void)
+{
+    static const int velocity[] = {16, 32, 48, 64, 80, 96, 112, 127};
+    static const double square[] = {.17, .32, .44, .54, .63, .71, .86, 1};
+    for (int i = 0; i < 8; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(0.006, square[i], himc_midi_dynamic(velocity[i], 22));
+        if (i < 7) // pp is 32 where notation programs write 33; the steps are k/7
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, i / 7.0, himc_midi_dynamic(velocity[i], 0));
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_midi_dynamic(1, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1, himc_midi_dynamic(127, 0));
+}
+
+// each stroke comes when its note does, through the tempo map, which stays as it was
+static void test_strokes_keep_the_times_of_their_notes_through_a_tempo_map(void)
+{
+    size_t size;
+    char *bytes = load("scherzo", &size);
+    midi_file file;
+    TEST_ASSERT_TRUE(himc_midi_file_read(&file, bytes, size, &error));
+    TEST_ASSERT_TRUE(himc_midi_import(&made, bytes, size, "scherzo.mid", NULL, &error));
+    free(bytes);
+    score = himc_score_parse(made.text, "made.txt", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_EQUAL_INT(3, score->tempo_count);
+    TEST_ASSERT_EQUAL_INT(file.note_count, score->stroke_count);
+    const double lead = 6; // beats, more than a second
+    TEST_ASSERT_NOT_NULL(strstr(made.text, "comment beat 0 of the file is beat 6 here;"));
+    double origin = himc_score_seconds(score->tempi, score->tempo_count, lead);
+    for (int i = 0; i < score->stroke_count; i++) {
+        double at = himc_score_seconds(score->tempi, score->tempo_count, score->strokes[i].beat);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, file.notes[i].seconds, at - origin);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-5, file.notes[i].beat, score->strokes[i].beat - lead);
+    }
+    himc_midi_file_free(&file);
+}
+
+static int drums_of(const himc_score *s)
+{
+    int drums = 0;
+    for (int i = 0; i < s->line_count; i++)
+        drums += s->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM;
+    return drums;
+}
+
+static void test_two_pitches_are_two_drums_and_no_pedal_moves(void)
+{
+    builder b;
+    timpani(&b, (int[]){48, 43, 48, 43, 43, 48}, 6, QUARTER, QUARTER - 1);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(2, drums_of(score));
+    TEST_ASSERT_EQUAL_INT(6, score->stroke_count);
+    TEST_ASSERT_NULL(strstr(made.report, "pedal"));
+    for (int i = 1; i < 6; i++) // each pitch on a drum of its own
+        TEST_ASSERT_EQUAL_INT((i == 1 || i == 3 || i == 4),
+                              strcmp(score->strokes[0].drum, score->strokes[i].drum) != 0);
+}
+
+static void test_five_pitches_are_played_on_four_drums_by_a_pedal(void)
+{
+    builder b;
+    timpani(&b, (int[]){38, 43, 48, 53, 40}, 5, 4 * QUARTER, QUARTER);
+    import(&b, NULL);
+    reported("5 of 5 notes for timpani are played");
+    reported("1 change of pitch by pedal");
+    TEST_ASSERT_EQUAL_STRING("low", score->strokes[4].drum); // D to E, the shortest way
+}
+
+static void test_a_pitch_that_no_pedal_reaches_in_time_is_reported(void)
+{
+    builder b;
+    timpani(&b, (int[]){38, 39, 40, 41, 42, 38, 39}, 7, QUARTER / 4, 12); // 8 a second, in E flat
+    import(&b, NULL);
+    int played = score->stroke_count;
+    TEST_ASSERT_LESS_THAN_INT(7, played);
+    char line[80];
+    snprintf(line, sizeof line, "%d of 7 notes for timpani are played", played);
+    reported(line);
+    reported("no drum could be tuned to");
+}
+
+static void test_pitches_outside_the_timpani_are_moved_by_octaves(void)
+{
+    builder b;
+    timpani(&b, (int[]){30, 84}, 2, QUARTER, 40);
+    import(&b, NULL);
+    reported("2 notes are moved by octaves to C2 .. B3");
+    TEST_ASSERT_EQUAL_INT(2, score->stroke_count);
+}
+
+/// Hands of the strokes as letters.
+static const char *hands(void)
+{
+    static char text[64];
+    int i = 0;
+    for (; i < score->stroke_count && i < 63; i++)
+        text[i] = score->strokes[i].hand == HIMC_LEFT ? 'L' : 'R';
+    text[i] = '\0';
+    return text;
+}
+
+static void test_one_drum_is_played_hand_by_hand(void)
+{
+    builder b;
+    timpani(&b, (int[]){48, 48, 48, 48, 48, 48}, 6, 23, 12); // 0.12 s
+    import(&b, NULL);
+    TEST_ASSERT_TRUE(!strcmp(hands(), "RLRLRL") || !strcmp(hands(), "LRLRLR"));
+}
+
+static void test_two_drums_in_the_middle_are_played_by_sides(void)
+{
+    builder b;
+    timpani(&b, (int[]){45, 45, 49, 49, 45, 45, 49, 49}, 8, QUARTER, 90); // 0.5 s
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_STRING("second", score->strokes[0].drum);
+    TEST_ASSERT_EQUAL_STRING("third", score->strokes[2].drum);
+    TEST_ASSERT_EQUAL_STRING("LLRRLLRR", hands());
+}
+
+static void test_outer_drums_are_played_by_the_hand_of_their_side(void)
+{
+    builder b;
+    timpani(&b, (int[]){38, 57, 38, 57}, 4, 40, 30); // 0.21 s
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_STRING("low", score->strokes[0].drum);
+    TEST_ASSERT_EQUAL_STRING("LRLR", hands());
+}
+
+static void test_what_two_hands_cannot_play_is_reported(void)
+{
+    size_t size;
+    char *bytes = load("groove", &size);
+    TEST_ASSERT_TRUE(himc_midi_import(&made, bytes, size, "groove.mid", NULL, &error));
+    free(bytes);
+    reported("34 of 73 notes for drums are played");
+    reported("36 notes are not played: they are of cymbals or of wood or metal");
+    reported("1 note is one stroke with another at the same time on its head"); // 35 and 36
+    reported("2 notes are not played: both hands are busy");                    // of five at once
+}
+
+// of a chord of three the softest is left out
+static void test_the_loud_notes_of_a_chord_are_played(void)
+{
+    builder b;
+    begin(&b);
+    event(&b, 0, 0x99, 36, 100);
+    event(&b, 0, 0x99, 38, 40);
+    event(&b, 0, 0x99, 50, 110);
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(2, score->stroke_count);
+    for (int i = 0; i < 2; i++)
+        TEST_ASSERT_TRUE(strcmp(score->strokes[i].drum, "snare") != 0);
+}
+
+static void test_the_part_is_chosen(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xff, 3, 6, 'P', 'A', 'U', 'K', 'E', 'N', 0, 0xff, 3, 1, 'x');
+    event(&b, 0, 0x92, 45, 90);
+    event(&b, QUARTER, 0x99, 36, 90);
+    event(&b, QUARTER, 0x99, 36, 90);
+    end(&b);
+    import(&b, NULL);
+    reported("1 of 1 notes for timpani are played");
+    reported("2 notes for drums not asked for");
+    tearDown();
+    import(&b, &(midi_options){.choice = MIDI_DRUMS});
+    reported("2 of 2 notes for drums are played");
+    reported("1 note for timpani not asked for");
+}
+
+// a file's name and tracks come from strangers
+static void test_a_name_stays_one_comment(void)
+{
+    builder b;
+    timpani(&b, (int[]){48}, 1, QUARTER, 40);
+    TEST_ASSERT_TRUE(
+        himc_midi_import(&made, b.bytes, b.size, "../a;b\nclear \xff.mid", NULL, &error));
+    TEST_ASSERT_EQUAL_STRING_LEN("comment made of a_b_clear__.mid by himc import;\n", made.text,
+                                 48);
+}
+
+static void test_a_tempo_that_scores_do_not_have_leaves_the_times(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xff, 0x51, 3, 0, 0, 100); // 600000 a minute
+    event(&b, 10000, 0x99, 36, 90);
+    PUT(&b, 0, 0xff, 0x51, 3, 7, 0xa1, 0x20); // 120
+    event(&b, QUARTER, 0x99, 36, 90);
+    end(&b);
+    import(&b, NULL);
+    reported("the tempo map is not kept: beats are half seconds");
+    TEST_ASSERT_EQUAL_INT(1, score->tempo_count);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1, score->strokes[1].beat - score->strokes[0].beat);
+}
+
+static void test_score_file_loads_midi_and_keeps_its_report(void)
+{
+    score = himc_score_load("tests/midi/zarathustra.mid", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_EQUAL_INT(14, score->stroke_count);
+    TEST_ASSERT_EQUAL_STRING_LEN("14 of 14 notes for timpani are played\n", score->report, 38);
+    himc_score *text = himc_score_load("patches/improvisation.txt", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(text, error.text);
+    TEST_ASSERT_NULL(text->report);
+    himc_score_free(text);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_reader_finds_the_notes_that_mido_finds);
+    RUN_TEST(test_tracks_of_format_2_follow_each_other);
+    RUN_TEST(test_a_file_cut_anywhere_is_read_up_to_there_or_refused_in_a_line);
+    RUN_TEST(test_a_bad_file_is_refused_in_one_line);
+    RUN_TEST(test_velocities_become_dynamics_by_both_curves);
+    RUN_TEST(test_strokes_keep_the_times_of_their_notes_through_a_tempo_map);
+    RUN_TEST(test_two_pitches_are_two_drums_and_no_pedal_moves);
+    RUN_TEST(test_five_pitches_are_played_on_four_drums_by_a_pedal);
+    RUN_TEST(test_a_pitch_that_no_pedal_reaches_in_time_is_reported);
+    RUN_TEST(test_pitches_outside_the_timpani_are_moved_by_octaves);
+    RUN_TEST(test_one_drum_is_played_hand_by_hand);
+    RUN_TEST(test_two_drums_in_the_middle_are_played_by_sides);
+    RUN_TEST(test_outer_drums_are_played_by_the_hand_of_their_side);
+    RUN_TEST(test_what_two_hands_cannot_play_is_reported);
+    RUN_TEST(test_the_loud_notes_of_a_chord_are_played);
+    RUN_TEST(test_the_part_is_chosen);
+    RUN_TEST(test_a_name_stays_one_comment);
+    RUN_TEST(test_a_tempo_that_scores_do_not_have_leaves_the_times);
+    RUN_TEST(test_score_file_loads_midi_and_keeps_its_report);
+    return UNITY_END();
+}

@@ -1,0 +1,111 @@
+/// import.c: `himc import`: makes a score, to be read and edited, of a MIDI file.
+///
+/// What is played and what is not, with the reasons, is printed on stderr; the score's first comments
+/// say the same.
+#include "base/file.h"
+#include "cli.h"
+#include "midi/import.h"
+#include "midi/score_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define USUAL_RANGE 22.0 // of `--curve square` (dB): from ppp to fff of this instrument
+
+enum { OUT, PART, CURVE };
+
+static const cli_option options[] = {
+    {"output", 'o', "SCORE", "the score; - is the standard output"},
+    {"part", 0, "timpani|drums",
+     "whose notes are played: program 48 and tracks of that name, or channel 10 (timpani if there "
+     "are any)"},
+    {"curve", 0, "notation|square[:DB]",
+     "how velocities become dynamics: as notation programs write them, 16 ppp .. 112 ff; or by the "
+     "square law of synthesisers over a range of 1 .. 80 dB, 22 when not given (notation)"},
+    {0},
+};
+
+static bool read_curve(const char *word, double *range, himc_error *error)
+{
+    const size_t square = strlen("square");
+    *range = 0;
+    if (!word || !strcmp(word, "notation"))
+        return true;
+    *range = USUAL_RANGE;
+    if (!strcmp(word, "square"))
+        return true;
+    char *end = NULL;
+    if (!strncmp(word, "square:", square + 1))
+        *range = strtod(word + square + 1, &end);
+    if (!end || end == word + square + 1 || *end)
+        return himc_error_set(error, "--curve: \"%s\", allowed notation, square, square:DB", word);
+    return himc_check_range("--curve square", *range, 1, 80, "dB", error);
+}
+
+static bool read_part(const char *word, midi_choice *part, himc_error *error)
+{
+    *part = !word ? MIDI_ANY : !strcmp(word, "timpani") ? MIDI_TIMPANI : MIDI_DRUMS;
+    return !word || *part == MIDI_TIMPANI || !strcmp(word, "drums") ||
+           himc_error_set(error, "--part: \"%s\", allowed timpani or drums", word);
+}
+
+static bool import(const char *path, const midi_options *wanted, midi_score *made,
+                   himc_error *error)
+{
+    size_t size;
+    char *bytes = himc_file_load(path, HIMC_MIDI_BYTES_MAX, &size, error);
+    bool good = bytes && (himc_midi_import(made, bytes, size, path, wanted, error) ||
+                          himc_error_prefix(error, "%s", path));
+    free(bytes);
+    return good;
+}
+
+static bool write_text(const char *path, const char *text, himc_error *error)
+{
+    cli_file file = {0};
+    if (!strcmp(path, "-")) {
+        fputs(text, stdout);
+        return true;
+    }
+    if (!cli_file_open(&file, path, error))
+        return false;
+    fputs(text, file.stream);
+    return cli_file_close(&file, error) && cli_file_keep(&file, error);
+}
+
+static bool make(const cli_arguments *arguments, midi_score *made, himc_error *error)
+{
+    const char *path = arguments->operand, *out = arguments->value[OUT];
+    midi_options wanted;
+    if (!out)
+        return himc_error_set(error, "no -o SCORE given (himc import --help)");
+    if (cli_same_file(path, out))
+        return himc_error_set(error, "%s: named twice, allowed are different files", out);
+    return read_part(arguments->value[PART], &wanted.choice, error) &&
+           read_curve(arguments->value[CURVE], &wanted.range, error) &&
+           import(path, &wanted, made, error) && write_text(out, made->text, error);
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    midi_score made = {0};
+    bool good = make(arguments, &made, &error);
+    if (good)
+        fputs(made.report, stderr);
+    himc_midi_score_free(&made);
+    return good ? cli_finish(&cli_import) : cli_fail(&cli_import, "%s", error.text);
+}
+
+const cli_call cli_import = {
+    "import",
+    "FILE.mid",
+    " -o SCORE",
+    "makes a score of a MIDI file's timpani or drums",
+    "Notes of timpani are played on up to four drums, with pedals that move between them;\n"
+    "those of the drum channel of General MIDI on five heads of several sizes. One player\n"
+    "has two hands: what cannot be played is said on stderr, a line for each reason.\n"
+    "render, info and the command `score` read a MIDI file in the same way by themselves.",
+    options,
+    run,
+};
