@@ -106,9 +106,11 @@ static void performance_step(himc_performance *p)
     int n = himc_clock_step_samples(&p->clock);
     double t = step_time(p), h = n / p->clock.sample_rate;
     bool tick = himc_clock_is_tick(&p->clock);
-    if (tick || p->motion->replan)
-        himc_motion_read_task(p->motion, &p->settings, &p->drums, t,
-                              himc_clock_next_tick(&p->clock));
+    if (tick || p->motion->replan) {
+        double next = himc_clock_next_tick(&p->clock);
+        himc_contacts_look_down(&p->contacts, &scene, t, next);
+        himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
+    }
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
     if (p->settings.control.mode == HIMC_PIPELINE_IK)
@@ -135,6 +137,7 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
         himc_clock_play(&p->clock, count);
         done += count;
     }
+    himc_drums_catch_up(&p->drums);
 }
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)

@@ -115,17 +115,19 @@ void himc_performance_stop(himc_performance *p)
     himc_motion_stop(p->motion, step_time(p));
 }
 
-// limits the depth of a target in a head
-static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
+// the head that a target is in, NULL if there is none; limits its depth
+static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
 {
     for (int i = 0; i < p->drums.count; i++) {
         const himc_head_frame *frame = himc_drums_frame(&p->drums, i);
-        himc_vec3 local = himc_head_frame_from_world(frame, x);
-        double under = p->body->skeleton.mallet_radius - DEEPEST_TARGET - local.z;
-        if (hypot(local.x, local.y) < frame->radius && under > 0 && under < UNDER_THE_HEAD)
-            return himc_vec3_madd(x, under, himc_head_frame_normal(frame));
+        himc_vec3 local = himc_head_frame_from_world(frame, *x);
+        double under = p->body->skeleton.mallet_radius - local.z;
+        if (hypot(local.x, local.y) >= frame->radius || under < 0 || under > UNDER_THE_HEAD)
+            continue;
+        *x = himc_vec3_madd(*x, fmax(under - DEEPEST_TARGET, 0), himc_head_frame_normal(frame));
+        return frame;
     }
-    return x;
+    return NULL;
 }
 
 // one note when a stream of targets begins to be refused, or leaves the reach
@@ -145,7 +147,9 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     if (!reachable && first)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
-    himc_planner_reach(p->motion->planner, step_time(p), hand, above_heads(p, x));
+    const himc_head_frame *head = head_of(p, &x);
+    x = himc_motion_ease_down(p->motion, hand, step_time(p), x, head);
+    himc_planner_reach(p->motion->planner, step_time(p), hand, x);
     himc_motion_replan(p->motion);
 }
 
