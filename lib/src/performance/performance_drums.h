@@ -25,6 +25,7 @@ typedef struct drum_slot {
     bool moved;          ///< moved by the performer, see himc_drums_put_back
     bool placed;         ///< himc_drum_is_placed before that ...
     himc_vec3 found, at; ///< ... its position then, and its new position (m)
+    int behind;          ///< samples that it has not made yet
 } drum_slot;
 
 /// Strokes refer to their drum by its slot. Only himc_drums_put_back frees slots.
@@ -57,6 +58,11 @@ himc_job *himc_drums_listen_job(performance_drums *drums, const himc_listener *l
 /// are as when they were added: heads at rest, at the place of their owner or else placed automatically.
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
+
+/// A drum that no stick is near makes its samples later, many at a time: they are the same. Now all
+/// drums make theirs; before anything looks at them, or changes them.
+HIMC_RT void himc_drums_catch_up(performance_drums *drums);
+HIMC_RT void himc_drums_catch_up_one(performance_drums *drums, int index);
 
 /// After a change of places or of the set: finds the drums that hear each other.
 HIMC_RT void himc_drums_join(performance_drums *drums);
