@@ -303,9 +303,9 @@ static void test_timpano_is_brighter_with_a_hard_mallet_and_a_hard_strike(void)
         setUp();
         says(k / 2 ? "mallet hard" : "mallet soft");
         says(k % 2 ? "strike -0.219 0 8" : "strike -0.219 0 1");
-        play(0, 24000);
+        play(0, 2400); // 50 ms, as one hears a blow
         double power = 0, change = 0;
-        for (int i = 1; i < 24000; i++) {
+        for (int i = 1; i < 2400; i++) {
             power += sound[i] * sound[i];
             change += (sound[i] - sound[i - 1]) * (sound[i] - sound[i - 1]);
         }

@@ -258,6 +258,13 @@ report reopening_a_hundred_times_takes_no_memory \
     "$([ -n "$early" ] && [ -n "$late" ] && [ $((late - early)) -lt 2500 ] || echo "from ${early:-nothing} to ${late:-nothing} kB: $(tail -n 1 "$work/log")")"
 report reopening_finds_its_names_free "$(grep -m1 '^error' "$work/log")"
 
+# --- what a machine must have
+
+for external in himc~ membrane~; do
+    report "${external%\~}_tilde_needs_the_c_library_alone" \
+        "$(LC_ALL=C readelf -d "$build/externals/himc/$external.pd_linux" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -vE '^(libc|libm|libpthread|ld-linux.*)\.so\.[0-9]+$')"
+done
+
 # --- the whole piece
 
 if [ -n "$HIMC_LONG" ]; then

@@ -466,6 +466,8 @@ bool himc_air_solve(const himc_air_order *order, const himc_air_problem *p, int 
         i = own(&f, n, i);
         solved = i >= 0 && polish(order, p, &f.at[i], &roots[n]);
         roots[n].inertia = solved ? f.at[i].inertia[n] : 0;
+        for (int k = 0; k < HIMC_AIR_BASIS && solved; k++)
+            roots[n].shape[k] = f.at[i].shape[k];
     }
     return solved || unsolved(order, p, error);
 }
@@ -511,7 +513,8 @@ static bool merge(const himc_air_order *order, const himc_air_problem *p, int n,
         inverse += part / f->at[i].inertia[n];
         above = rest;
     }
-    *one = (himc_air_root){exp(x), exp(decay) - HIMC_AIR_FLOOR, 1 / inverse};
+    *one =
+        (himc_air_root){.x = exp(x), .decay = exp(decay) - HIMC_AIR_FLOOR, .inertia = 1 / inverse};
     return all > 0;
 }
 

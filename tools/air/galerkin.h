@@ -33,6 +33,7 @@ typedef struct himc_air_root {
     double x;       ///< w a/c
     double decay;   ///< delta a/c by radiation and the kettle's loss
     double inertia; ///< modal mass for a force distributed as J_m(j_mn r/a), per the bare head's
+    double shape[HIMC_AIR_BASIS]; ///< parts of J_m(j_mn r/a), set by himc_air_solve
 } himc_air_root;
 
 /// Q of the air in a kettle. An effective value, chosen: friction at the wall and at a vent leave

@@ -294,14 +294,15 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
     if (!drum->noise.sounds && force == 0)
         return;
-    bool rays = himc_membrane_rays(drum->membrane);
+    const himc_pickup *rays = himc_membrane_rays(drum->membrane);
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
     for (int k = 0; k < count && !himc_ears_alone(&drum->ears); k++)
         for (int i = 0; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
             sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
     for (int k = 0; k < HIMC_RAYS && rays; k++)
         for (int i = 0; i < n; i++)
-            sound[HIMC_PICKUPS + k][i] += NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i];
+            sound[HIMC_PICKUPS + k][i] +=
+                NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i] / rays[k].distance;
 }
 
 // runs the head without contact; the sticks fly

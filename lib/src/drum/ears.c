@@ -64,10 +64,10 @@ static himc_pickup ray_to(const himc_head_frame *frame, himc_vec3 point, bool *b
     return (himc_pickup){.kind = HIMC_PICKUP_AIR,
                          .azimuth = atan2(to.y, to.x),
                          .elevation = atan2(fabs(to.z), hypot(to.x, to.y)),
-                         .distance = 1};
+                         .distance = fmax(himc_vec3_length(to), NEAREST)};
 }
 
-// from a source to an ear
+// from a source to an ear; a ray of strength 1 has the sound at 1 m
 static himc_ear_path path_to(const himc_listener *l, int ear, himc_vec3 source, double strength)
 {
     himc_vec3 to = himc_vec3_sub(source, l->place);
@@ -94,10 +94,12 @@ himc_ear_paths himc_ears_trace(const himc_listener *l, const himc_head_frame *fr
     double returned = FLOOR * (below ? sqrt(BELOW) : 1);
     for (int ear = 0; ear < HIMC_EARS; ear++) {
         himc_vec3 at = himc_vec3_madd(l->place, HEAD_RADIUS, ear_axis(l, ear));
-        p.floor[ear] = path_to(l, ear, mirrored(frame->center), returned);
+        p.floor[ear] =
+            path_to(l, ear, mirrored(frame->center), returned * p.ray[HIMC_RAY_FLOOR].distance);
         p.floor[ear].delay -= 1 / (2 * HIMC_PI * FLOOR_CORNER); // the filter's own
         p.ray[HIMC_RAY_LEFT + ear] = ray_to(frame, at, &below);
-        p.direct[ear] = path_to(l, ear, frame->center, below ? sqrt(BELOW) : 1);
+        p.direct[ear] = path_to(l, ear, frame->center,
+                                (below ? sqrt(BELOW) : 1) * p.ray[HIMC_RAY_LEFT + ear].distance);
     }
     return p;
 }

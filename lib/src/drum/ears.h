@@ -27,7 +27,7 @@ enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
 /// One way of the sound from a drum to an ear.
 typedef struct himc_ear_path {
     double delay; ///< (s)
-    double gain;  ///< of a ray, which is the sound at 1 m
+    double gain;  ///< of a ray, which is the sound at its distance
     double shelf; ///< of high frequencies beside low ones, by the shadow of the head
 } himc_ear_path;
 

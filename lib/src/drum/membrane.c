@@ -3,8 +3,8 @@
 /// A force f at (x, y) drives mode i with phi_i(x, y) f; the displacement there is sum phi_i q_i.
 /// Both use the same phi, from the same table, so work done on the head equals the energy in its
 /// modes up to rounding, whatever the table's error. A strike point is computed once and kept while
-/// it is used. In air each mode has another frequency, decay and mass but the same shape (air.h),
-/// so all of this holds there too.
+/// it is used. In air each mode has another frequency, decay and mass but the same shape, or a
+/// mixture of shapes (air.h), so all of this holds there too.
 ///
 /// All arrays with an entry for each mode are one block of memory, the core. Another number of
 /// modes is another core, made beside the old one and exchanged. A whole membrane may also be made
@@ -109,7 +109,7 @@ static double kettle_of(const himc_head *head)
 }
 
 // Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
-// of the film; Lam_i is a bare mode's stiffness per tension. The members of a pair have one load.
+// of the film; Lam_i is the stiffness of a mode's film per tension. The members of a pair have one load.
 static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
@@ -120,17 +120,22 @@ static void find_oscillators(himc_membrane *m)
         c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        c->stretch[i] = root * mode.stiffness / m->head.tension;
         c->most[i] = mode.m > 0 ? LARGEST_BESSEL : mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
         c->wave[i] = smooth ? mode.zero / m->head.radius : 0;
+        double stretch = root * mode.stiffness / m->head.tension;
         c->per_stiffness[i] = 1 / mode.stiffness;
         c->per_mass[i] = 1 / mode.mass;
         if (m->head.air && !mode.sine)
             load = himc_air_on(&m->air, mode.m, mode.n, mode.zero);
+        c->stretch[i] = m->head.air ? stretch * load.stretch : stretch;
         if (m->head.air)
             mode = himc_air_loaded(&load, &m->head, &mode);
         c->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
+    const himc_mixture *mix = himc_modes_mixture(c->modes);
+    for (int n = 0; n < mix->count; n++)
+        for (int k = 0; k < mix->count; k++)
+            c->most[mix->index[n]] += k == n ? 0 : fabs(mix->part[n][k]);
 }
 
 // the modes that other heads hear, and what the air between takes of their decay
@@ -173,6 +178,7 @@ static void find_watched(himc_membrane *m)
 {
     core *c = &m->core;
     himc_modes_shapes(c->modes, m->head.radius, m->watch_x, m->watch_y, c->scratch);
+    himc_modes_mix(c->modes, c->scratch);
     himc_bank_readout(c->bank, c->scratch, NULL, NULL, &c->watched);
 }
 
@@ -181,6 +187,7 @@ static void find_output(himc_membrane *m, int index)
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
     himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
+    himc_modes_mix(c->modes, c->scratch);
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         const himc_oscillator *o = &c->oscillators[i];
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
@@ -241,6 +248,8 @@ static void retune(himc_membrane *m)
     keep_pickups_on_head(m);
     himc_modes_set_lugs(c->modes, m->head.uniformity, m->head.uniformity_seed);
     m->air = himc_air_around(&m->head, kettle_of(&m->head));
+    himc_mixture mixture = himc_air_mixture(&m->air);
+    himc_modes_mix_as(c->modes, m->head.air ? &mixture : NULL);
     find_oscillators(m);
     find_shared(m);
     himc_bank_set_substeps(c->bank, himc_membrane_substeps(m));
@@ -769,6 +778,20 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
     himc_bank_state(membrane->core.bank, index, q, v);
 }
 
+// displacements of the bare shapes of order 0, from those of what a kettle makes of them
+static void unmix(const himc_membrane *membrane, int count, double *displacement)
+{
+    const himc_mixture *mix = himc_modes_mixture(membrane->core.modes);
+    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
+        double sum = 0, q, v;
+        for (int n = 0; n < mix->count; n++) {
+            himc_membrane_state(membrane, mix->index[n], &q, &v);
+            sum += mix->part[n][k] * q;
+        }
+        displacement[mix->index[k]] = sum;
+    }
+}
+
 void himc_membrane_upright(const himc_membrane *membrane, int count, double *displacement)
 {
     const himc_modes *modes = membrane->core.modes;
@@ -790,6 +813,7 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, double *dis
         displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
                                     : pair[0] * axis->cosine - pair[1] * axis->sine;
     }
+    unmix(membrane, count, displacement);
 }
 
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)

@@ -83,6 +83,7 @@ static void move_point(himc_membrane *m, strike_point *s, double x, double y, do
     s->b = b;
     himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
     spread(m, s);
+    himc_modes_mix(c->modes, s->shape);
     himc_bank_readout(c->bank, s->shape, NULL, NULL, &s->readout);
     for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
         unit_response *e = &s->response[k];

@@ -42,7 +42,7 @@
 static const struct {
     double low, t60, drive; // edge (Hz), decay (s)
 } octave[HIMC_NOISE_BANDS] = {
-    {500, 0.35, 1.25e-7}, {1000, 0.20, 6.2e-8}, {2000, 0.12, 2e-8}, {4000, 0.06, 1.6e-9}};
+    {500, 0.35, 1.44e-7}, {1000, 0.20, 7.1e-8}, {2000, 0.12, 2.3e-8}, {4000, 0.06, 1.8e-9}};
 
 // a low or high pass with damping d = 1/Q, by the bilinear transform, for an octave of both rows
 static void set_edge(himc_noise_edge *e, int octave_index, double k, bool high, double d)

@@ -7,7 +7,9 @@
 /// infinite membrane's does. For m = 0 the kettle's air couples the modes by one spring k(x) =
 /// (1/l) f(x l) for the volume, so their frequencies are the roots of
 ///     1 + epsilon k sum_n 4/(j_n^2 d_n) = 0,   d_n = tau j_n^2 - x^2 (1 + epsilon beta_n)
-/// one between each two zeros of d. f(x l) = x l cot(x l), kept positive: it falls as the kettle's
+/// one between each two zeros of d; such a mode is a mixture of the bare ones, those of norm 1 with
+/// shares 2/(j_n d_n). In a slack head the spring is the stiffer part, and the lowest mode moves
+/// little air: its rim goes down as its middle goes up. f(x l) = x l cot(x l), kept positive: it falls as the kettle's
 /// air begins to move as a column. Radiation is that of the shape in a baffle,
 ///     delta = x epsilon R/(2 (1 + epsilon beta)),   R = (2/j^2) I_m(x)/(1 - g x^2/j^2)^2
 ///     I_m(x) = int_0^{pi/2} J_m(x sin t)^2 x sin t dt = J_{2m+1}(2x) + J_{2m+3}(2x) + ...
@@ -20,8 +22,8 @@
 /// Outside the table this ratio goes to 1 over a factor of four in tension, or two in epsilon: no
 /// step and no bend while the pedal moves.
 ///
-/// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, the kettle's slow spring 4
-/// epsilon/(l j^2); its mass follows from the frequency. Thus static deflections are exact and, for
+/// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, that of the kettle's slow
+/// spring epsilon/l (2/j)^2; its mass follows from the frequency. Thus static deflections are exact and, for
 /// the preferred modes of a tuned drum, the mass is within a tenth of the mass with which the whole
 /// problem responds to a blow (its residue).
 #include "head/air.h"
@@ -55,6 +57,12 @@ static const double SPEED2 = HIMC_AIR_SPEED * HIMC_AIR_SPEED;
 static const double ZERO[COUPLED_MODES] = {2.404825557695773, 5.520078110286311, 8.653727912911013,
                                            11.79153443901428, 14.93091770848779, 18.07106396791092,
                                            21.21163662987926, 24.35247153074930};
+
+_Static_assert(HIMC_MIXED == HIMC_AIR_RANKS && HIMC_MIXED <= COUPLED_MODES, "all modes (0, n)");
+
+// J_1 there
+static const double VOLUME[HIMC_MIXED] = {0.519147497289467, -0.340264806558080, 0.271452299928382,
+                                          -0.232459831434810};
 
 // logarithms of a mode's frequency per bare frequency, and of delta a/c + HIMC_AIR_FLOOR
 typedef struct log_pair {
@@ -151,36 +159,54 @@ static double spring_at(double x, double depth)
     return exp(-s * (COLUMN_2 + s * COLUMN_4)) / depth;
 }
 
+// the modes of order 0 with the added masses at rest, and one of those that the kettle's spring
+// makes of them
+typedef struct coupled_mode {
+    double x;                                         // its frequency
+    double mass[COUPLED_MODES], share[COUPLED_MODES]; // of bare modes whose norm is 1
+} coupled_mode;
+
+static double detuning(const himc_air *air, const coupled_mode *c, int n)
+{
+    return air->tension * ZERO[n] * ZERO[n] - c->x * c->x * c->mass[n];
+}
+
+// mode (0, rank) as the kettle's spring makes it
+static coupled_mode couple(const himc_air *air, double depth, int rank)
+{
+    coupled_mode c;
+    for (int n = 0; n < COUPLED_MODES; n++)
+        c.mass[n] = 1 + air->loading * added(0, n + 1, ZERO[n], depth);
+    double low = ZERO[rank - 1] * sqrt(air->tension / c.mass[rank - 1]);
+    double high = ZERO[rank] * sqrt(air->tension / c.mass[rank]);
+    c.x = low;
+    for (int i = 0; i < BISECTIONS; i++) {
+        double sum = 0;
+        c.x = 0.5 * (low + high);
+        for (int n = 0; n < COUPLED_MODES; n++)
+            sum += 4 / (ZERO[n] * ZERO[n] * detuning(air, &c, n));
+        // from -infinity to +infinity, rising
+        if (1 + air->loading * spring_at(c.x, depth) * sum < 0)
+            low = c.x;
+        else
+            high = c.x;
+    }
+    for (int n = 0; n < COUPLED_MODES; n++)
+        c.share[n] = 2 / (ZERO[n] * detuning(air, &c, n));
+    return c;
+}
+
 // a mode of order 0, coupled to the others by the kettle's spring
 static log_pair coupled(const himc_air *air, double depth, mode_id s)
 {
-    double mass[COUPLED_MODES], low, high;
-    for (int n = 0; n < COUPLED_MODES; n++)
-        mass[n] = 1 + air->loading * added(0, n + 1, ZERO[n], depth);
-    low = ZERO[s.n - 1] * sqrt(air->tension / mass[s.n - 1]);
-    high = ZERO[s.n] * sqrt(air->tension / mass[s.n]);
-    double x = low;
-    for (int i = 0; i < BISECTIONS; i++) {
-        double sum = 0;
-        x = 0.5 * (low + high);
-        for (int n = 0; n < COUPLED_MODES; n++) {
-            double square = ZERO[n] * ZERO[n];
-            sum += 4 / (square * (air->tension * square - x * x * mass[n]));
-        }
-        // from -infinity to +infinity, rising
-        if (1 + air->loading * spring_at(x, depth) * sum < 0)
-            low = x;
-        else
-            high = x;
-    }
+    coupled_mode c = couple(air, depth, s.n);
     double volume = 0, inertia = 0;
     for (int n = 0; n < COUPLED_MODES; n++) {
-        double square = ZERO[n] * ZERO[n], d = air->tension * square - x * x * mass[n];
-        volume += 2 / (square * d * fmax(directivity(0, x, ZERO[n]), LEAST_DIRECTIVITY));
-        inertia += 2 * mass[n] / (square * d * d);
+        volume += c.share[n] / (ZERO[n] * fmax(directivity(0, c.x, ZERO[n]), LEAST_DIRECTIVITY));
+        inertia += 0.5 * c.mass[n] * c.share[n] * c.share[n];
     }
-    double decay = 0.5 * air->loading * x * volume * volume * radiated(0, 2 * x) / inertia;
-    return logarithms(x, decay, s.zero * sqrt(air->tension));
+    double decay = 0.5 * air->loading * c.x * volume * volume * radiated(0, 2 * c.x) / inertia;
+    return logarithms(c.x, decay, s.zero * sqrt(air->tension));
 }
 
 static log_pair closed_form(const himc_air *air, double depth, mode_id s)
@@ -314,8 +340,40 @@ static himc_air_load on_statistical(const himc_air *air, double zero)
         .radiation = air->loading * HIMC_AIR_SPEED / (air->radius * mass) *
                      himc_statistical_radiation(zero, y),
         .mass = mass,
+        .stretch = 1,
         .stiffness = 1,
     };
+}
+
+himc_mixture himc_air_mixture(const himc_air *air)
+{
+    himc_mixture mix = {.count = 0};
+    for (int n = 0; n < HIMC_MIXED; n++) {
+        coupled_mode c = couple(air, air->depth, n + 1);
+        for (int k = 0; k < HIMC_MIXED; k++)
+            mix.part[n][k] = c.share[k] / c.share[n] * (VOLUME[n] / VOLUME[k]);
+    }
+    return mix;
+}
+
+// The stiffnesses of a mode per that of its bare shape: of the film in the mixture's shape, and the
+// kettle's slow spring for its change of volume.
+static void find_stiffness(const himc_air *air, mode_id s, himc_air_load *load)
+{
+    double square = s.zero * s.zero, film = square, volume = s.m == 0 ? 2 / s.zero : 0;
+    if (s.m == 0 && s.n <= HIMC_MIXED) {
+        coupled_mode c = couple(air, air->depth, s.n);
+        film = volume = 0;
+        for (int k = 0; k < HIMC_MIXED; k++) {
+            double share = c.share[k] / c.share[s.n - 1];
+            film += share * share * ZERO[k] * ZERO[k];
+            volume += share * 2 / ZERO[k];
+        }
+    }
+    load->stretch = film / square;
+    load->stiffness =
+        (film + air->loading / (air->depth * air->tension) * volume * volume) / square;
+    load->mass = load->stiffness / (load->frequency * load->frequency);
 }
 
 himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
@@ -330,14 +388,12 @@ himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
         found.ratio += q.ratio;
         found.decay += q.decay;
     }
-    double ratio = exp(found.ratio), square = zero * zero;
-    double spring = m == 0 ? 4 * air->loading / (air->depth * square * square * air->tension) : 0;
-    return (himc_air_load){
-        .frequency = ratio,
+    himc_air_load load = {
+        .frequency = exp(found.ratio),
         .radiation = fmax(exp(found.decay) - HIMC_AIR_FLOOR, 0) * HIMC_AIR_SPEED / air->radius,
-        .mass = (1 + spring) / (ratio * ratio),
-        .stiffness = 1 + spring,
     };
+    find_stiffness(air, s, &load);
+    return load;
 }
 
 himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head, const himc_mode *bare)

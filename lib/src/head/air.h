@@ -1,9 +1,9 @@
 /// air.h: the effect of the air on both sides of a head, and of the kettle, on its modes.
 ///
 /// Air moves with the head and makes it heavier, the low modes most; it carries sound away;
-/// enclosed in the kettle it is a spring to the modes of order m = 0, and it has losses. A loaded
-/// mode keeps its shape and its stiffness T (j/a)^2 int phi^2 dS, so a slow push and a change of
-/// tension act on the same head; its mass and decay change. A head without air needs none of these
+/// enclosed in the kettle it is a spring to the modes of order m = 0, mixes their shapes, and has
+/// losses. Any other loaded mode keeps its shape and its stiffness T (j/a)^2 int phi^2 dS, so a slow
+/// push and a change of tension act on the same head; its mass and decay change. A head without air needs none of these
 /// functions.
 ///
 /// In the head's own measures a drum is three numbers, tau = T/(sigma c^2), epsilon = rho a/sigma
@@ -45,11 +45,15 @@ typedef struct himc_air_load {
     double frequency; ///< per that of the bare head
     double radiation; ///< decay by sound carried away and the kettle's loss (1/s)
     double mass;      ///< modal mass per that of the bare head
-    double stiffness; ///< with the kettle's spring, per that of the bare head: 1 for m > 0
+    double stretch;   ///< stiffness of the film in its shape, per that in the bare shape
+    double stiffness; ///< with the kettle's spring, the same: 1 for m > 0
 } himc_air_load;
 
 /// For mode (m, n) with the zero j_mn; a statistical one has m = -1.
 HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero);
+
+/// The shapes that the kettle's spring gives to the modes of order 0.
+HIMC_RT himc_mixture himc_air_mixture(const himc_air *air);
 
 /// The mode with that load: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new
 /// frequency plus radiation, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic

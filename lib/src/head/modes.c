@@ -63,6 +63,7 @@ struct himc_modes {
     double uniformity;             // of the lugs, and `seed`: what `pairs` were made for
     int seed;
     himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
+    himc_mixture mixture; // by a kettle
 };
 
 himc_head himc_head_default(void)
@@ -334,6 +335,36 @@ void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed)
 const himc_lugs_pair *himc_modes_pairs(const himc_modes *modes)
 {
     return modes->pairs;
+}
+
+void himc_modes_mix_as(himc_modes *modes, const himc_mixture *mixture)
+{
+    himc_mixture *own = &modes->mixture;
+    if (mixture)
+        *own = *mixture;
+    own->count = 0;
+    for (int i = 0; mixture && i < modes->entry_count && own->count < HIMC_MIXED; i++)
+        if (modes->entries[i].m == 0)
+            own->index[own->count++] = modes->first[i];
+}
+
+const himc_mixture *himc_modes_mixture(const himc_modes *modes)
+{
+    return &modes->mixture;
+}
+
+void himc_modes_mix(const himc_modes *modes, double *numbers)
+{
+    const himc_mixture *mix = &modes->mixture;
+    double bare[HIMC_MIXED];
+    for (int n = 0; n < mix->count; n++)
+        bare[n] = numbers[mix->index[n]];
+    for (int n = 0; n < mix->count; n++) {
+        double sum = 0;
+        for (int k = 0; k < mix->count; k++)
+            sum += mix->part[n][k] * bare[k];
+        numbers[mix->index[n]] = sum;
+    }
 }
 
 // area of a head that is not round, per radius^2

@@ -29,16 +29,34 @@ HIMC_RT int himc_modes_common(const himc_modes *a, const himc_modes *b);
 HIMC_RT void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed);
 /// The pairs of each order (HIMC_LUGS_ORDERS), borrowed; they change with himc_modes_set_lugs.
 HIMC_RT const himc_lugs_pair *himc_modes_pairs(const himc_modes *modes);
+
+#define HIMC_MIXED 4 ///< modes of order 0 that a kettle mixes, the lowest
+
+/// Shapes of the modes (0, 1) .. (0, HIMC_MIXED) over a kettle: that of (0, n + 1) is the sum over k
+/// of part[n][k] times the bare shape of (0, k + 1).
+typedef struct himc_mixture {
+    double part[HIMC_MIXED][HIMC_MIXED]; ///< 1 in the diagonal
+    int index[HIMC_MIXED];               ///< of (0, n + 1) in the list, set by himc_modes_mix_as
+    int count;                           ///< as many of them are in the list; also set there
+} himc_mixture;
+
+/// From now on the list's modes are mixed like that; NULL: not at all, as at first.
+HIMC_RT void himc_modes_mix_as(himc_modes *modes, const himc_mixture *mixture);
+/// What was set, borrowed; its `count` is 0 for none.
+HIMC_RT const himc_mixture *himc_modes_mixture(const himc_modes *modes);
+/// Makes of one number for each bare shape, linear in the shapes, those of the mixed ones.
+HIMC_RT void himc_modes_mix(const himc_modes *modes, double *numbers);
+
 /// Area of the head (m^2).
 HIMC_RT double himc_modes_area(const himc_modes *modes, double radius);
 
 /// Mode `index` (0 .. count - 1) of that head, without air.
 HIMC_RT himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index);
 
-/// Its shape at (x, y) (m); 0 outside the head. Exact; himc_modes_shapes is faster.
+/// Its bare shape at (x, y) (m); 0 outside the head. Exact; himc_modes_shapes is faster.
 double himc_modes_shape_at(const himc_modes *modes, double radius, int index, double x, double y);
 
-/// All shapes at (x, y) (m) into `shapes` (count), from a table, within 1e-8.
+/// All bare shapes at (x, y) (m) into `shapes` (count), from a table, within 1e-8.
 HIMC_RT void himc_modes_shapes(const himc_modes *modes, double radius, double x, double y,
                                double *shapes);
 

@@ -106,9 +106,11 @@ static void performance_step(himc_performance *p)
     int n = himc_clock_step_samples(&p->clock);
     double t = step_time(p), h = n / p->clock.sample_rate;
     bool tick = himc_clock_is_tick(&p->clock);
-    if (tick || p->motion->replan)
-        himc_motion_read_task(p->motion, &p->settings, &p->drums, t,
-                              himc_clock_next_tick(&p->clock));
+    if (tick || p->motion->replan) {
+        double next = himc_clock_next_tick(&p->clock);
+        himc_contacts_look_down(&p->contacts, &scene, t, next);
+        himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
+    }
     if (tick)
         himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t));
     himc_motion_interpolate(p->motion, t);

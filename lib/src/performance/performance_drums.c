@@ -277,6 +277,7 @@ bool himc_drums_noticed(performance_drums *d, int index)
     unsigned revision = himc_drum_revision(d->slot[index].drum);
     bool changed = revision != d->slot[index].revision;
     d->slot[index].revision = revision;
+    d->slot[index].reach_told = d->slot[index].reach_told && !changed;
     return changed;
 }
 

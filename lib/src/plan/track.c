@@ -27,6 +27,8 @@
 #define REJOIN_DISTANCE 0.02 // ... but from this much further off than a stick goes in it (m) ...
 #define REJOIN_PEAK 250.0    // ... as long as this peak acceleration takes (m/s^2)
 #define FASTEST_STICK 12.0   // a stick that leaves the head faster has been thrown (m/s)
+#define LATEST_REJOIN 0.1    // a capture under the head is rejoined within this time (s) ...
+#define REJOIN_HEIGHT 0.02   // ... once it is so far above (m): the way there does not dip
 #define NEXT_STRIKE_GAP 1e-3 // the way ends so much before the next bridge begins (s)
 #define LEAST_REJOIN 0.015   // with less time left the path is not changed (s)
 #define SLOWEST_REJOIN 0.2   // rate of the take's time below which nothing is replanned
@@ -344,6 +346,19 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     return true;
 }
 
+// `t`, or if the capture is then below the level of a contact the time at which it is well above: a
+// way back to a place under the head would strike it again. A capture that stays there is pressed
+static double above_head(const himc_track *track, const hand_track *h, double t, double level)
+{
+    double least = level;
+    for (double at = t; at < t + LATEST_REJOIN; at += 1 / track->rate) {
+        if (himc_head_frame_from_world(&track->head, captured_at(track, h, at).x).z >= least)
+            return at;
+        least = level + REJOIN_HEIGHT;
+    }
+    return t;
+}
+
 void himc_track_separated(himc_track *track, himc_hand hand, double now,
                           const himc_target *measured)
 {
@@ -362,6 +377,7 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     bridge *b = &h->bridges[i];
     double to =
         fmax(t + REJOIN_TIME, b->next / track->rate); // between last and next nothing is known
+    to = above_head(track, h, to, b->spot.z);
     himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, measured->x);
     if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
         to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
