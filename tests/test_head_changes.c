@@ -136,6 +136,9 @@ static void test_a_queued_score_changes_heads_from_its_own_beats_on(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 130.813, pitch(p));
     session_play(p, 1.5, NULL); // past beat 1 of the second at its tempo of 100
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 164.814, pitch(p));
+    session_do(p, "seek 3.2"); // back into the first, where it was when it ended
+    session_play(p, 0.1, NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 130.813, pitch(p));
     himc_performance_free(p);
 }
 

@@ -105,10 +105,19 @@ static int change_at(const himc_drum_heads *heads, double beat)
     return i;
 }
 
+bool himc_drum_heads_due(const himc_drum_heads *heads, double beat)
+{
+    bool earlier = heads->before && beat < heads->from;
+    return earlier ? heads->now != -2 || himc_drum_heads_due(heads->before, beat)
+                   : change_at(heads, beat) != heads->now;
+}
+
 void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat)
 {
     for (; heads->before && beat < heads->from; heads = heads->before)
         heads->now = -2;
+    if (heads->before)
+        heads->before->now = -2;
     int change = change_at(heads, beat);
     if (change == heads->now)
         return;

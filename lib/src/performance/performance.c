@@ -139,6 +139,7 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
         himc_clock_play(&p->clock, count);
         done += count;
     }
+    himc_drums_catch_up(&p->drums);
 }
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)

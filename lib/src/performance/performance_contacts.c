@@ -351,6 +351,11 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
             sticks[count] = &c->hand[hand].stick;
             forces[count++] = c->force[hand] + done;
         }
+    if (count == 0) {
+        s->drums->slot[drum].behind += n;
+        return;
+    }
+    himc_drums_catch_up_one(s->drums, drum);
     himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
 }
 
@@ -360,7 +365,10 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
 {
     for (int done = 0, run; done < n; done += run) {
         int64_t now = s->clock->made + done;
-        himc_air_between_exchange(&s->drums->air, now);
+        if (himc_air_between_due(&s->drums->air, now)) {
+            himc_drums_catch_up(s->drums);
+            himc_air_between_exchange(&s->drums->air);
+        }
         run = himc_air_between_until(&s->drums->air, now, n - done);
         for (int i = 0; i < s->drums->count; i++)
             advance_drum(c, s, i, done, run, near);

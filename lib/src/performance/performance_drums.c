@@ -88,6 +88,20 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     himc_drum_listen(drum, &d->listener);
 }
 
+void himc_drums_catch_up_one(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    if (slot->behind > 0)
+        himc_drum_advance_sticks(slot->drum, slot->behind, NULL, 0, NULL, NULL);
+    slot->behind = 0;
+}
+
+void himc_drums_catch_up(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drums_catch_up_one(d, i);
+}
+
 void himc_drums_join(performance_drums *d)
 {
     himc_drum *drums[HIMC_DRUMS];
@@ -176,9 +190,13 @@ void himc_drums_drop_heads(performance_drums *d)
 
 void himc_drums_turn_heads(performance_drums *d, double beat)
 {
-    for (int i = 0; i < d->count && beat >= 0; i++)
-        if (d->slot[i].heads)
-            himc_drum_heads_turn(d->slot[i].heads, d->slot[i].drum, beat);
+    for (int i = 0; i < d->count && beat >= 0; i++) {
+        drum_slot *slot = &d->slot[i];
+        if (!slot->heads || !himc_drum_heads_due(slot->heads, beat))
+            continue;
+        himc_drums_catch_up_one(d, i);
+        himc_drum_heads_turn(slot->heads, slot->drum, beat);
+    }
 }
 
 void himc_drums_release(performance_drums *d)

@@ -25,6 +25,7 @@ typedef struct drum_slot {
     bool moved;             ///< moved by the performer, see himc_drums_put_back
     bool placed;            ///< himc_drum_is_placed before that ...
     himc_vec3 found, at;    ///< ... its position then, and its new position (m)
+    int behind;             ///< samples that it has not made yet
     himc_drum_heads *heads; ///< owned; its changes in the score, NULL for none
 } drum_slot;
 
@@ -66,6 +67,11 @@ himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_
 void himc_drums_drop_heads(performance_drums *drums);
 /// Gives the drums the heads that they have at that beat; nothing if it is negative.
 HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat);
+
+/// A drum that no stick is near makes its samples later, many at a time: they are the same. Now all
+/// drums make theirs; before anything looks at them, or changes them.
+HIMC_RT void himc_drums_catch_up(performance_drums *drums);
+HIMC_RT void himc_drums_catch_up_one(performance_drums *drums, int index);
 
 /// After a change of places or of the set: finds the drums that hear each other.
 HIMC_RT void himc_drums_join(performance_drums *drums);
