@@ -117,6 +117,8 @@ static void performance_step(himc_performance *p)
         himc_contacts_look_down(&p->contacts, &scene, t, next);
         himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
     }
+    if (tick)
+        himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t));
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
     if (p->settings.control.mode == HIMC_PIPELINE_IK)
