@@ -36,6 +36,7 @@ static bool do_clear(himc_performance *p, const himc_command *c, himc_error *err
 {
     (void)c, (void)error;
     himc_planner_clear(p->motion->planner);
+    himc_drums_drop_heads(&p->drums);
     himc_motion_replan(p->motion);
     return true;
 }
