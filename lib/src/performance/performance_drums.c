@@ -88,6 +88,20 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     himc_drum_listen(drum, &d->listener);
 }
 
+void himc_drums_catch_up_one(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    if (slot->behind > 0)
+        himc_drum_advance_sticks(slot->drum, slot->behind, NULL, 0, NULL, NULL);
+    slot->behind = 0;
+}
+
+void himc_drums_catch_up(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drums_catch_up_one(d, i);
+}
+
 void himc_drums_join(performance_drums *d)
 {
     himc_drum *drums[HIMC_DRUMS];
@@ -125,9 +139,11 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         d->slot[i].revision = himc_drum_revision(drum) - 1;
         return true;
     }
+    himc_drum_heads *heads = d->slot[i].heads;
     if (d->slot[i].drum)
         release(d, d->slot[i].drum);
     fill_slot(d, i, drum, source);
+    d->slot[i].heads = heads;
     return true;
 }
 
@@ -146,6 +162,7 @@ void himc_drums_put_back(performance_drums *d)
     *d = (performance_drums){.count = 0};
     for (int i = 0; i < old.count; i++) {
         himc_drum *drum = old.slot[i].drum;
+        himc_drum_heads_free(old.slot[i].heads);
         if (old.slot[i].source != DRUM_GIVEN) {
             release(&old, drum);
             continue;
@@ -158,8 +175,33 @@ void himc_drums_put_back(performance_drums *d)
     }
 }
 
+himc_drum_heads *himc_drums_set_heads(performance_drums *d, int index, himc_drum_heads *heads)
+{
+    himc_drum_heads *before = d->slot[index].heads;
+    d->slot[index].heads = heads;
+    return before;
+}
+
+void himc_drums_drop_heads(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drum_heads_free(himc_drums_set_heads(d, i, NULL));
+}
+
+void himc_drums_turn_heads(performance_drums *d, double beat)
+{
+    for (int i = 0; i < d->count && beat >= 0; i++) {
+        drum_slot *slot = &d->slot[i];
+        if (!slot->heads || !himc_drum_heads_due(slot->heads, beat))
+            continue;
+        himc_drums_catch_up_one(d, i);
+        himc_drum_heads_turn(slot->heads, slot->drum, beat);
+    }
+}
+
 void himc_drums_release(performance_drums *d)
 {
+    himc_drums_drop_heads(d);
     while (d->count > 0)
         release(d, d->slot[--d->count].drum);
 }
