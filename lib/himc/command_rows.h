@@ -117,24 +117,25 @@ HIMC_COMMAND_ROW(LISTEN, listen, PERFORMER, NETWORK, 0, "PORT",
 
 // to a drum
 HIMC_COMMAND_ROW(RADIUS, radius, DRUM, NOW, HIMC_CHANGES_HEAD, "RADIUS", "sets the head's radius")
-HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, HIMC_CHANGES_HEAD, "TENSION",
+HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "TENSION",
                  "sets the head's tension")
 HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, HIMC_CHANGES_HEAD, "DENSITY",
                  "sets the head's mass per area")
-HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD, "HZ | NOTE",
+HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "HZ | NOTE",
                  "sets the tension so that the principal mode sounds there")
 HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
                  "sets the number of modes; auto: exact where they overlap little, statistical "
                  "above, up to 8 kHz and more")
-HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD, "T60 | SIGMA0 SIGMA1",
+HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "T60 | SIGMA0 SIGMA1",
                  "sets the losses by the decay time, or by both of their parameters")
 HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
                  "1: air and kettle load the head")
 HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
                  "sets the volume under the head, or the usual one for its radius")
-HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT",
+HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "sets how much the tension rises as the head bows out")
-HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT", "lays a hand on the head")
+HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+                 "lays a hand on the head")
 HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
                  "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
                  "split and beat, each seed in its own way")

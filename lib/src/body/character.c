@@ -184,6 +184,25 @@ void himc_character_place(himc_character *c, const himc_body_state *state)
     changed(c);
 }
 
+// the joints of the pelvis are anchored in ODE's world
+static void anchor_pelvis(himc_character *c)
+{
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 at = c->state.joints.origin[i];
+        for (int k = 0; k < dBodyGetNumJoints(c->body[i]); k++)
+            if (!dJointGetBody(dBodyGetJoint(c->body[i], k), 1))
+                dJointSetBallAnchor(dBodyGetJoint(c->body[i], k), at.x, at.y, at.z);
+    }
+}
+
+void himc_character_seat(himc_character *c, double height)
+{
+    c->skeleton.root.z = height;
+    himc_character_place(c, &c->state.joints);
+    give_to_ode(c);
+    anchor_pelvis(c);
+}
+
 // the tips from the stick's centre; along the joints their drift would add up
 static void observe_tips(const himc_character *c, himc_body_state *s)
 {

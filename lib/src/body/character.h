@@ -23,6 +23,9 @@ typedef enum himc_engine {
 HIMC_RT void himc_character_use(himc_character *character, himc_engine engine);
 HIMC_RT himc_engine himc_character_engine(const himc_character *character);
 
+/// Sets the height of the pelvis (m); himc_character_place then puts the body there.
+HIMC_RT void himc_character_seat(himc_character *character, double height);
+
 /// Sets the body to a state. Only orientations and spins are used, the rest follows from them.
 HIMC_RT void himc_character_place(himc_character *character, const himc_body_state *state);
 

@@ -58,6 +58,12 @@
 #define ANKLE_HEIGHT 0.075 // (m)
 #define KNEES_APART 0.45   // each, from straight ahead (rad)
 #define THIGH_LIMIT (-0.2) // cosine of the steepest thigh on a low seat: knees above the hips
+// The stool. Chosen: at 1.75 m a head at 0.85 m, and 0.1 m lower or higher, is played from the usual
+// seat; hands of a lower one would strike through the thighs, arms of a higher one be raised.
+#define HIGHEST_IMPACT 0.14 // over the seat, of the body's height
+#define LOWEST_IMPACT 0.03  // (m)
+#define STANDING_SHARE 0.53 // hips of a standing player, of the height
+#define LOWEST_STOOL 0.3    // (m)
 // A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
 #define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
 #define REACHED_ABOVE 0.1  // above the level of impact (m)
@@ -89,6 +95,15 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     posture->rest.joint[HIMC_HEAD - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->level = level;
     seat_legs(&posture->rest, skeleton);
+}
+
+double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest)
+{
+    double seat = himc_skeleton_seat(body), standing = STANDING_SHARE * body->height;
+    if (body->seat > 0 || lowest > highest)
+        return seat;
+    seat = fmax(seat, fmin(highest - HIGHEST_IMPACT * body->height, standing));
+    return fmax(fmin(seat, lowest - LOWEST_IMPACT), LOWEST_STOOL);
 }
 
 himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
@@ -287,8 +302,9 @@ himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand, hi
         return tip;
     // bisection on the line from a point in reach of every body
     double side = posture->skeleton.segment[HIMC_LEFT_UPPER_ARM + hand].origin.y;
-    himc_vec3 from = {REACHED_AHEAD * posture->skeleton.height, 0.5 * side,
-                      posture->level + REACHED_ABOVE};
+    double seat = posture->skeleton.root.z, high = HIGHEST_IMPACT * posture->skeleton.height;
+    double level = fmin(fmax(posture->level, seat + LOWEST_IMPACT), seat + high);
+    himc_vec3 from = {REACHED_AHEAD * posture->skeleton.height, 0.5 * side, level + REACHED_ABOVE};
     himc_vec3 line = himc_vec3_sub(tip, from);
     double reached = 0, missed = 1;
     for (int i = 0; i < BISECTIONS; i++) {

@@ -44,6 +44,10 @@ typedef struct himc_posture {
 /// The model of a timpanist on a stool who leans a little forward and looks at the drumhead.
 HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, double level);
 
+/// The height of the stool (m) for a body with impacts between these two levels (m): the usual one,
+/// or as much higher or lower as its arms need; also the usual one if `lowest` is above `highest`.
+HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest);
+
 /// The trunk posture for strokes at these points (m), one for each hand: turned towards their
 /// middle, leaning forward as far as the farther one requires. At rest.
 HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip);

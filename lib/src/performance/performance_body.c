@@ -73,6 +73,14 @@ void himc_body_place(performance_body *b, const himc_setpoint *at)
     himc_character_place(b->character, &b->state);
 }
 
+void himc_body_seat(performance_body *b, double height)
+{
+    if (b->skeleton.root.z == height)
+        return;
+    b->skeleton.root.z = b->plant.root.z = height;
+    himc_character_seat(b->character, height);
+}
+
 void himc_body_take_up(performance_body *b)
 {
     himc_character_place(b->character, &b->state);

@@ -47,6 +47,8 @@ bool himc_body_build(performance_body *body, const performance_settings *setting
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
 /// Sets the simulated body to the last kinematic pose.
 HIMC_RT void himc_body_take_up(performance_body *body);
+/// Puts the pelvis at this height (m); himc_body_place then puts the body there.
+HIMC_RT void himc_body_seat(performance_body *body, double height);
 /// A new controller for this body, made for the resting posture; and the engine of the settings.
 void himc_body_init_controller(performance_body *body, const performance_settings *settings,
                                const himc_pose *rest);

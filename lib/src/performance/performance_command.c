@@ -36,6 +36,7 @@ static bool do_clear(himc_performance *p, const himc_command *c, himc_error *err
 {
     (void)c, (void)error;
     himc_planner_clear(p->motion->planner);
+    himc_drums_drop_heads(&p->drums);
     himc_motion_replan(p->motion);
     return true;
 }
@@ -501,6 +502,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
 
 static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
 {
+    himc_drums_catch_up(&p->drums);
     return actions[command->id](p, command, error);
 }
 

@@ -5,12 +5,17 @@
 /// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
 /// ends of the contact see the same force, and the body's tip and the point differ only by the
 /// change of M in a step; that offset is kept during contact and decays afterwards. From the
-/// planned time of contact, or the first force, to separation, control does not act along the
-/// head's normal. Then the plan continues from the measured state of the stick.
+/// planned time of a stroke's contact, or its first force, to separation, control does not act along
+/// the head's normal. Then the plan continues from the measured state of the stick.
+///
+/// A contact that no stroke asked for is a press (grip.h), and so is a stroke after which the tip
+/// rests on the head: control acts on with a bounded force, and the plan is not changed. A press
+/// ends when the stick has clearly left the head, so a stick that rests has one contact.
 #include "performance/performance_contacts.h"
 
 #include "body/dynamics.h"
 #include "base/head_frame.h"
+#include "control/grip.h"
 
 #include <string.h>
 
@@ -32,6 +37,11 @@
 #define LATEST_CONTACT 0.015  // of a contact after its planned time (s)
 #define SLOWEST_STRIKE 0.01   // (m/s); chosen: a stick at rest moves by 1e-5
 #define SAME_STROKE 0.100     // largest time between planned and real contact of one stroke (s)
+// chosen: more than a pressed stick moves on a head that swings, less than one that is lifted
+#define LIFTED_HEIGHT 0.003 // a pressed stick so high has left the head (m) ...
+#define LIFTED_SPEED 0.2    // ... or one that rises so fast (m/s)
+#define RESTING_SPEED 0.25  // a contact slower than this ...
+#define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
 
@@ -80,6 +90,45 @@ static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc
     himc_motion_go_on_from(s->motion, hand, t, &m);
 }
 
+// true for a stroke of a take after which the tip stays on the head
+static bool rests_after(const contact_scene *s, himc_hand hand, const planned_stroke *stroke)
+{
+    return stroke->drum < s->drums->count &&
+           himc_motion_rests_after(s->motion, hand, stroke->time, frame_of(s, stroke->drum));
+}
+
+// the highest head that the hand's tip is above or on, or -1
+static int head_under(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    int under = -1;
+    double least = HUGE_VAL;
+    for (int i = 0; i < s->drums->count; i++) {
+        himc_vec3 at = over_head(s, i, s->body->state.tip[hand]);
+        double lowest = c->touching && c->drum == i ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
+        if (hypot(at.x, at.y) < frame_of(s, i)->radius && at.z > lowest && at.z < least) {
+            least = at.z;
+            under = i;
+        }
+    }
+    return under;
+}
+
+void himc_contacts_look_down(performance_contacts *contacts, const contact_scene *s, double t,
+                             double next)
+{
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        const stick_contact *c = &contacts->hand[i];
+        planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
+        // the plan of a stroke that rebounds dips into the head, and nothing follows it there
+        bool rebounds = c->touching ? !c->pressed
+                                    : stroke.any && stroke.time < next + (next - t) &&
+                                          !rests_after(s, hand, &stroke);
+        int under = rebounds ? -1 : head_under(c, s, hand);
+        himc_motion_set_under(s->motion, hand, under < 0 ? NULL : frame_of(s, under));
+    }
+}
+
 // gives up a planned contact that has not come; the plan continues
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
                     const planned_stroke *next)
@@ -104,6 +153,14 @@ static void follow_stick(const stick_contact *c, const contact_scene *s, himc_ha
     himc_motion_move_tip(s->motion, s->settings, hand, &tip, t);
 }
 
+// the hand's acceleration of a pressed stick along the normal (m/s^2)
+static double press(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
+    return himc_grip_press(&s->motion->reference.tip[hand], &tip,
+                           himc_head_frame_normal(frame_of(s, c->drum)), c->stick.mass);
+}
+
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
     planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
@@ -113,8 +170,9 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
         due = false;
     }
     int drum = c->touching ? c->drum : next.drum;
-    c->released = due || (c->touching && t < c->strike.time + LONGEST_RELEASE);
-    himc_motion_release(s->motion, hand, c->released);
+    c->released = c->touching || (due && !rests_after(s, hand, &next));
+    c->hand = c->touching && c->pressed ? press(c, s, hand) : 0;
+    himc_motion_release(s->motion, hand, c->released, c->hand);
     if (drum < s->drums->count)
         himc_motion_set_normal(s->motion, hand, himc_head_frame_normal(frame_of(s, drum)));
     if (c->touching && is_kinematic(s))
@@ -174,7 +232,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.one_way = s->settings->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
-    c->stick.acceleration = 0;
+    c->stick.acceleration = c->hand;
     if (!is_kinematic(s))
         c->stick.acceleration =
             bounded(himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative)),
@@ -191,6 +249,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, time);
     bool planned = next.any && fabs(next.time - time) < SAME_STROKE;
     c->touching = true;
+    c->told = false;
+    c->pressed = !planned || rests_after(s, hand, &next);
     c->strike = (himc_strike){.time = time,
                               .hand = hand,
                               .x = c->stick.x,
@@ -201,8 +261,10 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .planned_y = next.y};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, planned ? next.nuance : "none");
-    if (!planned)
+    if (!planned) {
+        himc_statistics_unplanned(s->statistics);
         return;
+    }
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     bool played =
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
@@ -233,6 +295,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     himc_statistics_force(s->statistics, c->strike.force);
+    himc_statistics_contact(s->statistics, c->strike.duration);
     return impulse;
 }
 
@@ -291,6 +354,11 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
             sticks[count] = &c->hand[hand].stick;
             forces[count++] = c->force[hand] + done;
         }
+    if (count == 0) {
+        s->drums->slot[drum].behind += n;
+        return;
+    }
+    himc_drums_catch_up_one(s->drums, drum);
     himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
 }
 
@@ -300,7 +368,10 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
 {
     for (int done = 0, run; done < n; done += run) {
         int64_t now = s->clock->made + done;
-        himc_air_between_exchange(&s->drums->air, now);
+        if (himc_air_between_due(&s->drums->air, now)) {
+            himc_drums_catch_up(s->drums);
+            himc_air_between_exchange(&s->drums->air);
+        }
         run = himc_air_between_until(&s->drums->air, now, n - done);
         for (int i = 0; i < s->drums->count; i++)
             advance_drum(c, s, i, done, run, near);
@@ -328,14 +399,34 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
     }
 }
 
-static void end_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+// reports the strike, once; a head raised into a resting stick is none, nor is a stick laid down
+// again
+static void tell(stick_contact *c, const contact_scene *s)
 {
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
-    if (c->strike.velocity > SLOWEST_STRIKE) // a head raised into a resting stick is no strike
+    bool resting =
+        c->pressed && c->strike.velocity < RESTING_SPEED && c->strike.time < c->left + RESTING_TIME;
+    if (c->strike.velocity > SLOWEST_STRIKE && !resting && !c->told)
         himc_events_add(s->events, &event);
-    if (c->released)
+    c->told = true;
+}
+
+static void end_contact(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+{
+    tell(c, s);
+    if (!c->pressed)
         go_on_from_here(c, s, hand, t);
     c->touching = false;
+    c->left = t;
+}
+
+static bool has_separated(const stick_contact *c, const contact_scene *s, double t, double height)
+{
+    // both are whole samples; half of one, so that the rounding of times does not decide
+    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
+    if (c->pressed)
+        return quiet > ANY_GAP && (height > LIFTED_HEIGHT || c->stick.velocity > LIFTED_SPEED);
+    return (quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP;
 }
 
 static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t,
@@ -348,12 +439,14 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     double height = over_head(s, c->drum, s->body->state.tip[hand]).z;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
-    // both are whole samples; half of one, so that the rounding of times does not decide
-    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
-    if ((quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP)
-        end_strike(c, s, hand, t);
-    else if (c->released && t >= c->strike.time + LONGEST_RELEASE)
-        go_on_from_here(c, s, hand, t);
+    if (has_separated(c, s, t, height)) {
+        end_contact(c, s, hand, t);
+    } else if (t >= c->strike.time + LONGEST_RELEASE) {
+        tell(c, s);
+        if (!c->pressed)
+            go_on_from_here(c, s, hand, t);
+        c->pressed = true;
+    }
 }
 
 void himc_contacts_finish(performance_contacts *c, const contact_scene *s, double t)

@@ -95,6 +95,20 @@ void himc_drums_begin(performance_drums *d)
     *d = (performance_drums){.walls = HIMC_WALLS_USUAL, .gain = 1};
 }
 
+void himc_drums_catch_up_one(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    if (slot->behind > 0)
+        himc_drum_advance_sticks(slot->drum, slot->behind, NULL, 0, NULL, NULL);
+    slot->behind = 0;
+}
+
+void himc_drums_catch_up(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drums_catch_up_one(d, i);
+}
+
 void himc_drums_join(performance_drums *d)
 {
     himc_drum *drums[HIMC_DRUMS];
@@ -134,9 +148,11 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         d->slot[i].revision = himc_drum_revision(drum) - 1;
         return true;
     }
+    himc_drum_heads *heads = d->slot[i].heads;
     if (d->slot[i].drum)
         release(d, d->slot[i].drum);
     fill_slot(d, i, drum, source);
+    d->slot[i].heads = heads;
     return true;
 }
 
@@ -155,6 +171,7 @@ void himc_drums_put_back(performance_drums *d)
     himc_drums_begin(d);
     for (int i = 0; i < old.count; i++) {
         himc_drum *drum = old.slot[i].drum;
+        himc_drum_heads_free(old.slot[i].heads);
         if (old.slot[i].source != DRUM_GIVEN) {
             release(&old, drum);
             continue;
@@ -167,8 +184,33 @@ void himc_drums_put_back(performance_drums *d)
     }
 }
 
+himc_drum_heads *himc_drums_set_heads(performance_drums *d, int index, himc_drum_heads *heads)
+{
+    himc_drum_heads *before = d->slot[index].heads;
+    d->slot[index].heads = heads;
+    return before;
+}
+
+void himc_drums_drop_heads(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drum_heads_free(himc_drums_set_heads(d, i, NULL));
+}
+
+void himc_drums_turn_heads(performance_drums *d, double beat)
+{
+    for (int i = 0; i < d->count && beat >= 0; i++) {
+        drum_slot *slot = &d->slot[i];
+        if (!slot->heads || !himc_drum_heads_due(slot->heads, beat))
+            continue;
+        himc_drums_catch_up_one(d, i);
+        himc_drum_heads_turn(slot->heads, slot->drum, beat);
+    }
+}
+
 void himc_drums_release(performance_drums *d)
 {
+    himc_drums_drop_heads(d);
     while (d->count > 0)
         release(d, d->slot[--d->count].drum);
 }
@@ -277,6 +319,7 @@ bool himc_drums_noticed(performance_drums *d, int index)
     unsigned revision = himc_drum_revision(d->slot[index].drum);
     bool changed = revision != d->slot[index].revision;
     d->slot[index].revision = revision;
+    d->slot[index].reach_told = d->slot[index].reach_told && !changed;
     return changed;
 }
 

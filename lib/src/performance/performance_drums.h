@@ -19,11 +19,14 @@ typedef enum drum_source {
 typedef struct drum_slot {
     himc_drum *drum; ///< a reference of the performance's own
     drum_source source;
-    unsigned revision;   ///< last one given to the planner
-    bool untold;         ///< auto-placed; the user has not been notified
-    bool moved;          ///< moved by the performer, see himc_drums_put_back
-    bool placed;         ///< himc_drum_is_placed before that ...
-    himc_vec3 found, at; ///< ... its position then, and its new position (m)
+    unsigned revision;      ///< last one given to the planner
+    bool untold;            ///< auto-placed; the user has not been notified
+    bool reach_told;        ///< out of reach there, and the user has been notified
+    bool moved;             ///< moved by the performer, see himc_drums_put_back
+    bool placed;            ///< himc_drum_is_placed before that ...
+    himc_vec3 found, at;    ///< ... its position then, and its new position (m)
+    int behind;             ///< samples that it has not made yet
+    himc_drum_heads *heads; ///< owned; its changes in the score, NULL for none
 } drum_slot;
 
 /// Strokes refer to their drum by its slot. Only himc_drums_put_back frees slots.
@@ -65,6 +68,19 @@ himc_job *himc_drums_listen_job(performance_drums *drums, const himc_listener *l
 /// are as when they were added: heads at rest, at the place of their owner or else placed automatically.
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
+
+/// Sets the changes of a drum's head in the score (NULL: none). Returns those before, which the caller
+/// frees.
+himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_drum_heads *heads);
+/// Drops the changes of all heads.
+void himc_drums_drop_heads(performance_drums *drums);
+/// Gives the drums the heads that they have at that beat; nothing if it is negative.
+HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat);
+
+/// A drum that no stick is near makes its samples later, many at a time: they are the same. Now all
+/// drums make theirs; before anything looks at them, or changes them.
+HIMC_RT void himc_drums_catch_up(performance_drums *drums);
+HIMC_RT void himc_drums_catch_up_one(performance_drums *drums, int index);
 
 /// After a change of places or of the set: finds the drums that hear each other.
 HIMC_RT void himc_drums_join(performance_drums *drums);

@@ -10,6 +10,10 @@
 #define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
 #define UNDER_THE_HEAD 0.3  // a target deeper than this is under the drum, not in its head (m)
 
+// chosen: a stroke so little out of reach is played
+#define OUT_OF_REACH 0.01 // (m)
+#define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
+
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
 static bool check_stroke(const himc_stroke *s, himc_error *error)
@@ -39,6 +43,34 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
     return himc_planner_add(p->motion->planner, stroke, drum.index, error);
 }
 
+// "too low" and so on, from the direction in which the reach ends
+static const char *direction_of(himc_vec3 beyond, himc_vec3 center)
+{
+    if (fabs(beyond.z) > hypot(beyond.x, beyond.y))
+        return beyond.z < 0 ? "too low" : "too high";
+    if (center.x < BEHIND * fabs(center.y))
+        return "too far behind";
+    return beyond.x * center.x + beyond.y * center.y < 0 ? "too near" : "too far";
+}
+
+// one line for each drum that stands where it was not asked to, or out of reach
+static void tell_places(himc_performance *p)
+{
+    himc_performance_notice_drums(p);
+    himc_drums_tell_places(&p->drums, &p->events);
+    for (int i = 0; i < p->drums.count; i++) {
+        drum_slot *slot = &p->drums.slot[i];
+        const himc_head_frame *head = himc_drums_frame(&p->drums, i);
+        himc_vec3 beyond = himc_motion_beyond(p->motion, head);
+        double distance = himc_vec3_length(beyond);
+        if (distance < OUT_OF_REACH || slot->reach_told)
+            continue;
+        slot->reach_told = true;
+        himc_events_note(&p->events, "drum %s is %s by %.2f m: strokes on it are given up",
+                         himc_drum_name(slot->drum), direction_of(beyond, head->center), distance);
+    }
+}
+
 bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     int drum;
@@ -49,7 +81,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
     if (!himc_performance_ensure_drum(p, stroke->drum, &drum, error))
         return false;
-    himc_drums_tell_places(&p->drums, &p->events);
+    tell_places(p);
     double at = himc_planner_hit(p->motion->planner, now, stroke, drum);
     if (isfinite(at))
         himc_statistics_hit(&p->statistics, at - now);
@@ -71,7 +103,7 @@ bool himc_performance_play(himc_performance *p, himc_error *error)
     int first;
     if (!himc_performance_ensure_drum(p, "", &first, error))
         return false;
-    himc_drums_tell_places(&p->drums, &p->events);
+    tell_places(p);
     if (!p->motion->track && himc_planner_length(p->motion->planner) <= 0)
         himc_events_note(&p->events, "play: nothing to play: no strokes, no take");
     himc_motion_play(p->motion, step_time(p));
@@ -83,17 +115,19 @@ void himc_performance_stop(himc_performance *p)
     himc_motion_stop(p->motion, step_time(p));
 }
 
-// limits the depth of a target in a head
-static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
+// the head that a target is in, NULL if there is none; limits its depth
+static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
 {
     for (int i = 0; i < p->drums.count; i++) {
         const himc_head_frame *frame = himc_drums_frame(&p->drums, i);
-        himc_vec3 local = himc_head_frame_from_world(frame, x);
-        double under = p->body->skeleton.mallet_radius - DEEPEST_TARGET - local.z;
-        if (hypot(local.x, local.y) < frame->radius && under > 0 && under < UNDER_THE_HEAD)
-            return himc_vec3_madd(x, under, himc_head_frame_normal(frame));
+        himc_vec3 local = himc_head_frame_from_world(frame, *x);
+        double under = p->body->skeleton.mallet_radius - local.z;
+        if (hypot(local.x, local.y) >= frame->radius || under < 0 || under > UNDER_THE_HEAD)
+            continue;
+        *x = himc_vec3_madd(*x, fmax(under - DEEPEST_TARGET, 0), himc_head_frame_normal(frame));
+        return frame;
     }
-    return x;
+    return NULL;
 }
 
 // one note when a stream of targets begins to be refused, or leaves the reach
@@ -113,7 +147,9 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     if (!reachable && first)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
-    himc_planner_reach(p->motion->planner, step_time(p), hand, above_heads(p, x));
+    const himc_head_frame *head = head_of(p, &x);
+    x = himc_motion_ease_down(p->motion, hand, step_time(p), x, head);
+    himc_planner_reach(p->motion->planner, step_time(p), hand, x);
     himc_motion_replan(p->motion);
 }
 

@@ -45,6 +45,20 @@ performance_settings himc_settings_default(const himc_performance_config *config
     return s;
 }
 
+// the stool as these drums need it
+static void fit_stool(performance_motion *motion, performance_body *body,
+                      const performance_drums *drums, const performance_settings *s)
+{
+    double lowest = INFINITY, highest = -INFINITY;
+    for (int i = 0; i < drums->count; i++) {
+        double level = himc_drums_frame(drums, i)->center.z + s->skeleton.mallet_radius;
+        lowest = fmin(lowest, level);
+        highest = fmax(highest, level);
+    }
+    himc_body_seat(body, himc_posture_seat(&s->skeleton, lowest, highest));
+    himc_motion_seat(motion, body->skeleton.root.z);
+}
+
 // body and motion begin together, at the targets of `t`
 static void put_together(performance_motion *motion, performance_body *body,
                          const performance_settings *s, double t)
@@ -166,6 +180,7 @@ void himc_performance_embody(himc_performance *p, const performance_settings *wa
     if (s.control.human_strength)
         himc_controller_set_human_strength(&s.control, s.skeleton.mass);
     p->settings = s;
+    fit_stool(p->motion, p->body, &p->drums, &s);
     put_together(p->motion, p->body, &s, step_time(p));
     himc_performance_renew_limits(p);
 }
@@ -220,15 +235,20 @@ void himc_performance_renew_limits(himc_performance *p)
 
 void himc_performance_notice_drums(himc_performance *p)
 {
-    bool changed = false;
+    bool noticed[HIMC_DRUMS], changed = false, unseen = p->clock.made == 0;
     for (int i = 0; i < p->drums.count; i++) {
-        if (!himc_drums_noticed(&p->drums, i))
-            continue;
-        himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
-        changed = true;
+        noticed[i] = himc_drums_noticed(&p->drums, i);
+        changed = changed || noticed[i];
     }
     if (!changed)
         return;
+    if (unseen)
+        fit_stool(p->motion, p->body, &p->drums, &p->settings);
+    for (int i = 0; i < p->drums.count; i++)
+        if (noticed[i])
+            himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
+    if (unseen)
+        put_together(p->motion, p->body, &p->settings, 0);
     himc_drums_join(&p->drums);
     himc_performance_renew_limits(p);
 }

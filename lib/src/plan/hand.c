@@ -25,7 +25,7 @@
 #define HOME_MOVE 1.5           // ... and of the way home, when there is nothing to play (m/s^2)
 #define MOVE_MARGIN 1.4         // a stroke's swing takes so much longer than a straight move
 #define HURRY_SHARE 0.7         // of the unhurried time that a hurried gesture takes at least
-#define RAISED_SHARE 0.6        // a stick at this share of the stroke's height counts as raised ...
+#define RAISED_SHARE 0.45       // a stick at this share of the stroke's height counts as raised ...
 #define RAISED_TIME 0.115       // ... and can fall at once (s)
 #define LEAVE_HOME_TIME 0.4     // a tip at home takes at least so long to its stroke (s)
 #define LEAST_APPROACH_TIME 0.5 // ... and begins so much before its rise, at least (s)

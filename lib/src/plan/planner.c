@@ -63,11 +63,19 @@ bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_fra
     if (index < 0 || index >= HIMC_DRUMS || !himc_vec3_finite(place->center) ||
         !isfinite(place->tilt) || !(place->radius > 0 && place->radius < MOST_HEAD_RADIUS))
         return false;
-    if (himc_head_frame_equal(&planner->drum[index], place))
+    if (planner->known[index] && himc_head_frame_equal(&planner->drum[index], place))
         return true;
     planner->drum[index] = *place;
+    planner->known[index] = true;
+    himc_planner_rest_again(planner);
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
     return true;
+}
+
+void himc_planner_set_body(himc_planner *planner)
+{
+    himc_planner_rest_again(planner);
+    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,

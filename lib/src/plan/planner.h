@@ -15,7 +15,7 @@
 
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
-    himc_vec3 rest[HIMC_HANDS]; ///< where a tip waits when there is nothing to play (m)
+    himc_vec3 rest[HIMC_HANDS]; ///< where a tip rests while no drum in its reach is known (m)
     /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
     /// NULL: all is in reach.
     double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
@@ -35,7 +35,7 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
 void himc_planner_free(himc_planner *planner);
 
 /// Drum `index` (0 .. HIMC_DRUMS-1) is at `place` from now on; strokes that have not begun go
-/// there. False, and nothing changed, if one of the values is not allowed.
+/// there, and a hand rests 85 mm over the head of its last stroke, at first over drum 0. False, and nothing changed, if one of the values is not allowed.
 HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place);
 
 #define HIMC_UNITS 256 ///< chosen: five nuances, two hands, and 25 strokes of each
@@ -44,6 +44,9 @@ HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_
 /// hand. False, and nothing added, if there would be more than HIMC_UNITS.
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
                             himc_error *error);
+/// The body has changed: the hands rest where it reaches.
+HIMC_RT void himc_planner_set_body(himc_planner *planner);
+
 /// Back to the built-in strokes.
 HIMC_RT void himc_planner_clear_units(himc_planner *planner);
 /// Units of this grip (himc_grip) are preferred.

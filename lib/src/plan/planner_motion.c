@@ -48,6 +48,14 @@
 #define OTHER_SPOT 10     // as a difference of log speed
 #define OTHER_GRIP 20     // as a difference of log speed
 
+// where a tip rests (m); chosen: near enough to look at rest, too high to touch a ringing head; at
+// the height of the usual strike point, the hands as far apart as the shoulders
+#define REST_OVER 0.085     // the mallet over the head: a hit at mf comes within a quarter second
+#define REST_BACK (2.0 / 3) // from the centre towards the performer, of the radius
+#define REST_ASIDE 0.3      // to the hand's own side, of the radius ...
+#define REST_MOST_ASIDE 0.1 // ... and at most
+#define HOME_MOVED 1e-4     // a smaller change of the resting place moves nothing
+
 /// What has become of a stroke that was to be planned.
 typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME } plan_result;
 
@@ -239,6 +247,66 @@ static double beyond(const himc_planner *planner, himc_hand hand, const himc_goa
     return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
 }
 
+static himc_vec3 rest_over(const himc_planner *planner, himc_hand hand, int drum)
+{
+    const himc_head_frame *head = &planner->drum[drum];
+    double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
+    himc_vec3 at =
+        tip_at(planner, head, -REST_BACK * head->radius, hand == HIMC_LEFT ? aside : -aside);
+    return himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
+}
+
+static double azimuth(const himc_head_frame *head)
+{
+    return atan2(head->center.y, head->center.x);
+}
+
+/// The drum over which a hand rests: that of its last stroke, but the hands do not rest crossed.
+static int rest_drum(const himc_planner *planner, himc_hand hand)
+{
+    int left = planner->hand[HIMC_LEFT].drum, right = planner->hand[HIMC_RIGHT].drum;
+    bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
+    return (hand == HIMC_LEFT) != crossed ? left : right;
+}
+
+static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
+{
+    const himc_planner_config *c = &planner->config;
+    *place = rest_over(planner, hand, drum);
+    return planner->known[drum] && !(c->beyond && c->beyond(c->body, hand, *place) > UNREACHED);
+}
+
+/// Where a hand rests: over its drum or, out of its reach, over the first one in reach.
+static himc_vec3 rest_place(const himc_planner *planner, himc_hand hand)
+{
+    himc_vec3 place;
+    if (is_rest(planner, hand, rest_drum(planner, hand), &place))
+        return place;
+    for (int drum = 0; drum < HIMC_DRUMS; drum++)
+        if (is_rest(planner, hand, drum, &place))
+            return place;
+    return planner->config.rest[hand];
+}
+
+static void renew_home(himc_planner *planner, himc_hand hand)
+{
+    planner_hand *h = &planner->hand[hand];
+    himc_vec3 home = h->targeted ? h->plan.home : rest_place(planner, hand);
+    if (himc_vec3_length(himc_vec3_sub(home, h->plan.home)) <= HOME_MOVED)
+        return;
+    h->plan.home = home;
+    h->plan.at_home = false;
+}
+
+void himc_planner_rest_again(himc_planner *planner)
+{
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        planner_hand *h = &planner->hand[i];
+        if (!planner->begun && h->planned_count == 0 && h->plan.at_home && !h->targeted)
+            himc_hand_place(&h->plan, 0, rest_place(planner, (himc_hand)i));
+    }
+}
+
 /// "stroke at beat 3 left" or "hit left"
 static const char *name_of(const timed_stroke *s, char text[64])
 {
@@ -304,6 +372,8 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     *planned = *s;
     planned->goal = h->plan.last;
     planned->small = is_small(planner, s, since);
+    h->drum = s->drum;
+    h->targeted = false;
     return PLANNED;
 }
 
@@ -328,6 +398,8 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     timed_stroke next;
     bool more = next_stroke(planner, hand, &next);
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
+        if (!more)
+            renew_home(planner, hand);
         himc_hand_wait(&h->plan, until, more);
         return PLANNED;
     }
@@ -611,6 +683,7 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
         himc_stream_follow(&h->stream, &h->plan, t);
     else
         himc_hand_reach(&h->plan, x);
+    h->targeted = true;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
@@ -630,6 +703,7 @@ static void drop_past(planner_hand *h, double now)
 void himc_planner_advance(himc_planner *planner, double t)
 {
     planner->now = fmax(planner->now, t);
+    planner->begun = true;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         drop_past(&planner->hand[hand], planner->now);
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);

@@ -39,6 +39,8 @@ typedef struct planner_hand {
     int waiting_count;
     timed_stroke planned[PLANNER_PLANNED]; ///< and the last one that is past
     int planned_count;
+    int drum;      ///< of its last stroke
+    bool targeted; ///< it rests at its last live target, not over a drum
     himc_stream stream;
     himc_hand_plan plan;
 } planner_hand;
@@ -46,6 +48,7 @@ typedef struct planner_hand {
 struct himc_planner {
     himc_planner_config config;
     himc_head_frame drum[HIMC_DRUMS];
+    bool known[HIMC_DRUMS]; ///< drums that have been set
     himc_unit unit[HIMC_UNITS];
     int unit_count, grip;
     himc_human human;
@@ -54,10 +57,13 @@ struct himc_planner {
     planner_hand hand[HIMC_HANDS];
     int hits;   ///< since the last `clear` or change of `human`
     double now; ///< of the last advance (s)
+    bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 /// Both hands wait at rest.
 HIMC_RT void himc_planner_motion_init(himc_planner *planner);
+/// Drums or reach have changed: the hands rest elsewhere.
+HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
