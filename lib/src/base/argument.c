@@ -86,6 +86,7 @@ static const himc_argument arguments[] = {
     {"SIGMA1", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_SIGMA1_MAX, "s", NULL},
     {"K", NULL, HIMC_ARGUMENT_NUMBER, 1e3, 1e13, "N/m^alpha", NULL},
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
+    {"VOLUME", "room", HIMC_ARGUMENT_NUMBER, 20, 1e5, "m^3", NULL},
     {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10, "m^3", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},

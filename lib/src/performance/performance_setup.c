@@ -125,6 +125,7 @@ himc_performance *himc_performance_make(const himc_performance_config *config, h
     }
     p->host = (performance_host){.config = *config, .take_options = himc_take_default()};
     himc_clock_init(&p->clock, config->sample_rate);
+    himc_drums_begin(&p->drums);
     begin(p, &s, &parts);
     return p;
 }
