@@ -261,8 +261,10 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .planned_y = next.y};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, planned ? next.nuance : "none");
-    if (!planned)
+    if (!planned) {
+        himc_statistics_unplanned(s->statistics);
         return;
+    }
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     bool played =
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
@@ -293,6 +295,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     himc_statistics_force(s->statistics, c->strike.force);
+    himc_statistics_contact(s->statistics, c->strike.duration);
     return impulse;
 }
 

@@ -106,6 +106,12 @@ bool himc_motion_is_idle(const performance_motion *m, himc_hand hand, double t)
            (himc_motion_tracks(m, hand) && t < m->track_start);
 }
 
+bool himc_motion_captured(const performance_motion *m, himc_hand hand, double t, himc_vec3 *x)
+{
+    return himc_motion_tracks(m, hand) &&
+           himc_track_captured(m->track, hand, t - m->track_start, x);
+}
+
 static double take_end(const performance_motion *m)
 {
     return m->track_start + himc_track_length(m->track);
