@@ -199,7 +199,13 @@ check test_old_file_survives_a_refused_render [ "$(cat kept.wav)" = old ]
 check test_render_succeeds_and_says_nothing_on_stderr [ "$?$(cat err)" = 0 ]
 keys=$(tail -n 1 out | grep -o '"[a-z0-9_]*":' | tr -d '":' | tr '\n' ' ')
 check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
-    "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor " ]
+    "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor \
+unplanned_contacts longest_contact_s captured_rms_mm captured_rms_percent captured_max_mm \
+captured_max_percent peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint " ]
+check test_measures_of_a_clean_score [ "$(number unplanned_contacts) $(number captured_rms_mm)" = "0 null" ]
+check test_a_stroke_touches_shortly \
+    true_that "$(number longest_contact_s) > 0.002 && $(number longest_contact_s) < 0.03"
+check test_the_grip_turns_fastest [ "$(tail -n 1 out | sed 's/.*"peak_rate_joint": "\([a-z-]*\)".*/\1/')" = right-grip ]
 check test_last_line_is_one_object [ "$(tail -n 1 out | grep -cx '{[^{}]*}')" = 1 ]
 check test_all_strokes_are_played [ "$(number strokes) $(number played) $(number missed)" = \
     "4 4 0" ]

@@ -356,6 +356,8 @@ static himc_stroke read_stroke(const himc_command *c)
         i = read_roll(c, i, &stroke);
     } else {
         stroke.hand = (himc_hand)c->choice[i++];
+        if (stroke.hand == HIMC_HANDS) // of a hit, the word after the hands
+            stroke.hand = HIMC_HAND_ANY;
         stroke.nuance = (himc_nuance)c->choice[i++];
         stroke.dynamic = read_dynamic(c, i++);
     }

@@ -60,7 +60,7 @@ typedef struct midi_part {
     int pedals;
     int fate[MIDI_FATES]; ///< notes of the file
     int moved;            ///< by octaves
-    int damped;
+    int damped;           ///< strokes
 } midi_part;
 
 /// Of two strokes on one head (of timpani: of one pitch) at the same time one is played, the louder.

@@ -300,6 +300,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     strcpy(c->strike.nuance, nuance.text);
     if (bounced)
         himc_bounce_touched(&c->bounce, time, -velocity);
+    else if (!planned)
+        himc_statistics_unplanned(s->statistics);
     if (!planned)
         return;
     if (next.bounces)
@@ -334,6 +336,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     himc_statistics_force(s->statistics, c->strike.force);
+    himc_statistics_contact(s->statistics, c->strike.duration);
     return impulse;
 }
 
@@ -392,6 +395,11 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
             sticks[count] = &c->hand[hand].stick;
             forces[count++] = c->force[hand] + done;
         }
+    if (count == 0) {
+        s->drums->slot[drum].behind += n;
+        return;
+    }
+    himc_drums_catch_up_one(s->drums, drum);
     himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
 }
 
@@ -401,7 +409,10 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
 {
     for (int done = 0, run; done < n; done += run) {
         int64_t now = s->clock->made + done;
-        himc_air_between_exchange(&s->drums->air, now);
+        if (himc_air_between_due(&s->drums->air, now)) {
+            himc_drums_catch_up(s->drums);
+            himc_air_between_exchange(&s->drums->air);
+        }
         run = himc_air_between_until(&s->drums->air, now, n - done);
         for (int i = 0; i < s->drums->count; i++)
             advance_drum(c, s, i, done, run, near);

@@ -29,6 +29,7 @@ typedef struct bridge {
 /// Written by track.c alone.
 typedef struct hand_track {
     bool present;
+    himc_vec3 *captured;     ///< as the take has it, moved to the head (frames) (m)
     himc_target *frame;      ///< (frames)
     bridge *bridges, *built; ///< as they are played, as they were built
     int bridge_count;
