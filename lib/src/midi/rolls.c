@@ -9,10 +9,11 @@
 
 #include <math.h>
 
-#define SLOWEST 9.0        // strokes of a roll (1/s)
-#define LEAST_NOTES 4      // of a roll
-#define MOST_NOTES 1000    // of a roll; chosen: a minute of a fast one
-#define LONGEST 60.0       // (s); chosen: half the planner's limit
+#define SLOWEST 9.0     // strokes of a roll (1/s)
+#define LEAST_NOTES 4   // of a roll
+#define MOST_NOTES 1000 // of a roll; chosen: a minute of a fast one
+#define LONGEST 60.0    // (s); chosen: half the planner's limit
+#define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
 #define LEAST_BEATS 0.05   // of a score's LENGTH
 #define MOST_BEATS 1000.0  // of it
 #define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
@@ -58,6 +59,24 @@ static int follow(const midi_part *part, int first, int *notes)
     return last;
 }
 
+// The roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands that
+// sticking.c gave them, one of which may go ahead. Its last stroke then.
+static int leave_time(const midi_part *part, int first, int last, int *notes)
+{
+    const midi_stroke *s = part->stroke;
+    int next = last, end = first;
+    while (next >= 0 && s[next].head == s[first].head)
+        next = next_played(part, next);
+    double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
+    *notes = 1;
+    for (int k = next_played(part, first); k >= 0 && k <= last && s[k].note->seconds <= until;
+         k = next_played(part, k)) {
+        end = k;
+        ++*notes;
+    }
+    return end;
+}
+
 // beats from the first stroke to the end of the last, which lasts as long as the others
 static double length_of(const midi_part *part, int first, int last, int notes)
 {
@@ -69,7 +88,7 @@ void himc_midi_find_rolls(midi_part *part)
 {
     int notes, last;
     for (int i = next_played(part, -1); i >= 0; i = next_played(part, last)) {
-        last = follow(part, i, &notes);
+        last = leave_time(part, i, follow(part, i, &notes), &notes);
         double length = notes >= LEAST_NOTES ? length_of(part, i, last, notes) : 0;
         if (length < LEAST_BEATS || length > MOST_BEATS) {
             last = i;
