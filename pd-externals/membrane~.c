@@ -27,7 +27,8 @@ typedef struct t_membrane {
     t_object x_obj;
     t_drum_link x_link; /* must follow: [himc~] looks for it here */
     t_float x_force;    /* the force inlet's value when nothing is connected */
-    t_symbol *x_symbol; /* that the object is bound to; NULL if it has no name */
+    t_symbol *x_symbol; /* that the object is bound to; NULL if it has no name, or another has it */
+    t_symbol *x_queue;  /* that it is bound to while another has its name, and after; or NULL */
     t_clock *x_clock;
     t_outlet *x_messages;
     int x_channels;
@@ -360,17 +361,54 @@ static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer,
     return NULL;
 }
 
+/* The symbol of those who wait for a name; as it takes several, it needs no list of ours. */
+static t_symbol *membrane_queue(const char *name)
+{
+    char text[HIMC_NAME_SIZE + 16];
+    snprintf(text, sizeof text, "himc-waiting:%s", name);
+    return gensym(text);
+}
+
+/* Takes the object's name if it is free; true if it has it then. Sent to all who wait when one of
+their name is deleted, as after a copy whose original goes. */
+static bool membrane_take_name(t_membrane *x)
+{
+    t_symbol *symbol = drum_link_symbol(himc_drum_name(x->x_link.l_drum));
+    if (!symbol->s_thing) {
+        pd_bind(&x->x_obj.ob_pd, symbol);
+        x->x_symbol = symbol;
+    }
+    return x->x_symbol;
+}
+
+static void membrane_name_free(t_membrane *x)
+{
+    membrane_take_name(x);
+}
+
 static void membrane_bind(t_membrane *x, const char *name)
 {
-    t_symbol *symbol = drum_link_symbol(name);
-    if (symbol->s_thing) {
-        pd_error(x,
-                 "membrane~: %s: there is one of this name already: no [himc~] will find this one",
-                 name);
+    if (membrane_take_name(x))
         return;
-    }
-    pd_bind(&x->x_obj.ob_pd, symbol);
-    x->x_symbol = symbol;
+    x->x_queue = membrane_queue(name);
+    pd_bind(&x->x_obj.ob_pd, x->x_queue);
+    pd_error(
+        x,
+        "membrane~: %s: there is one of this name already: [himc~] finds this one when that is gone",
+        name);
+}
+
+/* Gives the name to the next. */
+static void membrane_unbind(t_membrane *x)
+{
+    if (x->x_queue)
+        pd_unbind(&x->x_obj.ob_pd, x->x_queue);
+    if (!x->x_symbol)
+        return;
+    pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
+    t_symbol *queue = membrane_queue(himc_drum_name(x->x_link.l_drum));
+    if (queue->s_thing)
+        pd_typedmess(queue->s_thing, gensym("name-free"), 0, NULL);
 }
 
 static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
@@ -412,8 +450,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 
 static void membrane_free(t_membrane *x)
 {
-    if (x->x_symbol)
-        pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
+    membrane_unbind(x);
     himc_loader_free(x->x_loader);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
@@ -435,5 +472,6 @@ void membrane_tilde_setup(void)
         return; /* a Pd of another float size has refused it and said so */
     CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);
     class_addmethod(membrane_class, (t_method)membrane_dsp, gensym("dsp"), A_CANT, A_NULL);
+    class_addmethod(membrane_class, (t_method)membrane_name_free, gensym("name-free"), A_NULL);
     class_addanything(membrane_class, (t_method)membrane_anything);
 }

@@ -203,12 +203,18 @@ himc~: argument 1: 3, allowed: a drum's name of up to 31 characters
 himc~: argument 2: one is named twice
 himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum's name of up to 31 characters")"
 report second_drum_of_a_name_stays_nameless \
-    "$(lines "membrane~: twice: there is one of this name already: no [himc~] will find this one")"
+    "$(lines "membrane~: twice: there is one of this name already: [himc~] finds this one when that is gone")"
 report second_performer_on_a_drum_plays_a_silent_one \
     "$(lines "himc~: [membrane~ twice] is played by another [himc~]: its strokes are silent")"
 # a newer Pd repeats the box that it could not make on a line of its own
 report nothing_else_was_said_at_load \
     "$(grep -v -e '^error: ' -e '^verbose([01]): ' -e '^\(himc\|membrane\)~ [a-z0-9]' "$work/log")"
+
+play_pd successor.pd
+report copy_of_a_drum_takes_its_name_when_the_original_is_deleted \
+    "$(awk '$1 == "level:" && $2 > most { most = $2 } END { if (!(most > 60)) print "loudest " most + 0 " dB" }' "$work/log"; grep 'no \[membrane' "$work/log")"
+report number_alone_is_told_what_a_message_is \
+    "$(lines "himc~: a number: allowed: a message that begins with a word, as [hit right legato mf(")"
 
 play_pd messages.pd
 said=$(grep -c '^error: ' "$work/log")

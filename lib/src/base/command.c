@@ -319,6 +319,8 @@ static himc_stroke read_stroke(const himc_command *c)
     if (c->id == HIMC_COMMAND_STROKE)
         stroke.beat = c->atom[i++].number;
     stroke.hand = (himc_hand)c->choice[i++];
+    if (stroke.hand == HIMC_HANDS) // of a hit, the word after the hands
+        stroke.hand = HIMC_HAND_ANY;
     stroke.nuance = (himc_nuance)c->choice[i++];
     stroke.dynamic = c->choice[i] >= 0 ? c->choice[i] / LOUDEST : c->atom[i].number;
     i++;

@@ -20,6 +20,7 @@ himc_drum_form himc_drum_form_of(const himc_drum *drum)
     himc_drum_form form = {.head = himc_membrane_form_of(drum->membrane),
                            .place = drum->place,
                            .listener = drum->listener,
+                           .walls = drum->walls,
                            .external_sound = drum->external_sound};
     memcpy(form.name, drum->name, sizeof form.name);
     return form;

@@ -25,6 +25,12 @@ HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 /// A listener who is off, as at first, leaves them to the pickups. It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
+/// The walls around who hears it; at first HIMC_WALLS_USUAL. They change in 5 ms.
+HIMC_RT void himc_drum_enclose(himc_drum *drum, const himc_walls *walls);
+
+/// The fader of all drums of a performer: times the drum's own gain; at first 1. No click.
+HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
+
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
@@ -48,6 +54,7 @@ typedef struct himc_drum_form {
     himc_membrane_form head;
     himc_head_frame place;
     himc_listener listener;
+    himc_walls walls;
     bool external_sound;
 } himc_drum_form;
 

@@ -67,7 +67,7 @@ static himc_pickup ray_to(const himc_head_frame *frame, himc_vec3 point, bool *b
                          .distance = fmax(himc_vec3_length(to), NEAREST)};
 }
 
-// from a source to an ear; a ray of strength 1 has the sound at 1 m
+// from a source to an ear
 static himc_ear_path path_to(const himc_listener *l, int ear, himc_vec3 source, double strength)
 {
     himc_vec3 to = himc_vec3_sub(source, l->place);
@@ -94,12 +94,10 @@ himc_ear_paths himc_ears_trace(const himc_listener *l, const himc_head_frame *fr
     double returned = FLOOR * (below ? sqrt(BELOW) : 1);
     for (int ear = 0; ear < HIMC_EARS; ear++) {
         himc_vec3 at = himc_vec3_madd(l->place, HEAD_RADIUS, ear_axis(l, ear));
-        p.floor[ear] =
-            path_to(l, ear, mirrored(frame->center), returned * p.ray[HIMC_RAY_FLOOR].distance);
+        p.floor[ear] = path_to(l, ear, mirrored(frame->center), returned);
         p.floor[ear].delay -= 1 / (2 * HIMC_PI * FLOOR_CORNER); // the filter's own
         p.ray[HIMC_RAY_LEFT + ear] = ray_to(frame, at, &below);
-        p.direct[ear] = path_to(l, ear, frame->center,
-                                (below ? sqrt(BELOW) : 1) * p.ray[HIMC_RAY_LEFT + ear].distance);
+        p.direct[ear] = path_to(l, ear, frame->center, below ? sqrt(BELOW) : 1);
     }
     return p;
 }
@@ -158,6 +156,7 @@ static void begin(himc_ears *e)
     e->now = e->next;
     e->reach = longest(&e->now);
     e->at = e->silent = 0;
+    himc_room_leave(&e->room);
 }
 
 static void fade_to_next(himc_ears *e)
@@ -170,7 +169,7 @@ static void fade_to_next(himc_ears *e)
     e->faded = 0;
 }
 
-void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, double rate)
+void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *walls, double rate)
 {
     e->step = 1 / (FADE * rate);
     set_pole(&e->floor, FLOOR_CORNER, rate);
@@ -183,6 +182,7 @@ void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, double rate)
         e->changes = true;
     else
         begin(e);
+    himc_room_set(&e->room, walls, rate);
     e->on = true;
 }
 
@@ -194,7 +194,7 @@ void himc_ears_close(himc_ears *e)
 bool himc_ears_at_rest(const himc_ears *e)
 {
     return e->silent >= HIMC_EARS_LINE && e->faded == 1 && !e->changes &&
-           e->level == (e->on ? 1 : 0);
+           e->level == (e->on ? 1 : 0) && himc_room_at_rest(&e->room);
 }
 
 // what a path brings now: four samples of its line
@@ -223,15 +223,15 @@ static double smooth(double x)
 }
 
 // takes a sample of each ray into the lines
-static void take_in(himc_ears *e, double left, double right, double floor)
+static void take_in(himc_ears *e, const double *ray)
 {
-    bool silent = left == 0 && right == 0 && floor == 0;
+    bool silent = ray[HIMC_RAY_LEFT] == 0 && ray[HIMC_RAY_RIGHT] == 0 && ray[HIMC_RAY_FLOOR] == 0;
     e->silent = !silent ? 0 : e->silent < HIMC_EARS_LINE ? e->silent + 1 : e->silent;
     if (e->silent == AFTER)
         forget(&e->floor);
-    e->line[HIMC_RAY_LEFT][e->at] = left;
-    e->line[HIMC_RAY_RIGHT][e->at] = right;
-    e->line[HIMC_RAY_FLOOR][e->at] = low_pass(&e->floor, floor);
+    e->line[HIMC_RAY_LEFT][e->at] = ray[HIMC_RAY_LEFT];
+    e->line[HIMC_RAY_RIGHT][e->at] = ray[HIMC_RAY_RIGHT];
+    e->line[HIMC_RAY_FLOOR][e->at] = low_pass(&e->floor, ray[HIMC_RAY_FLOOR]);
 }
 
 // the ear's sample at present
@@ -248,20 +248,36 @@ static double hear(himc_ears *e, int ear)
     return passing + low_pass(&e->shadow[ear], filtered);
 }
 
+// both ears' sample at present
+static void hear_all(himc_ears *e, const double *ray, double sound[HIMC_EARS])
+{
+    double walls[HIMC_EARS];
+    take_in(e, ray);
+    for (int ear = 0; ear < HIMC_EARS; ear++)
+        sound[ear] = hear(e, ear);
+    if (!himc_room_heard(&e->room))
+        return;
+    himc_room_hear(&e->room, ray, walls);
+    for (int ear = 0; ear < HIMC_EARS; ear++)
+        sound[ear] += HIMC_EARS_LEVEL * walls[ear];
+}
+
 void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double *const *rows)
 {
     for (int i = 0; i < n; i++) {
+        double ray[HIMC_RAYS] = {0}, sound[HIMC_EARS];
+        for (int k = 0; rays && k < HIMC_RAYS; k++)
+            ray[k] = rays[k][i];
         if (e->changes && e->faded == 1)
             fade_to_next(e);
-        take_in(e, rays ? rays[HIMC_RAY_LEFT][i] : 0, rays ? rays[HIMC_RAY_RIGHT][i] : 0,
-                rays ? rays[HIMC_RAY_FLOOR][i] : 0);
         e->level = fmin(fmax(e->level + (e->on ? e->step : -e->step), 0), 1);
         e->faded = fmin(e->faded + e->step, 1);
+        hear_all(e, ray, sound);
         double level = smooth(e->level);
         for (int k = 0; k < count; k++)
             rows[k][i] *= 1 - level;
         for (int ear = 0; ear < HIMC_EARS; ear++)
-            rows[ear][i] += level * hear(e, ear);
+            rows[ear][i] += level * sound[ear];
         e->at = (e->at + 1) & (HIMC_EARS_LINE - 1);
     }
 }

@@ -186,6 +186,7 @@ static void find_output(himc_membrane *m, int index)
 {
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
+    double unit = index < HIMC_PICKUPS ? 1 : pickup->distance; // rays are as loud as at 1 m
     himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
     himc_modes_mix(c->modes, c->scratch);
     for (int i = 0; i < himc_membrane_modes(m); i++) {
@@ -195,9 +196,9 @@ static void find_output(himc_membrane *m, int index)
         mode.decay = o->decay;
         mode.mass = o->mass;
         pickup_weights w = himc_pickup_weights(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
-        c->on_q[i] = w.displacement;
-        c->on_v[i] = w.velocity;
-        c->on_force[i] = w.force;
+        c->on_q[i] = unit * w.displacement;
+        c->on_v[i] = unit * w.velocity;
+        c->on_force[i] = unit * w.force;
     }
     himc_bank_readout(c->bank, c->on_q, c->on_v,
                       pickup->kind == HIMC_PICKUP_AIR ? c->on_force : NULL,

@@ -21,7 +21,6 @@
 #define LIMIT_HEIGHT 0.35  // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8    // postures in that mean
 #define OUT_OF_REACH 1e-3  // chosen: the user is told of a target missed by more (m)
-#define BEAT_ROUNDING 1e-9 // of a time in seconds, in beats
 #define PRESS_RIM 0.9      // share of a head's radius; further out targets go past its rim, too
 
 // a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
@@ -531,7 +530,8 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
 long himc_motion_beat(performance_motion *m, double t)
 {
     double beat = himc_planner_beat(m->planner, t);
-    long whole = m->track || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    bool waits = m->track || himc_planner_is_preparing(m->planner, t);
+    long whole = waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
     bool begun = whole != m->last_beat;
     m->last_beat = whole;
     return begun ? whole : -1;

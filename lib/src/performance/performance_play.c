@@ -16,11 +16,12 @@
 
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
-static bool check_stroke(const himc_stroke *s, himc_error *error)
+static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
 {
+    bool hand = (unsigned)s->hand < HIMC_HANDS || (any_hand && s->hand == HIMC_HAND_ANY);
     bool placed = s->spot == HIMC_SPOT_XY;
-    if ((unsigned)s->hand >= HIMC_HANDS || (unsigned)s->nuance >= HIMC_NUANCES ||
-        (unsigned)s->spot > HIMC_SPOT_XY || !memchr(s->drum, 0, sizeof s->drum))
+    if (!hand || (unsigned)s->nuance >= HIMC_NUANCES || (unsigned)s->spot > HIMC_SPOT_XY ||
+        !memchr(s->drum, 0, sizeof s->drum))
         return himc_error_set(error, "stroke: no such hand, nuance or spot, or no drum's name");
     return himc_check_range("stroke: DYNAMIC", s->dynamic, 0, 1, "", error) &&
            himc_check_range("stroke: X", placed ? s->x : 0, -1, 1, "m", error) &&
@@ -30,7 +31,7 @@ static bool check_stroke(const himc_stroke *s, himc_error *error)
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
-    if (!check_stroke(stroke, error) ||
+    if (!check_stroke(stroke, false, error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
         return false;
@@ -41,6 +42,38 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
     himc_performance_keep_drum(p, &drum);
     himc_motion_replan(p->motion);
     return himc_planner_add(p->motion->planner, stroke, drum.index, error);
+}
+
+/// The time for which a command was meant that acts in this step (s): its sample's, up to a step
+/// before.
+static double asked_time(const himc_performance *p)
+{
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    return (double)sample / p->clock.sample_rate;
+}
+
+/// Plays a hit; returns the time from the moment it was asked to its contact (s), infinite if it is
+/// given up.
+static double hit(himc_performance *p, const himc_hit *asked)
+{
+    double now = step_time(p), from = asked_time(p);
+    himc_hit timed = *asked;
+    timed.at = from + p->settings.latency;
+    if (p->settings.latency > 0)
+        return himc_planner_hit_at(p->motion->planner, now, &timed) - from;
+    return himc_planner_hit(p->motion->planner, now, asked->stroke, asked->drum) - now;
+}
+
+/// Leaves a hit to the hands that no take moves; false if there is none.
+static bool give_to_free_hands(himc_performance *p, himc_stroke *stroke, bool *alone)
+{
+    double now = step_time(p);
+    bool left = himc_motion_free_hand(p->motion, HIMC_LEFT, now),
+         right = himc_motion_free_hand(p->motion, HIMC_RIGHT, now);
+    *alone = !left || !right;
+    if (*alone && stroke->hand == HIMC_HAND_ANY)
+        stroke->hand = left ? HIMC_LEFT : HIMC_RIGHT;
+    return stroke->hand == HIMC_HAND_ANY || (stroke->hand == HIMC_LEFT ? left : right);
 }
 
 // "too low" and so on, from the direction in which the reach ends
@@ -73,18 +106,18 @@ static void tell_places(himc_performance *p)
 
 bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
-    int drum;
-    double now = step_time(p);
-    if (!check_stroke(stroke, error))
+    himc_stroke own = *stroke;
+    himc_hit asked = {.stroke = &own};
+    if (!check_stroke(stroke, true, error))
         return false;
-    if (!himc_motion_free_hand(p->motion, stroke->hand, now))
+    if (!give_to_free_hands(p, &own, &asked.alone))
         return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
-    if (!himc_performance_ensure_drum(p, stroke->drum, &drum, error))
+    if (!himc_performance_ensure_drum(p, stroke->drum, &asked.drum, error))
         return false;
     tell_places(p);
-    double at = himc_planner_hit(p->motion->planner, now, stroke, drum);
-    if (isfinite(at))
-        himc_statistics_hit(&p->statistics, at - now);
+    double latency = hit(p, &asked);
+    if (isfinite(latency))
+        himc_statistics_hit(&p->statistics, latency);
     himc_motion_replan(p->motion);
     return true;
 }

@@ -76,11 +76,11 @@
 /// and some to spare.
 #define MOST_SEGMENTS 16
 
-/// The state at the plan's end in the frame of a head.
-static stroke_plan frame_at_end(const himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
+/// The state at t in the frame of a head.
+static stroke_plan frame_at(const himc_hand_plan *plan, double t, himc_vec3 spot, himc_vec3 n)
 {
-    himc_target now = himc_hand_at(plan, plan->end);
-    stroke_plan s = {.n = n, .height_end = plan->end, .path_end = plan->end};
+    himc_target now = himc_hand_at(plan, t);
+    stroke_plan s = {.n = n, .height_end = t, .path_end = t};
     s.height.h = himc_vec3_dot(n, himc_vec3_sub(now.x, spot));
     s.height.v = himc_vec3_dot(n, now.v);
     s.height.a = himc_vec3_dot(n, now.a);
@@ -90,7 +90,7 @@ static stroke_plan frame_at_end(const himc_hand_plan *plan, himc_vec3 spot, himc
 
 static stroke_plan plan_begin(himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
 {
-    stroke_plan s = frame_at_end(plan, spot, n);
+    stroke_plan s = frame_at(plan, plan->end, spot, n);
     s.plan = plan;
     return s;
 }
@@ -206,7 +206,7 @@ static double distance_to(const stroke_plan *s, const himc_goal *goal)
 
 double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    stroke_plan s = frame_at(plan, plan->end, goal->spot, goal->normal);
     double T = himc_gesture_time(&goal->gesture, s.height.h);
     double move = himc_move_time(distance_to(&s, goal), GENTLE_MOVE) + goal->gesture.down;
     return fmax(T, fmax(move, plan->at_home ? LEAVE_HOME_TIME : 0));
@@ -214,7 +214,7 @@ double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 
 double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    stroke_plan s = frame_at(plan, plan->end, goal->spot, goal->normal);
     double T = HURRY_SHARE * himc_gesture_time(&goal->gesture, s.height.h);
     if (s.height.h >= RAISED_SHARE * goal->gesture.height)
         T = fmin(T, RAISED_TIME);
@@ -232,10 +232,15 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
     return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HARDEST_MOVE) <= T;
 }
 
+bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
+{
+    stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);
+    return is_possible(&s, goal);
+}
+
 bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
-    return is_possible(&s, goal);
+    return himc_hand_can_strike_from(plan, plan->end, goal);
 }
 
 bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)

@@ -54,6 +54,9 @@ HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal 
 /// True if a tip can reach the goal in time without superhuman speed or acceleration.
 HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
 
+/// True if the tip could do so if its plan were cut at t.
+HIMC_RT bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal);
+
 /// True if the tip can reach the second goal so after it has played the first.
 HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second);
 

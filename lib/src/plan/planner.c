@@ -189,14 +189,15 @@ void himc_planner_clear(himc_planner *planner)
     himc_planner_notes_begin(&planner->notes);
 }
 
-/// Begins at score->beat; the hands have been cut.
-static void start(himc_planner *planner, double t)
+/// Begins at score->beat; the hands have been cut. If the music was `running`, listeners miss the
+/// time that the first stroke needs.
+static void start(himc_planner *planner, double t, bool running)
 {
     planner_score *score = &planner->score;
     himc_planner_score_start(score, t);
     double late = himc_planner_lateness(planner);
     himc_planner_score_delay(score, late);
-    if (late > LATENESS_NOTED)
+    if (running && late > LATENESS_NOTED)
         himc_planner_say(&planner->notes, PLANNER_LATE,
                          "beat %g is %.2g s late: the first stroke must be prepared", score->beat,
                          late);
@@ -212,7 +213,7 @@ void himc_planner_play(himc_planner *planner, double t)
         himc_planner_score_seek(score, 0);
     himc_planner_notes_begin(&planner->notes);
     himc_planner_cut_both(planner, t);
-    start(planner, t);
+    start(planner, t, false);
 }
 
 void himc_planner_stop(himc_planner *planner, double t)
@@ -238,7 +239,7 @@ void himc_planner_seek(himc_planner *planner, double t, double beat)
     if (!planner->score.playing)
         return;
     himc_planner_cut_both(planner, t);
-    start(planner, t);
+    start(planner, t, true);
 }
 
 void himc_planner_loop(himc_planner *planner, double t, bool on)
@@ -291,6 +292,14 @@ double himc_planner_beat(const himc_planner *planner, double t)
     double beat = himc_planner_score_beat_at(score, t);
     return t < score->origin + himc_planner_score_round_length(score) ? fmax(beat, score->beat)
                                                                       : beat;
+}
+
+bool himc_planner_is_preparing(const himc_planner *planner, double t)
+{
+    const planner_score *score = &planner->score;
+    return score->playing && score->past == 0 &&
+           t < score->origin + himc_planner_score_round_length(score) &&
+           himc_planner_score_beat_at(score, t) < score->beat - BEAT_ROUNDING;
 }
 
 double himc_planner_end(const himc_planner *planner)

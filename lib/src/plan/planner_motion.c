@@ -157,8 +157,7 @@ static void vary(const himc_planner *planner, timed_stroke *s)
         s->goal.time += v->late;
 }
 
-/// A reassigned stroke keeps its beat, a hit its time.
-static double waiting_time(const himc_planner *planner, const timed_stroke *s)
+double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
     return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat)
                          : s->goal.time;
@@ -171,9 +170,9 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     planner_due due;
     bool scored = himc_planner_score_next(&planner->score, hand, 0, &due);
     double t = scored ? due.time : HUGE_VAL;
-    if (h->waiting_count > 0 && waiting_time(planner, &h->waiting[0]) < t) {
+    if (h->waiting_count > 0 && himc_planner_waiting_time(planner, &h->waiting[0]) < t) {
         *next = h->waiting[0];
-        t = waiting_time(planner, next);
+        t = himc_planner_waiting_time(planner, next);
     } else if (scored) {
         *next = (timed_stroke){.stroke = due.stroke->stroke,
                                .drum = due.stroke->drum,
@@ -219,9 +218,9 @@ static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *
     h->waiting[0].goal = s->written;
 }
 
-/// Lets a stroke wait, in the order of time.
-static void queue(planner_hand *h, const timed_stroke *s)
+void himc_planner_queue(himc_planner *planner, const timed_stroke *s)
 {
+    planner_hand *h = &planner->hand[s->stroke.hand];
     int i = h->waiting_count++;
     for (; i > 0 && h->waiting[i - 1].goal.time > s->goal.time; i--)
         h->waiting[i] = h->waiting[i - 1];
@@ -245,6 +244,11 @@ static double beyond(const himc_planner *planner, himc_hand hand, const himc_goa
 {
     const himc_planner_config *c = &planner->config;
     return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
+}
+
+bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, const himc_goal *goal)
+{
+    return beyond(planner, hand, goal) <= UNREACHED;
 }
 
 static himc_vec3 rest_over(const himc_planner *planner, himc_hand hand, int drum)
@@ -347,7 +351,7 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
 {
     himc_hand hand = s->stroke.hand;
     timed_stroke after;
-    if (beyond(planner, hand, &s->goal) > UNREACHED ||
+    if (!himc_planner_reaches(planner, hand, &s->goal) ||
         !himc_hand_can_strike(&planner->hand[hand].plan, &s->goal))
         return false;
     return !next_stroke(planner, hand, &after) || himc_hand_can_follow(&s->goal, &after.written) ||
@@ -364,7 +368,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         s->varied = false;
     }
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
-    if (beyond(planner, s->stroke.hand, &s->goal) > UNREACHED)
+    if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
     if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
         return NO_TIME;
@@ -384,7 +388,7 @@ static plan_result check_following(himc_planner *planner, himc_hand hand, timed_
     if (!next_stroke(planner, hand, following) || following->index < 0 ||
         is_settled(planner, following))
         return PLANNED;
-    if (beyond(planner, hand, &following->written) > UNREACHED)
+    if (!himc_planner_reaches(planner, hand, &following->written))
         return TOO_FAR;
     return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
 }
@@ -461,8 +465,7 @@ static void cut_plan(himc_planner *planner, himc_hand hand, double t)
     h->plan.rebounding = h->plan.end - last->goal.time < BOUNCE_TIME;
 }
 
-/// Moves a time behind any stroke of the hand that is too near; false if there is no gap.
-static bool find_gap(const himc_planner *planner, himc_hand hand, double *t)
+bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *t)
 {
     const planner_hand *h = &planner->hand[hand];
     for (int tries = 0; tries < MOST_TRIES; tries++) {
@@ -489,8 +492,8 @@ static bool can_take(const himc_planner *planner, himc_hand hand, const timed_st
 {
     const planner_hand *h = &planner->hand[hand];
     double t = s->goal.time, gap = t;
-    return h->waiting_count < PLANNER_WAITING && beyond(planner, hand, &s->goal) <= UNREACHED &&
-           find_gap(planner, hand, &gap) && gap == t &&
+    return h->waiting_count < PLANNER_WAITING && himc_planner_reaches(planner, hand, &s->goal) &&
+           himc_planner_find_gap(planner, hand, &gap) && gap == t &&
            t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
 }
 
@@ -512,7 +515,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s)
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
     bool can = can_take(planner, other, &taken);
     if (can)
-        queue(h, &taken);
+        himc_planner_queue(planner, &taken);
     extend_alone(planner, other, from + PLANNER_HORIZON);
     return can;
 }
@@ -635,28 +638,6 @@ int himc_planner_last_round(const himc_planner *planner, int round)
     return round;
 }
 
-double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke, int drum)
-{
-    planner_hand *h = &planner->hand[stroke->hand];
-    if (drum < 0 || drum >= HIMC_DRUMS || !isfinite(t))
-        return HUGE_VAL;
-    himc_planner_cut(planner, stroke->hand, t);
-    timed_stroke hit = {.stroke = *stroke, .drum = drum, .index = -1};
-    hit.goal = himc_planner_goal(planner, stroke, drum, t);
-    hit.variation = himc_human_hit(&planner->human, stroke->hand, planner->hits++);
-    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
-    if (h->waiting_count == PLANNER_WAITING || !find_gap(planner, stroke->hand, &touch)) {
-        himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
-                         himc_hand_name(stroke->hand));
-        touch = HUGE_VAL;
-    } else {
-        hit.goal.time = touch;
-        queue(h, &hit);
-    }
-    himc_planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
-    return touch;
-}
-
 /// Whether a stroke of the hand is so near that it must be prepared now.
 static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t)
 {
@@ -708,6 +689,7 @@ void himc_planner_advance(himc_planner *planner, double t)
         drop_past(&planner->hand[hand], planner->now);
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
+    himc_planner_notes_tell_hits(&planner->notes, planner->now);
 }
 
 himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, double t)

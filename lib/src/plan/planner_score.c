@@ -15,7 +15,6 @@
 #define CLOSEST_STROKES 0.04     // of one hand (s); chosen: faster than any roll of one hand
 #define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
 #define FIRST_ROOM 256           // strokes; then the room doubles
-#define BEAT_ROUNDING 1e-9       // of a beat to go to (beats)
 #define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
 #define MOST_ROUNDS 1e9          // they fit an int
 

@@ -5,6 +5,8 @@
 
 #include "himc/score.h"
 
+#define BEAT_ROUNDING 1e-9 ///< of a time in seconds, in beats
+
 typedef struct planner_stroke {
     himc_stroke stroke;
     int drum;
