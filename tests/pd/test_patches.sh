@@ -55,6 +55,7 @@ done <<'LIST'
 04-follow-the-mouse 6 10 kettle
 05-four-timpani 8 12 low second third high
 06-duo 5 24 left-kettle right-kettle
+08-midi-file 10 10 low third
 pieces/tide 14 7 low second third
 LIST
 

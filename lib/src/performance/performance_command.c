@@ -21,6 +21,26 @@ static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *er
     return himc_performance_add_stroke(p, &c->stroke, error);
 }
 
+static bool do_roll(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_flam(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_drag(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_ruff(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
 static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return himc_performance_hit(p, &c->stroke, error);
@@ -310,10 +330,15 @@ static bool do_engine(himc_performance *p, const himc_command *c, himc_error *er
 static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
+    enum { PALMS, SERVO };
     (void)error;
-    s.grip = (himc_grip)c->choice[0];
+    s.servo = c->form == SERVO || c->count > 1;
+    if (c->form == PALMS)
+        s.grip = (himc_grip)c->choice[0];
     himc_performance_adopt(p, &s);
     himc_planner_set_grip(p->motion->planner, s.grip);
+    himc_planner_set_servo(p->motion->planner, s.servo);
+    himc_motion_replan(p->motion);
     return true;
 }
 

@@ -172,6 +172,8 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.bounces = stroke.bounces;
+        next.bounce_time = stroke.bounce_time;
     }
     next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
     return next;

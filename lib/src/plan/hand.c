@@ -12,6 +12,7 @@
 /// Restitution of the predicted contact. Chosen; only until the measured state replaces the
 /// prediction at separation.
 #define PREDICTED_RESTITUTION 0.85
+#define BOUNCE_RATIO 0.5 // of the speeds of the last bounce and the stroke; chosen, as above
 
 // limits of a hand: beyond them a stroke is refused; chosen: well beyond captured strokes
 // (impacts of up to 10 m/s), so that only the impossible is refused
@@ -246,7 +247,7 @@ bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
 bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)
 {
     himc_vec3 way = himc_vec3_sub(first->spot, second->spot);
-    stroke_plan s = {.height_end = first->time + HIMC_CONTACT_TIME};
+    stroke_plan s = {.height_end = himc_goal_end(first)};
     s.height.h = himc_vec3_dot(second->normal, way);
     s.path.x = himc_vec3_madd(first->spot, -s.height.h, second->normal);
     return is_possible(&s, second);
@@ -282,6 +283,18 @@ static void fall(stroke_plan *s, double t, const himc_gesture *g, bool from_apex
     himc_height_profile_to(s, t, (height_state){0, -g->speed, 0});
 }
 
+/// The predicted contact; before the rebound from a bounce the hand stays level.
+static void contact(stroke_plan *s, const himc_goal *goal, double speed)
+{
+    double end = himc_goal_end(goal), rebound = PREDICTED_RESTITUTION * speed;
+    if (goal->hold > 0) {
+        himc_height_profile_to(s, goal->time + HIMC_CONTACT_TIME, (height_state){0, 0, 0});
+        himc_height_profile_to(s, end - HIMC_CONTACT_TIME, (height_state){0, 0, 0});
+        rebound *= BOUNCE_RATIO;
+    }
+    himc_height_profile_to(s, end, (height_state){0, rebound, 0});
+}
+
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
     stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
@@ -300,8 +313,7 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
             himc_height_profile_to(&s, top + g.dwell, s.height);
     }
     fall(&s, goal->time, &g, from_apex);
-    himc_height_profile_to(&s, goal->time + HIMC_CONTACT_TIME,
-                           (height_state){0, PREDICTED_RESTITUTION * g.speed, 0});
+    contact(&s, goal, g.speed);
     swing(&s, goal, &g, begin);
     plan_finish(&s);
     plan->last = *goal;

@@ -100,6 +100,14 @@ void himc_planner_set_grip(himc_planner *planner, int grip)
     planner->grip = grip;
 }
 
+void himc_planner_set_servo(himc_planner *planner, bool servo)
+{
+    if (planner->servo == servo)
+        return;
+    planner->servo = servo;
+    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
+}
+
 void himc_planner_set_human(himc_planner *planner, himc_human human)
 {
     planner->human = human;
@@ -115,7 +123,7 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
     double t = planner->now + PLANNER_AHEAD;
     himc_planner_cut(planner, hand, t);
     double beat = part->list[at].stroke.beat,
-           time = himc_planner_score_time(score, part->round, beat);
+           time = himc_planner_score_time(score, part->round, beat) - part->list[at].stroke.early;
     if (at < part->next && time > planner->hand[hand].plan.end) {
         himc_planner_score_go(score, hand, at, part->round);
     } else if (at < part->next && !score->loop) {

@@ -60,6 +60,9 @@ HIMC_RT void himc_planner_clear_units(himc_planner *planner);
 /// Units of this grip (himc_grip) are preferred.
 HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
 
+/// Strokes bounce that shall, or have one contact each (servo).
+HIMC_RT void himc_planner_set_servo(himc_planner *planner, bool servo);
+
 /// Strokes that can still be changed vary so from now on; hits are counted from 0 again.
 HIMC_RT void himc_planner_set_human(himc_planner *planner, himc_human human);
 

@@ -15,6 +15,7 @@
 /// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
+#include "plan/bounce.h"
 #include "base/format.h"
 #include "base/head_frame.h"
 
@@ -40,6 +41,11 @@
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
 #define TARGET_STROKE 0.6   // a stroke so near is prepared, live targets are not followed (s)
+
+// of the time to the hand's next stroke, at most; chosen: contacts of a double roll are even, and a
+// buzz ends when the other hand has struck
+#define DOUBLE_SHARE 0.25
+#define BUZZ_SHARE 0.55
 
 // the goal; chosen: half a mallet's radius, a mallet that does not touch the rim of a usual head,
 // and a unit of another spot further off than any of another speed, of another grip further still
@@ -100,6 +106,20 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
                 : himc_gesture_of(stroke->nuance, stroke->dynamic);
 }
 
+/// The gesture, no faster than fingers can turn the stick for its bounces.
+static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *stroke)
+{
+    himc_gesture g = gesture_of(planner, stroke);
+    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
+    if (g.speed <= most)
+        return g;
+    himc_planner_say(
+        &planner->notes, PLANNER_SOFTER,
+        "bounces %.3g s long: fingers stop no more than %.2g m/s in this time, played softer",
+        stroke->bounce_time, most);
+    return himc_gesture_scale(g, most / g.speed);
+}
+
 /// Moves a place into the part of a head that is struck; true if it was beyond.
 static bool keep_inside(const himc_head_frame *head, double *x, double *y)
 {
@@ -133,7 +153,8 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
                        .spot = tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
                        .back = himc_vec3_scale(himc_head_frame_away(head), -1),
-                       .gesture = gesture_of(planner, stroke)};
+                       .gesture = bouncing_gesture(planner, stroke),
+                       .hold = stroke->bounces ? stroke->bounce_time : 0};
 }
 
 /// Lets the goal differ from the written one as a player's would.
@@ -159,8 +180,23 @@ static void vary(const himc_planner *planner, timed_stroke *s)
 
 double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
-    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat)
+    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat) -
+                               s->stroke.early
                          : s->goal.time;
+}
+
+/// Bounces leave time for the hand's next stroke; none with the servo grip.
+static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t)
+{
+    planner_due after;
+    himc_stroke *stroke = &s->stroke;
+    if (planner->servo)
+        stroke->bounces = 0;
+    if (stroke->bounces == 0 || s->index < 0 ||
+        !himc_planner_score_next(&planner->score, stroke->hand, 1, &after))
+        return;
+    double share = stroke->bounces == HIMC_BUZZ ? BUZZ_SHARE : DOUBLE_SHARE;
+    stroke->bounce_time = fmin(stroke->bounce_time, share * (after.time - t));
 }
 
 /// The next stroke of a hand, of the score or waiting; false if there is none.
@@ -181,6 +217,7 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     } else {
         return false;
     }
+    fit_bounces(planner, next, t);
     next->written = himc_planner_goal(planner, &next->stroke, next->drum, t);
     next->goal = next->written;
     next->varied = false;
@@ -457,7 +494,7 @@ static void cut_plan(himc_planner *planner, himc_hand hand, double t)
     unplan_after(planner, hand, t, COMMIT_TIME);
     const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
     if (last && !last->separated)
-        t = fmax(t, last->goal.time + HIMC_CONTACT_TIME);
+        t = fmax(t, himc_goal_end(&last->goal));
     himc_hand_cut(&h->plan, t);
     if (!last)
         return;

@@ -53,6 +53,7 @@ struct himc_planner {
     bool known[HIMC_DRUMS]; ///< drums that have been set
     himc_unit unit[HIMC_UNITS];
     int unit_count, grip;
+    bool servo; ///< no stroke bounces
     himc_human human;
     planner_score score;
     planner_notes notes;

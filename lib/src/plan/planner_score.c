@@ -38,6 +38,12 @@ static double seconds_to(const planner_score *score, double beat)
     return himc_score_seconds(score->tempi, score->tempo_count, beat);
 }
 
+/// Time of a stroke from beat 0 (s).
+static double seconds_of(const planner_score *score, const himc_stroke *stroke)
+{
+    return seconds_to(score, stroke->beat) - stroke->early;
+}
+
 /// The first stroke after `beat`, or with `from` the first at it or after it.
 static int first_after(const planner_part *part, double beat, bool from)
 {
@@ -68,11 +74,11 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     if (part->count >= MOST_HAND_STROKES)
         return himc_error_set(error, "stroke: one too many, allowed %d for a hand",
                               MOST_HAND_STROKES);
-    double least = HUGE_VAL;
+    double least = HUGE_VAL, time = seconds_of(score, stroke);
     if (at > 0)
-        least = gap(score, part->list[at - 1].stroke.beat, stroke->beat);
+        least = time - seconds_of(score, &part->list[at - 1].stroke);
     if (at < part->count)
-        least = fmin(least, gap(score, part->list[at].stroke.beat, stroke->beat));
+        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
     if (least < CLOSEST_STROKES)
         return himc_error_set(
             error,
@@ -99,6 +105,9 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
 {
     planner_part *part = &score->part[stroke->hand];
     int at = first_after(part, stroke->beat, false);
+    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
+           part->list[at - 1].stroke.early < stroke->early)
+        at--; // grace notes come before the stroke on their beat
     return check_stroke(score, stroke, drum, at, error) && grow(part, error) ? at : -1;
 }
 
@@ -243,7 +252,8 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
     if (!score->loop && due->round > score->rounds)
         return false;
     due->stroke = &part->list[due->index];
-    due->time = himc_planner_score_time(score, due->round, due->stroke->stroke.beat);
+    due->time = himc_planner_score_time(score, due->round, due->stroke->stroke.beat) -
+                due->stroke->stroke.early;
     return true;
 }
 
@@ -317,6 +327,18 @@ double himc_planner_score_gap(const planner_score *score, himc_hand hand, double
     double from = after < part->count ? gap(score, beat, part->list[after].stroke.beat)
                                       : gap(score, beat, length) + gap(score, 0, first);
     return fmin(to, from);
+}
+
+double himc_planner_score_since(const planner_score *score, double beat)
+{
+    double since = HUGE_VAL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_part *part = &score->part[hand];
+        int before = first_after(part, beat, true) - 1;
+        if (before >= 0)
+            since = fmin(since, gap(score, part->list[before].stroke.beat, beat));
+    }
+    return since;
 }
 
 planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat)
