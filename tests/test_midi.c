@@ -32,7 +32,8 @@ void tearDown(void)
 static char *load(const char *name, size_t *size)
 {
     char path[128];
-    snprintf(path, sizeof path, "tests/midi/%s.mid", name);
+    bool piece = strcmp(name, "zarathustra") == 0; // it belongs to a patch
+    snprintf(path, sizeof path, "%s/%s.mid", piece ? "patches/pieces" : "tests/midi", name);
     char *bytes = himc_file_load(path, 1 << 20, size, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(bytes, error.text);
     return bytes;
@@ -441,7 +442,7 @@ static void test_a_tempo_that_scores_do_not_have_leaves_the_times(void)
 
 static void test_score_file_loads_midi_and_keeps_its_report(void)
 {
-    score = himc_score_load("tests/midi/zarathustra.mid", &error);
+    score = himc_score_load("patches/pieces/zarathustra.mid", &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
     TEST_ASSERT_EQUAL_INT(14, score->stroke_count);
     TEST_ASSERT_EQUAL_STRING_LEN("14 of 14 notes for timpani are played\n", score->report, 38);

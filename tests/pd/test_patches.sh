@@ -55,7 +55,8 @@ done <<'LIST'
 04-follow-the-mouse 6 10 kettle
 05-four-timpani 8 12 low second third high
 06-duo 5 24 left-kettle right-kettle
-08-rolls-and-grace-notes 9 40 kettle
+08-midi-file 10 10 low third
+09-rolls-and-grace-notes 9 40 kettle
 pieces/tide 14 7 low second third
 LIST
 
