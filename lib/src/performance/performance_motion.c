@@ -17,11 +17,11 @@
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
 #define TRUNK_FORESIGHT 1.2 // chosen: strokes further ahead do not turn the trunk (s)
 #define TRUNK_STEP 0.02     // longest step of himc_trunk_posture_approach (s)
-#define REPLANNED 0.02     // chosen: least delay of a stroke that is given up and planned again (s)
-#define LIMIT_HEIGHT 0.35  // chosen: a large stroke; the mean posture's tips go up to here (m)
-#define LIMIT_HEIGHTS 8    // postures in that mean
-#define OUT_OF_REACH 1e-3  // chosen: the user is told of a target missed by more (m)
-#define PRESS_RIM 0.9      // share of a head's radius; further out targets go past its rim, too
+#define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
+#define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
+#define LIMIT_HEIGHTS 8   // postures in that mean
+#define OUT_OF_REACH 1e-3 // chosen: the user is told of a target missed by more (m)
+#define PRESS_RIM 0.9     // share of a head's radius; further out targets go past its rim, too
 
 // a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
 // comes down to the head as if braked; chosen: a press arrives with less than 20 N
