@@ -12,6 +12,8 @@
 
 #define MOST_STROKES 2000 // of one roll; chosen: two minutes
 
+#define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
+
 // strokes of both arms together (1/s); chosen, see above
 #define USUAL_RATE 11.0
 #define USUAL_PITCH 110.0 // (Hz)
@@ -46,7 +48,8 @@ typedef struct addition {
 static void add(addition *to, const himc_stroke *stroke)
 {
     himc_error unused;
-    to->left_out += !himc_planner_add(to->planner, stroke, to->drum, &unused);
+    to->left_out += himc_planner_score_room(&to->planner->score, stroke) < LEAST_ROOM ||
+                    !himc_planner_add(to->planner, stroke, to->drum, &unused);
 }
 
 static void add_grace(addition *to, const himc_stroke *stroke, bool other, double early,
@@ -106,8 +109,9 @@ static bool add_roll(addition *to, const himc_stroke *roll, double pitch, himc_e
     const planner_score *score = &to->planner->score;
     double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
     double to_end = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
-    double strokes = fmax(round(rate_of(roll, pitch) * (to_end - from)), 1),
-           step = (to_end - from) / strokes;
+    // an even number: what follows begins with the right hand again
+    double pairs = round(0.5 * rate_of(roll, pitch) * (to_end - from)),
+           strokes = fmax(2 * pairs, 1), step = (to_end - from) / strokes;
     if (strokes > MOST_STROKES)
         return himc_error_set(error, "roll: LENGTH: %g strokes, allowed %d", strokes, MOST_STROKES);
     himc_stroke s = *roll;

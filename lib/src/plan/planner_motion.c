@@ -115,7 +115,7 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
         return g;
     himc_planner_say(
         &planner->notes, PLANNER_SOFTER,
-        "bounces %.3g s long: fingers stop no more than %.2g m/s in this time, played softer",
+        "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
         stroke->bounce_time, most);
     return himc_gesture_scale(g, most / g.speed);
 }

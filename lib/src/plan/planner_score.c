@@ -64,7 +64,29 @@ static double gap(const planner_score *score, double a, double b)
     return fabs(seconds_to(score, b) - seconds_to(score, a));
 }
 
-static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum, int at,
+/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
+static int place_of(const planner_part *part, const himc_stroke *stroke)
+{
+    int at = first_after(part, stroke->beat, false);
+    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
+           part->list[at - 1].stroke.early < stroke->early)
+        at--;
+    return at;
+}
+
+double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)
+{
+    const planner_part *part = &score->part[stroke->hand];
+    int at = place_of(part, stroke);
+    double least = HUGE_VAL, time = seconds_of(score, stroke);
+    if (at > 0)
+        least = time - seconds_of(score, &part->list[at - 1].stroke);
+    if (at < part->count)
+        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
+    return least;
+}
+
+static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum,
                          himc_error *error)
 {
     const planner_part *part = &score->part[stroke->hand];
@@ -74,11 +96,7 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     if (part->count >= MOST_HAND_STROKES)
         return himc_error_set(error, "stroke: one too many, allowed %d for a hand",
                               MOST_HAND_STROKES);
-    double least = HUGE_VAL, time = seconds_of(score, stroke);
-    if (at > 0)
-        least = time - seconds_of(score, &part->list[at - 1].stroke);
-    if (at < part->count)
-        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
+    double least = himc_planner_score_room(score, stroke);
     if (least < CLOSEST_STROKES)
         return himc_error_set(
             error,
@@ -104,11 +122,8 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = first_after(part, stroke->beat, false);
-    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
-           part->list[at - 1].stroke.early < stroke->early)
-        at--; // grace notes come before the stroke on their beat
-    return check_stroke(score, stroke, drum, at, error) && grow(part, error) ? at : -1;
+    int at = place_of(part, stroke);
+    return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
 }
 
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
