@@ -249,7 +249,7 @@ MIDI_SECONDS ?= 15
 test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; two minutes)
 	@tools/deps.sh tools/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
-	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid
+	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid
 
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
 	@tools/deps.sh tools/deps-sound.txt

@@ -36,7 +36,9 @@ typedef struct t_membrane {
     himc_loader *x_loader; /* for heads that take long to compute */
     t_clock *x_load;       /* looks for what it has loaded */
 
-    t_layer x_layer; /* plays the inlet's force while a performer plays the drum */
+    t_layer x_layer;      /* plays the inlet's force while a performer plays the drum */
+    t_clock *x_fit_clock; /* makes it equal to the drum */
+    bool x_fits_soon;     /* that clock runs */
 
     t_stream x_stream;
     t_sample *x_in[3];
@@ -69,6 +71,7 @@ static void membrane_fit_layer(t_membrane *x)
 {
     himc_error error;
     const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    x->x_fits_soon = false;
     if (layer_fits(&x->x_layer, drum))
         return;
     bool good = pd_in_real_time()
@@ -78,6 +81,16 @@ static void membrane_fit_layer(t_membrane *x)
         clock_delay(x->x_load, LOAD_PERIOD);
     if (!good)
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
+}
+
+/* After a change of the drum. A layer that has not felt a force waits until the pedal rests. */
+static void membrane_refit(t_membrane *x, bool again)
+{
+    if (x->x_layer.l_sounds)
+        clock_delay(x->x_fit_clock, 0);
+    else if (again || !x->x_fits_soon)
+        clock_delay(x->x_fit_clock, LAYER_PATIENCE);
+    x->x_fits_soon = true;
 }
 
 /* Reads the drum: its channels, then the displacement. */
@@ -150,9 +163,10 @@ static t_int *membrane_perform(t_int *w)
     if (!x->x_waiting)
         x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
     if (x->x_waiting || membrane_troubled(x) ||
-        himc_drum_technique(x->x_link.l_drum) != x->x_technique ||
-        !layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
+        himc_drum_technique(x->x_link.l_drum) != x->x_technique)
         clock_delay(x->x_clock, 0);
+    if (!layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
+        membrane_refit(x, false);
     watch_end();
     return w + 2;
 }
@@ -232,7 +246,6 @@ static void membrane_tick(t_membrane *x)
         pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0",
                  name);
     x->x_told |= membrane_troubled(x);
-    membrane_fit_layer(x);
     membrane_tell_technique(x);
     while (x->x_waiting) {
         himc_contact_report report = x->x_report;
@@ -266,7 +279,7 @@ static void membrane_changed(void *object, const char *refusal)
     t_membrane *x = object;
     if (refusal)
         pd_error(x, "membrane~: %s", refusal);
-    membrane_fit_layer(x);
+    membrane_refit(x, true);
     membrane_tell_technique(x);
 }
 
@@ -434,6 +447,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_load = clock_new(x, (t_method)membrane_load);
     x->x_channels = (int)wish.w_channels;
     x->x_clock = clock_new(x, (t_method)membrane_tick);
+    x->x_fit_clock = clock_new(x, (t_method)membrane_fit_layer);
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
     himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
     double spot_x, spot_y;
@@ -456,6 +470,7 @@ static void membrane_free(t_membrane *x)
     himc_drum_release(x->x_link.l_drum);
     himc_drum_release(x->x_layer.l_drum);
     clock_free(x->x_clock);
+    clock_free(x->x_fit_clock);
     clock_free(x->x_load);
     clock_free(x->x_touch_clock);
 }

@@ -27,17 +27,36 @@
 #endif
 
 #define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
+#define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc"
 
 // to the performer
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds one stroke to the score")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
-                 "plays a stroke as soon as it can be prepared")
+                 "plays a stroke so long after the message as `latency` says; any: with the hand "
+                 "that suits better")
+HIMC_COMMAND_ROW(LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
+                 "has every hit land exactly so long after its message, 150 by default, as strong "
+                 "as that allows; auto: 330, as long as any hit needs; 0: each as soon as it can")
+HIMC_COMMAND_ROW(
+    ROLL, roll, PERFORMER, NOW, 0,
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [DRUM]",
+    "adds a roll, from one dynamic to another: single strokes of both hands, or strokes "
+    "that bounce once (double) or until the next (press)")
+HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds a stroke with a grace note by the other hand")
+HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds a stroke with two grace notes by the other hand, which bounces")
+HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds a stroke with two grace notes, by its own hand and the other")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
-HIMC_COMMAND_ROW(GRIP, grip, PERFORMER, NOW, 0, "german|french",
-                 "sets the grip: palms down (german), or thumbs up (french)")
+HIMC_COMMAND_ROW(
+    GRIP, grip, PERFORMER, NOW, 0, "german|french [servo] | servo",
+    "sets the grip: palms down (german), or thumbs up (french), and lets strokes bounce "
+    "that shall; servo: a stroke has one contact, as published")
 HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
                  "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
                  "all; each seed is another player")
@@ -166,5 +185,6 @@ HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
 HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes without a performer")
 
 #undef HIMC_ROW_STROKE
+#undef HIMC_ROW_ROLL
 #undef HIMC_ROW_STREAM
 #undef HIMC_COMMAND_ROW

@@ -116,6 +116,21 @@ done <<<"10.3 64 494
 12 64 576
 10.3 1 494"
 
+# a [metro] of hits from 700.3 ms on, with one hand, two in turn and any: each lands 150 ms after its
+# message, within half a millisecond
+for ms in 400 250 150 100; do
+    play_pd hits.pd -send "himc-test $ms 64"
+    report "taps_every_${ms}_ms_land_150_ms_after_their_messages" "$(awk -v interval=$ms '
+        /^himc: strike/ { late = 1000 * $3 - 850.3 - interval * n++; if (late > 0.5 || late < -0.5) print "tap " n ": " late " ms; " }
+        END { if (n != 24) print n + 0 " of 24 taps" }' "$work/log")"
+done
+taps() { # from the first one on: Pd delays what it gathers into larger blocks, here by 960 samples
+    awk '/^himc: strike/ { if (!n++) first = $3; $3 = sprintf("%.5f", $3 - first); print }' "$work/log"
+}
+taps >"$work/taps"
+play_pd hits.pd -send "himc-test 100 1024"
+report taps_are_the_same_in_blocks_of_1024 "$(taps | cmp - "$work/taps" 2>&1)"
+
 play_pd signals.pd
 level() { awk -v name="$1:" '$1 == name { print $2 }' "$work/log"; }
 report force_signal_sounds \

@@ -43,6 +43,9 @@ HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
 HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);
 /// Grows by one with every change of place, radius or mallet, so that a performer notices.
 HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
+/// Frequency of the head's principal mode (Hz).
+HIMC_RT double himc_drum_pitch(const himc_drum *drum);
+
 /// What himc_drum_set_external_sound has set.
 HIMC_RT bool himc_drum_has_external_sound(const himc_drum *drum);
 

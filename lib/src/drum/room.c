@@ -27,6 +27,7 @@
 #define SABINE 0.161    // (s/m)
 #define DIRECTIVITY 4.0 // chosen: between a monopole's in a baffle, 2, and a dipole's, 6
 #define FADE 0.005      // (s) chosen: no click
+#define CACHE_LINE 8    // doubles
 #define FORGOTTEN 5.0   // T60s until it is empty; chosen: -300 dB
 
 // of each delay at both ears, and of what enters it: Walsh functions, orthogonal
@@ -141,40 +142,74 @@ static double sum(const double *x)
     return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
 }
 
-// one sample of the network; its sound at both ears
-static void reflect(himc_room *r, const himc_room_form *f, const double *drum, double *ears)
+// what leaves each delay in n samples
+static void read_lines(const himc_room *r, int n, double y[HIMC_ROOM_RUN][HIMC_ROOM_LINES])
 {
-    double y[HIMC_ROOM_LINES], part[HIMC_ROOM_LINES];
     int mask = r->size - 1;
     for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        y[l] = r->line[l][(r->at - r->delay[l]) & mask];
-    for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        r->y[l] = f->keep[l] * r->y[l] + f->take[l] * y[l];
-    for (int ear = 0; ear < 2; ear++) {
-        for (int l = 0; l < HIMC_ROOM_LINES; l++)
-            part[l] = AT_EAR[ear][l] * r->y[l];
-        ears[ear] = f->out * sum(part);
-    }
-    double all = 2.0 / HIMC_ROOM_LINES * sum(r->y);
-    for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        int next = (l + 1) % HIMC_ROOM_LINES;
-        r->line[next][r->at & mask] = r->y[l] - all + ENTERING[next] * drum[next % 2];
-    }
-    r->at = (r->at + 1) & mask;
+        for (int i = 0; i < n; i++)
+            y[i][l] = r->line[l][(r->at + i - r->delay[l]) & mask];
 }
 
-void himc_room_hear(himc_room *r, const double *drum, double *ears)
+// what enters them; asks the memory for what leaves them next
+static void write_lines(himc_room *r, int n, double x[HIMC_ROOM_RUN][HIMC_ROOM_LINES])
 {
-    ears[0] = ears[1] = 0;
-    if (drum[0] != 0 || drum[1] != 0)
-        r->silent = 0;
-    else if (r->silent < HIMC_ROOM_EMPTY && ++r->silent >= r->forget)
-        forget(r);
+    int mask = r->size - 1;
+    for (int l = 0; l < HIMC_ROOM_LINES; l++) {
+        for (int i = 0; i < n; i++)
+            r->line[l][(r->at + i) & mask] = x[i][l];
+        for (int i = 0; i < n + CACHE_LINE; i += CACHE_LINE)
+            __builtin_prefetch(&r->line[l][(r->at + n + i - r->delay[l]) & mask]);
+    }
+    r->at = (r->at + n) & mask;
+}
+
+// n samples of the network, fewer than any delay; their sound at both ears
+static void reflect(himc_room *r, const himc_room_form *f, int n, double *const *drum,
+                    double *const *ears)
+{
+    double y[HIMC_ROOM_RUN][HIMC_ROOM_LINES], part[HIMC_ROOM_LINES], z[HIMC_ROOM_LINES];
+    read_lines(r, n, y);
+    memcpy(z, r->y, sizeof z);
+    for (int i = 0; i < n; i++) {
+        for (int l = 0; l < HIMC_ROOM_LINES; l++)
+            z[l] = f->keep[l] * z[l] + f->take[l] * y[i][l];
+        for (int ear = 0; ear < 2; ear++) {
+            for (int l = 0; l < HIMC_ROOM_LINES; l++)
+                part[l] = AT_EAR[ear][l] * z[l];
+            ears[ear][i] = f->out * sum(part);
+        }
+        double all = 2.0 / HIMC_ROOM_LINES * sum(z);
+        for (int l = 0; l < HIMC_ROOM_LINES; l++)
+            part[l] = z[l] - all;
+        for (int l = 0; l < HIMC_ROOM_LINES; l++) // each goes to the next delay
+            y[i][l] =
+                part[(l + HIMC_ROOM_LINES - 1) % HIMC_ROOM_LINES] + ENTERING[l] * drum[l % 2][i];
+    }
+    memcpy(r->y, z, sizeof z);
+    write_lines(r, n, y);
+}
+
+int himc_room_steady(const himc_room *r, int n)
+{
+    bool ends = r->silent < HIMC_ROOM_EMPTY && r->silent >= r->forget - n;
+    return r->faded < 1 || ends ? 1 : n;
+}
+
+void himc_room_hear(himc_room *r, int n, double *const *drum, double *const *ears)
+{
+    for (int i = 0; i < n; i++) {
+        ears[0][i] = ears[1][i] = 0;
+        if (drum[0][i] != 0 || drum[1][i] != 0)
+            r->silent = 0;
+        else if (r->silent < HIMC_ROOM_EMPTY && ++r->silent >= r->forget)
+            forget(r);
+    }
     if (r->faded < 1) {
         r->faded = fmin(r->faded + r->step, 1);
         himc_room_form now = present(r);
-        reflect(r, &now, drum, ears);
+        reflect(r, &now, n, drum, ears);
     } else if (r->on && r->silent < HIMC_ROOM_EMPTY) {
-        reflect(r, &r->to, drum, ears);
+        reflect(r, &r->to, n, drum, ears);
     }
 }

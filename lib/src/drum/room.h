@@ -21,7 +21,9 @@ typedef struct himc_walls {
     }
 
 #define HIMC_ROOM_LINES 16
+#define HIMC_ROOM_RUN 32     ///< (samples) at a time; chosen: less than the shortest delay at 8 kHz
 #define HIMC_ROOM_LINE 16384 ///< (samples) more than the longest delay at 192 kHz
+#define HIMC_ROOM_APART 8    ///< so that samples of one moment are not all in one set of a cache
 #define HIMC_ROOM_EMPTY INT32_MAX
 
 /// What a change of the room changes.
@@ -40,7 +42,7 @@ typedef struct himc_room {
     int silent, forget; ///< samples since a sound entered, or EMPTY; and as many make it so
     int delay[HIMC_ROOM_LINES];
     double y[HIMC_ROOM_LINES];
-    double line[HIMC_ROOM_LINES][HIMC_ROOM_LINE];
+    double line[HIMC_ROOM_LINES][HIMC_ROOM_LINE + HIMC_ROOM_APART];
 } himc_room;
 
 /// Sets the walls, at a sample rate. They change over in 5 ms.
@@ -57,7 +59,10 @@ static inline bool himc_room_at_rest(const himc_room *room)
 {
     return !himc_room_heard(room) || (room->faded == 1 && room->silent == HIMC_ROOM_EMPTY);
 }
-/// A sample at both ears (2), from that of a drum at 1 m, to the left and to the right (2).
-HIMC_RT void himc_room_hear(himc_room *room, const double *drum, double *ears);
+/// Of the next n samples (at most HIMC_ROOM_RUN), those that may be asked for at once.
+HIMC_RT int himc_room_steady(const himc_room *room, int n);
+/// So many samples at both ears (2 rows), from those of a drum at 1 m, to the left and to the right
+/// (2 rows).
+HIMC_RT void himc_room_hear(himc_room *room, int n, double *const *drum, double *const *ears);
 
 #endif

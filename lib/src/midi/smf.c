@@ -322,7 +322,8 @@ static bool collect(midi_file *file, reader *r, tempo_clock *clock)
     file->tempi = calloc((size_t)r->count + 1, sizeof *file->tempi);
     if (!file->notes || !file->tempi)
         return himc_error_set(r->error, "out of memory for %d events", r->count);
-    qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
+    if (r->count > 0)
+        qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
     file->tempi[file->tempo_count++] = (himc_tempo_change){0, 60e6 / USUAL_TEMPO};
     for (int i = 0; i < r->count; i++)
         take_event(file, &c, clock, &r->events[i], r->timpani);

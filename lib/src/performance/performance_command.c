@@ -11,6 +11,8 @@
 #include <string.h>
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
+/// That any hit needs from rest (s): measured, an accent at ff.
+#define LONGEST_PREPARATION 0.33
 
 // playing
 
@@ -19,9 +21,39 @@ static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *er
     return himc_performance_add_stroke(p, &c->stroke, error);
 }
 
+static bool do_roll(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_flam(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_drag(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_ruff(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
 static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return himc_performance_hit(p, &c->stroke, error);
+}
+
+static bool do_latency(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    enum { TIME, AUTO };
+    (void)error;
+    s.latency = c->form == AUTO ? LONGEST_PREPARATION : 1e-3 * c->atom[0].number;
+    himc_performance_adopt(p, &s);
+    return true;
 }
 
 static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
@@ -298,10 +330,15 @@ static bool do_engine(himc_performance *p, const himc_command *c, himc_error *er
 static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
+    enum { PALMS, SERVO };
     (void)error;
-    s.grip = (himc_grip)c->choice[0];
+    s.servo = c->form == SERVO || c->count > 1;
+    if (c->form == PALMS)
+        s.grip = (himc_grip)c->choice[0];
     himc_performance_adopt(p, &s);
     himc_planner_set_grip(p->motion->planner, s.grip);
+    himc_planner_set_servo(p->motion->planner, s.servo);
+    himc_motion_replan(p->motion);
     return true;
 }
 

@@ -31,6 +31,8 @@ typedef struct planned_stroke {
     int drum;    ///< slot
     double x, y; ///< on the head (m)
     char nuance[HIMC_NAME_SIZE];
+    int bounces;        ///< of a stroke that bounces (himc_stroke)
+    double bounce_time; ///< (s)
 } planned_stroke;
 
 typedef struct performance_motion {
