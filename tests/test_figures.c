@@ -129,6 +129,7 @@ static void test_head_that_swings_into_a_resting_stick_is_no_strike(void)
     snprintf(place, sizeof place, "place 0.48 0 %.6f",
              p->body->state.tip[HIMC_LEFT].z - p->body->skeleton.mallet_radius + 0.001);
     session_drum(p, 0, place);
+    session_do(p, "latency auto");
     session_do(p, "hit right accent ff 0.1 -0.1");
     for (int i = 0; i < 1000 && (force < 1 || p->contacts.hand[HIMC_LEFT].touching); i++) {
         session_play(p, 0.01, &h);

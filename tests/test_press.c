@@ -149,6 +149,33 @@ static const char *write_take(double depth)
     return path;
 }
 
+static void find_capture(void *user, const char *line)
+{
+    double rms = 0;
+    if (sscanf(line, "capture: tips %lf mm RMS off it", &rms) == 1)
+        *(double *)user = 1e-3 * rms;
+}
+
+// the targets are planned again after a contact, so their error is small however deep the press is
+static void shows_in_the_measures(const himc_performance *p, double depth)
+{
+    himc_performance_stats s = himc_performance_measure(p);
+    printf("%2.0f mm deep: %.2f %% off the targets; off the capture %.1f mm, at most %.1f mm, %.1f "
+           "%%; %.2f s of contact\n",
+           1e3 * depth, s.tip_rms_percent, 1e3 * s.captured_rms, 1e3 * s.captured_most,
+           s.captured_most_percent, s.longest_contact);
+    TEST_ASSERT_EQUAL_INT(1, s.unplanned_contacts);
+    TEST_ASSERT_TRUE(s.longest_contact > 1 && s.longest_contact < 1.5);
+    TEST_ASSERT_TRUE(s.captured_most > 0.9 * depth && s.captured_most < depth + 0.02);
+    TEST_ASSERT_TRUE(s.captured_rms > 0.4 * depth && s.captured_rms < s.captured_most);
+    double told = 0;
+    himc_performance_describe(p, find_capture, &told);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, s.captured_rms, told);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100 * s.captured_rms / s.stroke_height, s.captured_rms_percent);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100 * s.captured_most / s.stroke_height,
+                              s.captured_most_percent);
+}
+
 static void test_a_take_that_goes_below_the_head_is_pressed_once_in_all_modes(void)
 {
     static const char *const modes[] = {"himc", "id", "ik"};
@@ -168,6 +195,7 @@ static void test_a_take_that_goes_below_the_head_is_pressed_once_in_all_modes(vo
         session_play(p, 3, &h); // and is lifted
         TEST_ASSERT_EQUAL_INT(4, h.strikes);
         TEST_ASSERT_EQUAL_INT(1, h.dones);
+        shows_in_the_measures(p, depth);
         heard_free(&h);
         himc_performance_free(p);
         free(w);

@@ -4,6 +4,8 @@
 /// turns as abrupt as blows. Everyday one take for each rate and noise is read, with HIMC_LONG ten.
 #include "mixed_takes.h"
 
+#include "session.h"
+
 #define SETS 2
 #define RATES 5
 #define NOISES 4
@@ -32,18 +34,9 @@ static const double noises[NOISES] = {0.2e-3, 0.5e-3, 1e-3, 2e-3};
 
 static mixed_truth truth;
 
-void setUp(void)
-{
-}
-
-void tearDown(void)
-{
-}
-
 static himc_strike_survey survey_of(himc_take *take)
 {
     himc_take_tip tips[HIMC_HANDS];
-    himc_error error;
     himc_strike_survey s;
     TEST_ASSERT_TRUE_MESSAGE(himc_take_tips(take, NULL, tips, &error), error.text);
     TEST_ASSERT_TRUE(himc_take_strikes(take, tips, &s));
@@ -99,13 +92,20 @@ static void test_99_of_100_strikes_are_found_in_fine_takes_and_95_in_coarse_ones
     TEST_ASSERT_TRUE(soft.soft > 10 && soft.soft_found >= 0.98 * soft.soft);
 }
 
-// once 28 strikes of 12 blows, and the head 69 mm above them
-static void test_sharp_motions_between_loud_blows_are_left_out_and_do_not_lift_the_head(void)
+// loud blows, and more sharp motions under 1 m/s between them
+static mixed_config loud_blows(double seconds)
 {
     mixed_config c = sets[1];
     c.slowest = 7, c.fastest = 10, c.air = 0.57;
     c.low_air = 0.04, c.high_air = 0.08;
-    c.seconds = 12, c.rate = 240, c.noise = 0.3e-3;
+    c.seconds = seconds, c.rate = 240, c.noise = 0.3e-3;
+    return c;
+}
+
+// once 28 strikes of 12 blows, and the head 69 mm above them
+static void test_sharp_motions_between_loud_blows_are_left_out_and_do_not_lift_the_head(void)
+{
+    mixed_config c = loud_blows(12);
     for (c.seed = 1; c.seed <= 10; c.seed++) {
         mixed_score score = {0};
         himc_strike_survey s = read_mixed(&c, &score);
@@ -115,6 +115,29 @@ static void test_sharp_motions_between_loud_blows_are_left_out_and_do_not_lift_t
         double head = himc_strike_head_at(&truth.head, s.head[0].x, s.head[0].y);
         TEST_ASSERT_DOUBLE_WITHIN(0.015, head, s.head[0].z); // a dent
     }
+}
+
+static void test_a_take_of_loud_blows_and_small_motions_is_played_as_it_was_struck(void)
+{
+    mixed_config c = loud_blows(6);
+    c.seed = 1;
+    himc_take *take = mixed_take(&c, &truth);
+    himc_strike_survey survey = survey_of(take);
+    TEST_ASSERT_TRUE_MESSAGE(himc_take_save(take, "build/mixed.trc", &error), error.text);
+    himc_performance *p = session_new();
+    session_do(p, "take build/mixed.trc");
+    session_do(p, "play");
+    session_play(p, 7.5, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    printf("%d of %d strokes, %d contacts more, %.2f mm RMS off the capture, %.0f N\n", s.played,
+           s.strokes, s.unplanned_contacts, 1e3 * s.captured_rms, s.peak_force);
+    TEST_ASSERT_TRUE(survey.count >= 3 && survey.left_out > 4);
+    TEST_ASSERT_EQUAL_INT(survey.count, s.played);
+    TEST_ASSERT_EQUAL_INT(0, s.unplanned_contacts);
+    TEST_ASSERT_TRUE(s.captured_rms < 0.004 && s.peak_force < 200); // once 298 N
+    himc_performance_free(p);
+    free(survey.strikes);
+    himc_take_free(take);
 }
 
 static void test_two_heads_60_mm_apart_are_found_in_one_take(void)
@@ -160,6 +183,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_99_of_100_strikes_are_found_in_fine_takes_and_95_in_coarse_ones);
     RUN_TEST(test_sharp_motions_between_loud_blows_are_left_out_and_do_not_lift_the_head);
+    RUN_TEST(test_a_take_of_loud_blows_and_small_motions_is_played_as_it_was_struck);
     RUN_TEST(test_two_heads_60_mm_apart_are_found_in_one_take);
     RUN_TEST(test_info_says_in_a_line_what_was_left_out);
     return UNITY_END();

@@ -112,8 +112,8 @@ typedef struct himc_take_tip {
 bool himc_take_tips(himc_take *take, const himc_take_options *options,
                     himc_take_tip tips[HIMC_HANDS], himc_error *error);
 
-/// A strike seen in a tip's trajectory: a fall that ends abruptly on a drumhead. A head is a plane on
-/// which the fast strikes of the take agree; a take of several drums has several.
+/// A strike seen in a tip's trajectory: a fall that ends abruptly on a drumhead. A head is a plane
+/// on which the fast strikes of the take agree; a take of several drums has several.
 typedef struct himc_take_strike {
     himc_hand hand;  ///< the hand that struck
     int frame;       ///< of the lowest position, counted from 0

@@ -4,9 +4,10 @@
     evaluate.py PROGRAM SECONDS FILE...      (needs python3-mido)
 
 A file's drum parts are counted by mido; `himc import` must account for each note of the part, as
-a stroke or in a line of its report. Each stroke of the score must be at the time of a note (2 ms). Then
-the first SECONDS from the first stroke on are rendered, and each stroke there must be struck, on
-its drum, within 10 ms. A .wad file stands for the MIDI files inside it. Prints a line for each
+a stroke, in a roll or in a line of its report. Each stroke of the score must be at the time of a note
+(2 ms). Then the first SECONDS from the first stroke on are rendered, and each stroke there must be
+struck, on its drum, within 10 ms, as the first of each roll; a roll's other notes are told apart: the
+player's strokes are not the file's. A .wad file stands for the MIDI files inside it. Prints a line for each
 file, and at the end `files F notes N played P within W percent X`. Exit status 1 if a note is not accounted
 for, or less than 99 % are within 10 ms.
 """
@@ -84,7 +85,7 @@ def read_score(text):
         word = line.rstrip(";").split()
         if line.startswith("tempo"):
             tempi.append((float(word[2]), float(word[1])))
-        elif line.startswith("stroke"):
+        elif line.startswith(("stroke", "roll")):
             strokes.append((float(word[1]), line, word[-1]))
     return tempi, strokes
 
@@ -101,11 +102,18 @@ def nearest(times, t):
     return min((abs(times[i] - t) for i in (at - 1, at) if 0 <= i < len(times)), default=float("inf"))
 
 
+def rolled(report):
+    """(notes, rolls) of the report."""
+    found = re.search(r"(\d+) notes are played as (\d+) roll", report)
+    return (int(found.group(1)), int(found.group(2))) if found else (0, 0)
+
+
 def accounted(report, notes, strokes):
-    """True if strokes and the report's reasons add up to the notes of the part."""
+    """True if strokes, rolls and the report's reasons add up to the notes of the part."""
     reasons = sum(int(line.split()[0]) for line in report.splitlines()
                   if "not played" in line or "one stroke" in line)
-    return reasons + strokes == notes
+    in_rolls, rolls = rolled(report)
+    return reasons + strokes - rolls + in_rolls == notes
 
 
 def excerpt(text, tempi, strokes, seconds):
@@ -152,8 +160,8 @@ def evaluate(program, seconds, name, data, folder):
     text, kept = excerpt(made.stdout, tempi, strokes, seconds)
     drums = struck(program, text, folder)
     within = sum(nearest(drums.get(drum, []), t) <= TOLERANCE for t, drum in kept)
-    print("%-30s %5d notes, %5d strokes, %3d off; in %g s %4d of %4d struck%s" %
-          (name[:30], len(notes), len(strokes), off, seconds, within, len(kept),
+    print("%-30s %5d notes, %5d strokes, %3d off, %d in %d rolls; in %g s %4d of %4d struck%s" %
+          (name[:30], len(notes), len(strokes), off, *rolled(made.stderr), seconds, within, len(kept),
            "" if good else "; NOT ACCOUNTED FOR"), flush=True)
     return len(kept), within, good and off == 0
 

@@ -116,6 +116,21 @@ done <<<"10.3 64 494
 12 64 576
 10.3 1 494"
 
+# a [metro] of hits from 700.3 ms on, with one hand, two in turn and any: each lands 150 ms after its
+# message, within half a millisecond
+for ms in 400 250 150 100; do
+    play_pd hits.pd -send "himc-test $ms 64"
+    report "taps_every_${ms}_ms_land_150_ms_after_their_messages" "$(awk -v interval=$ms '
+        /^himc: strike/ { late = 1000 * $3 - 850.3 - interval * n++; if (late > 0.5 || late < -0.5) print "tap " n ": " late " ms; " }
+        END { if (n != 24) print n + 0 " of 24 taps" }' "$work/log")"
+done
+taps() { # from the first one on: Pd delays what it gathers into larger blocks, here by 960 samples
+    awk '/^himc: strike/ { if (!n++) first = $3; $3 = sprintf("%.5f", $3 - first); print }' "$work/log"
+}
+taps >"$work/taps"
+play_pd hits.pd -send "himc-test 100 1024"
+report taps_are_the_same_in_blocks_of_1024 "$(taps | cmp - "$work/taps" 2>&1)"
+
 play_pd signals.pd
 level() { awk -v name="$1:" '$1 == name { print $2 }' "$work/log"; }
 report force_signal_sounds \
@@ -203,12 +218,18 @@ himc~: argument 1: 3, allowed: a drum's name of up to 31 characters
 himc~: argument 2: one is named twice
 himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum's name of up to 31 characters")"
 report second_drum_of_a_name_stays_nameless \
-    "$(lines "membrane~: twice: there is one of this name already: no [himc~] will find this one")"
+    "$(lines "membrane~: twice: there is one of this name already: [himc~] finds this one when that is gone")"
 report second_performer_on_a_drum_plays_a_silent_one \
     "$(lines "himc~: [membrane~ twice] is played by another [himc~]: its strokes are silent")"
 # a newer Pd repeats the box that it could not make on a line of its own
 report nothing_else_was_said_at_load \
     "$(grep -v -e '^error: ' -e '^verbose([01]): ' -e '^\(himc\|membrane\)~ [a-z0-9]' "$work/log")"
+
+play_pd successor.pd
+report copy_of_a_drum_takes_its_name_when_the_original_is_deleted \
+    "$(awk '$1 == "level:" && $2 > most { most = $2 } END { if (!(most > 60)) print "loudest " most + 0 " dB" }' "$work/log"; grep 'no \[membrane' "$work/log")"
+report number_alone_is_told_what_a_message_is \
+    "$(lines "himc~: a number: allowed: a message that begins with a word, as [hit right legato mf(")"
 
 play_pd messages.pd
 said=$(grep -c '^error: ' "$work/log")

@@ -309,6 +309,13 @@ static bool do_gain(himc_drum *drum, const himc_command *c, himc_error *error)
     return true;
 }
 
+static bool do_mute(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    drum->mute = number(c, 0) == 1;
+    return true;
+}
+
 static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     himc_technique wanted = (himc_technique)c->choice[0];

@@ -25,6 +25,12 @@ HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 /// A listener who is off, as at first, leaves them to the pickups. It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
+/// The walls around who hears it; at first HIMC_WALLS_USUAL. They change in 5 ms.
+HIMC_RT void himc_drum_enclose(himc_drum *drum, const himc_walls *walls);
+
+/// The fader of all drums of a performer: times the drum's own gain; at first 1. No click.
+HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
+
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
@@ -37,6 +43,9 @@ HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
 HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);
 /// Grows by one with every change of place, radius or mallet, so that a performer notices.
 HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
+/// Frequency of the head's principal mode (Hz).
+HIMC_RT double himc_drum_pitch(const himc_drum *drum);
+
 /// What himc_drum_set_external_sound has set.
 HIMC_RT bool himc_drum_has_external_sound(const himc_drum *drum);
 
@@ -48,6 +57,7 @@ typedef struct himc_drum_form {
     himc_membrane_form head;
     himc_head_frame place;
     himc_listener listener;
+    himc_walls walls;
     bool external_sound;
 } himc_drum_form;
 
@@ -63,7 +73,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error);
 /// is quick if both have one sample rate.
 void himc_drum_exchange(himc_drum *drum, himc_drum *made);
 
-// Heads that a drum gets one after the other while a score plays (drum_heads.c).
+// Heads that a drum gets one after the other while a score plays (drum_job.c).
 
 typedef struct himc_drum_heads himc_drum_heads;
 

@@ -3,6 +3,7 @@
 #define HIMC_EARS_H
 
 #include "drum/membrane_form.h"
+#include "drum/room.h"
 #include "himc/vec.h"
 
 /// Where a listener is.
@@ -27,7 +28,7 @@ enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
 /// One way of the sound from a drum to an ear.
 typedef struct himc_ear_path {
     double delay; ///< (s)
-    double gain;  ///< of a ray, which is the sound at its distance
+    double gain;  ///< of a ray, which is the sound at 1 m
     double shelf; ///< of high frequencies beside low ones, by the shadow of the head
 } himc_ear_path;
 
@@ -70,10 +71,12 @@ typedef struct himc_ears {
     int at;     ///< in `line`, of the coming sample
     int silent; ///< samples without sound, so far
     double line[HIMC_RAYS][HIMC_EARS_LINE];
+    himc_room room;
 } himc_ears;
 
-/// Begins to listen, or moves, in 5 ms.
-HIMC_RT void himc_ears_set(himc_ears *ears, const himc_ear_paths *paths, double rate);
+/// Begins to listen between these walls, or changes place or walls, in 5 ms.
+HIMC_RT void himc_ears_set(himc_ears *ears, const himc_ear_paths *paths, const himc_walls *walls,
+                           double rate);
 /// The pickups come back, in 5 ms.
 HIMC_RT void himc_ears_close(himc_ears *ears);
 

@@ -114,14 +114,16 @@ static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
-    bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    himc_outline kind = himc_membrane_shape(m)->kind;
     himc_air_load load = {0};
     for (int i = 0; i < PATCHES; i++)
         c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        c->most[i] = mode.m > 0 ? LARGEST_BESSEL : mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
-        c->wave[i] = smooth ? mode.zero / m->head.radius : 0;
+        c->most[i] = mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
+        if (kind == HIMC_CIRCLE && mode.m > 0)
+            c->most[i] = LARGEST_BESSEL;
+        c->wave[i] = kind != HIMC_GRID ? mode.zero / m->head.radius : 0;
         double stretch = root * mode.stiffness / m->head.tension;
         c->per_stiffness[i] = 1 / mode.stiffness;
         c->per_mass[i] = 1 / mode.mass;
@@ -186,6 +188,7 @@ static void find_output(himc_membrane *m, int index)
 {
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
+    double unit = index < HIMC_PICKUPS ? 1 : pickup->distance; // rays are as loud as at 1 m
     himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
     himc_modes_mix(c->modes, c->scratch);
     for (int i = 0; i < himc_membrane_modes(m); i++) {
@@ -195,9 +198,9 @@ static void find_output(himc_membrane *m, int index)
         mode.decay = o->decay;
         mode.mass = o->mass;
         pickup_weights w = himc_pickup_weights(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
-        c->on_q[i] = w.displacement;
-        c->on_v[i] = w.velocity;
-        c->on_force[i] = w.force;
+        c->on_q[i] = unit * w.displacement;
+        c->on_v[i] = unit * w.velocity;
+        c->on_force[i] = unit * w.force;
     }
     himc_bank_readout(c->bank, c->on_q, c->on_v,
                       pickup->kind == HIMC_PICKUP_AIR ? c->on_force : NULL,
@@ -732,11 +735,16 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
     return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
 }
 
-double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
+// j_11 of a round head, else the lowest mode's radius times wavenumber
+static double principal_zero(const himc_membrane *membrane)
 {
     bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
-    double zero =
-        round ? himc_bessel_zero(1, 1) : himc_modes_get(membrane->core.modes, head, 0).zero;
+    return round ? himc_bessel_zero(1, 1)
+                 : himc_modes_get(membrane->core.modes, &membrane->head, 0).zero;
+}
+
+static double principal_of(const himc_head *head, double zero)
+{
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
     if (!head->air)
         return bare;
@@ -744,14 +752,20 @@ double himc_membrane_principal(const himc_membrane *membrane, const himc_head *h
     return bare * himc_air_on(&air, 1, 1, zero).frequency;
 }
 
+double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
+{
+    return principal_of(head, principal_zero(membrane));
+}
+
 double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
                                  double frequency)
 {
     himc_head trial = *head;
     double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
+    double zero = principal_zero(membrane);
     for (int i = 0; i < BISECTIONS; i++) {
         trial.tension = exp(0.5 * (low + high));
-        if (himc_membrane_principal(membrane, &trial) < frequency)
+        if (principal_of(&trial, zero) < frequency)
             low = log(trial.tension);
         else
             high = log(trial.tension);

@@ -6,7 +6,8 @@
 #include "drum/shared.h"
 
 /// Rays: what ears (ears.h) need of a head beside its pickups, the sound it sends out in the
-/// direction of the left ear, of the right ear, and of the floor's mirror image.
+/// direction of the left ear, of the right ear, and of the floor's mirror image, as loud as at 1 m;
+/// their distance tells their near field.
 enum { HIMC_RAY_LEFT, HIMC_RAY_RIGHT, HIMC_RAY_FLOOR, HIMC_RAYS };
 #define HIMC_OUTPUTS (HIMC_PICKUPS + HIMC_RAYS) ///< pickups, then rays
 

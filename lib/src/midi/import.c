@@ -1,10 +1,10 @@
 /// import.c: from a MIDI file to the text of a score.
 ///
-/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c); here
-/// velocities become dynamics, and all becomes text. Beats are the file's quarter notes and its
-/// tempo map is written as it is, so both can be edited; nothing is quantised. A piece that begins
-/// sooner than a player can raise the sticks is preceded by whole beats. Invariant: each note of the
-/// file is either a stroke of the score, or counted in the report with the reason.
+/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c);
+/// here velocities become dynamics, and all becomes text. Beats are the file's quarter notes and
+/// its tempo map is written as it is, so both can be edited; nothing is quantised. A piece that
+/// begins sooner than a player can raise the sticks is preceded by whole beats. Invariant: each
+/// note of the file is either a stroke of the score, or counted in the report with the reason.
 #include "midi/import.h"
 
 #include "base/format.h"
@@ -26,7 +26,8 @@
 #define LEAD_IN 1.0        // before the first stroke (s); chosen: sticks rise and fall twice
 #define TIMPANI_PROGRAM 47 // "48 Timpani" of General MIDI, which counts from 1
 
-// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
+// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal
+// steps
 #define SOFTEST 16
 #define LOUDEST 128
 
@@ -144,6 +145,8 @@ static bool assign(midi_part *part, himc_error *error)
     for (int i = 0; i < part->count; i++)
         part->fate[part->stroke[i].fate]++;
     count_damped(part);
+    if (part->timpani)
+        himc_midi_find_rolls(part);
     return true;
 }
 
@@ -181,6 +184,9 @@ static void report(text *t, const midi_file *file, const midi_part *part)
     report_kind(t, part->moved, "note is moved by octaves to C2 .. B3",
                 "notes are moved by octaves to C2 .. B3");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
+    if (part->rolls > 0)
+        put(t, "%d notes are played as %d roll%s\n", part->rolled, part->rolls,
+            part->rolls == 1 ? "" : "s");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
     report_kind(t, file->cut, "track ends in the middle of an event",
                 "tracks end in the middle of an event");
@@ -241,15 +247,23 @@ static void put_tempi(text *t, const midi_file *file, double lead, double last)
     }
 }
 
+static void put_stroke(text *t, const midi_part *part, const midi_stroke *s, double lead)
+{
+    const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
+    double beat = s->note->beat + lead;
+    if (s->roll.length > 0)
+        put(t, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length, s->dynamic,
+            s->roll.last_dynamic, spot, drum);
+    else
+        put(t, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand), s->dynamic,
+            spot, drum);
+}
+
 static void put_strokes(text *t, const midi_part *part, double lead)
 {
-    for (int i = 0; i < part->count; i++) {
-        const midi_stroke *s = &part->stroke[i];
-        if (s->fate == MIDI_PLAYED)
-            put(t, "stroke %.9g %s legato %.3g %s %s;\n", s->note->beat + lead,
-                himc_hand_name(s->hand), s->dynamic, himc_spot_name(s->spot),
-                part->head[s->head].name);
-    }
+    for (int i = 0; i < part->count; i++)
+        if (part->stroke[i].fate == MIDI_PLAYED && !part->stroke[i].in_roll)
+            put_stroke(t, part, &part->stroke[i], lead);
 }
 
 /// A line of a drum's head.

@@ -3,6 +3,7 @@
 #define HIMC_PERFORMANCE_CONTACTS_H
 
 #include "himc/membrane.h"
+#include "plan/bounce.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"
 #include "performance/performance_drums.h"
@@ -17,6 +18,7 @@ typedef struct stick_contact {
     bool released;      ///< control acts along the normal as the hand does (grip.h)
     bool pressed;       ///< while touching: not a stroke of the plan, or one that stays
     bool told;          ///< while touching: the strike has been reported
+    himc_bounce bounce; ///< of the last stroke
     double hand;        ///< acceleration that the hand gives it along the normal (m/s^2)
     double left;        ///< when the last contact ended (s)
     int drum;           ///< slot

@@ -17,12 +17,11 @@
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
 #define TRUNK_FORESIGHT 1.2 // chosen: strokes further ahead do not turn the trunk (s)
 #define TRUNK_STEP 0.02     // longest step of himc_trunk_posture_approach (s)
-#define REPLANNED 0.02     // chosen: least delay of a stroke that is given up and planned again (s)
-#define LIMIT_HEIGHT 0.35  // chosen: a large stroke; the mean posture's tips go up to here (m)
-#define LIMIT_HEIGHTS 8    // postures in that mean
-#define OUT_OF_REACH 1e-3  // chosen: the user is told of a target missed by more (m)
-#define BEAT_ROUNDING 1e-9 // of a time in seconds, in beats
-#define PRESS_RIM 0.9      // share of a head's radius; further out targets go past its rim, too
+#define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
+#define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
+#define LIMIT_HEIGHTS 8   // postures in that mean
+#define OUT_OF_REACH 1e-3 // chosen: the user is told of a target missed by more (m)
+#define PRESS_RIM 0.9     // share of a head's radius; further out targets go past its rim, too
 
 // a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
 // comes down to the head as if braked; chosen: a press arrives with less than 20 N
@@ -106,6 +105,12 @@ bool himc_motion_is_idle(const performance_motion *m, himc_hand hand, double t)
            (himc_motion_tracks(m, hand) && t < m->track_start);
 }
 
+bool himc_motion_captured(const performance_motion *m, himc_hand hand, double t, himc_vec3 *x)
+{
+    return himc_motion_tracks(m, hand) &&
+           himc_track_captured(m->track, hand, t - m->track_start, x);
+}
+
 static double take_end(const performance_motion *m)
 {
     return m->track_start + himc_track_length(m->track);
@@ -167,6 +172,8 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.bounces = stroke.bounces;
+        next.bounce_time = stroke.bounce_time;
     }
     next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
     return next;
@@ -525,7 +532,8 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
 long himc_motion_beat(performance_motion *m, double t)
 {
     double beat = himc_planner_beat(m->planner, t);
-    long whole = m->track || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    bool waits = m->track || himc_planner_is_preparing(m->planner, t);
+    long whole = waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
     bool begun = whole != m->last_beat;
     m->last_beat = whole;
     return begun ? whole : -1;

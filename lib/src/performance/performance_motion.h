@@ -9,7 +9,7 @@
 #include "control/setpoint.h"
 #include "performance/performance_drums.h"
 #include "performance/performance_settings.h"
-#include "plan/track.h"
+#include "track/track.h"
 
 /// The last live target of a hand.
 typedef struct live_target {
@@ -31,6 +31,8 @@ typedef struct planned_stroke {
     int drum;    ///< slot
     double x, y; ///< on the head (m)
     char nuance[HIMC_NAME_SIZE];
+    int bounces;        ///< of a stroke that bounces (himc_stroke)
+    double bounce_time; ///< (s)
 } planned_stroke;
 
 typedef struct performance_motion {
@@ -115,6 +117,9 @@ HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_
 HIMC_RT bool himc_motion_tracks(const performance_motion *motion, himc_hand hand);
 /// True for a hand without a task: not in the take, or on its way to the take's first frame.
 HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand hand, double t);
+/// Place of that hand's tip in the take that moves it; false if none does.
+HIMC_RT bool himc_motion_captured(const performance_motion *motion, himc_hand hand, double t,
+                                  himc_vec3 *x);
 /// Gives the hands of the take to the planner.
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.

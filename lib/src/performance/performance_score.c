@@ -424,16 +424,29 @@ static himc_job_state install_changes(score_job *j)
     return HIMC_JOB_DONE;
 }
 
+// the strokes as written, then what ornaments add, which leaves out what does not fit
+static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_error *error)
+{
+    int drum;
+    stroke.beat += j->from;
+    if (!installed_drum(j, stroke.drum, &drum, error))
+        return false;
+    if (ornament)
+        return himc_performance_add_ornament(j->performance, &stroke, drum, error);
+    if (stroke.ornament >= HIMC_ROLL_SINGLE)
+        return true;
+    stroke.ornament = HIMC_PLAIN;
+    return himc_performance_add_stroke(j->performance, &stroke, error);
+}
+
 static himc_job_state add_strokes(score_job *j, himc_error *error)
 {
-    for (int added = 0; j->at < j->score->stroke_count; j->at++, added++) {
-        int drum;
-        himc_stroke stroke = j->score->strokes[j->at];
+    int count = j->score->stroke_count;
+    for (int added = 0; j->at < 2 * count; j->at++, added++) {
+        bool ornament = j->at >= count;
         if (added == STROKES_AT_ONCE)
             return HIMC_JOB_MORE;
-        stroke.beat += j->from;
-        if (!installed_drum(j, stroke.drum, &drum, error) ||
-            !himc_performance_add_stroke(j->performance, &stroke, error)) {
+        if (!add_stroke(j, j->score->strokes[j->at % count], ornament, error)) {
             himc_error_prefix(error, "%s", j->path);
             return HIMC_JOB_FAILED;
         }

@@ -192,7 +192,11 @@ static bool read_performer_line(reader *r, const himc_atom *atom, int count)
     if (row->marks & HIMC_NOT_IN_SCORE)
         return himc_error_set(r->error, "%s: not allowed in a score", row->name);
     switch (row->id) {
-    case HIMC_COMMAND_STROKE: return add_stroke(r);
+    case HIMC_COMMAND_STROKE:
+    case HIMC_COMMAND_ROLL:
+    case HIMC_COMMAND_FLAM:
+    case HIMC_COMMAND_DRAG:
+    case HIMC_COMMAND_RUFF: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
     default: return add_line(r, "");
     }
@@ -324,6 +328,8 @@ static bool check_playable(reader *r)
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
         r->line = r->stroke_line[i];
+        if (stroke->ornament >= HIMC_ROLL_SINGLE)
+            continue; // it leaves out what does not fit (ornament.h)
         if (seconds - last[stroke->hand] < STROKE_INTERVAL_MIN)
             return himc_error_set(
                 r->error,

@@ -6,8 +6,8 @@
 /// good frame to the head's plane, with an acceleration that fades to zero there; this gives the
 /// time of contact. Then a quintic leads back to the capture; at separation another one, from the
 /// measured state, replaces it.
-#include "plan/track_state.h"
-#include "plan/track_time.h"
+#include "track/track_state.h"
+#include "track/track_time.h"
 
 #include "base/noise.h"
 #include "capture/player.h"
@@ -138,7 +138,7 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
                        const himc_take_strike *strikes, int count, double mallet_radius)
 {
     hand_track *h = &track->hand[hand];
-    himc_vec3 *x = malloc((size_t)track->frames * sizeof *x);
+    himc_vec3 *x = h->captured = malloc((size_t)track->frames * sizeof *x);
     h->frame = calloc((size_t)track->frames, sizeof *h->frame);
     h->bridges = calloc((size_t)count + 1, sizeof *h->bridges);
     h->built = calloc((size_t)count + 1, sizeof *h->built);
@@ -151,7 +151,6 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
             make_bridge(track, h, &h->built[i], mallet_radius);
         memcpy(h->bridges, h->built, (size_t)h->bridge_count * sizeof *h->bridges);
     }
-    free(x);
     return h->present;
 }
 
@@ -225,6 +224,7 @@ void himc_track_free(himc_track *track)
     if (!track)
         return;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        free(track->hand[hand].captured);
         free(track->hand[hand].frame);
         free(track->hand[hand].bridges);
         free(track->hand[hand].built);
@@ -325,6 +325,20 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     s.a = himc_vec3_madd(himc_vec3_scale(s.a, at[1] * at[1]), at[2], s.v);
     s.v = himc_vec3_scale(s.v, at[1]);
     return s;
+}
+
+bool himc_track_captured(const himc_track *track, himc_hand hand, double t, himc_vec3 *x)
+{
+    const hand_track *h = &track->hand[hand];
+    double at[3], length = himc_track_take_length(track);
+    if (!h->present || t >= track->stop || t < -0.5 * HIMC_TRACK_RAMP ||
+        t > length + 0.5 * HIMC_TRACK_RAMP)
+        return false;
+    himc_track_warp(length, t, at);
+    double u = fmin(fmax(at[0], 0), length) * track->rate;
+    int k = (int)fmin(u, track->frames - 2);
+    *x = himc_vec3_madd(h->captured[k], u - k, himc_vec3_sub(h->captured[k + 1], h->captured[k]));
+    return true;
 }
 
 bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
