@@ -46,7 +46,7 @@ EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wi
 EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.pd_linux=$(BUILD)/externals-64/%.linux-amd64-64.so)
 EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture plan midi control bank head drum performance osc
+ROOMS     := base body capture track plan midi control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))

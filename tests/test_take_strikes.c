@@ -2,7 +2,7 @@
 /// stroke.
 #include "take_motions.h"
 
-#include "plan/track.h"
+#include "track/track.h"
 #include "capture/units.h"
 
 void setUp(void)

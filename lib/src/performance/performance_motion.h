@@ -9,7 +9,7 @@
 #include "control/setpoint.h"
 #include "performance/performance_drums.h"
 #include "performance/performance_settings.h"
-#include "plan/track.h"
+#include "track/track.h"
 
 /// The last live target of a hand.
 typedef struct live_target {

@@ -113,10 +113,9 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
     double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
     if (g.speed <= most)
         return g;
-    himc_planner_say(
-        &planner->notes, PLANNER_SOFTER,
-        "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
-        stroke->bounce_time, most);
+    himc_planner_say(&planner->notes, PLANNER_SOFTER,
+                     "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
+                     stroke->bounce_time, most);
     return himc_gesture_scale(g, most / g.speed);
 }
 

@@ -2,10 +2,10 @@
 #ifndef HIMC_TRACK_STATE_H
 #define HIMC_TRACK_STATE_H
 
-#include "plan/track.h"
+#include "track/track.h"
 
 #include "base/interpolate.h"
-#include "plan/track_fit.h"
+#include "track/track_fit.h"
 
 /// From a stop to rest (s). Chosen: a stick at 5 m/s halts with less than 5 g.
 #define HIMC_TRACK_HALT 0.4

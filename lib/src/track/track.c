@@ -6,8 +6,8 @@
 /// good frame to the head's plane, with an acceleration that fades to zero there; this gives the
 /// time of contact. Then a quintic leads back to the capture; at separation another one, from the
 /// measured state, replaces it.
-#include "plan/track_state.h"
-#include "plan/track_time.h"
+#include "track/track_state.h"
+#include "track/track_time.h"
 
 #include "base/noise.h"
 #include "capture/player.h"
