@@ -1,5 +1,5 @@
-/// test_bounce.c: strokes that bounce: the fingers' law by itself, doubles and buzzes of a performer,
-/// and the strokes that ornaments are made of.
+/// test_bounce.c: strokes that bounce: the fingers' law by itself, doubles and buzzes of a
+/// performer, and the strokes that ornaments are made of.
 #include "session.h"
 #include "plan/bounce.h"
 
