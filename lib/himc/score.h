@@ -3,8 +3,8 @@
 /// Strokes and tempo changes have beats; all other lines act once, in order, when the score is
 /// loaded. A line that begins with a drum's name is for that drum. `tempo BPM [BEAT]` holds from
 /// that beat on (0 when not given); `at BEAT DRUM COMMAND ...` changes a drum's head at that beat
-/// (commands marked HIMC_AT_BEAT: pedals, damping). At most 200000 strokes, 10000 other lines, 64 MiB; strokes of
-/// one hand at least 40 ms apart; a score cannot load a score.
+/// (commands marked HIMC_AT_BEAT: pedals, damping). At most 200000 strokes, 10000 other lines, 64
+/// MiB; strokes of one hand at least 40 ms apart; a score cannot load a score.
 #ifndef HIMC_SCORE_H
 #define HIMC_SCORE_H
 
@@ -43,9 +43,9 @@ typedef struct himc_score {
                   ///< else NULL
 } himc_score;
 
-/// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of timpani,
-/// else of drums, become a score. NULL with "file:line: ..." if anything in it is wrong. Free with
-/// himc_score_free.
+/// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of
+/// timpani, else of drums, become a score. NULL with "file:line: ..." if anything in it is wrong.
+/// Free with himc_score_free.
 himc_score *himc_score_load(const char *path, himc_error *error);
 
 /// Frees the score and its arrays. NULL is allowed.

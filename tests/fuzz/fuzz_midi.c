@@ -1,5 +1,5 @@
-/// fuzz_midi.c: MIDI files from arbitrary bytes. What is accepted becomes a score that is read without
-/// an error, and each note is a stroke or counted in the report.
+/// fuzz_midi.c: MIDI files from arbitrary bytes. What is accepted becomes a score that is read
+/// without an error, and each note is a stroke or counted in the report.
 #include "fuzz.h"
 #include "midi/import.h"
 #include "midi/smf.h"

@@ -73,7 +73,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error);
 /// is quick if both have one sample rate.
 void himc_drum_exchange(himc_drum *drum, himc_drum *made);
 
-// Heads that a drum gets one after the other while a score plays (drum_heads.c).
+// Heads that a drum gets one after the other while a score plays (drum_job.c).
 
 typedef struct himc_drum_heads himc_drum_heads;
 

@@ -1,10 +1,10 @@
 /// import.c: from a MIDI file to the text of a score.
 ///
-/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c); here
-/// velocities become dynamics, and all becomes text. Beats are the file's quarter notes and its
-/// tempo map is written as it is, so both can be edited; nothing is quantised. A piece that begins
-/// sooner than a player can raise the sticks is preceded by whole beats. Invariant: each note of the
-/// file is either a stroke of the score, or counted in the report with the reason.
+/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c);
+/// here velocities become dynamics, and all becomes text. Beats are the file's quarter notes and
+/// its tempo map is written as it is, so both can be edited; nothing is quantised. A piece that
+/// begins sooner than a player can raise the sticks is preceded by whole beats. Invariant: each
+/// note of the file is either a stroke of the score, or counted in the report with the reason.
 #include "midi/import.h"
 
 #include "base/format.h"
@@ -26,7 +26,8 @@
 #define LEAD_IN 1.0        // before the first stroke (s); chosen: sticks rise and fall twice
 #define TIMPANI_PROGRAM 47 // "48 Timpani" of General MIDI, which counts from 1
 
-// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
+// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal
+// steps
 #define SOFTEST 16
 #define LOUDEST 128
 

@@ -72,7 +72,8 @@ typedef struct midi_part {
     int rolls, rolled;    ///< rolls, and the strokes in them
 } midi_part;
 
-/// Of two strokes on one head (of timpani: of one pitch) at the same time one is played, the louder.
+/// Of two strokes on one head (of timpani: of one pitch) at the same time one is played, the
+/// louder.
 void himc_midi_join(midi_part *part);
 
 /// timpani.c: gives each stroke one of four timpani, with pedals that move between notes. False

@@ -1,10 +1,10 @@
 /// rolls.c: which fast repeats of the timpani are rolls.
 ///
-/// A roll in a MIDI file is a row of notes as fast as its maker could; a player plays as many strokes
-/// as drum and dynamic ask for. So strokes of one drum at 9 a second and more, four at least, with no
-/// other drum between them, become a `roll` from the first to the end of the last. Where the dynamics
-/// do not lie on a line, another roll begins. The drum channel has no rolls: there such rows are fills,
-/// whose rhythm counts.
+/// A roll in a MIDI file is a row of notes as fast as its maker could; a player plays as many
+/// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, four at
+/// least, with no other drum between them, become a `roll` from the first to the end of the last.
+/// Where the dynamics do not lie on a line, another roll begins. The drum channel has no rolls:
+/// there such rows are fills, whose rhythm counts.
 #include "midi/part.h"
 
 #include <math.h>
@@ -59,8 +59,8 @@ static int follow(const midi_part *part, int first, int *notes)
     return last;
 }
 
-// The roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands that
-// sticking.c gave them, one of which may go ahead. Its last stroke then.
+// The roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands
+// that sticking.c gave them, one of which may go ahead. Its last stroke then.
 static int leave_time(const midi_part *part, int first, int last, int *notes)
 {
     const midi_stroke *s = part->stroke;

@@ -3,9 +3,10 @@
 /// A file is chunks: a header, then tracks of events, each after a delta time in ticks. The tracks
 /// are read one by one into one list of the events that matter (notes, programs, tempi), sorted by
 /// tick; then one pass turns ticks into seconds and note-ons with their note-offs into notes. Each
-/// byte is taken through `next_byte`, which knows the end of its chunk; a chunk longer than the file
-/// is cut to it. Seconds: t += ticks * us / (1e6 ppqn), in the order of the merged tempo map.
-/// Invariant: nothing before `bytes` or from `end` on is read, whatever the lengths in the file say.
+/// byte is taken through `next_byte`, which knows the end of its chunk; a chunk longer than the
+/// file is cut to it. Seconds: t += ticks * us / (1e6 ppqn), in the order of the merged tempo map.
+/// Invariant: nothing before `bytes` or from `end` on is read, whatever the lengths in the file
+/// say.
 #include "midi/smf.h"
 
 #include <ctype.h>

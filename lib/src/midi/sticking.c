@@ -61,7 +61,7 @@ static double stroke_cost(const state *now, const hand_state *to, int hand)
                        .other_gap = to->at - other->at};
     if (s.gap < least_gap(s.way))
         return HUGE_VAL;
-    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? HIMC_STICKING_HABIT : 0);
+    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
 }
 
 // among the `count` best so far; one for each pair of last strokes

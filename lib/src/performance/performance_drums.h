@@ -65,12 +65,13 @@ HIMC_RT bool himc_drums_listening_takes_long(const performance_drums *drums);
 himc_job *himc_drums_listen_job(performance_drums *drums, const himc_listener *listener,
                                 himc_error *error);
 /// Drops all drums except those given by the host, which keep their order, and the listener. They
-/// are as when they were added: heads at rest, at the place of their owner or else placed automatically.
+/// are as when they were added: heads at rest, at the place of their owner or else placed
+/// automatically.
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
 
-/// Sets the changes of a drum's head in the score (NULL: none). Returns those before, which the caller
-/// frees.
+/// Sets the changes of a drum's head in the score (NULL: none). Returns those before, which the
+/// caller frees.
 himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_drum_heads *heads);
 /// Drops the changes of all heads.
 void himc_drums_drop_heads(performance_drums *drums);

@@ -65,7 +65,7 @@ typedef struct chance {
     double late;    ///< so much after the time asked for (s); infinite: never
     bool reaches;
     neighbours near;
-    bool idle;      ///< no stroke of the hand is to come before the hit
+    bool idle;      ///< no stroke of the hand is under way or to come before the hit
     himc_vec3 from; ///< where the tip comes from (m)
 } chance;
 
@@ -80,7 +80,7 @@ static bool can_follow(const himc_goal *first, const himc_goal *second)
 /// Whether the hand has time for the hit before and after it.
 static bool has_time(const planner_hand *h, double t, double least, const chance *c)
 {
-    double at = c->goal.time, free = fmax(t, c->near.before.time + HIMC_CONTACT_TIME);
+    double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
     if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
         return false;
     return (c->idle ? himc_hand_can_strike_from(&h->plan, t, &c->goal)
@@ -111,15 +111,14 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     own.hand = hand;
     chance c = {.goal = himc_planner_goal(planner, &own, hit->drum, hit->at)};
     c.near = neighbours_at(planner, hand, hit->at);
-    c.idle = c.near.before.time < t;
+    c.idle = himc_goal_end(&c.near.before) < t;
     c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
     c.reaches = himc_planner_reaches(planner, hand, &c.goal);
     find_time(h, t, &c);
     return c;
 }
 
-/// What the hit costs a hand; `other` is the other hand's chance. The hand that struck last costs a
-/// little more.
+/// What the hit costs a hand; `other` is the other hand's chance.
 static double cost_of(himc_hand hand, const chance *c, const chance *other)
 {
     himc_vec3 to = himc_vec3_sub(c->goal.spot, c->from), n = c->goal.normal;
@@ -129,7 +128,7 @@ static double cost_of(himc_hand hand, const chance *c, const chance *other)
                        .way = way < ON_SPOT ? 0 : way,
                        .inwards = hand == HIMC_LEFT ? -aside : aside,
                        .other_gap = other->goal.time - other->near.before.time};
-    return himc_sticking_cost(&s) + (s.gap < s.other_gap ? HIMC_STICKING_HABIT : 0);
+    return himc_sticking_cost(&s);
 }
 
 /// The hand that plays a hit: the one asked for if it is on time, else the earlier one.

@@ -13,7 +13,6 @@
 
 #include <math.h>
 
-#define HIMC_STICKING_HABIT 0.02 ///< cost of a hand that a player would not take; chosen: the least
 #define HIMC_STICKING_CROSS 0.05 ///< hands cross if one is so far past the other (m)
 
 /// A hand on its way to a stroke.
