@@ -1,5 +1,5 @@
-/// test_bounce.c: strokes that bounce: the fingers' law by itself, doubles and buzzes of a performer,
-/// and the strokes that ornaments are made of.
+/// test_bounce.c: strokes that bounce: the fingers' law by itself, doubles and buzzes of a
+/// performer, and the strokes that ornaments are made of.
 #include "session.h"
 #include "plan/bounce.h"
 
@@ -250,6 +250,21 @@ static void test_with_the_servo_grip_nothing_bounces(void)
     heard_free(&bounced);
 }
 
+static void keep_line(void *user, const char *text)
+{
+    strncat(user, text, 400);
+}
+
+static void test_info_tells_the_servo_grip(void)
+{
+    himc_performance *p = with_kettle("himc");
+    char told[4096] = "";
+    session_do(p, "grip french servo");
+    himc_performance_describe(p, keep_line, told);
+    TEST_ASSERT_NOT_NULL(strstr(told, "grip french servo,"));
+    himc_performance_free(p);
+}
+
 static void test_ornaments_do_not_depend_on_the_block_size(void)
 {
     static const char *const lines[] = {"roll 1 0.5 double mf", "drag 2 left legato f",
@@ -360,6 +375,7 @@ int main(void)
     RUN_TEST(test_each_stroke_of_a_press_roll_has_five_contacts_or_more_that_get_softer);
     RUN_TEST(test_grace_notes_come_before_the_beat_by_their_hands_and_softer);
     RUN_TEST(test_with_the_servo_grip_nothing_bounces);
+    RUN_TEST(test_info_tells_the_servo_grip);
     RUN_TEST(test_ornaments_do_not_depend_on_the_block_size);
     RUN_TEST(test_rolls_are_faster_when_loud_and_on_high_drums);
     RUN_TEST(test_rolls_follow_tempo_seek_and_loop);
