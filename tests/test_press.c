@@ -1,5 +1,5 @@
-/// test_press.c: a tip that is wanted below the head is pressed on it, by a live target, by a stream
-/// of targets and by a take: one contact with little force, that comes to rest.
+/// test_press.c: a tip that is wanted below the head is pressed on it, by a live target, by a
+/// stream of targets and by a take: one contact with little force, that comes to rest.
 #define _GNU_SOURCE
 #include "take_players.h"
 #include "session.h"

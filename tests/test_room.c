@@ -121,8 +121,8 @@ static double stored(void)
 {
     double sum = 0;
     for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        for (int d = 1; d <= room.delay[l]; d++)
-            sum += pow(room.line[l][(room.at - d) & (room.size - 1)], 2);
+        for (int d = 0; d < room.delay[l]; d++)
+            sum += pow(room.line[l][d], 2);
     return sum;
 }
 

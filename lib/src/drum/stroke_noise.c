@@ -28,14 +28,15 @@
 #define BETA 0.8       // chosen: 1 is a felt core, 0 its friction; brightness with force
 #define STRONGEST 55.0 // (N) chosen: fff is louder than ff, not noisier
 #define SLOPE 1e4      // G1 (N/s): of a loud medium blow; chosen: a wooden stick is not all noise
-#define EDGE 500.0     // (Hz) of G; chosen: what is above differs from mallet to mallet
-#define RISE 0.002     // (s) chosen: as the recordings rise
-#define TOP 0.45       // of the sample rate; a band above it is silent
-#define SILENT 1e-14   // sum of energies; chosen: -140 dB
-#define PLACE 50       // seeds a metre; chosen: a mallet covers as much, blows within it are alike
-#define COHERENCE 0.5  // of the two rows; chosen: shell and stand are larger than a head
-#define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
-#define MEASURED 0.04  // (s) of a filter's response; chosen: the lowest band's is over
+#define LEAST_SLOPE 1e-30 // (N/s) of G; chosen: beside any blow's it is nothing
+#define EDGE 500.0        // (Hz) of G; chosen: what is above differs from mallet to mallet
+#define RISE 0.002        // (s) chosen: as the recordings rise
+#define TOP 0.45          // of the sample rate; a band above it is silent
+#define SILENT 1e-14      // sum of energies; chosen: -140 dB
+#define PLACE 50      // seeds a metre; chosen: a mallet covers as much, blows within it are alike
+#define COHERENCE 0.5 // of the two rows; chosen: shell and stand are larger than a head
+#define CHUNK 32      // samples at a time, so that vectors do not wait for single numbers
+#define MEASURED 0.04 // (s) of a filter's response; chosen: the lowest band's is over
 
 // q_b, fitted once on numbers of two recordings, hall included: with the head's own sound an accent
 // f of the medium mallet, at C2 on 32 inches and at G2 on 29, has about -13 -18 -25 -38 dB in its
@@ -127,8 +128,13 @@ void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double y)
 // a sample of the force feeds the bands
 static void drive(himc_stroke_noise *noise, double force)
 {
-    double slope = (force - noise->force) * noise->rate, stronger = fmax(force, noise->force);
-    double *known = noise->slope, first = noise->pole * (known[1] + slope - known[0]);
+    double *known = noise->slope, stronger = force > noise->force ? force : noise->force;
+    if (stronger <= 0 && fabs(known[1]) + fabs(known[2]) < LEAST_SLOPE) {
+        known[0] = known[1] = known[2] = 0; // a denormal number costs as much as all the rest
+        return;
+    }
+    double slope = (force - noise->force) * noise->rate,
+           first = noise->pole * (known[1] + slope - known[0]);
     double g = noise->pole * (known[2] + first - known[1]);
     known[0] = slope;
     known[1] = first;
