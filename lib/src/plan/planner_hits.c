@@ -9,9 +9,9 @@
 /// The hand asked for plays it, if it has LEAST_PREPARATION after its stroke before, can get there,
 /// and leaves as much to its stroke after; else the other hand. Where the performer chooses, the
 /// cheaper hand plays: far, short and crossed ways cost, a hand that has just struck costs, so in a
-/// run on one key the hands alternate. Where no hand has time, one that nothing else waits for plays
-/// late, by as little as its way there needs; else the hit is given up. Both are counted. Choosing
-/// changes nothing; only the plan of the hand that plays is cut.
+/// run on one key the hands alternate. Where no hand has time, one without other strokes to come
+/// plays late, by as little as its way there needs; else the hit is given up. Both are counted.
+/// Choosing changes nothing; only the plan of the hand that plays is cut.
 #include "plan/planner_motion.h"
 #include "plan/sticking.h"
 
