@@ -76,7 +76,7 @@ static bool write_text(const char *path, const char *text, himc_error *error)
 static bool make(const cli_arguments *arguments, midi_score *made, himc_error *error)
 {
     const char *path = arguments->operand, *out = arguments->value[OUT];
-    midi_options wanted;
+    midi_options wanted = {MIDI_ANY, 0};
     if (!out)
         return himc_error_set(error, "no -o SCORE given (himc import --help)");
     if (cli_same_file(path, out))
