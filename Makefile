@@ -24,8 +24,9 @@ WARNINGS = -Wall -Wextra -Wpedantic -Wshadow
 HOW      = $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interposition -ffp-contract=off -fPIC $(SANITIZE) \
            -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
 COMPILE  = $(CC) -std=c17 -Wmissing-prototypes $(HOW)
-# Eigen, which linear.cpp alone knows
-COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW)
+# Eigen, which linear.cpp alone knows; the two checks need a C++ run time of their own
+comma := ,
+COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring clang,$(CXX)),-fno-sanitize=function$(comma)vptr)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
