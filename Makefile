@@ -42,8 +42,11 @@ PKGCONFIG := $(BUILD)/himc.pc
 PROGRAM   := $(BUILD)/bin/himc
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
+# for Pd with samples of 64 bits, and for libpd with several instances
+EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.pd_linux=$(BUILD)/externals-64/%.linux-amd64-64.so)
+EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture plan midi control bank head drum performance osc
+ROOMS     := base body capture track plan midi control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
@@ -52,7 +55,7 @@ UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(wildcard tests/test_*.sh tests/pd/test_*.sh)
+SCRIPTS   := $(filter-out tests/pd/test_package.sh tests/test_arm64.sh,$(wildcard tests/test_*.sh tests/pd/test_*.sh))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -71,27 +74,53 @@ endif
 .SECONDARY:
 .DELETE_ON_ERROR:
 
+# pd-lib-builder leaves its objects beside the sources, so it works on a copy (which make -n does not make); the first word of
+# the argument is the folder, the others are for pd-externals/Makefile
+define make_externals
+	$(Q)rm -rf $(firstword $(1)) && mkdir -p $(firstword $(1)) && cp -r pd-externals $(firstword $(1))/work
+	+$(Q)test ! -d $(firstword $(1))/work || $(MAKE) -C $(firstword $(1))/work install DESTDIR= PDLIBDIR=$(abspath $(firstword $(1))) \
+	    CC="$(CC)" LIB=$(CURDIR)/lib ARCHIVE=$(abspath $(LIBRARY)) EXTRA_CFLAGS="$(ARCH) $(CFLAGS)" $(wordlist 2,9,$(1)) >$(firstword $(1)).log
+	$(Q)rm -r $(firstword $(1))/work
+endef
+
 ##@ Build
 all: $(if $(wildcard $(VIEWER)),$(VIEWER)) $(LIBRARY) $(SHARED) $(PKGCONFIG) $(PROGRAM) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
 deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
 	@tools/deps.sh tools/deps.txt
 
-install: all ## install program, library, headers and externals under PREFIX (DESTDIR for packagers)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc/clips
-	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
-	test ! -x $(VIEWER) || install $(VIEWER) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(LIBRARY) $(SHARED) $(DESTDIR)$(LIBDIR)
-	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(LIBDIR)/libhimc.so.$(MAJOR)
-	ln -sf libhimc.so.$(MAJOR) $(DESTDIR)$(LIBDIR)/libhimc.so
-	install -m 644 $(PKGCONFIG) $(DESTDIR)$(LIBDIR)/pkgconfig
-	install -m 644 lib/himc/*.h $(DESTDIR)$(PREFIX)/include/himc
-	install -m 644 $(BUILD)/externals/himc/* patches/techniques/* $(DESTDIR)$(PDEXTRA)/himc
-	install -m 644 $(BUILD)/clips/*.wav $(CLIPS) $(DESTDIR)$(PDEXTRA)/himc/clips
+externals-64: $(EXTERNALS_64) ## the externals for Pd with samples of 64 bits, in build/externals-64
 
-uninstall: ## remove what `make install` put there
-	rm -rf $(DESTDIR)$(PREFIX)/bin/himc $(DESTDIR)$(PREFIX)/bin/himc-viewer $(DESTDIR)$(LIBDIR)/libhimc.* \
-	    $(DESTDIR)$(LIBDIR)/pkgconfig/himc.pc $(DESTDIR)$(PREFIX)/include/himc $(DESTDIR)$(PDEXTRA)/himc
+externals-multi: $(EXTERNALS_MULTI) ## the externals for libpd with several instances in one process, in build/externals-multi
+
+ARM64 = $(BUILD)/arm64/debian/root/usr/lib/aarch64-linux-gnu
+arm64: deps ## program and externals for Linux on arm64, crossed, in build/arm64
+	@tools/deps.sh tools/deps-arm64.txt
+	@tools/arm64.sh $(BUILD)/arm64/debian
+	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 CC=aarch64-linux-gnu-gcc LDFLAGS="-L$(abspath $(ARM64)) -Wl,-rpath-link,$(abspath $(ARM64))" \
+	    ARM64=$(abspath $(ARM64))
+arm64-here: $(PROGRAM)
+	@echo "pd   $(BUILD)/externals"
+	$(call make_externals,$(BUILD)/externals extension=linux-arm64-32.so ARCHIVES=$(ARM64) OBJCOPY=aarch64-linux-gnu-objcopy LDFLAGS=-L$(ARM64))
+# the vectorizer of GCC 12 for arm64 ends with an internal error here
+$(BUILD)/tools/render.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
+
+test-arm64: all ## the same, run by qemu: its strikes and its sound are those of this machine
+	@$(MAKE) arm64
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_arm64.sh
+
+deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would
+	@tools/deps.sh tools/deps-package.txt
+	@$(MAKE) all externals-64
+	@tools/package.sh $(BUILD) $(VERSION)
+	@tests/pd/test_package.sh $(BUILD)/package/*.dek
+
+INSTALL = BUILD=$(BUILD) DESTDIR=$(DESTDIR) PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) PDEXTRA=$(PDEXTRA) VERSION=$(VERSION) tools/install.sh
+install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers)
+	@$(INSTALL) install
+
+uninstall: all ## remove what `make install` put there, nothing else
+	@$(INSTALL) uninstall
 
 clean: ## remove all that was built
 	rm -rf build
@@ -202,6 +231,13 @@ mutants: deps ## put more than a hundred faults into the library, one at a time,
 check-mutants: $(UNIT)
 	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS)" tests/mutants/run.sh $(MUTANTS)
 
+# the externals for it, of 32 or 64 bits
+FLOATSIZE ?= 32
+test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd FLOATSIZE=32 or 64
+	@$(MAKE) all $(if $(filter 64,$(FLOATSIZE)),externals-64)
+	@HIMC_BUILD=$(BUILD) PD=$(NEWER) $(if $(filter 64,$(FLOATSIZE)),HIMC_EXTERNALS=$(abspath $(BUILD)/externals-64)) HIMC_LONG=1 JOBS=1 \
+	    tests/run.sh tests/pd/test_pd.sh
+
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
 
@@ -213,7 +249,7 @@ MIDI_SECONDS ?= 15
 test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; two minutes)
 	@tools/deps.sh tools/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
-	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid
+	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid
 
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
 	@tools/deps.sh tools/deps-sound.txt
@@ -282,7 +318,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -416,13 +452,18 @@ build/unity/src/unity.c:
 	@echo "get  $@"
 	$(Q)tools/unity.sh build/unity
 
-# pd-lib-builder leaves its objects beside the sources, so it works on a copy (which make -n does not make)
+
 $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	@echo "pd   $(EXTERNALS)"
-	$(Q)rm -rf $(BUILD)/externals && mkdir -p $(BUILD)/externals && cp -r pd-externals $(BUILD)/externals/work
-	$(Q)test ! -d $(BUILD)/externals/work || $(MAKE) -C $(BUILD)/externals/work install DESTDIR= PDLIBDIR=$(abspath $(BUILD)/externals) CC="$(CC)" \
-	    LIB=$(CURDIR)/lib ARCHIVE=$(abspath $(LIBRARY)) EXTRA_CFLAGS="$(ARCH) $(CFLAGS)" >$(BUILD)/externals.log
-	$(Q)rm -r $(BUILD)/externals/work
+	$(call make_externals,$(BUILD)/externals)
+
+$(EXTERNALS_64) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
+	@echo "pd   $(EXTERNALS_64)"
+	$(call make_externals,$(BUILD)/externals-64 extension=linux-amd64-64.so FLOATSIZE=64)
+
+$(EXTERNALS_MULTI) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
+	@echo "pd   $(EXTERNALS_MULTI)"
+	$(call make_externals,$(BUILD)/externals-multi INSTANCES=1)
 	@! nm -D --undefined-only $(EXTERNALS) | grep ' himc_' || { echo "$(@D): lacks the above; Pd would not load it" >&2; false; }
 
 include tools/figures/figures.mk

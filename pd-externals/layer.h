@@ -12,6 +12,9 @@ when they change, and costs nothing before the first force. */
 
 #define LAYER_CHUNK 64 /* samples at a time, on the stack of the perform routine */
 #define LAYER_OUTS (HIMC_PICKUPS + 1)
+/* (ms) after the last change of the drum, before the first force; chosen: more than between two
+steps of a pedal. A force that comes earlier has a block of the old head. */
+#define LAYER_PATIENCE 100
 #define LAYER_DECLICK 0.010 /* as the drum's own sound, when the technique changes (s) */
 
 typedef struct t_layer {

@@ -27,7 +27,8 @@ typedef struct t_membrane {
     t_object x_obj;
     t_drum_link x_link; /* must follow: [himc~] looks for it here */
     t_float x_force;    /* the force inlet's value when nothing is connected */
-    t_symbol *x_symbol; /* that the object is bound to; NULL if it has no name */
+    t_symbol *x_symbol; /* that the object is bound to; NULL if it has no name, or another has it */
+    t_symbol *x_queue;  /* that it is bound to while another has its name, and after; or NULL */
     t_clock *x_clock;
     t_outlet *x_messages;
     int x_channels;
@@ -35,7 +36,9 @@ typedef struct t_membrane {
     himc_loader *x_loader; /* for heads that take long to compute */
     t_clock *x_load;       /* looks for what it has loaded */
 
-    t_layer x_layer; /* plays the inlet's force while a performer plays the drum */
+    t_layer x_layer;      /* plays the inlet's force while a performer plays the drum */
+    t_clock *x_fit_clock; /* makes it equal to the drum */
+    bool x_fits_soon;     /* that clock runs */
 
     t_stream x_stream;
     t_sample *x_in[3];
@@ -68,6 +71,7 @@ static void membrane_fit_layer(t_membrane *x)
 {
     himc_error error;
     const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    x->x_fits_soon = false;
     if (layer_fits(&x->x_layer, drum))
         return;
     bool good = pd_in_real_time()
@@ -77,6 +81,16 @@ static void membrane_fit_layer(t_membrane *x)
         clock_delay(x->x_load, LOAD_PERIOD);
     if (!good)
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
+}
+
+/* After a change of the drum. A layer that has not felt a force waits until the pedal rests. */
+static void membrane_refit(t_membrane *x, bool again)
+{
+    if (x->x_layer.l_sounds)
+        clock_delay(x->x_fit_clock, 0);
+    else if (again || !x->x_fits_soon)
+        clock_delay(x->x_fit_clock, LAYER_PATIENCE);
+    x->x_fits_soon = true;
 }
 
 /* Reads the drum: its channels, then the displacement. */
@@ -149,9 +163,10 @@ static t_int *membrane_perform(t_int *w)
     if (!x->x_waiting)
         x->x_waiting = himc_drum_strike_next(x->x_link.l_drum, &x->x_report);
     if (x->x_waiting || membrane_troubled(x) ||
-        himc_drum_technique(x->x_link.l_drum) != x->x_technique ||
-        !layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
+        himc_drum_technique(x->x_link.l_drum) != x->x_technique)
         clock_delay(x->x_clock, 0);
+    if (!layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
+        membrane_refit(x, false);
     watch_end();
     return w + 2;
 }
@@ -231,7 +246,6 @@ static void membrane_tick(t_membrane *x)
         pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0",
                  name);
     x->x_told |= membrane_troubled(x);
-    membrane_fit_layer(x);
     membrane_tell_technique(x);
     while (x->x_waiting) {
         himc_contact_report report = x->x_report;
@@ -265,7 +279,7 @@ static void membrane_changed(void *object, const char *refusal)
     t_membrane *x = object;
     if (refusal)
         pd_error(x, "membrane~: %s", refusal);
-    membrane_fit_layer(x);
+    membrane_refit(x, true);
     membrane_tell_technique(x);
 }
 
@@ -360,17 +374,54 @@ static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer,
     return NULL;
 }
 
+/* The symbol of those who wait for a name; as it takes several, it needs no list of ours. */
+static t_symbol *membrane_queue(const char *name)
+{
+    char text[HIMC_NAME_SIZE + 16];
+    snprintf(text, sizeof text, "himc-waiting:%s", name);
+    return gensym(text);
+}
+
+/* Takes the object's name if it is free; true if it has it then. Sent to all who wait when one of
+their name is deleted, as after a copy whose original goes. */
+static bool membrane_take_name(t_membrane *x)
+{
+    t_symbol *symbol = drum_link_symbol(himc_drum_name(x->x_link.l_drum));
+    if (!symbol->s_thing) {
+        pd_bind(&x->x_obj.ob_pd, symbol);
+        x->x_symbol = symbol;
+    }
+    return x->x_symbol;
+}
+
+static void membrane_name_free(t_membrane *x)
+{
+    membrane_take_name(x);
+}
+
 static void membrane_bind(t_membrane *x, const char *name)
 {
-    t_symbol *symbol = drum_link_symbol(name);
-    if (symbol->s_thing) {
-        pd_error(x,
-                 "membrane~: %s: there is one of this name already: no [himc~] will find this one",
-                 name);
+    if (membrane_take_name(x))
         return;
-    }
-    pd_bind(&x->x_obj.ob_pd, symbol);
-    x->x_symbol = symbol;
+    x->x_queue = membrane_queue(name);
+    pd_bind(&x->x_obj.ob_pd, x->x_queue);
+    pd_error(
+        x,
+        "membrane~: %s: there is one of this name already: [himc~] finds this one when that is gone",
+        name);
+}
+
+/* Gives the name to the next. */
+static void membrane_unbind(t_membrane *x)
+{
+    if (x->x_queue)
+        pd_unbind(&x->x_obj.ob_pd, x->x_queue);
+    if (!x->x_symbol)
+        return;
+    pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
+    t_symbol *queue = membrane_queue(himc_drum_name(x->x_link.l_drum));
+    if (queue->s_thing)
+        pd_typedmess(queue->s_thing, gensym("name-free"), 0, NULL);
 }
 
 static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
@@ -396,6 +447,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_load = clock_new(x, (t_method)membrane_load);
     x->x_channels = (int)wish.w_channels;
     x->x_clock = clock_new(x, (t_method)membrane_tick);
+    x->x_fit_clock = clock_new(x, (t_method)membrane_fit_layer);
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
     himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
     double spot_x, spot_y;
@@ -412,13 +464,13 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 
 static void membrane_free(t_membrane *x)
 {
-    if (x->x_symbol)
-        pd_unbind(&x->x_obj.ob_pd, x->x_symbol);
+    membrane_unbind(x);
     himc_loader_free(x->x_loader);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
     himc_drum_release(x->x_layer.l_drum);
     clock_free(x->x_clock);
+    clock_free(x->x_fit_clock);
     clock_free(x->x_load);
     clock_free(x->x_touch_clock);
 }
@@ -435,5 +487,6 @@ void membrane_tilde_setup(void)
         return; /* a Pd of another float size has refused it and said so */
     CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);
     class_addmethod(membrane_class, (t_method)membrane_dsp, gensym("dsp"), A_CANT, A_NULL);
+    class_addmethod(membrane_class, (t_method)membrane_name_free, gensym("name-free"), A_NULL);
     class_addanything(membrane_class, (t_method)membrane_anything);
 }

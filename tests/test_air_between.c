@@ -88,7 +88,8 @@ static double mode_energy(int i, int index)
 static void run(int64_t now, int64_t to)
 {
     for (int n; now < to; now += n) {
-        himc_air_between_exchange(&air, now);
+        if (himc_air_between_due(&air, now))
+            himc_air_between_exchange(&air);
         n = himc_air_between_until(&air, now, (int)(to - now));
         for (int i = 0; i < count; i++)
             himc_drum_advance(drum[i], n, NULL, NULL, NULL);

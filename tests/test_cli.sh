@@ -199,7 +199,13 @@ check test_old_file_survives_a_refused_render [ "$(cat kept.wav)" = old ]
 check test_render_succeeds_and_says_nothing_on_stderr [ "$?$(cat err)" = 0 ]
 keys=$(tail -n 1 out | grep -o '"[a-z0-9_]*":' | tr -d '":' | tr '\n' ' ')
 check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
-    "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor " ]
+    "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor \
+unplanned_contacts longest_contact_s captured_rms_mm captured_rms_percent captured_max_mm \
+captured_max_percent peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint " ]
+check test_measures_of_a_clean_score [ "$(number unplanned_contacts) $(number captured_rms_mm)" = "0 null" ]
+check test_a_stroke_touches_shortly \
+    true_that "$(number longest_contact_s) > 0.002 && $(number longest_contact_s) < 0.03"
+check test_the_grip_turns_fastest [ "$(tail -n 1 out | sed 's/.*"peak_rate_joint": "\([a-z-]*\)".*/\1/')" = right-grip ]
 check test_last_line_is_one_object [ "$(tail -n 1 out | grep -cx '{[^{}]*}')" = 1 ]
 check test_all_strokes_are_played [ "$(number strokes) $(number played) $(number missed)" = \
     "4 4 0" ]
@@ -356,14 +362,14 @@ check test_import_has_two_curves [ "$(grep -c '^stroke' square.txt) $(cmp -s mad
 "$himc" render made.txt -o made.wav --strokes struck.csv >/dev/null
 cp "$root/tests/midi/groove.csv" notes.csv
 check test_imported_strokes_are_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1.0714)" = "34 34" ]
-cp "$root/tests/midi/roll.mid" "$root/tests/midi/roll.csv" .
-"$himc" render roll.mid -o roll.wav --strokes struck.csv >out
-mv roll.csv notes.csv
-check test_render_tells_what_of_a_midi_file_it_plays [ "$(grep -c '^note: 40 of 40 notes for timpani are played' out)" = 1 ]
-check test_a_midi_file_is_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1)" = "40 40" ]
+cp "$root/tests/midi/scherzo.mid" "$root/tests/midi/roll.mid" .
+"$himc" render scherzo.mid -o scherzo.wav --strokes struck.csv >out
+cp "$root/tests/midi/scherzo.csv" notes.csv
+check test_render_tells_what_of_a_midi_file_it_plays [ "$(grep -c '^note: 24 of 24 notes for timpani are played' out)" = 1 ]
+check test_a_midi_file_is_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1.0345)" = "24 24" ]
 "$himc" info roll.mid >out
-check test_info_tells_what_of_a_midi_file_is_played [ "$(head -n 1 out) $(sed -n 's/^strokes *//p' out)" = \
-    "40 of 40 notes for timpani are played 40" ]
+check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n 's/^strokes *//p' out)" = \
+    "40 notes are played as 3 rolls 3" ]
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
 refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid
 refuses test_import_of_text_is_refused "not a MIDI file" import piece.txt -o x.txt

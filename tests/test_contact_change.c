@@ -283,6 +283,7 @@ static void test_a_thrown_stick_strikes_like_the_fastest_mallet(void)
     performance_body *b = p->body;
     double radius = b->skeleton.mallet_radius, thrown = 0, fastest = 0;
     session_do(p, "drum kettle");
+    session_do(p, "latency 0");
     session_do(p, "hit left vertical-accent fff");
     while (b->state.tip_velocity[HIMC_LEFT].z > -4 || b->state.tip[HIMC_LEFT].z > 0.86 + radius)
         one_step(p);

@@ -97,6 +97,22 @@ for header in lib/himc/*.h; do
     check "test_${base}_h_is_cxx_by_itself" quiet "$CXX" -x c++ -std=c++17 -Wall -Wextra -Wpedantic -Werror $(flags usr) -fsyntax-only "$dir/$base.c"
 done
 
+# what else is installed, and that all of it goes again
+calls=$("$prefix/bin/himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p')
+for page in himc $(printf 'himc-%s ' $calls); do
+    check "test_${page}_has_a_manual_page" grep -q '^\.SH SYNOPSIS$' "$prefix/share/man/man1/$page.1"
+done
+offers() { # offers WORD...: what bash offers for the last of them
+    bash -c '. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _himc; echo "${COMPREPLY[@]}"' \
+        "$prefix/share/bash-completion/completions/himc" "$@"
+}
+check test_bash_completes_a_call [ "$(offers himc eva)" = evaluate ]
+check test_bash_completes_an_option [ "$(offers himc render --str)" = --strokes ]
+check test_patches_are_installed [ -s "$prefix/pd/himc/patches/pieces/tide.pd" ]
+touch "$prefix/pd/himc/of-the-user"
+check test_uninstall_succeeds quiet make -s uninstall BUILD="$HIMC_BUILD" PREFIX="$prefix" PDEXTRA="$prefix/pd"
+check test_uninstall_leaves_what_is_not_ours [ "$(find "$prefix" ! -type d)" = "$prefix/pd/himc/of-the-user" ]
+
 echo "-----------------------"
 echo "$tests Tests $failures Failures 0 Ignored"
 [ $failures = 0 ]

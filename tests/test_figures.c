@@ -129,6 +129,7 @@ static void test_head_that_swings_into_a_resting_stick_is_no_strike(void)
     snprintf(place, sizeof place, "place 0.48 0 %.6f",
              p->body->state.tip[HIMC_LEFT].z - p->body->skeleton.mallet_radius + 0.001);
     session_drum(p, 0, place);
+    session_do(p, "latency auto");
     session_do(p, "hit right accent ff 0.1 -0.1");
     for (int i = 0; i < 1000 && (force < 1 || p->contacts.hand[HIMC_LEFT].touching); i++) {
         session_play(p, 0.01, &h);
@@ -141,7 +142,7 @@ static void test_head_that_swings_into_a_resting_stick_is_no_strike(void)
     himc_performance_free(p);
 }
 
-// control lets go of the head's normal for 60 ms of a contact, and then takes it up again
+// no stroke has asked for this contact, so the stick is pressed
 static void test_stick_pressed_onto_the_head_stays_in_contact_and_comes_free(void)
 {
     himc_performance *p = session_new();
@@ -152,7 +153,7 @@ static void test_stick_pressed_onto_the_head_stays_in_contact_and_comes_free(voi
     session_play(p, 0.55, NULL);
     session_do(p, "push left-stick 0 0 -4 0.6");
     session_play(p, 0.6, NULL);
-    TEST_ASSERT_TRUE(c->touching && !c->released);
+    TEST_ASSERT_TRUE(c->touching && c->pressed);
     TEST_ASSERT_TRUE(c->strike.impulse > 0.5 && c->strike.duration > 0.3);
     session_do(p, "target left 0.48 0.05 1");
     session_play(p, 1, NULL);

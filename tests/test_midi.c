@@ -1,4 +1,5 @@
 /// MIDI files: the reader held against mido's, and the scores made of them.
+#define _XOPEN_SOURCE 700
 #include "unity.h"
 
 #include "midi/import.h"
@@ -8,6 +9,7 @@
 #include "base/line.h"
 #include "plan/score.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +34,8 @@ void tearDown(void)
 static char *load(const char *name, size_t *size)
 {
     char path[128];
-    snprintf(path, sizeof path, "tests/midi/%s.mid", name);
+    bool piece = strcmp(name, "zarathustra") == 0; // it belongs to a patch
+    snprintf(path, sizeof path, "%s/%s.mid", piece ? "patches/pieces" : "tests/midi", name);
     char *bytes = himc_file_load(path, 1 << 20, size, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(bytes, error.text);
     return bytes;
@@ -349,6 +352,44 @@ static void test_one_drum_is_played_hand_by_hand(void)
     TEST_ASSERT_TRUE(!strcmp(hands(), "RLRLRL") || !strcmp(hands(), "LRLRLR"));
 }
 
+// it grows, stays loud, dies away; the file's own strokes are not kept
+static void test_fast_repeats_of_a_timpano_are_rolls(void)
+{
+    score = himc_score_load("tests/midi/roll.mid", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_NOT_NULL(strstr(score->report, "40 notes are played as 3 rolls\n"));
+    TEST_ASSERT_EQUAL_INT(3, score->stroke_count);
+    const himc_stroke *s = score->strokes;
+    const double rise[3] = {0.5, 0, -0.5}; // of the dynamic
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(HIMC_ROLL_SINGLE, s[i].ornament);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, rise[i], s[i].last_dynamic - s[i].dynamic);
+        if (i > 0) // without a gap
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, s[i].beat, s[i - 1].beat + s[i - 1].length);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4, s[2].beat + s[2].length); // 40 notes of 75 ms, after a beat
+}
+
+static void test_slower_fewer_or_shared_strokes_and_drum_fills_are_no_rolls(void)
+{
+    builder b;
+    timpani(&b, (int[]){48, 48, 48, 48, 48}, 5, 22, 10); // 8.7 a second
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(5, score->stroke_count);
+    tearDown();
+    timpani(&b, (int[]){48, 48, 48, 43, 43, 43}, 6, 20, 10); // three on each drum
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(6, score->stroke_count);
+    tearDown();
+    begin(&b);
+    for (int i = 0; i < 6; i++)
+        event(&b, 20, 0x99, 38, 90);
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(6, score->stroke_count);
+    TEST_ASSERT_NULL(strstr(made.report, "roll"));
+}
+
 static void test_two_drums_in_the_middle_are_played_by_sides(void)
 {
     builder b;
@@ -441,7 +482,7 @@ static void test_a_tempo_that_scores_do_not_have_leaves_the_times(void)
 
 static void test_score_file_loads_midi_and_keeps_its_report(void)
 {
-    score = himc_score_load("tests/midi/zarathustra.mid", &error);
+    score = himc_score_load("patches/pieces/zarathustra.mid", &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
     TEST_ASSERT_EQUAL_INT(14, score->stroke_count);
     TEST_ASSERT_EQUAL_STRING_LEN("14 of 14 notes for timpani are played\n", score->report, 38);
@@ -449,6 +490,17 @@ static void test_score_file_loads_midi_and_keeps_its_report(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(text, error.text);
     TEST_ASSERT_NULL(text->report);
     himc_score_free(text);
+}
+
+// over the network a file is read in one folder only, MIDI as any other
+static void test_a_midi_file_outside_the_folder_is_refused(void)
+{
+    char folder[PATH_MAX];
+    TEST_ASSERT_NOT_NULL(realpath("tests/midi", folder));
+    score = himc_score_load_in(folder, "roll.mid", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_NULL(himc_score_load_in(folder, "../../patches/pieces/zarathustra.mid", &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "no such file in the folder given by --files"));
 }
 
 int main(void)
@@ -465,6 +517,8 @@ int main(void)
     RUN_TEST(test_a_pitch_that_no_pedal_reaches_in_time_is_reported);
     RUN_TEST(test_pitches_outside_the_timpani_are_moved_by_octaves);
     RUN_TEST(test_one_drum_is_played_hand_by_hand);
+    RUN_TEST(test_fast_repeats_of_a_timpano_are_rolls);
+    RUN_TEST(test_slower_fewer_or_shared_strokes_and_drum_fills_are_no_rolls);
     RUN_TEST(test_two_drums_in_the_middle_are_played_by_sides);
     RUN_TEST(test_outer_drums_are_played_by_the_hand_of_their_side);
     RUN_TEST(test_what_two_hands_cannot_play_is_reported);
@@ -473,5 +527,6 @@ int main(void)
     RUN_TEST(test_a_name_stays_one_comment);
     RUN_TEST(test_a_tempo_that_scores_do_not_have_leaves_the_times);
     RUN_TEST(test_score_file_loads_midi_and_keeps_its_report);
+    RUN_TEST(test_a_midi_file_outside_the_folder_is_refused);
     return UNITY_END();
 }

@@ -226,9 +226,9 @@ typedef struct misses {
 static void expect_strikes(const himc_mocap *m, himc_take *take, misses *worst)
 {
     himc_take_tip tips[HIMC_HANDS];
-    himc_take_strike strikes[32];
+    int count;
     TEST_ASSERT_TRUE_MESSAGE(himc_take_tips(take, NULL, tips, &error), error.text);
-    int count = himc_take_strikes(take, tips, strikes, 32);
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
     TEST_ASSERT_EQUAL_INT(himc_mocap_touches(m), count);
     for (int i = 0; i < count; i++) {
         himc_mocap_touch touch = himc_mocap_touch_at(m, i);
@@ -238,6 +238,7 @@ static void expect_strikes(const himc_mocap *m, himc_take *take, misses *worst)
         worst->floor = fmax(worst->floor, hypot(away.x, away.y));
         worst->height = fmax(worst->height, fabs(away.z));
     }
+    free(strikes);
 }
 
 static void expect_found(const misses *worst)

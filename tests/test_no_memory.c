@@ -498,7 +498,7 @@ static bool make_files(void)
     mkdir(MESH, 0777);
     disc_mesh_write(&mesh, MESH, 3000, 0.3);
     disc_mesh_free(&mesh);
-    write_text(SCORE, "drum tom 29; kettle modes 30; tempo 120; tempo 90 2;\n"
+    write_text(SCORE, "drum tom 29; kettle modes 30; tempo 120; tempo 90 2; at 1 tom tune A2;\n"
                       "stroke 0.5 left accent f normal kettle; stroke 1 right tenuto mf; play;\n");
     return true;
 }

@@ -3,7 +3,7 @@
 #include "take_files.h"
 
 #include "plan/planner.h"
-#include "plan/track.h"
+#include "track/track.h"
 #include "base/noise.h"
 
 #include "take_motions.h"

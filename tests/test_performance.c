@@ -122,6 +122,45 @@ static void test_performance_is_the_same_twice_and_at_any_block_size(void)
     TEST_ASSERT_EQUAL_HEX64(first, hash_of_piece("human 0 5", 333));
 }
 
+// two drums, the sound of both
+static uint64_t hash_of_pair(const char *air, int block)
+{
+    static double sound[1000];
+    char text[512];
+    uint64_t hash = 14695981039346656037u;
+    snprintf(
+        text, sizeof text,
+        "drum a 26; a place 0.7 0.4 0.85; drum b 26; b place 0.7 -0.4 0.85; a air %s; b air %s; "
+        "listener 2.2 0 1.4; tempo 120; stroke 1 left legato f normal a; "
+        "stroke 1.5 right legato mf normal b; stroke 2 left legato mf normal a; "
+        "stroke 2 right legato f normal b;",
+        air, air);
+    himc_performance *p = with_score(text);
+    command(p, "play");
+    for (int at = 0, n; at < 2 * RATE; at += n) {
+        n = block < 2 * RATE - at ? block : 2 * RATE - at;
+        himc_performance_process(p, n, NULL);
+        for (int k = 0; k < 2; k++) {
+            himc_drum_read(himc_performance_drum(p, k), (uint64_t)at, n, sound, NULL);
+            for (int i = 0; i < n; i++)
+                hash ^= hash_doubles((uint64_t)(2 * (at + i) + k), &sound[i], 1);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(4, himc_performance_measure(p).played);
+    himc_performance_free(p);
+    return hash;
+}
+
+static void test_two_drums_sound_the_same_at_any_block_size(void)
+{
+    static const char *const air[] = {"0", "1"};
+    for (int i = 0; i < 2; i++) {
+        uint64_t first = hash_of_pair(air[i], 64);
+        TEST_ASSERT_EQUAL_HEX64(first, hash_of_pair(air[i], 1));
+        TEST_ASSERT_EQUAL_HEX64(first, hash_of_pair(air[i], 1000));
+    }
+}
+
 static void test_a_players_variation_is_the_same_at_any_block_size_and_follows_its_seed(void)
 {
     uint64_t first = hash_of_piece("human 0.7 5", 64);
@@ -541,6 +580,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_performance_is_the_same_twice_and_at_any_block_size);
+    RUN_TEST(test_two_drums_sound_the_same_at_any_block_size);
     RUN_TEST(test_a_players_variation_is_the_same_at_any_block_size_and_follows_its_seed);
     RUN_TEST(test_varied_strokes_land_as_they_vary);
     RUN_TEST(test_all_five_nuances_land_on_time_and_place);

@@ -29,17 +29,21 @@ static void test_current_names_the_stroke_until_its_touch_is_over(void)
     TEST_ASSERT_FALSE(himc_planner_current(planner, HIMC_RIGHT, 3, &s, &drum, &touch));
 }
 
-static void test_first_stroke_without_time_delays_all_beats_and_a_note_says_so(void)
+static void test_play_waits_for_the_first_stroke_and_seek_says_how_late_it_is(void)
 {
     himc_planner_note note;
     add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
     himc_planner_play(planner, 1);
     double touch = first_touch(HIMC_RIGHT);
     TEST_ASSERT_TRUE(touch > 1.3 && touch < 1.8);
+    TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_planner_beat(planner, 1));
+    TEST_ASSERT_TRUE(himc_planner_is_preparing(planner, touch - 1e-3));
+    TEST_ASSERT_FALSE(himc_planner_is_preparing(planner, touch));
+    himc_planner_seek(planner, 1, 0);
     TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
     TEST_ASSERT_NOT_NULL(strstr(note.text, "late: the first stroke must be prepared"));
     TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_planner_beat(planner, 1));
 }
 
 static void test_fast_strokes_are_smaller_and_one_note_says_so(void)
@@ -62,10 +66,10 @@ static void test_32_notes_are_kept_and_lost_ones_are_counted(void)
     himc_planner_note note, last = {""};
     int count = 0;
     for (int i = 0; i < 40; i++) {
-        himc_planner_seek(planner, 0, 0);
         himc_planner_clear(planner);
         add(planner, 0, HIMC_RIGHT, HIMC_LEGATO, 0.5);
         himc_planner_play(planner, 0);
+        himc_planner_seek(planner, 0, 0);
     }
     while (himc_planner_note_next(planner, &note)) {
         last = note;
@@ -408,7 +412,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_current_names_the_stroke_until_its_touch_is_over);
-    RUN_TEST(test_first_stroke_without_time_delays_all_beats_and_a_note_says_so);
+    RUN_TEST(test_play_waits_for_the_first_stroke_and_seek_says_how_late_it_is);
     RUN_TEST(test_fast_strokes_are_smaller_and_one_note_says_so);
     RUN_TEST(test_32_notes_are_kept_and_lost_ones_are_counted);
     RUN_TEST(test_tempo_change_keeps_the_beat_and_moves_later_strokes);

@@ -9,7 +9,7 @@
 
 #include "performance/performance_state.h"
 #include "session.h"
-#include "plan/track_time.h"
+#include "track/track_time.h"
 
 #define CAPTURE "drumstroke_pearl_240hz/stroke.trc"
 #define NEAR 0.02 // RMS (m)

@@ -200,6 +200,7 @@ static void test_reset_in_the_middle_of_a_stroke_leaves_no_strike(void)
     himc_performance_config config = himc_performance_default();
     himc_performance *p = performer(&config);
     heard h = {0};
+    session_do(p, "latency 0");
     session_do(p, "hit right accent fff");
     while (p->body->state.tip_velocity[HIMC_RIGHT].z > -5)
         himc_performance_process(p, 7, NULL);

@@ -75,6 +75,25 @@ static void test_a_score_of_many_lines_keeps_each_and_sorts_its_tempi(void)
     himc_score_free(s);
 }
 
+static void test_changes_of_heads_are_sorted_by_beat_and_keep_their_lines(void)
+{
+    char text[4000] = "drum low;\n";
+    for (int i = 0; i < 40; i++) // 20 .. 1, 20 .. 1
+        sprintf(text + strlen(text), "at %d low tension %d;\n", 20 - i % 20, 1000 + i);
+    himc_score *s = parse(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(s, error.text);
+    TEST_ASSERT_EQUAL_INT(1, s->line_count);
+    TEST_ASSERT_EQUAL_INT(40, s->change_count);
+    for (int i = 0; i < 40; i++) {
+        int written = 19 - i / 2 + 20 * (i % 2);
+        TEST_ASSERT_EQUAL_DOUBLE(1 + i / 2, s->changes[i].beat);
+        TEST_ASSERT_EQUAL_STRING("low", s->changes[i].drum);
+        TEST_ASSERT_EQUAL_DOUBLE(1000 + written, s->changes[i].command.atom[0].number);
+        TEST_ASSERT_EQUAL_INT(2 + written, s->changes[i].line);
+    }
+    himc_score_free(s);
+}
+
 static void test_empty_score_has_the_default_tempo(void)
 {
     himc_score *s = parse("");
@@ -207,6 +226,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_score_sorts_strokes_and_keeps_other_lines_in_order);
     RUN_TEST(test_a_score_of_many_lines_keeps_each_and_sorts_its_tempi);
+    RUN_TEST(test_changes_of_heads_are_sorted_by_beat_and_keep_their_lines);
     RUN_TEST(test_empty_score_has_the_default_tempo);
     RUN_TEST(test_errors_name_file_and_line);
     RUN_TEST(test_a_statement_of_more_than_1280_characters_is_refused_in_one_line);

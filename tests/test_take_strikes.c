@@ -2,7 +2,7 @@
 /// stroke.
 #include "take_motions.h"
 
-#include "plan/track.h"
+#include "track/track.h"
 #include "capture/units.h"
 
 void setUp(void)
@@ -161,16 +161,19 @@ static void test_strikes_of_both_hands_come_in_order_and_place_the_drum(void)
         TEST_ASSERT_EQUAL_INT(i % 2 ? HIMC_LEFT : HIMC_RIGHT, s[i].hand);
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.2 + 0.3 * (i / 2) + 0.11 * (i % 2), s[i].time);
     }
-    himc_vec3 place;
-    TEST_ASSERT_TRUE(himc_take_strike_place(s, count, &place));
+    himc_strike_survey survey;
+    himc_take_tip tips[HIMC_HANDS];
+    TEST_ASSERT_TRUE(himc_take_tips(take, NULL, tips, &error));
+    TEST_ASSERT_TRUE(himc_take_strikes(take, tips, &survey));
+    TEST_ASSERT_EQUAL_INT(1, survey.heads);
+    TEST_ASSERT_EQUAL_INT(0, survey.left_out);
+    himc_vec3 place = survey.head[0];
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.65, place.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.05, place.y);
     // falls of 4 m/s and rebounds of 2.5 m/s intersect at 0.8 m: a contact of 7 ms joins them
     // higher
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.8 + 0.007 * 4 * 2.5 / 6.5, place.z);
-    TEST_ASSERT_FALSE(himc_take_strike_place(s, 0, &place));
-    // less capacity than strikes: the first ones, and the number of all
-    TEST_ASSERT_EQUAL_INT(15, strikes_of(take, s, 3));
+    free(survey.strikes);
     himc_take_free(take);
 }
 

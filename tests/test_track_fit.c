@@ -2,8 +2,8 @@
 /// joints.
 #include "take_players.h"
 
-#include "plan/track.h"
-#include "plan/track_fit.h"
+#include "track/track.h"
+#include "track/track_fit.h"
 
 #include "unity.h"
 

@@ -3,7 +3,7 @@
 #include "allocations.h"
 #include "take_players.h"
 
-#include "plan/track.h"
+#include "track/track.h"
 
 #include "unity.h"
 

@@ -136,6 +136,24 @@ static void test_rejoining_ends_before_the_next_strike_begins(void)
     }
 }
 
+// every third blow is 50 mm deeper than the head
+static double uneven(double t)
+{
+    return beaten(t) - ((int)floor((t + 0.35) / 0.5) % 3 == 2 ? 0.05 : 0);
+}
+
+static void test_rejoining_does_not_go_below_the_head_for_a_capture_that_is_there(void)
+{
+    make_take(uneven, 250, 1000);
+    double time = contact_after(0.7);
+    TEST_ASSERT_TRUE(himc_track_target(track, HIMC_RIGHT, time + 0.022).x.z < LEVEL + RADIUS);
+    himc_target s = as_measured(time + 0.008);
+    s.x.z = LEVEL + RADIUS;
+    himc_track_separated(track, HIMC_RIGHT, time + 0.008, &s);
+    for (double t = time + 0.008; t < time + 0.2; t += 1e-3)
+        TEST_ASSERT_TRUE(at(t).x.z > LEVEL + RADIUS - 1e-3);
+}
+
 // with too little time for a way back nothing changes
 static void test_a_stick_that_leaves_too_late_changes_nothing(void)
 {
@@ -191,6 +209,7 @@ int main(void)
     RUN_TEST(test_the_approach_ends_on_the_head_without_acceleration);
     RUN_TEST(test_near_the_end_rejoining_begins_in_the_measured_state_as_time_slows_down);
     RUN_TEST(test_rejoining_ends_before_the_next_strike_begins);
+    RUN_TEST(test_rejoining_does_not_go_below_the_head_for_a_capture_that_is_there);
     RUN_TEST(test_a_stick_that_leaves_too_late_changes_nothing);
     RUN_TEST(test_from_far_off_rejoining_is_slow_and_no_throw_is_followed);
     RUN_TEST(test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_second);

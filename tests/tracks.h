@@ -4,7 +4,7 @@
 
 #include "take_players.h"
 
-#include "plan/track.h"
+#include "track/track.h"
 
 #include "unity.h"
 

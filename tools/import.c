@@ -1,7 +1,7 @@
 /// import.c: `himc import`: makes a score, to be read and edited, of a MIDI file.
 ///
-/// What is played and what is not, with the reasons, is printed on stderr; the score's first comments
-/// say the same.
+/// What is played and what is not, with the reasons, is printed on stderr; the score's first
+/// comments say the same.
 #include "base/file.h"
 #include "cli.h"
 #include "midi/import.h"

@@ -26,9 +26,9 @@
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
 /// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the left,
-/// 1.7 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
-/// its noise strong; from the front both ears hear the same.
-#define LISTENER "listener 2 0.8 1.4"
+/// 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
+/// its noise strong.
+#define LISTENER "listener 2.2 0.2 1.3"
 
 enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
 
@@ -327,7 +327,9 @@ const cli_call cli_render = {
     " -o OUT.wav",
     "plays a score, a MIDI file or a take (.bvh .c3d .trc) into a WAV file",
     "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm\n"
-    "tip_rms_percent peak_force_n realtime_factor. A score that makes no drum is played on\n"
+    "tip_rms_percent peak_force_n realtime_factor unplanned_contacts longest_contact_s\n"
+    "captured_rms_mm captured_rms_percent captured_max_mm captured_max_percent\n"
+    "peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint. A score that makes no drum is played on\n"
     "\"kettle\", 26 inches.",
     options,
     run,

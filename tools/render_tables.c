@@ -94,6 +94,21 @@ static void put_json(const char *key, double value, const char *after)
         printf("\"%s\": null%s", key, after);
 }
 
+// what the errors of the tips do not show
+static void put_measures(const himc_performance_stats *s)
+{
+    printf("\"unplanned_contacts\": %d, ", s->unplanned_contacts);
+    put_json("longest_contact_s", s->longest_contact, ", ");
+    put_json("captured_rms_mm", 1e3 * s->captured_rms, ", ");
+    put_json("captured_rms_percent", s->captured_rms_percent, ", ");
+    put_json("captured_max_mm", 1e3 * s->captured_most, ", ");
+    put_json("captured_max_percent", s->captured_most_percent, ", ");
+    put_json("peak_rate_rad_s", s->peak_rate, ", ");
+    printf("\"peak_rate_joint\": \"%s\", ", himc_joint_name(s->peak_rate_joint));
+    put_json("peak_torque_n_m", s->peak_torque, ", ");
+    printf("\"peak_torque_joint\": \"%s\"}\n", himc_joint_name(s->peak_torque_joint));
+}
+
 void render_report(const himc_performance_stats *stats, double seconds, double realtime_factor)
 {
     double rms_mm = stats->tip_rms * 1e3;
@@ -114,5 +129,6 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     put_json("tip_rms_mm", rms_mm, ", ");
     put_json("tip_rms_percent", stats->tip_rms_percent, ", ");
     put_json("peak_force_n", stats->peak_force, ", ");
-    put_json("realtime_factor", realtime_factor, "}\n");
+    put_json("realtime_factor", realtime_factor, ", ");
+    put_measures(stats);
 }

@@ -9,7 +9,7 @@ function fault(text)
 }
 
 BEGIN {
-    rooms = split("base body capture plan midi control bank head drum performance osc", order, " ")
+    rooms = split("base body capture track plan midi control bank head drum performance osc", order, " ")
     for (i = 1; i <= rooms; i++)
         rank[order[i]] = i
     # the room of a public header

@@ -49,6 +49,20 @@ const char *himc_spot_name(himc_spot spot);
 
 #define HIMC_NAME_SIZE 32 ///< of a drum's or a nuance's name, with its final 0 (bytes)
 
+/// What a stroke of a score stands for besides itself. The rolls are in the order of the words of
+/// `roll`.
+typedef enum himc_ornament {
+    HIMC_PLAIN,       ///< itself alone
+    HIMC_FLAM,        ///< a grace note by the other hand
+    HIMC_DRAG,        ///< two by the other hand, which bounces
+    HIMC_RUFF,        ///< two, by this hand and the other
+    HIMC_ROLL_SINGLE, ///< both hands in turn
+    HIMC_ROLL_DOUBLE, ///< so that each stroke bounces once
+    HIMC_ROLL_PRESS   ///< so that each stroke bounces on until the next
+} himc_ornament;
+
+#define HIMC_BUZZ (-1) ///< bounces of a stroke: as many as fit
+
 /// One stroke, as written in a score.
 typedef struct himc_stroke {
     double beat;               ///< (beats), 0 or more; ignored by `hit`
@@ -59,6 +73,12 @@ typedef struct himc_stroke {
     double x;                  ///< of HIMC_SPOT_XY: from the centre away from the performer (m)
     double y;                  ///< and to the left (m)
     char drum[HIMC_NAME_SIZE]; ///< "" is the performer's first drum
+    double early;              ///< of a grace note: so much before the beat (s), 0 .. 1
+    int bounces;               ///< contacts after the first without the arm: 0, 1 or HIMC_BUZZ
+    double bounce_time; ///< from the first contact to the bounce, or to the last (s), 0.01 .. 0.5
+    himc_ornament ornament; ///< what himc_performance_add_stroke makes of it
+    double length;          ///< of a roll (beats)
+    double last_dynamic;    ///< of a roll, at its end, 0 .. 1
 } himc_stroke;
 
 /// (x, y) on the head of a named spot: center (0), normal (0.75 of the radius towards the
@@ -86,7 +106,8 @@ typedef enum himc_command_marks {
     HIMC_NOT_IN_SCORE = 2,  ///< a score cannot hold it
     HIMC_WRITES_FILE = 4,   ///< its FILE is written; without this mark it is read
     HIMC_IN_FOLDER = 8,     ///< from the network it may read a FILE in the shared folder (osc.h)
-    HIMC_CHANGES_HEAD = 16  ///< of a drum: its head is computed anew, mode by mode
+    HIMC_CHANGES_HEAD = 16, ///< of a drum: its head is computed anew, mode by mode
+    HIMC_AT_BEAT = 32       ///< of a drum: a score may have it at a beat
 } himc_command_marks;
 
 /// One id for each row of command_rows.h: HIMC_COMMAND_STROKE, HIMC_COMMAND_HIT, ...
@@ -106,7 +127,7 @@ typedef enum himc_command_id {
 typedef struct himc_command {
     himc_command_id id;                 ///< its row
     int form;                           ///< of the row's forms, separated by ` | `, from 0
-    himc_stroke stroke;                 ///< of `stroke` and `hit`
+    himc_stroke stroke;                 ///< of `stroke`, `hit`, `roll`, `flam`, `drag` and `ruff`
     int count;                          ///< atoms after the name
     himc_atom atom[HIMC_COMMAND_ATOMS]; ///< symbols point into `storage`
     int choice[HIMC_COMMAND_ATOMS]; ///< index of the atom among its allowed words; -1 for a number

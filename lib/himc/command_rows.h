@@ -27,17 +27,36 @@
 #endif
 
 #define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
+#define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc"
 
 // to the performer
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds one stroke to the score")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
-                 "plays a stroke as soon as it can be prepared")
+                 "plays a stroke so long after the message as `latency` says; any: with the hand "
+                 "that suits better")
+HIMC_COMMAND_ROW(LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
+                 "has every hit land exactly so long after its message, 150 by default, as strong "
+                 "as that allows; auto: 330, as long as any hit needs; 0: each as soon as it can")
+HIMC_COMMAND_ROW(
+    ROLL, roll, PERFORMER, NOW, 0,
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [DRUM]",
+    "adds a roll, from one dynamic to another: single strokes of both hands, or strokes "
+    "that bounce once (double) or until the next (press)")
+HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds a stroke with a grace note by the other hand")
+HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds a stroke with two grace notes by the other hand, which bounces")
+HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+                 "adds a stroke with two grace notes, by its own hand and the other")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
-HIMC_COMMAND_ROW(GRIP, grip, PERFORMER, NOW, 0, "german|french",
-                 "sets the grip: palms down (german), or thumbs up (french)")
+HIMC_COMMAND_ROW(
+    GRIP, grip, PERFORMER, NOW, 0, "german|french [servo] | servo",
+    "sets the grip: palms down (german), or thumbs up (french), and lets strokes bounce "
+    "that shall; servo: a stroke has one contact, as published")
 HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
                  "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
                  "all; each seed is another player")
@@ -74,9 +93,9 @@ HIMC_COMMAND_ROW(WEIGHTS, weights, PERFORMER, AT_SAMPLE, 0, "SHOULDER ELBOW WRIS
                  "sets how readily each joint turns to bring the tip nearer")
 HIMC_COMMAND_ROW(LAW, law, PERFORMER, AT_SAMPLE, 0, "printed|feedforward|computed-torque",
                  "chooses the inverse dynamics")
-HIMC_COMMAND_ROW(GAIN, gain, PERFORMER, NOW, 0, "reset | frequency FACTOR | JOINT KS KD",
+HIMC_COMMAND_ROW(GAIN, gain, PERFORMER, NOW, 0, "reset | frequency FACTOR | JOINT KS KD | DB",
                  "sets stiffness and damping of a joint's servo, or the natural frequency of all "
-                 "over the default, or resets all")
+                 "over the default, or resets all; with one number, how loud all drums are heard")
 HIMC_COMMAND_ROW(LIMITS, limits, PERFORMER, NOW, 0, "off|ellipsoid|euler",
                  "limits the joints to the range of the take's player, else of table 1")
 HIMC_COMMAND_ROW(STRENGTH, strength, PERFORMER, NOW, 0, "human|off | JOINT TORQUE",
@@ -94,6 +113,11 @@ HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, 0, "SEGMENT FX FY FZ SECONDS"
 HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | X Y Z [YAW]",
                  "has all drums heard by two ears there, facing the performer or that way; off: by "
                  "the drums' pickups")
+HIMC_COMMAND_ROW(ROOM, room, PERFORMER, AT_SAMPLE, 0, "SECONDS [VOLUME]",
+                 "sets the reverberation time and the size of the room around the listener, 1.2 s "
+                 "and 600 m^3 by default; 0: no walls")
+HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH",
+                 "1: silences all drums, which play on unheard")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
@@ -112,24 +136,25 @@ HIMC_COMMAND_ROW(LISTEN, listen, PERFORMER, NETWORK, 0, "PORT",
 
 // to a drum
 HIMC_COMMAND_ROW(RADIUS, radius, DRUM, NOW, HIMC_CHANGES_HEAD, "RADIUS", "sets the head's radius")
-HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, HIMC_CHANGES_HEAD, "TENSION",
+HIMC_COMMAND_ROW(TENSION, tension, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "TENSION",
                  "sets the head's tension")
 HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, HIMC_CHANGES_HEAD, "DENSITY",
                  "sets the head's mass per area")
-HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD, "HZ | NOTE",
+HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "HZ | NOTE",
                  "sets the tension so that the principal mode sounds there")
 HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
                  "sets the number of modes; auto: exact where they overlap little, statistical "
                  "above, up to 8 kHz and more")
-HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD, "T60 | SIGMA0 SIGMA1",
+HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "T60 | SIGMA0 SIGMA1",
                  "sets the losses by the decay time, or by both of their parameters")
 HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
                  "1: air and kettle load the head")
 HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
                  "sets the volume under the head, or the usual one for its radius")
-HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT",
+HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "sets how much the tension rises as the head bows out")
-HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT", "lays a hand on the head")
+HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+                 "lays a hand on the head")
 HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
                  "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
                  "split and beat, each seed in its own way")
@@ -152,11 +177,14 @@ HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "sets where the sound of one pickup is taken")
 HIMC_COMMAND_ROW(DRUM_GAIN, gain, DRUM, NOW, 0, "DB",
                  "sets how loud the drum is heard, 0 by default: a fader, which changes no motion")
+HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",
+                 "1: silences the drum, which plays on unheard")
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
                  "chooses how blows become sound: by the head, or by the patch around it in Pure "
                  "Data")
 HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes without a performer")
 
 #undef HIMC_ROW_STROKE
+#undef HIMC_ROW_ROLL
 #undef HIMC_ROW_STREAM
 #undef HIMC_COMMAND_ROW

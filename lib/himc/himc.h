@@ -30,7 +30,8 @@
 ///     base         errors, files, vectors, the table and the parser of commands
 ///     body         skeleton, pose, joint limits, dynamics
 ///     capture      motion captures and the player in them
-///     plan         the trajectories of the drumstick tips, from a score or a take
+///     track        the trajectories of the drumstick tips, from a take
+///     plan         the same from a score
 ///     midi         a score made of a MIDI file
 ///     control      inverse kinematics and inverse dynamics
 ///     bank         many damped oscillators

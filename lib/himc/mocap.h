@@ -112,10 +112,12 @@ typedef struct himc_take_tip {
 bool himc_take_tips(himc_take *take, const himc_take_options *options,
                     himc_take_tip tips[HIMC_HANDS], himc_error *error);
 
-/// A strike seen in a tip's trajectory: a fast fall that ends abruptly.
+/// A strike seen in a tip's trajectory: a fall that ends abruptly on a drumhead. A head is a plane
+/// on which the fast strikes of the take agree; a take of several drums has several.
 typedef struct himc_take_strike {
     himc_hand hand;  ///< the hand that struck
     int frame;       ///< of the lowest position, counted from 0
+    int head;        ///< of the drumheads of the take, 0 the most struck
     double time;     ///< of the touch, between frames, from the first frame (s)
     himc_vec3 x;     ///< position of the tip at the touch (m)
     double velocity; ///< downward, just before (m/s)

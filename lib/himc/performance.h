@@ -57,9 +57,9 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 /// many strokes or drums, or there is no memory.
 bool himc_performance_add_stroke(himc_performance *performance, const himc_stroke *stroke,
                                  himc_error *error);
-/// Plays a stroke (its beat is ignored) as soon as it can be prepared. Allocates only for a drum
-/// that there is not yet. False if a field is out of its range, while a take plays, or without
-/// memory for that drum. A hit for which there is no time is given up, and a note says so.
+/// Plays a stroke (its beat is ignored), to land as the command `latency` says. Allocates only for a
+/// drum that there is not yet. False if a field is out of its range, while a take plays, or without
+/// memory for that drum. A hit for which no hand has time is given up, and a note counts it.
 bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
                           himc_error *error);
 /// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the
@@ -167,6 +167,16 @@ typedef struct himc_performance_stats {
     double stroke_height;   ///< mean over strokes, apex to contact (m)
     double tip_rms_percent; ///< tip_rms / stroke_height (%), NaN before the first stroke
     double peak_force;      ///< largest contact force (N)
+    int unplanned_contacts; ///< of a stick and a head that no stroke asked for
+    double longest_contact; ///< time from a stick's first touch to its last (s)
+    /// Distance of the tip from its place in the take itself, contacts and all, not from a target
+    /// that was planned again after a contact (m): RMS and largest, and the same in percent of
+    /// stroke_height. At the task rate; NaN if no take was played, percent also before a stroke.
+    double captured_rms, captured_most, captured_rms_percent, captured_most_percent;
+    double peak_rate;       ///< largest rate of a joint, of its axes together (rad/s) ...
+    int peak_rate_joint;    ///< ... and the joint
+    double peak_torque;     ///< largest torque of a joint (N m), 0 in `ik` ...
+    int peak_torque_joint;  ///< ... and the joint
     int hits;               ///< accepted hits
     double hit_latency;     ///< of the last hit, from its command to its planned contact (s)
     double longest_latency; ///< of all hits (s)

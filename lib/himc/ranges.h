@@ -28,6 +28,7 @@
 #define HIMC_TASK_RATE_MAX 2000.0     ///< (Hz)
 #define HIMC_BPM_MIN 1.0              ///< (beats per minute)
 #define HIMC_BPM_MAX 1000.0           ///< (beats per minute)
+#define HIMC_LATENCY_MAX 1000.0       ///< of a hit, from 0 (ms)
 #define HIMC_SEED_MAX 999999.0        ///< of random numbers, from 0
 #define HIMC_BODY_MASS_MIN 30.0       ///< of a player (kg)
 #define HIMC_BODY_MASS_MAX 200.0      ///< (kg)

@@ -1,5 +1,5 @@
-/// fuzz_midi.c: MIDI files from arbitrary bytes. What is accepted becomes a score that is read without
-/// an error, and each note is a stroke or counted in the report.
+/// fuzz_midi.c: MIDI files from arbitrary bytes. What is accepted becomes a score that is read
+/// without an error, and each note is a stroke or counted in the report.
 #include "fuzz.h"
 #include "midi/import.h"
 #include "midi/smf.h"
@@ -7,9 +7,17 @@
 
 const long fuzz_runs = 1500;
 
-static void check_report(const char *report, int strokes)
+static int count_rolls(const himc_score *score)
 {
-    int played = 0, notes = 0, missing = 0, count;
+    int rolls = 0;
+    for (int i = 0; i < score->stroke_count; i++)
+        rolls += score->strokes[i].ornament >= HIMC_ROLL_SINGLE;
+    return rolls;
+}
+
+static void check_report(const char *report, const himc_score *score)
+{
+    int played = 0, notes = 0, missing = 0, rolled = 0, rolls = 0, count;
     require(sscanf(report, "%d of %d notes", &played, &notes) == 2, "a report begins with counts");
     for (const char *line = report, *end; (end = strchr(line, '\n')); line = end + 1) {
         char text[256];
@@ -18,8 +26,11 @@ static void check_report(const char *report, int strokes)
         if ((strstr(text, "not played") || strstr(text, "one stroke")) &&
             sscanf(text, "%d", &count) == 1)
             missing += count;
+        if (strstr(text, "played as"))
+            sscanf(text, "%d notes are played as %d", &rolled, &rolls);
     }
-    require(played == strokes, "strokes are as many as the report says");
+    require(rolls == count_rolls(score), "rolls are as many as the report says");
+    require(played == score->stroke_count - rolls + rolled, "and strokes");
     require(played + missing == notes, "each note is played or has a reason");
 }
 
@@ -51,7 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     himc_score *score = himc_score_parse(made.text, "made.txt", &error);
     require(score != NULL, error.text);
-    check_report(made.report, score->stroke_count);
+    check_report(made.report, score);
     himc_score_free(score);
     himc_midi_score_free(&made);
     return 0;

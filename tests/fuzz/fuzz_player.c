@@ -4,7 +4,7 @@
 /// The format is known by the first bytes. What is too short to be a take is replaced by a good
 /// one of a whole player, so the corpus needs no seeds.
 #include "../take_players.h"
-#include "plan/track.h"
+#include "track/track.h"
 #include "take.h"
 
 #define RATE 60.0   // of the good takes (Hz)

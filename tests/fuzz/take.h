@@ -41,15 +41,20 @@ static inline void check_tips(himc_take *take, const himc_take_options *options)
         require_line(&error);
         return;
     }
-    himc_take_strike strikes[16];
-    int count = himc_take_strikes(take, tips, strikes, 16);
-    for (int i = 0; i < count && i < 16; i++) {
-        require(himc_vec3_finite(strikes[i].x) && isfinite(strikes[i].velocity),
-                "a strike is finite");
-        require(strikes[i].frame >= 0 && strikes[i].frame < himc_take_frames(take),
+    himc_strike_survey s;
+    require(himc_take_strikes(take, tips, &s), "there is memory for the strikes");
+    for (int i = 0; i < s.count; i++) {
+        require(himc_vec3_finite(s.strikes[i].x) && s.strikes[i].velocity > 0 &&
+                    isfinite(s.strikes[i].velocity),
+                "a strike is finite and goes down");
+        require(s.strikes[i].frame >= 0 && s.strikes[i].frame < himc_take_frames(take),
                 "a strike is in the take");
-        require(i == 0 || strikes[i].time >= strikes[i - 1].time, "strikes come in order");
+        require(i == 0 || s.strikes[i].time >= s.strikes[i - 1].time, "strikes come in order");
+        require(s.strikes[i].head >= 0 && s.strikes[i].head < s.heads, "a strike is on a head");
     }
+    for (int i = 0; i < s.heads; i++)
+        require(himc_vec3_finite(s.head[i]), "a head is somewhere");
+    free(s.strikes);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; tips[hand].present && i < himc_take_frames(take); i++)
             require(himc_vec3_finite(tips[hand].x[i]), "a tip has no gaps");

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes NAME.csv beside each NAME.mid of this folder: its notes as mido reads them.
+"""Writes NAME.csv for each NAME.mid of this folder and of patches/pieces: its notes as mido reads them.
 
     golden.py       (needs python3-mido)
 
@@ -33,8 +33,9 @@ def rows(path):
             yield seconds, message.channel, message.note, message.velocity, program.get(message.channel, 0)
 
 
-for file in sorted(glob.glob(os.path.join(HERE, "*.mid"))):
-    with open(file[:-4] + ".csv", "w") as table:
+PIECES = os.path.join(HERE, "..", "..", "patches", "pieces")
+for file in sorted(glob.glob(os.path.join(HERE, "*.mid")) + glob.glob(os.path.join(PIECES, "*.mid"))):
+    with open(os.path.join(HERE, os.path.basename(file)[:-4] + ".csv"), "w") as table:
         table.write("time_s,channel,key,velocity,program\n")
         for row in rows(file):
             table.write("%.9f,%d,%d,%d,%d\n" % row)

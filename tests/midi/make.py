@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the MIDI files of this folder, byte by byte, without any library.
+"""Writes the MIDI files of this folder and of patches/pieces, byte by byte, without any library.
 
 The music is in the public domain: figures of the timpani in Beethoven's ninth symphony (1824, second
 movement), Strauss's Also sprach Zarathustra (1896), Haydn's symphony 103 (1795); the rest is made up
@@ -76,7 +76,7 @@ def zarathustra():
         drum += note(q * 4 + i * 32, 16, 48 if i % 2 == 0 else 43, 127 - 3 * i, 2, zero=False)
     drum += note(q * 10, q * 2, 48, 127, 2)
     chord += note(0, q * 12, 60, 80, 1) + note(0, q * 12, 67, 80, 1)
-    write("zarathustra.mid", 1, q, [track(tempi), track(drum, running=True), track(chord)])
+    write("../../patches/pieces/zarathustra.mid", 1, q, [track(tempi), track(drum, running=True), track(chord)])
 
 
 def roll():

@@ -55,6 +55,8 @@ done <<'LIST'
 04-follow-the-mouse 6 10 kettle
 05-four-timpani 8 12 low second third high
 06-duo 5 24 left-kettle right-kettle
+08-midi-file 10 10 low third
+09-rolls-and-grace-notes 9 40 kettle
 pieces/tide 14 7 low second third
 LIST
 
@@ -63,6 +65,10 @@ report signals_lead_a_stick_that_strikes "$(grep -q '^himc: strike [^ ]* left ke
 report a_signal_that_is_not_a_number_is_said_once \
     "$([ "$(grep -c 'a target signal is not a finite number' "$work/log")" = 1 ] || echo "$(grep -c 'finite' "$work/log") times")"
 report stick_without_signals_is_left_where_it_is "$(grep -m1 -e 'out of reach' -e 'strike [^ ]* right' "$work/log")"
+
+play_pd press-signals.pd
+report signals_below_the_head_press_the_stick_on_it_once \
+    "$([ "$(grep -c '^himc: strike [^ ]* left kettle' "$work/log")" = 1 ] || grep -c 'strike' "$work/log")"
 
 echo "-----------------------"
 echo "$tests Tests $failures Failures 0 Ignored"

@@ -9,6 +9,7 @@
 typedef double NAMED(vec) __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
 #define VEC NAMED(vec)
 #define PARTS (HIMC_BANK_LANES / WIDTH) // vectors of eight lanes
+#define TOGETHER (WIDTH == 8 ? 4 : 2)   // oscillators that the unit has registers for
 
 TARGET static double NAMED(total)(const VEC *sum)
 {
@@ -116,37 +117,43 @@ TARGET static double NAMED(read)(const double *rp, const double *rs, const doubl
     return NAMED(total)(sum);
 }
 
-// Two oscillators at a time, one part of the eight samples after the other: so the sums of a whole
-// pass stay in registers. `eights` is a constant in each of the four calls.
+// A few oscillators at a time, which do not wait for each other, one part of the eight samples after
+// the other: so the sums of a whole pass stay in registers. They are added in pairs. `eights` is a
+// constant in each of the four calls.
 TARGET static inline __attribute__((always_inline)) void
 NAMED(look)(const himc_bank_waves *waves, int length, int eights, double *out)
 {
     for (int k = 0; k < PARTS; k++) {
-        VEC sum[HIMC_BANK_PASS / HIMC_BANK_LANES], before[2], now[2];
+        VEC sum[HIMC_BANK_PASS / HIMC_BANK_LANES], before[TOGETHER], now[TOGETHER];
         const VEC *x = (const VEC *)waves->table + k;
         for (int n = 0; n < eights; n++)
             memcpy(&sum[n], out + n * HIMC_BANK_LANES + k * WIDTH, sizeof sum[n]);
-        for (int i = 0; i < length; i += 2) {
-#pragma GCC unroll 2
-            for (int m = 0; m < 2; m++) {
+        for (int i = 0; i < length; i += TOGETHER) {
+#pragma GCC unroll 4
+            for (int m = 0; m < TOGETHER; m++) {
                 double a = waves->a[i + m], b = waves->b[i + m];
                 before[m] = a * x[0] + b * x[PARTS];
                 if (eights > 1)
                     now[m] = a * x[2 * PARTS] + b * x[3 * PARTS];
                 x += 4 * PARTS;
             }
-            sum[0] += before[0] + before[1];
-            if (eights > 1)
-                sum[1] += now[0] + now[1];
+#pragma GCC unroll 2
+            for (int m = 0; m < TOGETHER; m += 2) {
+                sum[0] += before[m] + before[m + 1];
+                if (eights > 1)
+                    sum[1] += now[m] + now[m + 1];
+            }
 #pragma GCC unroll 8
             for (int n = 2; n < eights; n++) {
-#pragma GCC unroll 2
-                for (int m = 0; m < 2; m++) {
+#pragma GCC unroll 4
+                for (int m = 0; m < TOGETHER; m++) {
                     VEC next = waves->twice[i + m] * now[m] - waves->fall[i + m] * before[m];
                     before[m] = now[m];
                     now[m] = next;
                 }
-                sum[n] += now[0] + now[1];
+#pragma GCC unroll 2
+                for (int m = 0; m < TOGETHER; m += 2)
+                    sum[n] += now[m] + now[m + 1];
             }
         }
         for (int n = 0; n < eights; n++)
@@ -168,6 +175,7 @@ TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, int n,
 
 #undef VEC
 #undef PARTS
+#undef TOGETHER
 #undef WIDTH
 #undef TARGET
 #undef NAMED

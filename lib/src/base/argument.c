@@ -19,6 +19,7 @@
 
 // in the order of himc_hand, himc_nuance, himc_spot
 static const char *const hands[] = {"left", "right", NULL};
+static const char *const hit_hands[] = {"left", "right", "any", NULL}; // any: HIMC_HAND_ANY
 static const char *const nuances[] = {"legato",          "tenuto",   "accent",
                                       "vertical-accent", "staccato", NULL};
 static const char *const spots[] = {"center", "normal", "rim", NULL};
@@ -26,12 +27,14 @@ static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", 
 
 static const himc_argument arguments[] = {
     {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
+    {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"DRUM", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
+    {"MS", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_LATENCY_MAX, "ms", NULL},
     {"BPM", NULL, HIMC_ARGUMENT_NUMBER, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute", NULL},
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
@@ -83,10 +86,12 @@ static const himc_argument arguments[] = {
     {"SIGMA1", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_SIGMA1_MAX, "s", NULL},
     {"K", NULL, HIMC_ARGUMENT_NUMBER, 1e3, 1e13, "N/m^alpha", NULL},
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
+    {"VOLUME", "room", HIMC_ARGUMENT_NUMBER, 20, 1e5, "m^3", NULL},
     {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10, "m^3", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},
+    {"LENGTH", "roll", HIMC_ARGUMENT_NUMBER, 0.05, 1000, "beats", NULL},
     {"LENGTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
     {"WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
     {"CHANNELS", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},

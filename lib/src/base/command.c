@@ -17,7 +17,8 @@
 
 #define WORD_SIZE 64
 #define ALLOWED_SIZE 256
-#define LOUDEST 7.0 // dynamic word k of ppp .. fff is k / 7
+#define NAMES_SIZE 420 // of all commands, in an error line of 512
+#define LOUDEST 7.0    // dynamic word k of ppp .. fff is k / 7
 
 /// A command's atoms as the grammar understands them.
 typedef struct reading {
@@ -270,7 +271,7 @@ static const char *nearest_name(himc_receiver receiver, const char *name)
 static bool refuse_name(himc_receiver receiver, const char *name, himc_error *error)
 {
     const himc_command_row *row;
-    char word[WORD_SIZE], names[ALLOWED_SIZE] = "";
+    char word[WORD_SIZE], names[NAMES_SIZE] = "";
     himc_text_shorten(word, sizeof word, name);
     for (int i = 0; (row = himc_command_table(i)); i++) {
         size_t used = strlen(names);
@@ -311,17 +312,55 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
     }
 }
 
-/// The stroke in the checked atoms of `stroke` and `hit`.
+static double read_dynamic(const himc_command *c, int i)
+{
+    return c->choice[i] >= 0 ? c->choice[i] / LOUDEST : c->atom[i].number;
+}
+
+/// What the commands that hold a stroke make of it; -1 for the others.
+static int ornament_of(himc_command_id id)
+{
+    switch (id) {
+    case HIMC_COMMAND_STROKE:
+    case HIMC_COMMAND_HIT: return HIMC_PLAIN;
+    case HIMC_COMMAND_FLAM: return HIMC_FLAM;
+    case HIMC_COMMAND_DRAG: return HIMC_DRAG;
+    case HIMC_COMMAND_RUFF: return HIMC_RUFF;
+    case HIMC_COMMAND_ROLL: return HIMC_ROLL_SINGLE;
+    default: return -1;
+    }
+}
+
+/// Length, kind and dynamics of a roll, which begins with the right hand; returns the next atom.
+static int read_roll(const himc_command *c, int i, himc_stroke *stroke)
+{
+    enum { TWO_DYNAMICS };
+    stroke->hand = HIMC_RIGHT;
+    stroke->nuance = HIMC_LEGATO;
+    stroke->length = c->atom[i++].number;
+    stroke->ornament = (himc_ornament)(HIMC_ROLL_SINGLE + c->choice[i++]);
+    stroke->dynamic = read_dynamic(c, i++);
+    stroke->last_dynamic = c->form == TWO_DYNAMICS ? read_dynamic(c, i++) : stroke->dynamic;
+    return i;
+}
+
+/// The stroke in the checked atoms of a command that holds one.
 static himc_stroke read_stroke(const himc_command *c)
 {
     himc_stroke stroke = {.spot = HIMC_SPOT_NORMAL};
     int i = 0;
-    if (c->id == HIMC_COMMAND_STROKE)
+    stroke.ornament = (himc_ornament)ornament_of(c->id);
+    if (c->id != HIMC_COMMAND_HIT)
         stroke.beat = c->atom[i++].number;
-    stroke.hand = (himc_hand)c->choice[i++];
-    stroke.nuance = (himc_nuance)c->choice[i++];
-    stroke.dynamic = c->choice[i] >= 0 ? c->choice[i] / LOUDEST : c->atom[i].number;
-    i++;
+    if (c->id == HIMC_COMMAND_ROLL) {
+        i = read_roll(c, i, &stroke);
+    } else {
+        stroke.hand = (himc_hand)c->choice[i++];
+        if (stroke.hand == HIMC_HANDS) // of a hit, the word after the hands
+            stroke.hand = HIMC_HAND_ANY;
+        stroke.nuance = (himc_nuance)c->choice[i++];
+        stroke.dynamic = read_dynamic(c, i++);
+    }
     if (i < c->count && c->atom[i].kind == HIMC_ATOM_NUMBER) {
         stroke.spot = HIMC_SPOT_XY;
         stroke.x = c->atom[i++].number;
@@ -345,7 +384,7 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
         return false;
     out->id = row->id;
     store(out, atoms, count, &read);
-    if (row->id == HIMC_COMMAND_STROKE || row->id == HIMC_COMMAND_HIT)
+    if (ornament_of(row->id) >= 0)
         out->stroke = read_stroke(out);
     return true;
 }

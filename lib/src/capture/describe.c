@@ -63,35 +63,51 @@ static void tell_gaps(const himc_take *take, const himc_line_sink *to)
     himc_tell(to, "gaps: %d frames in %d points", all, points);
 }
 
-static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                         const himc_line_sink *to)
+static void tell_heads(const himc_strike_survey *s, const himc_line_sink *to)
 {
-    int count;
-    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    if (!strikes) {
-        himc_tell(to, "strikes: no memory to find them");
-        return;
+    himc_vec3 place = s->head[0];
+    int far = 0, there[HIMC_STRIKE_HEADS] = {0};
+    for (int i = 0; i < s->count; i++) {
+        far += hypot(s->strikes[i].x.x - place.x, s->strikes[i].x.y - place.y) > ONE_DRUM;
+        there[s->strikes[i].head]++;
     }
-    himc_tell(to, "strikes: %d", count);
-    for (int i = 0; i < count && i < STRIKE_LINES; i++)
-        himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", strikes[i].time,
-                  himc_hand_name(strikes[i].hand), strikes[i].x.x, strikes[i].x.y, strikes[i].x.z,
-                  strikes[i].velocity);
-    himc_vec3 place;
-    if (himc_take_strike_place(strikes, count, &place))
-        himc_tell(
-            to,
-            "drum: centre of the strikes at %.3f %.3f m, tips touch the head at a height of %.3f m",
-            place.x, place.y, place.z);
-    int far = 0;
-    for (int i = 0; i < count; i++)
-        far += hypot(strikes[i].x.x - place.x, strikes[i].x.y - place.y) > ONE_DRUM;
+    himc_tell(
+        to, "drum: centre of the strikes at %.3f %.3f m, tips touch the head at a height of %.3f m",
+        place.x, place.y, place.z);
+    for (int i = 1; i < s->heads; i++)
+        himc_tell(to,
+                  "drum: %d strikes are on another head, at a height of %.3f m, but a take is "
+                  "played on one drum",
+                  there[i], s->head[i].z);
     if (far > 0)
         himc_tell(to,
                   "drum: %d strikes are more than %g m from that centre, but a take is played "
                   "on one drum",
                   far, ONE_DRUM);
-    free(strikes);
+}
+
+static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                         const himc_line_sink *to)
+{
+    himc_strike_survey s;
+    if (!himc_take_strikes(take, tips, &s)) {
+        himc_tell(to, "strikes: no memory to find them");
+        return;
+    }
+    himc_tell(to, "strikes: %d", s.count);
+    for (int i = 0; i < s.count && i < STRIKE_LINES; i++)
+        himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", s.strikes[i].time,
+                  himc_hand_name(s.strikes[i].hand), s.strikes[i].x.x, s.strikes[i].x.y,
+                  s.strikes[i].x.z, s.strikes[i].velocity);
+    if (s.left_out > 0)
+        himc_tell(
+            to,
+            "left out: %d motions as sharp as strikes, up to %.2f m/s, that end %.3f .. %.3f m "
+            "above the head",
+            s.left_out, s.fastest, s.lowest, s.highest);
+    if (s.heads > 0)
+        tell_heads(&s, to);
+    free(s.strikes);
 }
 
 static void tell_tips(himc_take *take, const himc_take_options *options, const himc_line_sink *to)

@@ -268,11 +268,13 @@ void himc_player_free(himc_player *player)
 static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], bool *any,
                          himc_vec3 *place)
 {
-    int count;
-    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    *any = strikes && himc_take_strike_place(strikes, count, place);
-    free(strikes);
-    return strikes && *any == (count > 0);
+    himc_strike_survey survey;
+    if (!himc_take_strikes(take, tips, &survey))
+        return false;
+    free(survey.strikes);
+    *any = survey.heads > 0;
+    *place = survey.head[0];
+    return true;
 }
 
 static himc_vec3 lowest_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS])

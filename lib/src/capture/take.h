@@ -8,6 +8,8 @@
 
 #include "himc/mocap.h"
 
+#include "capture/strike_heads.h"
+
 #include <stdio.h>
 
 #define TAKE_NAME 64  ///< bytes of a point's name, with the final 0
@@ -109,15 +111,23 @@ int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *
 
 /// Index of the point that is a hand's tip by its name, or -1.
 int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_options *options);
-/// Finds strikes in order of time; writes at most `capacity`, returns the number of all, -1 without
-/// memory.
-int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                      himc_take_strike *strikes, int capacity);
-/// Place of a tip that touches the drumhead under these strikes: the mean over the hands of the
-/// median place of their strikes (m). A fall and its rebound meet below the head: on the simulated
-/// head a mallet stays some 7 ms, and the head is put so high that such a contact joins the two.
-/// False without strikes, and without memory.
-bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place);
+/// The strikes of a take, the drumheads under them, and what was taken for none. A place on a head
+/// is that of a tip that touches it: the mean over the hands of the median place of their strikes
+/// there, at the height of the plane through all strikes on it. A fall and its rebound meet below
+/// the head: on the simulated head a mallet stays some 7 ms, and the place is so high that such a
+/// contact joins the two.
+typedef struct himc_strike_survey {
+    himc_take_strike *strikes;         ///< in order of time (count), to be freed by the caller
+    int count, heads;                  ///< of strikes; of heads, 0 without strikes
+    himc_vec3 head[HIMC_STRIKE_HEADS]; ///< places on them, the most struck first (m)
+    int left_out;                      ///< falls that end as abruptly as strikes, but on no head
+    double lowest, highest;            ///< of their ends above head 0 (m)
+    double fastest;                    ///< of them (m/s)
+} himc_strike_survey;
+
+/// Finds the strikes of both tips. False without memory; then nothing is to be freed.
+bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                       himc_strike_survey *survey);
 
 // The library's frame: take_frame.c.
 

@@ -1,18 +1,20 @@
 /// take_strikes.c: strikes of a stick, found in the trajectory of its tip alone.
 ///
-/// A strike is a peak of upward acceleration that ends a fall. Within 30 ms to either side of a
-/// candidate the vertical speed rises by D. A hand that reverses a stick in the air spreads D over
-/// that whole time; a drumhead does it within a few milliseconds. So with the largest second
-/// difference A (m/s^2) the width D / A is compared: 4 Hz strokes in the air have 55 ms, a blow on
-/// a head 8 to 18 ms even in a track that was low-pass filtered (24 ms allowed, and 3 frames where
-/// frames are longer than 8 ms).
+/// A strike is a peak of upward acceleration that ends a fall. Within 30 ms to either side of the
+/// peak the vertical speed rises by D. A hand that reverses a stick in the air spreads D over that
+/// whole time; a drumhead does it within a few milliseconds. So with the largest second difference
+/// A (m/s^2) the width D / A is compared: 4 Hz strokes in the air have 55 ms, a blow on a head 8 to
+/// 18 ms even in a track that was low-pass filtered (26 ms allowed, and 3.2 frames where frames are
+/// longer than 8 ms). A must be larger than noise alone makes it (noise.c); a noisy track is judged
+/// by longer differences. Hands also turn sticks in the air as sharply as a head does: which of
+/// these falls are strikes is decided by where they end (strike_heads.c). Of two within 45 ms the
+/// faster is the strike.
 ///
 /// The capture's filter blunts the track near the touch, so time and speed come from before it: a
 /// parabola by least squares over the last 24 ms (or 4 samples) of undisturbed fall, before the
-/// deceleration reaches a tenth of A. A must be larger than noise alone makes it (noise.c); a noisy
-/// track is judged by longer differences. In a sharp track (nearly all of D in two frames) the
-/// touch is where the parabolas before and after intersect, and the speed is the slope there. In a
-/// blunted track the touch is where the parabola before passes the height of the lowest position,
+/// deceleration reaches a tenth of A. In a sharp track (nearly all of D in two frames) the touch is
+/// where the parabolas before and after intersect, and the speed is the slope there. In a blunted
+/// or noisy track the touch is where the parabola before passes the height of the lowest position,
 /// and the speed is its slope at the last undisturbed sample.
 ///
 /// In a gap longer than a contact no strike is reported, because the curve that bridges a gap bends
@@ -21,28 +23,42 @@
 
 #include "base/noise.h"
 #include "capture/order.h"
+#include "capture/strike_heads.h"
 #include "capture/take.h"
 
 #include <stdlib.h>
 
-#define LEAST_SPEED 0.3    // chosen: slower touches are not strokes (m/s)
+#define LEAST_SPEED 0.25   // chosen: slower touches are not strokes (m/s) ...
+#define NOISE_SPEEDS 3.0   // ... nor those within so many deviations of a noisy track's speeds
 #define MOST_SINKING 0.3   // chosen: speed of a fall that goes on after it, as a share of its speed
-#define REFRACTORY 0.05    // chosen: strikes of one hand are further apart (s)
-#define STRIKE_WINDOW 0.03 // chosen: D is taken within this time, longer than any contact (s)
-#define STRIKE_WIDTH 0.024 // chosen: most of D / A, between a head's 18 ms and the air's 55 (s)
-#define STRIKE_FRAMES 3    // chosen: the same in frames, if these are long
+#define REFRACTORY 0.045   // chosen: strikes of one hand are further apart (s)
+#define APART 0.025        // chosen: peaks are further apart (s)
+#define STRIKE_WINDOW 0.03 // chosen: D is taken within this time, longer than any contact (s) ...
+#define SPEED_TIME 0.02    // ... of speeds over this time, to average noise (s)
+#define STRIKE_WIDTH 0.026 // chosen: most of D / A, between a head's 18 ms and the air's 55 (s)
+#define STRIKE_FRAMES 3.2  // chosen: the same in frames, if these are long
+#define BLUNT 1.6          // chosen: a fall on a head may be this much less sharp
 #define FALL_TIME 0.024    // chosen: length of the parabolas, short beside a fall of 0.2 s (s)
 #define CONTACT 0.007      // of a felt mallet with the simulated head (s)
 #define LONGEST_UNSEEN 0.012   // chosen: longer gaps may hide a strike (s)
-#define NOISE_DEVIATIONS 5.0   // chosen: standard deviations of noise that a bend must exceed
+#define NOISE_DEVIATIONS 3.0   // chosen: standard deviations of noise that a bend must exceed
 #define SHORT_DIFFERENCE 0.006 // chosen: of quiet tracks, about a contact (s) ...
 #define LONG_DIFFERENCE 0.012  // ... and at most, of noisy ones (s)
 #define QUIET_BEND 100.0       // chosen: noise up to which differences stay short (m/s^2)
 #define SHARPEST_WITHIN 0.008  // chosen: time around a candidate for its largest bend (s)
 #define LOWEST_WITHIN 0.025    // chosen: time around it for the lowest position (s)
 #define FALL_DIFFERENCE 0.004  // chosen: of the bends that end the undisturbed fall (s)
-#define DISTURBED 0.1          // chosen: share of the largest bend that ends the undisturbed fall
-#define SHARP 0.8              // chosen: share of D that a sharp track has in two frames
+#define SLOWER 0.8 // chosen: bounds of the touch's speed, as shares of the fall's over SPEED_TIME,
+#define FASTER 1.6 // which noise changes less than the parabola's slope
+#define DISTURBED 0.1 // chosen: share of the largest bend that ends the undisturbed fall
+#define SHARP 0.8     // chosen: share of D that a sharp track has in two frames
+// by which a fall's end may lie off the head: play of felt and marker, noise, blunting by frames,
+// and a dent of 12 mm at 8 m/s; chosen by synthetic takes (tests/test_take_mixed.c)
+#define PLAY 0.008          // (m)
+#define PLAY_DEVIATIONS 3.0 // of noise
+#define PLAY_FRAMES 0.35    // of the fall in a frame ...
+#define FALL_OF_FRAME 0.02  // ... up to this (m)
+#define DENT 0.0015         // for each m/s (m)
 
 typedef struct track {
     const himc_take *take;
@@ -153,10 +169,10 @@ static int lowest(const track *t, int from, int to)
     return best;
 }
 
-// a peak of upward acceleration
+// the end of a fall: a peak of upward acceleration
 typedef struct candidate {
     int frame;
-    double bend, rise; // A, D
+    double bend, down, up; // A, fastest fall before and rise after (m/s)
 } candidate;
 
 static bool is_unseen(const track *t, int frame)
@@ -181,27 +197,69 @@ static bool in_gap(const track *t, int from, int to)
     return false;
 }
 
-static bool is_strike(const track *t, int i, int h, candidate *s)
-{
-    int w = frames_of(t, STRIKE_WINDOW, 3);
-    int before = i - h - w < 0 ? 0 : i - h - w,
-        after = i + h + w >= t->frames ? t->frames - 1 : i + h + w;
-    int near = frames_of(t, LONG_DIFFERENCE, 1);
-    // the fastest fall before and the fastest rise after, each over 12 ms to average noise
-    double down = 0, up = -INFINITY;
-    for (int k = before; k + near <= i; k++)
-        down = fmin(down, speed(t, k, k + near));
-    for (int k = i; k + near <= after; k++)
-        up = fmax(up, speed(t, k, k + near));
-    *s = (candidate){i, bend(t, i, h), up - down};
-    double width = fmax(STRIKE_WIDTH, STRIKE_FRAMES / t->rate);
-    return down < -LEAST_SPEED && up > MOST_SINKING * down && s->rise < width * s->bend &&
-           s->bend > noise_bend(t, h) && !in_gap(t, i - h, i + h);
-}
-
 static double bend_or_zero(const track *t, int i, int h)
 {
     return i >= h && i + h < t->frames ? fmax(0, bend(t, i, h)) : 0;
+}
+
+static double width(const candidate *s)
+{
+    return (s->down + s->up) / s->bend;
+}
+
+static double widest(const track *t)
+{
+    return fmax(STRIKE_WIDTH, STRIKE_FRAMES / t->rate);
+}
+
+// true if no bend by h frames nearby is larger
+static bool is_peak(const track *t, int i, int h)
+{
+    int w = frames_of(t, APART, 1);
+    double here = bend(t, i, h);
+    for (int k = 1; k <= w; k++)
+        if (bend_or_zero(t, i - k, h) >= here || bend_or_zero(t, i + k, h) > here)
+            return false;
+    return true;
+}
+
+// the fastest fall before frame i and the fastest rise after it
+static candidate candidate_at(const track *t, int i, int h)
+{
+    int w = frames_of(t, STRIKE_WINDOW, 3) + h, n = frames_of(t, SPEED_TIME, 1);
+    int before = i < w ? 0 : i - w, after = i + w < t->frames ? i + w : t->frames - 1;
+    candidate s = {i, bend(t, i, h), -INFINITY, -INFINITY};
+    for (int k = before; k + n <= i; k++)
+        s.down = fmax(s.down, -speed(t, k, k + n));
+    for (int k = i; k + n <= after; k++)
+        s.up = fmax(s.up, speed(t, k, k + n));
+    return s;
+}
+
+static double least_speed(const track *t)
+{
+    return fmax(LEAST_SPEED, NOISE_SPEEDS * sqrt(2) * t->noise / SPEED_TIME);
+}
+
+static bool is_fall(const track *t, const candidate *s, int h)
+{
+    return s->down > least_speed(t) && s->up > -MOST_SINKING * s->down &&
+           width(s) < BLUNT * widest(t) && !in_gap(t, s->frame - h, s->frame + h);
+}
+
+// the next end of a fall from frame *from on; false when there are no more
+static bool next_fall(const track *t, int *from, candidate *s)
+{
+    int h = difference(t);
+    for (int i = *from < h ? h : *from; i + h < t->frames; i++)
+        if (bend(t, i, h) > 0 && is_peak(t, i, h)) {
+            *s = candidate_at(t, i, h);
+            *from = i + 1;
+            if (is_fall(t, s, h))
+                return true;
+        }
+    *from = t->frames;
+    return false;
 }
 
 // the frame of the largest bend by differences of h frames, near `frame`
@@ -235,10 +293,12 @@ static himc_vec3 place_between(const track *t, double frame, double height)
 
 static himc_take_strike measure(const track *t, const candidate *s, himc_hand hand)
 {
-    int peak = sharpest(t, s->frame, 1), w = frames_of(t, LOWEST_WITHIN, 2),
+    bool quiet = noise_bend(t, 1) < (1 - SHARP) * (s->down + s->up) * t->rate;
+    int peak = quiet ? sharpest(t, s->frame, 1) : s->frame, w = frames_of(t, LOWEST_WITHIN, 2),
         n = frames_of(t, FALL_TIME, 4);
     double earlier = bend_or_zero(t, peak - 1, 1), later = bend_or_zero(t, peak + 1, 1);
-    bool sharp = bend_or_zero(t, peak, 1) + fmax(earlier, later) > SHARP * s->rise * t->rate;
+    bool sharp = quiet && bend_or_zero(t, peak, 1) + fmax(earlier, later) >
+                              SHARP * (s->down + s->up) * t->rate;
     int low = lowest(t, peak < w ? 0 : peak - w, peak + w < t->frames ? peak + w : t->frames - 1);
     // a kink between two frames bends the track in both: the fall ends with the earlier one
     int end = sharp ? peak - (earlier > later) : clean_end(t, peak);
@@ -250,72 +310,115 @@ static himc_take_strike measure(const track *t, const candidate *s, himc_hand ha
     double u = sharp ? touch - end : 0;
     double height = sharp ? value(&before, touch) : t->x[low].z;
     double up = sharp ? (after.b + 2 * after.c * (touch - end - 1)) * t->rate : 0;
+    double down = -(before.b + 2 * before.c * u) * t->rate;
     return (himc_take_strike){.hand = hand,
                               .frame = low,
                               .time = touch / t->rate,
                               .x = place_between(t, touch, height),
-                              .velocity = -(before.b + 2 * before.c * u) * t->rate,
+                              .velocity = fmin(fmax(down, SLOWER * s->down), FASTER * s->down),
                               .rebound = fmax(up, 0)};
 }
 
-// strikes of one hand from frame *from on; false when there are no more
-static bool next_strike(const track *t, int *from, himc_hand hand, himc_take_strike *strike)
+// a fall, and the strike that it is if it ends on a head
+typedef struct found {
+    himc_take_strike *strike;
+    himc_fall *fall; // beside strike
+    int count;
+} found;
+
+static himc_fall fall_of(const track *t, const candidate *s, himc_vec3 x)
 {
-    int h = difference(t), apart = frames_of(t, REFRACTORY, 1);
-    candidate best = {-1, 0, 0}, s;
-    int i = *from < h ? h : *from;
-    for (; i + h < t->frames && (best.frame < 0 || i < best.frame + apart); i++)
-        if (bend(t, i, h) > best.bend && is_strike(t, i, h, &s))
-            best = s;
-    *from = best.frame + apart;
-    if (best.frame >= 0)
-        *strike = measure(t, &best, hand);
-    return best.frame >= 0;
+    double frame = fmin(s->down / t->rate, FALL_OF_FRAME);
+    return (himc_fall){.x = x,
+                       .speed = s->down,
+                       .within =
+                           PLAY + PLAY_DEVIATIONS * t->noise + PLAY_FRAMES * frame + DENT * s->down,
+                       .sharp = width(s) < widest(t) && s->bend > noise_bend(t, difference(t))};
+}
+
+static void find_falls(const track *t, himc_hand hand, found *f)
+{
+    candidate s;
+    for (int from = 0; next_fall(t, &from, &s); f->count++) {
+        f->strike[f->count] = measure(t, &s, hand);
+        f->fall[f->count] = fall_of(t, &s, f->strike[f->count].x);
+    }
+}
+
+static int most_falls(const track *t)
+{
+    return t->frames / frames_of(t, APART, 1) + 1;
+}
+
+// the falls of both hands, one hand after the other; false without memory
+static bool find(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], found *f)
+{
+    int most = 0;
+    track t[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        t[hand] = (track){take, tips[hand].point, tips[hand].x, take->frames, take->rate, 0};
+        if (tips[hand].present && !himc_noise(tips[hand].x, take->frames, &t[hand].noise))
+            return false;
+        most += tips[hand].present ? most_falls(&t[hand]) : 0;
+    }
+    f->strike = calloc((size_t)most + 1, sizeof *f->strike);
+    f->fall = calloc((size_t)most + 1, sizeof *f->fall);
+    for (int hand = 0; f->strike && f->fall && hand < HIMC_HANDS; hand++)
+        if (tips[hand].present)
+            find_falls(&t[hand], (himc_hand)hand, f);
+    return f->strike && f->fall;
+}
+
+static void leave_out(const himc_fall *f, const himc_strike_head *head, himc_strike_survey *to)
+{
+    double over = f->x.z - himc_strike_head_at(head, f->x.x, f->x.y);
+    to->lowest = to->left_out ? fmin(to->lowest, over) : over;
+    to->highest = to->left_out ? fmax(to->highest, over) : over;
+    to->fastest = fmax(to->fastest, f->speed);
+    to->left_out++;
+}
+
+// true if fall k is a strike of the same hand as fall i, and too close in time to be another
+static bool is_same(const found *f, int i, int k)
+{
+    return k >= 0 && k < f->count && f->fall[k].head >= 0 &&
+           f->strike[k].hand == f->strike[i].hand &&
+           fabs(f->strike[k].time - f->strike[i].time) < REFRACTORY;
+}
+
+static void list_left_out(const found *f, const himc_strike_head *heads, himc_strike_survey *to)
+{
+    for (int i = 0; i < f->count; i++)
+        if (f->fall[i].head < 0 && f->fall[i].sharp && !is_same(f, i, i - 1) &&
+            !is_same(f, i, i + 1))
+            leave_out(&f->fall[i], &heads[0], to);
+}
+
+// moves the strikes to the front of the list, without those that follow a faster one closely
+static void keep_strikes(found *f, himc_strike_survey *to)
+{
+    for (int i = 0; i < f->count; i++) {
+        himc_take_strike *last = to->count ? &to->strikes[to->count - 1] : NULL, s = f->strike[i];
+        s.head = f->fall[i].head;
+        if (s.head < 0)
+            continue;
+        if (!last || last->hand != s.hand || s.time - last->time >= REFRACTORY)
+            to->strikes[to->count++] = s;
+        else if (s.velocity > last->velocity)
+            *last = s;
+    }
+}
+
+static int by_time(const void *a, const void *b)
+{
+    double s = ((const himc_take_strike *)a)->time, t = ((const himc_take_strike *)b)->time;
+    return (s > t) - (s < t);
 }
 
 static double median(double *values, int count)
 {
     qsort(values, (size_t)count, sizeof *values, himc_order_doubles);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
-int himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                      himc_take_strike *strikes, int capacity)
-{
-    himc_take_strike next[HIMC_HANDS];
-    track tracks[HIMC_HANDS];
-    int from[HIMC_HANDS] = {0, 0}, count = 0;
-    bool waits[HIMC_HANDS];
-    for (int h = 0; h < HIMC_HANDS; h++) {
-        tracks[h] = (track){take, tips[h].point, tips[h].x, take->frames, take->rate, 0};
-        if (tips[h].present && !himc_noise(tips[h].x, tracks[h].frames, &tracks[h].noise))
-            return -1;
-        waits[h] = tips[h].present && next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
-    }
-    // merges the two sorted lists while they are found
-    while (waits[HIMC_LEFT] || waits[HIMC_RIGHT]) {
-        int h = !waits[HIMC_LEFT] ||
-                (waits[HIMC_RIGHT] && next[HIMC_RIGHT].time < next[HIMC_LEFT].time);
-        if (count < capacity)
-            strikes[count] = next[h];
-        count++;
-        waits[h] = next_strike(&tracks[h], &from[h], (himc_hand)h, &next[h]);
-    }
-    return count;
-}
-
-himc_take_strike *himc_take_find_strikes(const himc_take *take,
-                                         const himc_take_tip tips[HIMC_HANDS], int *count)
-{
-    himc_take_strike none;
-    int all = himc_take_strikes(take, tips, &none, 0);
-    himc_take_strike *strikes = all < 0 ? NULL : calloc((size_t)all + 1, sizeof *strikes);
-    *count = strikes ? himc_take_strikes(take, tips, strikes, all) : 0;
-    if (*count >= 0)
-        return strikes;
-    *count = 0;
-    free(strikes);
-    return NULL;
 }
 
 // height of the head above the point where fall and rebound intersect: v t down and u (CONTACT - t)
@@ -326,36 +429,77 @@ static double above_intersection(const himc_take_strike *s)
     return sum > 0 ? CONTACT * s->velocity * s->rebound / sum : 0;
 }
 
-// the median position of one hand's strikes along one axis; false if it has none
-static bool hand_median(const himc_take_strike *strikes, int count, int hand, int axis,
-                        double *scratch, double *middle)
+// the median position of one hand's strikes on a head along one axis, for z above their
+// intersection; false if it has none
+static bool hand_median(const himc_strike_survey *s, int head, int hand, int axis, double *scratch,
+                        double *middle)
 {
     int n = 0;
-    for (int i = 0; i < count; i++)
-        if ((int)strikes[i].hand == hand) {
-            himc_vec3 x = strikes[i].x;
-            scratch[n++] = axis == 0   ? x.x
-                           : axis == 1 ? x.y
-                                       : x.z + above_intersection(&strikes[i]);
-        }
+    for (int i = 0; i < s->count; i++) {
+        const himc_take_strike *strike = &s->strikes[i];
+        if ((int)strike->hand == hand && strike->head == head)
+            scratch[n++] = axis == 0   ? strike->x.x
+                           : axis == 1 ? strike->x.y
+                                       : above_intersection(strike);
+    }
     if (n > 0)
         *middle = median(scratch, n);
     return n > 0;
 }
 
-bool himc_take_strike_place(const himc_take_strike *strikes, int count, himc_vec3 *place)
+// the middle of the strikes on a head, on its plane
+static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_strike_head *plane,
+                          double *scratch)
 {
-    double *scratch = count > 0 ? malloc((size_t)count * sizeof *scratch) : NULL;
-    if (!scratch)
-        return false;
     double middle[3];
     for (int axis = 0; axis < 3; axis++) {
-        double l, r;
-        bool left = hand_median(strikes, count, HIMC_LEFT, axis, scratch, &l);
-        bool right = hand_median(strikes, count, HIMC_RIGHT, axis, scratch, &r);
-        middle[axis] = left && right ? 0.5 * (l + r) : left ? l : r;
+        double l = 0, r = 0;
+        bool left = hand_median(s, head, HIMC_LEFT, axis, scratch, &l);
+        bool right = hand_median(s, head, HIMC_RIGHT, axis, scratch, &r);
+        middle[axis] = left && right ? 0.5 * (l + r) : l + r;
     }
-    *place = himc_vec3_make(middle[0], middle[1], middle[2]);
+    double z = himc_strike_head_at(plane, middle[0], middle[1]);
+    return himc_vec3_make(middle[0], middle[1], z + middle[2]);
+}
+
+// strikes, heads and the place of the drum from the falls; false without memory
+static bool judge(found *f, himc_strike_survey *to)
+{
+    himc_strike_head heads[HIMC_STRIKE_HEADS];
+    double *scratch = malloc(((size_t)f->count + 1) * sizeof *scratch);
+    to->heads = scratch ? himc_strike_heads(f->fall, f->count, heads) : -1;
+    if (to->heads > 0) {
+        list_left_out(f, heads, to);
+        keep_strikes(f, to);
+    }
+    qsort(to->strikes, (size_t)to->count, sizeof *to->strikes, by_time);
+    for (int i = 0; i < to->heads; i++)
+        to->head[i] = place_on(to, i, &heads[i], scratch);
     free(scratch);
-    return true;
+    return to->heads >= 0;
+}
+
+bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                       himc_strike_survey *survey)
+{
+    found f = {NULL, NULL, 0};
+    *survey = (himc_strike_survey){.strikes = NULL};
+    bool found_all = find(take, tips, &f);
+    survey->strikes = f.strike;
+    found_all = found_all && judge(&f, survey);
+    free(f.fall);
+    if (!found_all) {
+        free(f.strike);
+        *survey = (himc_strike_survey){.strikes = NULL};
+    }
+    return found_all;
+}
+
+himc_take_strike *himc_take_find_strikes(const himc_take *take,
+                                         const himc_take_tip tips[HIMC_HANDS], int *count)
+{
+    himc_strike_survey survey;
+    himc_take_strikes(take, tips, &survey);
+    *count = survey.count;
+    return survey.strikes;
 }

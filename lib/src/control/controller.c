@@ -3,7 +3,8 @@
 ///
 /// `printed` is tau = ks dq - kd q', `feedforward` tau = g(q) + ks dq + kd (q'_t - q'),
 /// `computed-torque` alpha = q''_t + 2 w (q'_t - q') + w^2 dq through inverse dynamics. While a
-/// stick touches the head all three do not act along the normal: the physics makes the rebound.
+/// stick touches the head all three give it the hand's acceleration along the normal (grip.h), none
+/// in a stroke: the physics makes the rebound.
 /// Joint limits have priority over all of this (limit_torque.c).
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
@@ -31,15 +32,15 @@ static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jac
     himc_arm_scatter(arm, hand, all);
 }
 
-// in contact the tip is not accelerated along the normal, for any gains of the joints
+// in contact the tip has the hand's acceleration along the normal, for any gains of the joints
 static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
                                  const himc_reference *reference, const himc_arm_jacobian *jacobian,
                                  himc_vec3 wanted[HIMC_JOINTS])
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (reference->released[hand]) {
-            himc_vec3 n = reference->normal[hand], zero = {0, 0, 0};
-            himc_vec3 left = himc_acceleration_left(skeleton, s, (himc_hand)hand, wanted, zero);
+            himc_vec3 n = reference->normal[hand], a = himc_vec3_scale(n, reference->yield[hand]);
+            himc_vec3 left = himc_acceleration_left(skeleton, s, (himc_hand)hand, wanted, a);
             release(wanted, (himc_hand)hand, &jacobian[hand], n, himc_vec3_dot(n, left));
         }
 }
@@ -62,8 +63,8 @@ static himc_vec3 servo_known(const himc_controller *c, const himc_body_state *s,
                          himc_mat3_scale_along(r, c->gain[j].damping, rate));
 }
 
-// the forces at released tips that stop their acceleration along the normal: m a, with the mass of
-// an arm with servos at its joints
+// the forces at released tips that give them the hand's acceleration along the normal: m a, with
+// the mass of an arm with servos at its joints
 static void release_forces(const himc_skeleton *skeleton, const himc_body_state *s,
                            const himc_reference *reference, const himc_articulation *art,
                            const himc_vec3 *known, himc_vec3 force[HIMC_HANDS])
@@ -79,7 +80,7 @@ static void release_forces(const himc_skeleton *skeleton, const himc_body_state 
             a[unit] = himc_vec3_dot(n, himc_tip_acceleration(skeleton, s, hand, relative));
         }
         if (reference->released[i])
-            force[i] = himc_vec3_madd(without, -a[0] / (a[1] - a[0]), n);
+            force[i] = himc_vec3_madd(without, (reference->yield[i] - a[0]) / (a[1] - a[0]), n);
     }
 }
 
@@ -167,6 +168,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
             himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand,
                                     &jacobian[hand], &e);
     }
+    himc_limits_bound_errors(c, &e);
     if (c->config.law == HIMC_LAW_COMPUTED_TORQUE) {
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
@@ -176,7 +178,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     } else {
         servo_torques(c, skeleton, s, reference, &e, torque);
     }
-    himc_strength_apply(c, torque);
+    himc_strength_apply(c, skeleton, s, torque);
 }
 
 // inertia of all segments moved by a joint, about the child's axes

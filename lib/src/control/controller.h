@@ -69,7 +69,8 @@ typedef struct himc_controller {
 typedef struct himc_reference {
     himc_target tip[HIMC_HANDS];
     himc_posture_motion posture;  ///< joint targets of `id`; in `himc` the null-space target
-    bool released[HIMC_HANDS];    ///< the tip is in contact: no control along the normal
+    bool released[HIMC_HANDS];    ///< the tip is in contact: along the normal it has `yield`
+    double yield[HIMC_HANDS];     ///< its acceleration there but for the contact's force (m/s^2)
     himc_vec3 normal[HIMC_HANDS]; ///< of the head it touches
 } himc_reference;
 

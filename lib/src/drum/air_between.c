@@ -280,11 +280,14 @@ static void kick(const himc_air_between *air, int drum, const double *change)
         himc_membrane_kick(head, mode[i].index, change[i]);
 }
 
-void himc_air_between_exchange(himc_air_between *air, int64_t now)
+bool himc_air_between_due(const himc_air_between *air, int64_t now)
+{
+    return air->count > 0 && now % interval(air) == 0;
+}
+
+void himc_air_between_exchange(himc_air_between *air)
 {
     double v[MODES], change[MODES];
-    if (air->count == 0 || now % interval(air) != 0)
-        return;
     if (is_stale(air))
         find_change(air);
     if (!read_velocities(air, v))

@@ -25,7 +25,9 @@ HIMC_RT void himc_air_between_leave(himc_air_between *air, himc_drum *drum);
 
 /// Samples from `now` to the next exchange, at most n; all drums are then to be advanced so far.
 HIMC_RT int himc_air_between_until(const himc_air_between *air, int64_t now, int n);
-/// The exchange, if one is due at sample `now`.
-HIMC_RT void himc_air_between_exchange(himc_air_between *air, int64_t now);
+/// Whether an exchange is due at sample `now`.
+HIMC_RT bool himc_air_between_due(const himc_air_between *air, int64_t now);
+/// The exchange.
+HIMC_RT void himc_air_between_exchange(himc_air_between *air);
 
 #endif

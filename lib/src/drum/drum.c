@@ -43,7 +43,8 @@ static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc
     }
     snprintf(drum->name, sizeof drum->name, "%s", name);
     drum->references = 1;
-    drum->level = drum->gain = 1;
+    drum->level = drum->gain = drum->fader = 1;
+    drum->walls = HIMC_WALLS_USUAL;
     drum->membrane = membrane;
     himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
     drum->place = *place;
@@ -90,6 +91,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
         drum_new(form->name, himc_membrane_new_of(&form->head, error), &form->place, error);
     if (drum) {
         himc_membrane_watch(drum->membrane, form->head.watch_x, form->head.watch_y);
+        himc_drum_enclose(drum, &form->walls);
         himc_drum_listen(drum, &form->listener);
         drum->external_sound = form->external_sound;
     }
@@ -127,6 +129,11 @@ void himc_drum_rest(himc_drum *drum)
 bool himc_drum_is_placed(const himc_drum *drum)
 {
     return drum->placed;
+}
+
+void himc_drum_fade(himc_drum *drum, double factor)
+{
+    drum->fader = factor;
 }
 
 void himc_drum_stand(himc_drum *drum, himc_vec3 center)
@@ -231,11 +238,13 @@ static int channels(const himc_drum *drum)
 // levels of the head's own sound in the coming n samples; `levels` is NULL if nothing sounds
 static void next_levels(himc_drum *drum, int n, double *levels)
 {
-    double goal = drum->technique == HIMC_TECHNIQUE_MODAL ? drum->gain : 0,
-           step = fmax(drum->gain, 1) / (LEVEL_RAMP * drum->rate);
+    bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
+    double goal = sounds ? drum->gain * drum->fader : 0;
     for (int i = 0; i < n && (levels || drum->level != goal); i++) {
-        if (drum->level != goal)
+        if (drum->level != goal) {
+            double step = fmax(fmax(goal, drum->level), 1) / (LEVEL_RAMP * drum->rate);
             drum->level += fmin(fmax(goal - drum->level, -step), step);
+        }
         if (levels)
             levels[i] = drum->level;
     }
@@ -294,15 +303,14 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
     if (!drum->noise.sounds && force == 0)
         return;
-    const himc_pickup *rays = himc_membrane_rays(drum->membrane);
+    bool rays = himc_membrane_rays(drum->membrane);
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
     for (int k = 0; k < count && !himc_ears_alone(&drum->ears); k++)
         for (int i = 0; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
             sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
     for (int k = 0; k < HIMC_RAYS && rays; k++)
         for (int i = 0; i < n; i++)
-            sound[HIMC_PICKUPS + k][i] +=
-                NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i] / rays[k].distance;
+            sound[HIMC_PICKUPS + k][i] += NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i];
 }
 
 // runs the head without contact; the sticks fly

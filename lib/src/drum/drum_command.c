@@ -39,7 +39,7 @@ static const himc_mallet_head presets[] = {
                           .radius = 0.017,
                           .relaxation = 0.15e-3},
     [DRUM_MALLET_WOOD] =
-        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 5e-6},
+        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.016, .radius = 0.008, .relaxation = 5e-6},
 };
 
 #define OWN_RADIUS 0.0175 // (m) of a mallet given by numbers; chosen: a usual felt's
@@ -306,6 +306,13 @@ static bool do_gain(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     (void)error;
     drum->gain = pow(10, number(c, 0) / 20);
+    return true;
+}
+
+static bool do_mute(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    drum->mute = number(c, 0) == 1;
     return true;
 }
 

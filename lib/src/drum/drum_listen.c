@@ -16,7 +16,7 @@ static void find_ways(himc_drum *drum, bool rays)
     himc_ear_paths paths = himc_ears_trace(&drum->listener, &drum->place);
     if (rays)
         himc_membrane_set_rays(drum->membrane, paths.ray);
-    himc_ears_set(&drum->ears, &paths, drum->rate);
+    himc_ears_set(&drum->ears, &paths, &drum->walls, drum->rate);
 }
 
 void himc_drum_find_ways(himc_drum *drum)
@@ -30,6 +30,14 @@ void himc_drum_listen(himc_drum *drum, const himc_listener *listener)
         return;
     drum->listener = *listener;
     find_ways(drum, true);
+}
+
+void himc_drum_enclose(himc_drum *drum, const himc_walls *walls)
+{
+    if (drum->walls.seconds == walls->seconds && drum->walls.volume == walls->volume)
+        return;
+    drum->walls = *walls;
+    find_ways(drum, false);
 }
 
 void himc_drum_hear_as(himc_drum *drum, const himc_drum *other)

@@ -25,6 +25,12 @@ HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 /// A listener who is off, as at first, leaves them to the pickups. It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
+/// The walls around who hears it; at first HIMC_WALLS_USUAL. They change in 5 ms.
+HIMC_RT void himc_drum_enclose(himc_drum *drum, const himc_walls *walls);
+
+/// The fader of all drums of a performer: times the drum's own gain; at first 1. No click.
+HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
+
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
@@ -37,6 +43,9 @@ HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
 HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);
 /// Grows by one with every change of place, radius or mallet, so that a performer notices.
 HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
+/// Frequency of the head's principal mode (Hz).
+HIMC_RT double himc_drum_pitch(const himc_drum *drum);
+
 /// What himc_drum_set_external_sound has set.
 HIMC_RT bool himc_drum_has_external_sound(const himc_drum *drum);
 
@@ -48,6 +57,7 @@ typedef struct himc_drum_form {
     himc_membrane_form head;
     himc_head_frame place;
     himc_listener listener;
+    himc_walls walls;
     bool external_sound;
 } himc_drum_form;
 
@@ -59,9 +69,34 @@ bool himc_drum_has_form(const himc_drum *drum, const himc_drum_form *form);
 
 /// A drum of that form, at rest; NULL with the reason.
 himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error);
-/// Gives `drum` the head of `made`, which is then only to be released (himc_membrane_exchange). It
+/// Gives `drum` the head of `made`, and the other way round (himc_membrane_exchange). It
 /// is quick if both have one sample rate.
 void himc_drum_exchange(himc_drum *drum, himc_drum *made);
+
+// Heads that a drum gets one after the other while a score plays (drum_job.c).
+
+typedef struct himc_drum_heads himc_drum_heads;
+
+/// Changes of the head of a drum of that form, none yet; NULL with the reason.
+himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *error);
+/// Adds a command that is marked HIMC_AT_BEAT, for a beat at or after the last one's: it acts on what
+/// the ones before left. False with the reason if the drum refuses it.
+bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command *command,
+                         himc_error *error);
+/// Computes the heads, so that himc_drum_heads_turn need not. False without memory.
+bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error);
+/// True if the head at that beat is not the one that was last given.
+HIMC_RT bool himc_drum_heads_due(const himc_drum_heads *heads, double beat);
+/// Gives the drum the head that it has at that beat: that of the form before the first change. Quick
+/// where the drum has still the pickups and the listener of the form, else the head is computed
+/// now. Between two samples.
+void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat);
+/// Before beat `from` the drum has the heads of `before` (NULL: none), which are `heads`' own from now
+/// on. Returns those that are over at beat `now`, to be freed, or NULL.
+himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,
+                                        double from, double now);
+/// Frees them, and those before. NULL is allowed.
+void himc_drum_heads_free(himc_drum_heads *heads);
 
 /// True if a command would take longer than an audio block can wait: a file, or many modes.
 HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command);

@@ -61,10 +61,13 @@ struct himc_drum {
     himc_technique technique;
     bool external_sound;
     double gain;  ///< of its sound, set by the command `gain` (factor)
-    double level; ///< of the drum's own sound: on its way to the gain, or to 0
+    double fader; ///< of all drums of its performer (factor)
+    bool mute;    ///< set by the command `mute`
+    double level; ///< of the drum's own sound: on its way to the product, or to 0
     himc_stroke_noise noise;
     himc_listener listener;
-    himc_ears ears; ///< of the listener
+    himc_walls walls; ///< around the listener
+    himc_ears ears;   ///< of the listener
 };
 
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.

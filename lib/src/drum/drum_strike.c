@@ -165,18 +165,22 @@ bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
     return true;
 }
 
+double himc_drum_pitch(const himc_drum *drum)
+{
+    return himc_membrane_principal(drum->membrane, himc_membrane_head(drum->membrane));
+}
+
 void himc_drum_keep_onset(himc_drum *drum, const himc_stick *stick)
 {
     if (!(stick->impact > 0))
         return; // a head raised into a resting stick is no blow
-    const himc_head *head = himc_membrane_head(drum->membrane);
-    drum->onsets[queue_push(&drum->onset_queue, DRUM_ONSETS)] =
-        (himc_contact_onset){.at = (int64_t)drum->time,
-                             .x = stick->x,
-                             .y = stick->y,
-                             .velocity = stick->impact,
-                             .distance = fmin(hypot(stick->x, stick->y) / head->radius, 1),
-                             .pitch = himc_membrane_principal(drum->membrane, head)};
+    drum->onsets[queue_push(&drum->onset_queue, DRUM_ONSETS)] = (himc_contact_onset){
+        .at = (int64_t)drum->time,
+        .x = stick->x,
+        .y = stick->y,
+        .velocity = stick->impact,
+        .distance = fmin(hypot(stick->x, stick->y) / himc_membrane_head(drum->membrane)->radius, 1),
+        .pitch = himc_drum_pitch(drum)};
 }
 
 bool himc_drum_contact_next(himc_drum *drum, himc_contact_onset *onset)

@@ -67,7 +67,7 @@ static himc_pickup ray_to(const himc_head_frame *frame, himc_vec3 point, bool *b
                          .distance = fmax(himc_vec3_length(to), NEAREST)};
 }
 
-// from a source to an ear; a ray of strength 1 has the sound at 1 m
+// from a source to an ear
 static himc_ear_path path_to(const himc_listener *l, int ear, himc_vec3 source, double strength)
 {
     himc_vec3 to = himc_vec3_sub(source, l->place);
@@ -94,12 +94,10 @@ himc_ear_paths himc_ears_trace(const himc_listener *l, const himc_head_frame *fr
     double returned = FLOOR * (below ? sqrt(BELOW) : 1);
     for (int ear = 0; ear < HIMC_EARS; ear++) {
         himc_vec3 at = himc_vec3_madd(l->place, HEAD_RADIUS, ear_axis(l, ear));
-        p.floor[ear] =
-            path_to(l, ear, mirrored(frame->center), returned * p.ray[HIMC_RAY_FLOOR].distance);
+        p.floor[ear] = path_to(l, ear, mirrored(frame->center), returned);
         p.floor[ear].delay -= 1 / (2 * HIMC_PI * FLOOR_CORNER); // the filter's own
         p.ray[HIMC_RAY_LEFT + ear] = ray_to(frame, at, &below);
-        p.direct[ear] = path_to(l, ear, frame->center,
-                                (below ? sqrt(BELOW) : 1) * p.ray[HIMC_RAY_LEFT + ear].distance);
+        p.direct[ear] = path_to(l, ear, frame->center, below ? sqrt(BELOW) : 1);
     }
     return p;
 }
@@ -158,6 +156,7 @@ static void begin(himc_ears *e)
     e->now = e->next;
     e->reach = longest(&e->now);
     e->at = e->silent = 0;
+    himc_room_leave(&e->room);
 }
 
 static void fade_to_next(himc_ears *e)
@@ -170,7 +169,7 @@ static void fade_to_next(himc_ears *e)
     e->faded = 0;
 }
 
-void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, double rate)
+void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *walls, double rate)
 {
     e->step = 1 / (FADE * rate);
     set_pole(&e->floor, FLOOR_CORNER, rate);
@@ -183,6 +182,7 @@ void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, double rate)
         e->changes = true;
     else
         begin(e);
+    himc_room_set(&e->room, walls, rate);
     e->on = true;
 }
 
@@ -194,27 +194,39 @@ void himc_ears_close(himc_ears *e)
 bool himc_ears_at_rest(const himc_ears *e)
 {
     return e->silent >= HIMC_EARS_LINE && e->faded == 1 && !e->changes &&
-           e->level == (e->on ? 1 : 0);
+           e->level == (e->on ? 1 : 0) && himc_room_at_rest(&e->room);
 }
 
-// what a path brings now: four samples of its line
-static double arriving(const himc_ears *e, int ray, const himc_ear_tap *tap)
+// what a path brings in n samples from `at` on: each is four of its line
+static void arrive(const himc_ears *e, int ray, const himc_ear_tap *tap, int n, double *out)
 {
-    double sum = 0;
-    for (int i = 0; i < 4; i++)
-        sum += tap->weight[i] * e->line[ray][(e->at - tap->whole + 1 - i) & (HIMC_EARS_LINE - 1)];
-    return sum;
+    double x[HIMC_ROOM_RUN + 3];
+    int first = e->at - tap->whole - 2;
+    for (int i = 0; i < n + 3; i++)
+        x[i] = e->line[ray][(first + i) & (HIMC_EARS_LINE - 1)];
+    for (int i = 0; i < n; i++)
+        out[i] = tap->weight[0] * x[i + 3] + tap->weight[1] * x[i + 2] + tap->weight[2] * x[i + 1] +
+                 tap->weight[3] * x[i];
 }
 
-// adds `part` of what the paths bring to an ear, as it passes the head and as its filter takes it
-static void gather(const himc_ears *e, const himc_ear_taps *taps, int ear, double part,
-                   double *passing, double *filtered)
+// an ear's sound as it passes the head, and as its filter takes it
+typedef struct ear_sound {
+    double passing[HIMC_ROOM_RUN], filtered[HIMC_ROOM_RUN];
+} ear_sound;
+
+// adds `part` of what the paths bring to an ear
+static void gather(const himc_ears *e, const himc_ear_taps *taps, int ear, double part, int n,
+                   ear_sound *sound)
 {
-    double direct = part * arriving(e, ear, &taps->direct[ear]);
-    double floor = part * arriving(e, HIMC_RAY_FLOOR, &taps->floor[ear]);
+    double direct[HIMC_ROOM_RUN], floor[HIMC_ROOM_RUN];
     double shelf = taps->direct[ear].shelf, floor_shelf = taps->floor[ear].shelf;
-    *passing += shelf * direct + floor_shelf * floor;
-    *filtered += (1 - shelf) * direct + (1 - floor_shelf) * floor;
+    arrive(e, ear, &taps->direct[ear], n, direct);
+    arrive(e, HIMC_RAY_FLOOR, &taps->floor[ear], n, floor);
+    for (int i = 0; i < n; i++) {
+        double near = part * direct[i], far = part * floor[i];
+        sound->passing[i] += shelf * near + floor_shelf * far;
+        sound->filtered[i] += (1 - shelf) * near + (1 - floor_shelf) * far;
+    }
 }
 
 static double smooth(double x)
@@ -222,46 +234,77 @@ static double smooth(double x)
     return x * x * (3 - 2 * x);
 }
 
-// takes a sample of each ray into the lines
-static void take_in(himc_ears *e, double left, double right, double floor)
+// takes n samples of each ray into the lines, from `at` on
+static void take_in(himc_ears *e, int n, double *const *ray)
 {
-    bool silent = left == 0 && right == 0 && floor == 0;
-    e->silent = !silent ? 0 : e->silent < HIMC_EARS_LINE ? e->silent + 1 : e->silent;
-    if (e->silent == AFTER)
-        forget(&e->floor);
-    e->line[HIMC_RAY_LEFT][e->at] = left;
-    e->line[HIMC_RAY_RIGHT][e->at] = right;
-    e->line[HIMC_RAY_FLOOR][e->at] = low_pass(&e->floor, floor);
+    for (int i = 0; i < n; i++) {
+        double left = ray[HIMC_RAY_LEFT][i], right = ray[HIMC_RAY_RIGHT][i];
+        double floor = ray[HIMC_RAY_FLOOR][i];
+        int at = (e->at + i) & (HIMC_EARS_LINE - 1);
+        bool silent = left == 0 && right == 0 && floor == 0;
+        e->silent = !silent ? 0 : e->silent < HIMC_EARS_LINE ? e->silent + 1 : e->silent;
+        if (e->silent == AFTER)
+            forget(&e->floor);
+        e->line[HIMC_RAY_LEFT][at] = left;
+        e->line[HIMC_RAY_RIGHT][at] = right;
+        e->line[HIMC_RAY_FLOOR][at] = low_pass(&e->floor, floor);
+    }
 }
 
-// the ear's sample at present
-static double hear(himc_ears *e, int ear)
+// n samples of both ears at present
+static void hear(himc_ears *e, int n, double *const *out)
 {
-    double passing = 0, filtered = 0, part = smooth(e->faded);
-    if (e->silent > e->reach + 2 * AFTER) {
-        forget(&e->shadow[ear]);
-        return 0;
+    ear_sound sound[HIMC_EARS] = {{{0}, {0}}};
+    double part = smooth(e->faded);
+    bool silent = e->silent > e->reach + 2 * AFTER;
+    for (int ear = 0; ear < HIMC_EARS; ear++) {
+        if (silent)
+            forget(&e->shadow[ear]);
+        if (!silent && e->faded < 1)
+            gather(e, &e->before, ear, 1 - part, n, &sound[ear]);
+        if (!silent)
+            gather(e, &e->now, ear, part, n, &sound[ear]);
     }
-    if (e->faded < 1)
-        gather(e, &e->before, ear, 1 - part, &passing, &filtered);
-    gather(e, &e->now, ear, part, &passing, &filtered);
-    return passing + low_pass(&e->shadow[ear], filtered);
+    for (int i = 0; i < n; i++) // neither filter waits for the other
+        for (int ear = 0; ear < HIMC_EARS; ear++)
+            out[ear][i] = sound[ear].passing[i] + low_pass(&e->shadow[ear], sound[ear].filtered[i]);
+}
+
+// of the next n samples those that are heard in one way: nothing fades, and no silence gets so long
+// that it counts
+static int steady(const himc_ears *e, int n)
+{
+    n = n < HIMC_ROOM_RUN ? n : HIMC_ROOM_RUN;
+    bool fades = e->changes || e->faded < 1 || e->level != (e->on ? 1 : 0);
+    if (fades || e->silent + n > e->reach + 2 * AFTER)
+        return 1;
+    return himc_room_steady(&e->room, n);
 }
 
 void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double *const *rows)
 {
-    for (int i = 0; i < n; i++) {
+    static double silence[HIMC_ROOM_RUN];
+    for (int from = 0, run; from < n; from += run) {
+        double *ray[HIMC_RAYS], heard[HIMC_EARS][HIMC_ROOM_RUN], walls[HIMC_EARS][HIMC_ROOM_RUN];
+        for (int k = 0; k < HIMC_RAYS; k++)
+            ray[k] = rays ? rays[k] + from : silence;
         if (e->changes && e->faded == 1)
             fade_to_next(e);
-        take_in(e, rays ? rays[HIMC_RAY_LEFT][i] : 0, rays ? rays[HIMC_RAY_RIGHT][i] : 0,
-                rays ? rays[HIMC_RAY_FLOOR][i] : 0);
+        run = steady(e, n - from);
         e->level = fmin(fmax(e->level + (e->on ? e->step : -e->step), 0), 1);
         e->faded = fmin(e->faded + e->step, 1);
+        take_in(e, run, ray);
+        hear(e, run, (double *[]){heard[0], heard[1]});
+        if (himc_room_heard(&e->room))
+            himc_room_hear(&e->room, run, ray, (double *[]){walls[0], walls[1]});
+        else
+            memset(walls, 0, sizeof walls);
         double level = smooth(e->level);
         for (int k = 0; k < count; k++)
-            rows[k][i] *= 1 - level;
-        for (int ear = 0; ear < HIMC_EARS; ear++)
-            rows[ear][i] += level * hear(e, ear);
-        e->at = (e->at + 1) & (HIMC_EARS_LINE - 1);
+            for (int i = 0; i < run; i++) {
+                double ear = k < HIMC_EARS ? heard[k][i] + HIMC_EARS_LEVEL * walls[k][i] : 0;
+                rows[k][from + i] = rows[k][from + i] * (1 - level) + level * ear;
+            }
+        e->at = (e->at + run) & (HIMC_EARS_LINE - 1);
     }
 }

@@ -3,6 +3,7 @@
 #define HIMC_EARS_H
 
 #include "drum/membrane_form.h"
+#include "drum/room.h"
 #include "himc/vec.h"
 
 /// Where a listener is.
@@ -17,17 +18,17 @@ himc_listener himc_listener_at(himc_vec3 place);
 /// True if both are off, or in one place and facing one way.
 bool himc_listener_equal(const himc_listener *a, const himc_listener *b);
 
-/// Sound of the ears per sound of a pickup at the same distance: a sound of 1.0 is 80 Pa.
+/// Sound of the ears per sound of a pickup at the same distance: a sound of 1.0 is 95 Pa.
 /// Chosen: listeners are 1.5 to 2.5 m from the drums, pickups 1 m, and the strongest stroke on any
 /// of four timpani around a performer stays below 1 at both.
-#define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 80)
+#define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 95)
 
 enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
 
 /// One way of the sound from a drum to an ear.
 typedef struct himc_ear_path {
     double delay; ///< (s)
-    double gain;  ///< of a ray, which is the sound at its distance
+    double gain;  ///< of a ray, which is the sound at 1 m
     double shelf; ///< of high frequencies beside low ones, by the shadow of the head
 } himc_ear_path;
 
@@ -70,10 +71,12 @@ typedef struct himc_ears {
     int at;     ///< in `line`, of the coming sample
     int silent; ///< samples without sound, so far
     double line[HIMC_RAYS][HIMC_EARS_LINE];
+    himc_room room;
 } himc_ears;
 
-/// Begins to listen, or moves, in 5 ms.
-HIMC_RT void himc_ears_set(himc_ears *ears, const himc_ear_paths *paths, double rate);
+/// Begins to listen between these walls, or changes place or walls, in 5 ms.
+HIMC_RT void himc_ears_set(himc_ears *ears, const himc_ear_paths *paths, const himc_walls *walls,
+                           double rate);
 /// The pickups come back, in 5 ms.
 HIMC_RT void himc_ears_close(himc_ears *ears);
 

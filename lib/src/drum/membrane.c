@@ -114,14 +114,16 @@ static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
     double root = sqrt(2 * himc_membrane_film_stiffness(m));
-    bool smooth = himc_membrane_shape(m)->kind != HIMC_GRID;
+    himc_outline kind = himc_membrane_shape(m)->kind;
     himc_air_load load = {0};
     for (int i = 0; i < PATCHES; i++)
         c->patches[i].b = 0;
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        c->most[i] = mode.m > 0 ? LARGEST_BESSEL : mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
-        c->wave[i] = smooth ? mode.zero / m->head.radius : 0;
+        c->most[i] = mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
+        if (kind == HIMC_CIRCLE && mode.m > 0)
+            c->most[i] = LARGEST_BESSEL;
+        c->wave[i] = kind != HIMC_GRID ? mode.zero / m->head.radius : 0;
         double stretch = root * mode.stiffness / m->head.tension;
         c->per_stiffness[i] = 1 / mode.stiffness;
         c->per_mass[i] = 1 / mode.mass;
@@ -186,6 +188,7 @@ static void find_output(himc_membrane *m, int index)
 {
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
+    double unit = index < HIMC_PICKUPS ? 1 : pickup->distance; // rays are as loud as at 1 m
     himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
     himc_modes_mix(c->modes, c->scratch);
     for (int i = 0; i < himc_membrane_modes(m); i++) {
@@ -195,9 +198,9 @@ static void find_output(himc_membrane *m, int index)
         mode.decay = o->decay;
         mode.mass = o->mass;
         pickup_weights w = himc_pickup_weights(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
-        c->on_q[i] = w.displacement;
-        c->on_v[i] = w.velocity;
-        c->on_force[i] = w.force;
+        c->on_q[i] = unit * w.displacement;
+        c->on_v[i] = unit * w.velocity;
+        c->on_force[i] = unit * w.force;
     }
     himc_bank_readout(c->bank, c->on_q, c->on_v,
                       pickup->kind == HIMC_PICKUP_AIR ? c->on_force : NULL,
@@ -660,6 +663,21 @@ bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, h
     return good && himc_membrane_set_pickups(membrane, other->pickups, other->pickup_count, error);
 }
 
+// gives `m` the form of another membrane, with its core and its strike points
+static void take_form(himc_membrane *m, const himc_membrane *from)
+{
+    m->core = from->core;
+    memcpy(m->points, from->points, sizeof m->points);
+    m->head = from->head;
+    m->air = from->air;
+    memcpy(m->pickups, from->pickups, sizeof m->pickups);
+    m->pickup_count = from->pickup_count;
+    m->rays = from->rays;
+    m->shares = from->shares;
+    memcpy(m->shared, from->shared, sizeof m->shared);
+    m->shared_count = from->shared_count;
+}
+
 void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
 {
     sounds before = read_sounds(m);
@@ -668,26 +686,20 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     bool bends = outline && !same_head(&m->head, &made->head);
     if (bends)
         bend(m, -1);
-    core old = m->core;
-    m->core = made->core;
-    made->core = old;
-    memcpy(m->points, made->points, sizeof m->points);
-    m->head = made->head;
-    m->air = made->air;
-    memcpy(m->pickups, made->pickups, sizeof m->pickups);
-    m->pickup_count = made->pickup_count;
-    m->rays = made->rays;
-    m->shares = made->shares;
-    memcpy(m->shared, made->shared, sizeof m->shared);
-    m->shared_count = made->shared_count;
+    himc_membrane was = *m;
+    take_form(m, made);
+    take_form(made, &was);
     m->revision++;
     himc_bank_set_step(m->core.bank, m->step);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
+    made->watch_x = m->watch_x;
+    made->watch_y = m->watch_y;
     if (outline)
-        himc_bank_continue(m->core.bank, old.bank, himc_modes_common(old.modes, m->core.modes));
+        himc_bank_continue(m->core.bank, was.core.bank,
+                           himc_modes_common(was.core.modes, m->core.modes));
     if (bends) {
-        turn_pairs(m, himc_modes_pairs(old.modes));
+        turn_pairs(m, himc_modes_pairs(was.core.modes));
         bend(m, 1);
         keep_energy(m, energy);
     }
@@ -723,11 +735,16 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
     return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
 }
 
-double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
+// j_11 of a round head, else the lowest mode's radius times wavenumber
+static double principal_zero(const himc_membrane *membrane)
 {
     bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
-    double zero =
-        round ? himc_bessel_zero(1, 1) : himc_modes_get(membrane->core.modes, head, 0).zero;
+    return round ? himc_bessel_zero(1, 1)
+                 : himc_modes_get(membrane->core.modes, &membrane->head, 0).zero;
+}
+
+static double principal_of(const himc_head *head, double zero)
+{
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
     if (!head->air)
         return bare;
@@ -735,14 +752,20 @@ double himc_membrane_principal(const himc_membrane *membrane, const himc_head *h
     return bare * himc_air_on(&air, 1, 1, zero).frequency;
 }
 
+double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
+{
+    return principal_of(head, principal_zero(membrane));
+}
+
 double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
                                  double frequency)
 {
     himc_head trial = *head;
     double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
+    double zero = principal_zero(membrane);
     for (int i = 0; i < BISECTIONS; i++) {
         trial.tension = exp(0.5 * (low + high));
-        if (himc_membrane_principal(membrane, &trial) < frequency)
+        if (principal_of(&trial, zero) < frequency)
             low = log(trial.tension);
         else
             high = log(trial.tension);

@@ -6,7 +6,8 @@
 #include "drum/shared.h"
 
 /// Rays: what ears (ears.h) need of a head beside its pickups, the sound it sends out in the
-/// direction of the left ear, of the right ear, and of the floor's mirror image.
+/// direction of the left ear, of the right ear, and of the floor's mirror image, as loud as at 1 m;
+/// their distance tells their near field.
 enum { HIMC_RAY_LEFT, HIMC_RAY_RIGHT, HIMC_RAY_FLOOR, HIMC_RAYS };
 #define HIMC_OUTPUTS (HIMC_PICKUPS + HIMC_RAYS) ///< pickups, then rays
 
@@ -56,9 +57,9 @@ HIMC_RT void himc_membrane_run_all(himc_membrane *membrane, int n, double *const
 /// Whether the sound of the pickups is not wanted: it is then 0 in samples with contact, too.
 HIMC_RT void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute);
 
-/// Gives `membrane` the form of `made`, which has the same rate and is then only to be freed. Modes
+/// Gives `membrane` the form of `made`, which has the same rate, and `made` that of `membrane`. Modes
 /// of the same outline go on, as with himc_membrane_set_head; another outline begins at rest, as
-/// with himc_membrane_set_shape. No memory is allocated.
-void himc_membrane_exchange(himc_membrane *membrane, himc_membrane *made);
+/// with himc_membrane_set_shape. What moves in `made` is lost. No memory is allocated.
+HIMC_RT void himc_membrane_exchange(himc_membrane *membrane, himc_membrane *made);
 
 #endif

@@ -1,10 +1,10 @@
 /// import.c: from a MIDI file to the text of a score.
 ///
-/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c); here
-/// velocities become dynamics, and all becomes text. Beats are the file's quarter notes and its
-/// tempo map is written as it is, so both can be edited; nothing is quantised. A piece that begins
-/// sooner than a player can raise the sticks is preceded by whole beats. Invariant: each note of the
-/// file is either a stroke of the score, or counted in the report with the reason.
+/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c);
+/// here velocities become dynamics, and all becomes text. Beats are the file's quarter notes and
+/// its tempo map is written as it is, so both can be edited; nothing is quantised. A piece that
+/// begins sooner than a player can raise the sticks is preceded by whole beats. Invariant: each
+/// note of the file is either a stroke of the score, or counted in the report with the reason.
 #include "midi/import.h"
 
 #include "base/format.h"
@@ -20,11 +20,14 @@
 #define MOST_STROKES 100000 // chosen: more than two hours of rolls
 #define LEAST_RING 0.15     // from a stroke to the hand that damps it (s); chosen
 #define DAMPING_HAND \
-    0.25            // lies on the head so long (s); chosen: twice the decay time of a damped head
-#define LEAD_IN 1.0 // before the first stroke (s); chosen: sticks rise and fall twice
+    0.25 // lies on the head so long (s); chosen: twice the decay time of a damped head
+#define MOST_CHANGES 9900  // lines of a score besides strokes are 10000
+#define PEDAL_STEPS 4      // of a pedal that moves, at most; chosen: heard as a slide
+#define LEAD_IN 1.0        // before the first stroke (s); chosen: sticks rise and fall twice
 #define TIMPANI_PROGRAM 47 // "48 Timpani" of General MIDI, which counts from 1
 
-// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
+// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal
+// steps
 #define SOFTEST 16
 #define LOUDEST 128
 
@@ -120,6 +123,17 @@ static bool collect(midi_part *part, const midi_file *file, const midi_options *
            himc_error_set(error, "%d notes for drums, allowed %d", part->count, MOST_STROKES);
 }
 
+// strokes that are played and damped, as many as a score has lines for
+static void count_damped(midi_part *part)
+{
+    int most = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most;
+        part->damped += s->damped;
+    }
+}
+
 static bool assign(midi_part *part, himc_error *error)
 {
     if (part->timpani && !himc_midi_tune(part, error))
@@ -130,6 +144,9 @@ static bool assign(midi_part *part, himc_error *error)
         return false;
     for (int i = 0; i < part->count; i++)
         part->fate[part->stroke[i].fate]++;
+    count_damped(part);
+    if (part->timpani)
+        himc_midi_find_rolls(part);
     return true;
 }
 
@@ -167,6 +184,9 @@ static void report(text *t, const midi_file *file, const midi_part *part)
     report_kind(t, part->moved, "note is moved by octaves to C2 .. B3",
                 "notes are moved by octaves to C2 .. B3");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
+    if (part->rolls > 0)
+        put(t, "%d notes are played as %d roll%s\n", part->rolled, part->rolls,
+            part->rolls == 1 ? "" : "s");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
     report_kind(t, file->cut, "track ends in the middle of an event",
                 "tracks end in the middle of an event");
@@ -227,15 +247,102 @@ static void put_tempi(text *t, const midi_file *file, double lead, double last)
     }
 }
 
+static void put_stroke(text *t, const midi_part *part, const midi_stroke *s, double lead)
+{
+    const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
+    double beat = s->note->beat + lead;
+    if (s->roll.length > 0)
+        put(t, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length, s->dynamic,
+            s->roll.last_dynamic, spot, drum);
+    else
+        put(t, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand), s->dynamic,
+            spot, drum);
+}
+
 static void put_strokes(text *t, const midi_part *part, double lead)
 {
+    for (int i = 0; i < part->count; i++)
+        if (part->stroke[i].fate == MIDI_PLAYED && !part->stroke[i].in_roll)
+            put_stroke(t, part, &part->stroke[i], lead);
+}
+
+/// A line of a drum's head.
+typedef struct change {
+    double seconds;
+    int head;
+    int key;  ///< tuned to it; -1: damped, or let go
+    int damp; ///< 0 or 1
+} change;
+
+static int by_time(const void *a, const void *b)
+{
+    const change *x = a, *y = b;
+    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
+}
+
+// when the hand leaves the head: before its next stroke, and before its pedal moves; `pedal` is the
+// first that begins after the stroke
+static double let_go(const midi_part *part, int index, int pedal)
+{
+    const midi_stroke *s = &part->stroke[index];
+    double until = s->end + DAMPING_HAND;
+    for (int i = index + 1; i < part->count && part->stroke[i].note->seconds < until; i++)
+        if (part->stroke[i].fate == MIDI_PLAYED && part->stroke[i].head == s->head)
+            until = part->stroke[i].note->seconds;
+    for (; pedal < part->pedals && part->pedal[pedal].seconds < until; pedal++)
+        if (part->pedal[pedal].head == s->head && part->pedal[pedal].seconds > s->end)
+            until = part->pedal[pedal].seconds;
+    return until;
+}
+
+static int add_damping(change *list, const midi_part *part)
+{
+    int count = 0, pedal = 0;
     for (int i = 0; i < part->count; i++) {
         const midi_stroke *s = &part->stroke[i];
-        if (s->fate == MIDI_PLAYED)
-            put(t, "stroke %.9g %s legato %.3g %s %s;\n", s->note->beat + lead,
-                himc_hand_name(s->hand), s->dynamic, himc_spot_name(s->spot),
-                part->head[s->head].name);
+        if (!s->damped)
+            continue;
+        while (pedal < part->pedals && part->pedal[pedal].seconds < s->note->seconds)
+            pedal++;
+        list[count++] = (change){s->end, s->head, -1, 1};
+        list[count++] = (change){let_go(part, i, pedal), s->head, -1, 0};
     }
+    return count;
+}
+
+// a pedal goes through semitones between, as an undamped drum lets hear
+static int add_pedals(change *list, const midi_part *part)
+{
+    int count = 0;
+    for (int k = 0; k < part->pedals; k++) {
+        const midi_pedal *p = &part->pedal[k];
+        int way = p->to - p->from, steps = abs(way) < PEDAL_STEPS ? abs(way) : PEDAL_STEPS;
+        for (int i = 1; i <= steps; i++)
+            list[count++] =
+                (change){p->seconds + p->length * i / steps, p->head, p->from + way * i / steps, 0};
+    }
+    return count;
+}
+
+static bool put_changes(text *t, const midi_file *file, const midi_part *part, double lead)
+{
+    change *list = malloc(MOST_CHANGES * sizeof *list);
+    if (!list)
+        return false;
+    int count = add_damping(list, part);
+    count += add_pedals(list + count, part);
+    qsort(list, (size_t)count, sizeof *list, by_time);
+    for (int i = 0; i < count; i++) {
+        const change *c = &list[i];
+        double beat = himc_score_beat(file->tempi, file->tempo_count, c->seconds) + lead;
+        const char *name = part->head[c->head].name;
+        if (c->key < 0)
+            put(t, "at %.9g %s damp %d;\n", beat, name, c->damp);
+        else
+            put(t, "at %.9g %s tune %.6g;\n", beat, name, frequency(c->key));
+    }
+    free(list);
+    return true;
 }
 
 static bool write_score(midi_score *made, const midi_file *file, const midi_part *part,
@@ -251,6 +358,7 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     put_drums(&score, part);
     put_tempi(&score, file, lead, part->stroke[part->count - 1].note->beat);
     put_strokes(&score, part, lead);
+    score.lost |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes};
     if (!score.lost && !said.lost)
         return true;

@@ -30,6 +30,12 @@ typedef struct midi_head {
     int key;          ///< tuned so at first (MIDI key); -1: the head is not used
 } midi_head;
 
+/// A roll that a stroke begins.
+typedef struct midi_roll {
+    double length;       ///< (beats); 0: none
+    double last_dynamic; ///< 0 .. 1
+} midi_roll;
+
 /// A stroke of the part.
 typedef struct midi_stroke {
     const midi_note *note; ///< borrowed from the file
@@ -41,6 +47,8 @@ typedef struct midi_stroke {
     double dynamic; ///< 0 .. 1
     double end;     ///< of the note: a hand is not back on the head sooner than 0.15 s (s)
     bool damped;    ///< at the end of its note
+    bool in_roll;   ///< another stroke's roll plays it
+    midi_roll roll;
 } midi_stroke;
 
 /// A pedal that moves.
@@ -60,10 +68,12 @@ typedef struct midi_part {
     int pedals;
     int fate[MIDI_FATES]; ///< notes of the file
     int moved;            ///< by octaves
-    int damped;
+    int damped;           ///< strokes
+    int rolls, rolled;    ///< rolls, and the strokes in them
 } midi_part;
 
-/// Of two strokes on one head (of timpani: of one pitch) at the same time one is played, the louder.
+/// Of two strokes on one head (of timpani: of one pitch) at the same time one is played, the
+/// louder.
 void himc_midi_join(midi_part *part);
 
 /// timpani.c: gives each stroke one of four timpani, with pedals that move between notes. False
@@ -75,5 +85,8 @@ void himc_midi_kit(midi_part *part);
 
 /// sticking.c: gives each stroke a hand. False without memory.
 bool himc_midi_stick(midi_part *part, himc_error *error);
+
+/// rolls.c: finds the rolls among the strokes that are played.
+void himc_midi_find_rolls(midi_part *part);
 
 #endif

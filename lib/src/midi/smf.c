@@ -3,9 +3,10 @@
 /// A file is chunks: a header, then tracks of events, each after a delta time in ticks. The tracks
 /// are read one by one into one list of the events that matter (notes, programs, tempi), sorted by
 /// tick; then one pass turns ticks into seconds and note-ons with their note-offs into notes. Each
-/// byte is taken through `next_byte`, which knows the end of its chunk; a chunk longer than the file
-/// is cut to it. Seconds: t += ticks * us / (1e6 ppqn), in the order of the merged tempo map.
-/// Invariant: nothing before `bytes` or from `end` on is read, whatever the lengths in the file say.
+/// byte is taken through `next_byte`, which knows the end of its chunk; a chunk longer than the
+/// file is cut to it. Seconds: t += ticks * us / (1e6 ppqn), in the order of the merged tempo map.
+/// Invariant: nothing before `bytes` or from `end` on is read, whatever the lengths in the file
+/// say.
 #include "midi/smf.h"
 
 #include <ctype.h>
@@ -322,7 +323,8 @@ static bool collect(midi_file *file, reader *r, tempo_clock *clock)
     file->tempi = calloc((size_t)r->count + 1, sizeof *file->tempi);
     if (!file->notes || !file->tempi)
         return himc_error_set(r->error, "out of memory for %d events", r->count);
-    qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
+    if (r->count > 0)
+        qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
     file->tempi[file->tempo_count++] = (himc_tempo_change){0, 60e6 / USUAL_TEMPO};
     for (int i = 0; i < r->count; i++)
         take_event(file, &c, clock, &r->events[i], r->timpani);

@@ -1,17 +1,12 @@
 /// sticking.c: which hand plays which stroke.
 ///
-/// A search over the strokes in time. Its state is the last stroke of each hand; a stroke of a hand
-/// costs as follows, `gap` being the time since that hand's last stroke, D the way between them and
-/// need = .10 + .1 log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot):
-///
-///     40 max(0, need - gap)/need + (.3 need/gap)^2 + 1.5 D + 2 max(0, .22 s/gap - 1)
-///     + .6 if the hands cross, 3 more if the other one has just struck + .02 for the left hand
-///
-/// A stroke nearer to its hand's last than the planner can move (hand.c) is not possible; one that
-/// is left out costs more than any that is played, and the more the louder it is. The WIDTH best
-/// states are kept after each stroke. The weights are chosen: one drum is played hand by hand, two
-/// drums in the middle by sides, outer drums by the hand of their side.
+/// A search over the strokes in time. Its state is the last stroke of each hand; a stroke costs its
+/// hand what plan/sticking.h says, and a little more the left one. A stroke nearer to its hand's
+/// last than the planner can move (hand.c) is not possible; one that is left out costs more than
+/// any that is played, and the more the louder it is. The WIDTH best states are kept after each
+/// stroke.
 #include "midi/part.h"
+#include "plan/sticking.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,16 +55,13 @@ static double least_gap(double way)
 static double stroke_cost(const state *now, const hand_state *to, int hand)
 {
     const hand_state *from = &now->hand[hand], *other = &now->hand[1 - hand];
-    double way = hypot(to->x - from->x, to->y - from->y), gap = to->at - from->at;
-    double need = way > 0 ? 0.10 + 0.1 * log2(2 * way / 0.1 + 1) : 0.09;
-    if (gap < least_gap(way))
+    himc_sticking s = {.gap = to->at - from->at,
+                       .way = hypot(to->x - from->x, to->y - from->y),
+                       .inwards = hand == HIMC_LEFT ? other->y - to->y : to->y - other->y,
+                       .other_gap = to->at - other->at};
+    if (s.gap < least_gap(s.way))
         return HUGE_VAL;
-    double cost = 40 * fmax(0, need - gap) / need + pow(0.3 * need / gap, 2) + 1.5 * way +
-                  2 * fmax(0, 0.22 / gap - 1);
-    double inwards = hand == HIMC_LEFT ? other->y - to->y : to->y - other->y; // past the other hand
-    if (inwards > 0.05)
-        cost += to->at - other->at < 0.15 ? 3.6 : 0.6;
-    return cost + (hand == HIMC_LEFT ? 0.02 : 0);
+    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
 }
 
 // among the `count` best so far; one for each pair of last strokes

@@ -1,12 +1,12 @@
 /// timpani.c: which of four timpani plays a note, and when its pedal moves.
 ///
-/// A search over the notes in time: its state is the pitch of each drum, when it can be retuned, and
-/// when the foot is free; a note in tune costs nothing, a change 1 and 0.1 a semitone, a note left
-/// out more than any change. Only the WIDTH best states of different pitches are kept after each
-/// note; on parts of usual length these hold the best way. A drum is retuned when it rings no more
-/// (1 s after its stroke) or a hand has damped it at the end of its note. The first pitch of a drum
-/// is free: it is tuned so before the piece. Ranges: of the usual four sizes, widened by what heads
-/// bear; costs and times are chosen, no measurement of players was found.
+/// A search over the notes in time: its state is the pitch of each drum, when it can be retuned,
+/// and when the foot is free; a note in tune costs nothing, a change 1 and 0.1 a semitone, a note
+/// left out more than any change. Only the WIDTH best states of different pitches are kept after
+/// each note; on parts of usual length these hold the best way. A drum is retuned when it rings no
+/// more (1 s after its stroke) or a hand has damped it at the end of its note. The first pitch of a
+/// drum is free: it is tuned so before the piece. Ranges: of the usual four sizes, widened by what
+/// heads bear; costs and times are chosen, no measurement of players was found.
 #include "midi/part.h"
 
 #include <math.h>
@@ -29,6 +29,7 @@
 #define PEDAL_TIME 0.15    // a change takes this (s) ...
 #define SEMITONE_TIME 0.05 // ... and this a semitone ...
 #define LONGEST_PEDAL 0.6  // ... and no more
+#define MOST_PEDALS 2000   // chosen: an hour of a busy foot, and a score has room for them
 #define FOOT_TIME 0.3      // from one pedal to the next (s)
 #define DAMPED_SHARE 0.7 // a note that ends before this share of the time to the next is damped ...
 #define LEAST_DAMPED 0.3 // ... if the drum then rests so long (s) ...
@@ -180,18 +181,22 @@ static void order_pedals(midi_part *part)
     }
     int key[DRUMS] = {-1, -1, -1, -1}, pedal = 0;
     for (int i = 0; i < part->count; i++) {
-        const midi_stroke *s = &part->stroke[i];
+        midi_stroke *s = &part->stroke[i];
         if (s->fate != MIDI_PLAYED)
             continue;
         if (key[s->head] < 0)
             part->head[s->head].key = s->key;
-        else if (key[s->head] != s->key) {
+        else if (key[s->head] != s->key && pedal == MOST_PEDALS) {
+            s->fate = MIDI_NO_DRUM;
+            continue;
+        } else if (key[s->head] != s->key) {
             midi_pedal *p = &part->pedal[pedal++];
             p->from = key[s->head];
             p->length = pedal_time(p->to - p->from);
         }
         key[s->head] = s->key;
     }
+    part->pedals = pedal;
 }
 
 // a drum is damped where its note ends early, and before its pedal moves while it rings
@@ -210,7 +215,6 @@ static void find_damped(midi_part *part)
         bool early = off - at < DAMPED_SHARE * (next[s->head] - at);
         bool time = next[s->head] - off > LEAST_DAMPED && any - off > FREE_HAND;
         s->damped = (early && time && isfinite(next[s->head])) || moves[s->head] < at + RING_TIME;
-        part->damped += s->damped;
         next[s->head] = any = at;
         moves[s->head] = HUGE_VAL;
     }

@@ -30,12 +30,16 @@ static void recover(himc_performance *p)
     himc_contacts_clear(&p->contacts);
 }
 
-// distance of tips and targets, and heights of strokes
-static void measure(himc_performance *p, double t)
+// distance of tips and targets, and heights of strokes; at ticks of tips and capture
+static void measure(himc_performance *p, double t, bool tick)
 {
     const himc_reference *r = &p->motion->reference;
+    himc_vec3 captured;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const stick_contact *c = &p->contacts.hand[hand];
+        if (tick && himc_motion_captured(p->motion, (himc_hand)hand, t, &captured))
+            himc_statistics_captured(&p->statistics,
+                                     himc_vec3_sub(p->body->state.tip[hand], captured));
         if (himc_motion_is_idle(p->motion, (himc_hand)hand, t))
             continue;
         if (p->drums.count > 0) {
@@ -60,13 +64,14 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
     himc_contacts_finish(&p->contacts, &scene, t);
     himc_body_control(p->body, &p->motion->reference, h);
     himc_contacts_advance(&p->contacts, &scene, n, tip_force);
-    measure(p, t);
+    measure(p, t, tick);
+    himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, p->body->torque);
     if (!himc_body_simulate(p->body, tip_force, t, h))
         recover(p);
 }
 
 // the body moved by inverse kinematics; only the ends of the sticks are in contact with the head
-static void step_kinematics(himc_performance *p, int n, double t, double h)
+static void step_kinematics(himc_performance *p, int n, double t, double h, bool tick)
 {
     contact_scene scene = scene_of(p);
     himc_vec3 unused[HIMC_HANDS];
@@ -74,7 +79,8 @@ static void step_kinematics(himc_performance *p, int n, double t, double h)
         recover(p);
     himc_contacts_finish(&p->contacts, &scene, t);
     himc_contacts_advance(&p->contacts, &scene, n, unused);
-    measure(p, t);
+    measure(p, t, tick);
+    himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
 }
 
 static void tell_planner_notes(himc_performance *p)
@@ -106,13 +112,17 @@ static void performance_step(himc_performance *p)
     int n = himc_clock_step_samples(&p->clock);
     double t = step_time(p), h = n / p->clock.sample_rate;
     bool tick = himc_clock_is_tick(&p->clock);
-    if (tick || p->motion->replan)
-        himc_motion_read_task(p->motion, &p->settings, &p->drums, t,
-                              himc_clock_next_tick(&p->clock));
+    if (tick || p->motion->replan) {
+        double next = himc_clock_next_tick(&p->clock);
+        himc_contacts_look_down(&p->contacts, &scene, t, next);
+        himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
+    }
+    if (tick)
+        himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t));
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
     if (p->settings.control.mode == HIMC_PIPELINE_IK)
-        step_kinematics(p, n, t, h);
+        step_kinematics(p, n, t, h, tick);
     else
         step_dynamics(p, n, t, h, tick);
     if (tick)
@@ -135,6 +145,7 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
         himc_clock_play(&p->clock, count);
         done += count;
     }
+    himc_drums_catch_up(&p->drums);
 }
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)

@@ -11,6 +11,8 @@
 #include <string.h>
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
+/// That any hit needs from rest (s): measured, an accent at ff.
+#define LONGEST_PREPARATION 0.33
 
 // playing
 
@@ -19,9 +21,39 @@ static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *er
     return himc_performance_add_stroke(p, &c->stroke, error);
 }
 
+static bool do_roll(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_flam(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_drag(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
+static bool do_ruff(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_performance_add_stroke(p, &c->stroke, error);
+}
+
 static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return himc_performance_hit(p, &c->stroke, error);
+}
+
+static bool do_latency(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    enum { TIME, AUTO };
+    (void)error;
+    s.latency = c->form == AUTO ? LONGEST_PREPARATION : 1e-3 * c->atom[0].number;
+    himc_performance_adopt(p, &s);
+    return true;
 }
 
 static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
@@ -36,6 +68,7 @@ static bool do_clear(himc_performance *p, const himc_command *c, himc_error *err
 {
     (void)c, (void)error;
     himc_planner_clear(p->motion->planner);
+    himc_drums_drop_heads(&p->drums);
     himc_motion_replan(p->motion);
     return true;
 }
@@ -207,8 +240,12 @@ static bool do_gain(himc_performance *p, const himc_command *c, himc_error *erro
 {
     performance_settings s = p->settings;
     himc_controller_config *config = &s.control;
-    enum { RESET, FREQUENCY };
+    enum { RESET, FREQUENCY, JOINT, DRUMS };
     int joint;
+    if (c->form == DRUMS) {
+        himc_drums_fade(&p->drums, pow(10, c->atom[0].number / 20), p->drums.mute);
+        return true;
+    }
     if (c->form == RESET) {
         memset(config->gain_set, 0, sizeof config->gain_set);
     } else if (c->form == FREQUENCY) {
@@ -293,10 +330,15 @@ static bool do_engine(himc_performance *p, const himc_command *c, himc_error *er
 static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
+    enum { PALMS, SERVO };
     (void)error;
-    s.grip = (himc_grip)c->choice[0];
+    s.servo = c->form == SERVO || c->count > 1;
+    if (c->form == PALMS)
+        s.grip = (himc_grip)c->choice[0];
     himc_performance_adopt(p, &s);
     himc_planner_set_grip(p->motion->planner, s.grip);
+    himc_planner_set_servo(p->motion->planner, s.servo);
+    himc_motion_replan(p->motion);
     return true;
 }
 
@@ -375,6 +417,23 @@ static himc_job *listener_job(himc_performance *p, const himc_command *c, himc_e
 {
     himc_listener listener = listener_of(c);
     return himc_drums_listen_job(&p->drums, &listener, error);
+}
+
+static bool do_room(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_walls walls = {c->atom[0].number, p->drums.walls.volume};
+    (void)error;
+    if (c->count > 1)
+        walls.volume = c->atom[1].number;
+    himc_drums_enclose(&p->drums, &walls);
+    return true;
+}
+
+static bool do_mute(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    (void)error;
+    himc_drums_fade(&p->drums, p->drums.gain, c->atom[0].number == 1);
+    return true;
 }
 
 static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
@@ -480,6 +539,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
 
 static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
 {
+    himc_drums_catch_up(&p->drums);
     return actions[command->id](p, command, error);
 }
 

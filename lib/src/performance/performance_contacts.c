@@ -5,12 +5,20 @@
 /// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
 /// ends of the contact see the same force, and the body's tip and the point differ only by the
 /// change of M in a step; that offset is kept during contact and decays afterwards. From the
-/// planned time of contact, or the first force, to separation, control does not act along the
-/// head's normal. Then the plan continues from the measured state of the stick.
+/// planned time of a stroke's contact, or its first force, to separation, control does not act along
+/// the head's normal. Then the plan continues from the measured state of the stick.
+///
+/// A stroke that bounces (bounce.h) is left to the fingers from its first contact to its last, in
+/// the air, too; each contact is reported as a strike of its own. The plan continues after the last.
+///
+/// A contact that no stroke asked for is a press (grip.h), and so is a stroke after which the tip
+/// rests on the head: control acts on with a bounded force, and the plan is not changed. A press
+/// ends when the stick has clearly left the head, so a stick that rests has one contact.
 #include "performance/performance_contacts.h"
 
 #include "body/dynamics.h"
 #include "base/head_frame.h"
+#include "control/grip.h"
 
 #include <string.h>
 
@@ -20,6 +28,7 @@
 // chosen: a step at 30 m/s is 3 mm, and resting sticks hang over the rim
 #define NEAR_HEAD 0.02       // above the head at rest: sticks below this are simulated (m)
 #define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m) ...
+#define HIGHEST_BOUNCE 0.15  // above it: a stick that bounces is simulated below this (m)
 #define DEEPEST_ARRIVAL 0.03 // ... and a stick not from above is if deeper than this (m)
 // No arm moves a stick faster. A body that is thrown about by gains or a rate that cannot hold it
 // does, up to 100 m/s; the head then feels a blow as of the fastest free mallet, in each step.
@@ -28,10 +37,18 @@
 #define RISING_GAP 0.0015 // time without force that ends the contact of a rising stick (s) ...
 #define ANY_GAP 0.005     // ... and of any stick (s)
 // chosen: a few times the 5 .. 15 ms of a contact
-#define LONGEST_RELEASE 0.060 // control releases the normal for at most this time (s)
-#define LATEST_CONTACT 0.015  // of a contact after its planned time (s)
-#define SLOWEST_STRIKE 0.01   // (m/s); chosen: a stick at rest moves by 1e-5
-#define SAME_STROKE 0.100     // largest time between planned and real contact of one stroke (s)
+#define LONGEST_RELEASE 0.060  // control releases the normal for at most this time (s)
+#define LEAST_PREPARATION 0.03 // of the next stroke: bounces end then, chosen (s)
+#define LATEST_CONTACT 0.015   // of a contact after its planned time (s)
+#define EARLY_STROKE 0.030     // of a contact before its planned time, soon after another (s)
+#define RESTING_CONTACT 0.020  // a stick that bounces and has touched for so long rests (s)
+#define SLOWEST_STRIKE 0.01    // (m/s); chosen: a stick at rest moves by 1e-5
+#define SAME_STROKE 0.100      // largest time between planned and real contact of one stroke (s)
+// chosen: more than a pressed stick moves on a head that swings, less than one that is lifted
+#define LIFTED_HEIGHT 0.003 // a pressed stick so high has left the head (m) ...
+#define LIFTED_SPEED 0.2    // ... or one that rises so fast (m/s)
+#define RESTING_SPEED 0.25  // a contact slower than this ...
+#define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
 
@@ -66,6 +83,25 @@ static himc_vec3 over_head(const contact_scene *s, int drum, himc_vec3 tip)
     return at;
 }
 
+// true while the stick and not the plan moves the tip along the normal
+static bool is_free(const stick_contact *c)
+{
+    return c->touching || c->bounce.on;
+}
+
+// height of a stick over its head (m), and its velocity along the normal (m/s), up
+static double height_of(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    return is_kinematic(s) ? c->stick.height : over_head(s, c->drum, s->body->state.tip[hand]).z;
+}
+
+static double velocity_of(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    himc_vec3 n = himc_head_frame_normal(frame_of(s, c->drum));
+    return is_kinematic(s) ? c->stick.velocity
+                           : himc_vec3_dot(n, s->body->state.tip_velocity[hand]);
+}
+
 static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc_hand hand,
                             double t)
 {
@@ -73,11 +109,51 @@ static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc
     himc_vec3 n = r->normal[hand], a = r->tip[hand].a;
     himc_target m = {s->body->state.tip[hand], s->body->state.tip_velocity[hand],
                      himc_vec3_madd(a, -himc_vec3_dot(a, n), n)};
-    if (is_kinematic(s) && c->touching) {
+    if (is_kinematic(s) && is_free(c)) {
         m.x = r->tip[hand].x;
         m.v = r->tip[hand].v;
     }
     himc_motion_go_on_from(s->motion, hand, t, &m);
+}
+
+// true for a stroke of a take after which the tip stays on the head
+static bool rests_after(const contact_scene *s, himc_hand hand, const planned_stroke *stroke)
+{
+    return stroke->drum < s->drums->count &&
+           himc_motion_rests_after(s->motion, hand, stroke->time, frame_of(s, stroke->drum));
+}
+
+// the highest head that the hand's tip is above or on, or -1
+static int head_under(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    int under = -1;
+    double least = HUGE_VAL;
+    for (int i = 0; i < s->drums->count; i++) {
+        himc_vec3 at = over_head(s, i, s->body->state.tip[hand]);
+        double lowest = c->touching && c->drum == i ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
+        if (hypot(at.x, at.y) < frame_of(s, i)->radius && at.z > lowest && at.z < least) {
+            least = at.z;
+            under = i;
+        }
+    }
+    return under;
+}
+
+void himc_contacts_look_down(performance_contacts *contacts, const contact_scene *s, double t,
+                             double next)
+{
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        const stick_contact *c = &contacts->hand[i];
+        planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
+        // the plan of a stroke that rebounds dips into the head, and nothing follows it there
+        bool rebounds = c->bounce.on  ? true
+                        : c->touching ? !c->pressed
+                                      : stroke.any && stroke.time < next + (next - t) &&
+                                            !rests_after(s, hand, &stroke);
+        int under = rebounds ? -1 : head_under(c, s, hand);
+        himc_motion_set_under(s->motion, hand, under < 0 ? NULL : frame_of(s, under));
+    }
 }
 
 // gives up a planned contact that has not come; the plan continues
@@ -104,20 +180,33 @@ static void follow_stick(const stick_contact *c, const contact_scene *s, himc_ha
     himc_motion_move_tip(s->motion, s->settings, hand, &tip, t);
 }
 
+// the hand's acceleration of a stick along the normal (m/s^2)
+static double hand_acceleration(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    if (c->bounce.on)
+        return himc_bounce_acceleration(&c->bounce, height_of(c, s, hand), velocity_of(c, s, hand));
+    if (!c->touching || !c->pressed)
+        return 0;
+    himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
+    return himc_grip_press(&s->motion->reference.tip[hand], &tip,
+                           himc_head_frame_normal(frame_of(s, c->drum)), c->stick.mass);
+}
+
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
     planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
-    bool due = next.any && t >= next.time && !c->touching;
+    bool due = next.any && t >= next.time && !is_free(c);
     if (due && t >= next.time + LATEST_CONTACT) {
         give_up(c, s, hand, t, &next);
         due = false;
     }
-    int drum = c->touching ? c->drum : next.drum;
-    c->released = due || (c->touching && t < c->strike.time + LONGEST_RELEASE);
-    himc_motion_release(s->motion, hand, c->released);
+    int drum = is_free(c) ? c->drum : next.drum;
+    c->released = is_free(c) || (due && !rests_after(s, hand, &next));
+    c->hand = hand_acceleration(c, s, hand);
+    himc_motion_release(s->motion, hand, c->released, c->hand);
     if (drum < s->drums->count)
         himc_motion_set_normal(s->motion, hand, himc_head_frame_normal(frame_of(s, drum)));
-    if (c->touching && is_kinematic(s))
+    if (is_free(c) && is_kinematic(s))
         follow_stick(c, s, hand, t);
 }
 
@@ -134,13 +223,14 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
     double radius = frame_of(s, drum)->radius;
     // most sticks are away from most heads, and a distance costs less than a head's frame
     himc_vec3 away = himc_vec3_sub(s->body->state.tip[hand], frame_of(s, drum)->center);
-    double reach = DEEPEST_CONTACT + s->body->skeleton.mallet_radius;
+    double reach = HIGHEST_BOUNCE + s->body->skeleton.mallet_radius;
     if (himc_vec3_dot(away, away) > radius * radius + reach * reach)
         return false;
     himc_vec3 at = over_head(s, drum, s->body->state.tip[hand]);
     double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
+    double highest = c->bounce.on && c->drum == drum ? HIGHEST_BOUNCE : NEAR_HEAD;
     *local = at;
-    return at.x * at.x + at.y * at.y < radius * radius && at.z < NEAR_HEAD && at.z > lowest;
+    return at.x * at.x + at.y * at.y < radius * radius && at.z < highest && at.z > lowest;
 }
 
 // the drum below a tip, or -1; of two drums at one place, the planned one
@@ -148,7 +238,7 @@ static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand 
                       himc_vec3 *local)
 {
     planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, himc_clock_time(s->clock));
-    int meant = c->touching ? c->drum : next.any ? next.drum : -1;
+    int meant = is_free(c) ? c->drum : next.any ? next.drum : -1;
     if (meant >= 0 && meant < s->drums->count && is_over(c, s, hand, meant, local))
         return meant;
     for (int i = 0; i < s->drums->count; i++)
@@ -174,12 +264,12 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.one_way = s->settings->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
-    c->stick.acceleration = 0;
+    c->stick.acceleration = c->hand;
     if (!is_kinematic(s))
         c->stick.acceleration =
             bounded(himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative)),
                     FASTEST_TIP * s->clock->physics_rate);
-    if (is_kinematic(s) && c->touching)
+    if (is_kinematic(s) && is_free(c))
         return;
     c->stick.height = local.z + c->offset;
     c->stick.velocity = bounded(himc_vec3_dot(n, b->state.tip_velocity[hand]), FASTEST_TIP);
@@ -189,8 +279,15 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                          double velocity)
 {
     planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, time);
-    bool planned = next.any && fabs(next.time - time) < SAME_STROKE;
+    // so soon after a contact an early one is a rebound
+    double earliest = time < c->left + RESTING_TIME ? EARLY_STROKE : SAME_STROKE;
+    bool bounced = c->bounce.on, planned = !bounced && next.any && time - next.time < SAME_STROKE &&
+                                           time - next.time > -earliest;
+    himc_word nuance = {""};
+    strcpy(nuance.text, planned ? next.nuance : bounced ? c->strike.nuance : "none");
     c->touching = true;
+    c->told = false;
+    c->pressed = !bounced && (!planned || rests_after(s, hand, &next));
     c->strike = (himc_strike){.time = time,
                               .hand = hand,
                               .x = c->stick.x,
@@ -200,9 +297,15 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .planned_x = next.x,
                               .planned_y = next.y};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
-    strcpy(c->strike.nuance, planned ? next.nuance : "none");
+    strcpy(c->strike.nuance, nuance.text);
+    if (bounced)
+        himc_bounce_touched(&c->bounce, time, -velocity);
+    else if (!planned)
+        himc_statistics_unplanned(s->statistics);
     if (!planned)
         return;
+    if (next.bounces)
+        c->bounce = himc_bounce_begin(next.bounces, next.bounce_time, time, -velocity);
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     bool played =
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
@@ -233,6 +336,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     c->strike.impulse += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     himc_statistics_force(s->statistics, c->strike.force);
+    himc_statistics_contact(s->statistics, c->strike.duration);
     return impulse;
 }
 
@@ -291,6 +395,11 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
             sticks[count] = &c->hand[hand].stick;
             forces[count++] = c->force[hand] + done;
         }
+    if (count == 0) {
+        s->drums->slot[drum].behind += n;
+        return;
+    }
+    himc_drums_catch_up_one(s->drums, drum);
     himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
 }
 
@@ -300,7 +409,10 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
 {
     for (int done = 0, run; done < n; done += run) {
         int64_t now = s->clock->made + done;
-        himc_air_between_exchange(&s->drums->air, now);
+        if (himc_air_between_due(&s->drums->air, now)) {
+            himc_drums_catch_up(s->drums);
+            himc_air_between_exchange(&s->drums->air);
+        }
         run = himc_air_between_until(&s->drums->air, now, n - done);
         for (int i = 0; i < s->drums->count; i++)
             advance_drum(c, s, i, done, run, near);
@@ -328,14 +440,50 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
     }
 }
 
-static void end_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+// reports the strike, once; a head raised into a resting stick is none, nor is a stick laid down
+// again
+static void tell(stick_contact *c, const contact_scene *s)
 {
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
-    if (c->strike.velocity > SLOWEST_STRIKE) // a head raised into a resting stick is no strike
+    bool resting =
+        c->pressed && c->strike.velocity < RESTING_SPEED && c->strike.time < c->left + RESTING_TIME;
+    if (c->strike.velocity > SLOWEST_STRIKE && !resting && !c->told)
         himc_events_add(s->events, &event);
-    if (c->released)
+    c->told = true;
+}
+
+static void end_contact(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+{
+    tell(c, s);
+    if (c->bounce.on)
+        himc_bounce_separated(&c->bounce, t, t - c->last_force, height_of(c, s, hand),
+                              velocity_of(c, s, hand));
+    else if (!c->pressed)
         go_on_from_here(c, s, hand, t);
     c->touching = false;
+    c->left = t;
+}
+
+// the hand takes up a stick that has bounced, also when the next stroke is near
+static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
+{
+    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
+    bool near = next.any && t > next.time - LEAST_PREPARATION;
+    bool presses = c->touching && t < c->strike.time + RESTING_CONTACT;
+    if (!near && (presses || !himc_bounce_is_over(&c->bounce, t, velocity_of(c, s, hand))))
+        return;
+    c->bounce.on = false;
+    go_on_from_here(c, s, hand, t);
+    c->pressed = true; // a contact that goes on is no stroke
+}
+
+static bool has_separated(const stick_contact *c, const contact_scene *s, double t, double height)
+{
+    // both are whole samples; half of one, so that the rounding of times does not decide
+    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
+    if (c->pressed)
+        return quiet > ANY_GAP && (height > LIFTED_HEIGHT || c->stick.velocity > LIFTED_SPEED);
+    return (quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP;
 }
 
 static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t,
@@ -348,17 +496,22 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     double height = over_head(s, c->drum, s->body->state.tip[hand]).z;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
-    // both are whole samples; half of one, so that the rounding of times does not decide
-    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
-    if ((quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP)
-        end_strike(c, s, hand, t);
-    else if (c->released && t >= c->strike.time + LONGEST_RELEASE)
-        go_on_from_here(c, s, hand, t);
+    if (has_separated(c, s, t, height)) {
+        end_contact(c, s, hand, t);
+    } else if (!c->bounce.on && t >= c->strike.time + LONGEST_RELEASE) {
+        tell(c, s);
+        if (!c->pressed)
+            go_on_from_here(c, s, hand, t);
+        c->pressed = true;
+    }
 }
 
 void himc_contacts_finish(performance_contacts *c, const contact_scene *s, double t)
 {
     double h = c->force_count / s->clock->sample_rate, kept = exp(-h / OFFSET_TIME);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         finish_hand(&c->hand[hand], s, (himc_hand)hand, t, kept);
+        if (c->hand[hand].bounce.on)
+            end_bounces(&c->hand[hand], s, (himc_hand)hand, t);
+    }
 }

@@ -3,6 +3,7 @@
 #define HIMC_PERFORMANCE_CONTACTS_H
 
 #include "himc/membrane.h"
+#include "plan/bounce.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"
 #include "performance/performance_drums.h"
@@ -14,7 +15,12 @@
 /// A hand's stick on a head.
 typedef struct stick_contact {
     bool touching;      ///< from the first force to separation
-    bool released;      ///< control does not act along the normal
+    bool released;      ///< control acts along the normal as the hand does (grip.h)
+    bool pressed;       ///< while touching: not a stroke of the plan, or one that stays
+    bool told;          ///< while touching: the strike has been reported
+    himc_bounce bounce; ///< of the last stroke
+    double hand;        ///< acceleration that the hand gives it along the normal (m/s^2)
+    double left;        ///< when the last contact ended (s)
     int drum;           ///< slot
     himc_stick stick;   ///< in micro-contact
     double offset;      ///< of the stick's height from the body's tip (m); decays after contact
@@ -42,6 +48,9 @@ typedef struct contact_scene {
 
 /// Sets all sticks to the air, without a history; forces not yet played remain.
 HIMC_RT void himc_contacts_clear(performance_contacts *contacts);
+/// Finds the heads under the hands before the targets of the ticks at `t` and `next` are read.
+HIMC_RT void himc_contacts_look_down(performance_contacts *contacts, const contact_scene *scene,
+                                     double t, double next);
 /// Decides for each hand at `t` whether control releases the head's normal; gives up strokes that
 /// are past their contact time without a contact.
 HIMC_RT void himc_contacts_release(performance_contacts *contacts, const contact_scene *scene,

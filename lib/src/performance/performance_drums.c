@@ -85,7 +85,28 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     d->slot[index] =
         (drum_slot){.drum = drum, .source = source, .revision = himc_drum_revision(drum) - 1};
     find_room(d, index);
+    himc_drum_enclose(drum, &d->walls);
+    himc_drum_fade(drum, d->mute ? 0 : d->gain);
     himc_drum_listen(drum, &d->listener);
+}
+
+void himc_drums_begin(performance_drums *d)
+{
+    *d = (performance_drums){.walls = HIMC_WALLS_USUAL, .gain = 1};
+}
+
+void himc_drums_catch_up_one(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    if (slot->behind > 0)
+        himc_drum_advance_sticks(slot->drum, slot->behind, NULL, 0, NULL, NULL);
+    slot->behind = 0;
+}
+
+void himc_drums_catch_up(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drums_catch_up_one(d, i);
 }
 
 void himc_drums_join(performance_drums *d)
@@ -101,6 +122,8 @@ static void release(performance_drums *d, himc_drum *drum)
 {
     himc_air_between_leave(&d->air, drum);
     himc_drum_listen(drum, &(himc_listener){.on = false});
+    himc_drum_enclose(drum, &HIMC_WALLS_USUAL);
+    himc_drum_fade(drum, 1);
     himc_drum_release(drum);
 }
 
@@ -125,9 +148,11 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         d->slot[i].revision = himc_drum_revision(drum) - 1;
         return true;
     }
+    himc_drum_heads *heads = d->slot[i].heads;
     if (d->slot[i].drum)
         release(d, d->slot[i].drum);
     fill_slot(d, i, drum, source);
+    d->slot[i].heads = heads;
     return true;
 }
 
@@ -143,9 +168,10 @@ bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_err
 void himc_drums_put_back(performance_drums *d)
 {
     performance_drums old = *d;
-    *d = (performance_drums){.count = 0};
+    himc_drums_begin(d);
     for (int i = 0; i < old.count; i++) {
         himc_drum *drum = old.slot[i].drum;
+        himc_drum_heads_free(old.slot[i].heads);
         if (old.slot[i].source != DRUM_GIVEN) {
             release(&old, drum);
             continue;
@@ -158,8 +184,33 @@ void himc_drums_put_back(performance_drums *d)
     }
 }
 
+himc_drum_heads *himc_drums_set_heads(performance_drums *d, int index, himc_drum_heads *heads)
+{
+    himc_drum_heads *before = d->slot[index].heads;
+    d->slot[index].heads = heads;
+    return before;
+}
+
+void himc_drums_drop_heads(performance_drums *d)
+{
+    for (int i = 0; i < d->count; i++)
+        himc_drum_heads_free(himc_drums_set_heads(d, i, NULL));
+}
+
+void himc_drums_turn_heads(performance_drums *d, double beat)
+{
+    for (int i = 0; i < d->count && beat >= 0; i++) {
+        drum_slot *slot = &d->slot[i];
+        if (!slot->heads || !himc_drum_heads_due(slot->heads, beat))
+            continue;
+        himc_drums_catch_up_one(d, i);
+        himc_drum_heads_turn(slot->heads, slot->drum, beat);
+    }
+}
+
 void himc_drums_release(performance_drums *d)
 {
+    himc_drums_drop_heads(d);
     while (d->count > 0)
         release(d, d->slot[--d->count].drum);
 }
@@ -169,6 +220,21 @@ void himc_drums_listen(performance_drums *d, const himc_listener *listener)
     d->listener = *listener;
     for (int i = 0; i < d->count; i++)
         himc_drum_listen(d->slot[i].drum, listener);
+}
+
+void himc_drums_enclose(performance_drums *d, const himc_walls *walls)
+{
+    d->walls = *walls;
+    for (int i = 0; i < d->count; i++)
+        himc_drum_enclose(d->slot[i].drum, walls);
+}
+
+void himc_drums_fade(performance_drums *d, double gain, bool mute)
+{
+    d->gain = gain;
+    d->mute = mute;
+    for (int i = 0; i < d->count; i++)
+        himc_drum_fade(d->slot[i].drum, mute ? 0 : gain);
 }
 
 bool himc_drums_listening_takes_long(const performance_drums *d)

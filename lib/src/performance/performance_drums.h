@@ -19,22 +19,29 @@ typedef enum drum_source {
 typedef struct drum_slot {
     himc_drum *drum; ///< a reference of the performance's own
     drum_source source;
-    unsigned revision;   ///< last one given to the planner
-    bool untold;         ///< auto-placed; the user has not been notified
-    bool reach_told;     ///< out of reach there, and the user has been notified
-    bool moved;          ///< moved by the performer, see himc_drums_put_back
-    bool placed;         ///< himc_drum_is_placed before that ...
-    himc_vec3 found, at; ///< ... its position then, and its new position (m)
+    unsigned revision;      ///< last one given to the planner
+    bool untold;            ///< auto-placed; the user has not been notified
+    bool reach_told;        ///< out of reach there, and the user has been notified
+    bool moved;             ///< moved by the performer, see himc_drums_put_back
+    bool placed;            ///< himc_drum_is_placed before that ...
+    himc_vec3 found, at;    ///< ... its position then, and its new position (m)
+    int behind;             ///< samples that it has not made yet
+    himc_drum_heads *heads; ///< owned; its changes in the score, NULL for none
 } drum_slot;
 
 /// Strokes refer to their drum by its slot. Only himc_drums_put_back frees slots.
 typedef struct performance_drums {
     drum_slot slot[HIMC_DRUMS];
     int count;
-    himc_listener listener; ///< of all of them
-    himc_air_between air;   ///< between those that are near
+    himc_listener listener; ///< of all of them, as what follows
+    himc_walls walls;
+    double gain; ///< of their sound (factor)
+    bool mute;
+    himc_air_between air; ///< between those that are near
 } performance_drums;
 
+/// No drums, no listener, the usual walls.
+HIMC_RT void himc_drums_begin(performance_drums *drums);
 /// Slot of the drum with that name, -1 if there is none.
 HIMC_RT int himc_drums_find(const performance_drums *drums, const char *name);
 HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, int index);
@@ -48,15 +55,33 @@ bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source sourc
 bool himc_drums_move(performance_drums *drums, int index, himc_vec3 center, himc_error *error);
 /// All drums, also those to come, are heard by this listener as long as they are the performance's.
 HIMC_RT void himc_drums_listen(performance_drums *drums, const himc_listener *listener);
-/// True if that would take longer than an audio block can wait.
+/// All drums, as above, stand between these walls.
+HIMC_RT void himc_drums_enclose(performance_drums *drums, const himc_walls *walls);
+/// All drums, as above, sound by `gain` (factor) of their own, or not at all.
+HIMC_RT void himc_drums_fade(performance_drums *drums, double gain, bool mute);
+/// True if himc_drums_listen would take longer than an audio block can wait.
 HIMC_RT bool himc_drums_listening_takes_long(const performance_drums *drums);
 /// The same as a job; the drums must outlive it. NULL without memory.
 himc_job *himc_drums_listen_job(performance_drums *drums, const himc_listener *listener,
                                 himc_error *error);
 /// Drops all drums except those given by the host, which keep their order, and the listener. They
-/// are as when they were added: heads at rest, at the place of their owner or else placed automatically.
+/// are as when they were added: heads at rest, at the place of their owner or else placed
+/// automatically.
 void himc_drums_put_back(performance_drums *drums);
 void himc_drums_release(performance_drums *drums);
+
+/// Sets the changes of a drum's head in the score (NULL: none). Returns those before, which the
+/// caller frees.
+himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_drum_heads *heads);
+/// Drops the changes of all heads.
+void himc_drums_drop_heads(performance_drums *drums);
+/// Gives the drums the heads that they have at that beat; nothing if it is negative.
+HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat);
+
+/// A drum that no stick is near makes its samples later, many at a time: they are the same. Now all
+/// drums make theirs; before anything looks at them, or changes them.
+HIMC_RT void himc_drums_catch_up(performance_drums *drums);
+HIMC_RT void himc_drums_catch_up_one(performance_drums *drums, int index);
 
 /// After a change of places or of the set: finds the drums that hear each other.
 HIMC_RT void himc_drums_join(performance_drums *drums);

@@ -8,6 +8,7 @@
 
 #include "body/limits.h"
 #include "base/head_frame.h"
+#include "control/grip.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,11 +18,23 @@
 #define TRUNK_FORESIGHT 1.2     // chosen: strokes further ahead do not turn the trunk (s)
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
-#define REPLANNED 0.02     // chosen: least delay of a stroke that is given up and planned again (s)
-#define LIMIT_HEIGHT 0.35  // chosen: a large stroke; the mean posture's tips go up to here (m)
-#define LIMIT_HEIGHTS 8    // postures in that mean
-#define OUT_OF_REACH 1e-3  // chosen: the user is told of a target missed by more (m)
-#define BEAT_ROUNDING 1e-9 // of a time in seconds, in beats
+#define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
+#define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
+#define LIMIT_HEIGHTS 8   // postures in that mean
+#define OUT_OF_REACH 1e-3 // chosen: the user is told of a target missed by more (m)
+#define PRESS_RIM 0.9     // share of a head's radius; further out targets go past its rim, too
+
+// a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
+// comes down to the head as if braked; chosen: a press arrives with less than 20 N
+#define JUMP_SPEED 8.0    // (m/s)
+#define JUMP_GAP 0.3      // between targets of a stream, at most (s)
+#define PRESS_ARRIVAL 0.6 // at the head (m/s)
+#define PRESS_BRAKE 20.0  // above it (m/s^2)
+
+// a stroke that does not rebound: at both times after it the tip is wanted so low; chosen: the
+// softest roll of one hand, ppp at 12 Hz, is higher at the first, the fastest at one of them
+static const double rests_at[] = {0.06, 0.09}; // (s)
+#define RESTS_BELOW 0.002                      // (m)
 
 // distance of a place from the nearest one that the tip reaches
 static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
@@ -120,6 +133,12 @@ bool himc_motion_is_idle(const performance_motion *m, himc_hand hand, double t)
            (himc_motion_tracks(m, hand) && t < m->track_start);
 }
 
+bool himc_motion_captured(const performance_motion *m, himc_hand hand, double t, himc_vec3 *x)
+{
+    return himc_motion_tracks(m, hand) &&
+           himc_track_captured(m->track, hand, t - m->track_start, x);
+}
+
 static double take_end(const performance_motion *m)
 {
     return m->track_start + himc_track_length(m->track);
@@ -181,6 +200,8 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.bounces = stroke.bounces;
+        next.bounce_time = stroke.bounce_time;
     }
     next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
     return next;
@@ -328,13 +349,40 @@ static void crossfade(performance_motion *m, himc_setpoint *tick)
 
 // setpoints
 
+// height of a tip over a head, as the mallet has it
+static double height_over(const performance_motion *m, const himc_head_frame *head, himc_vec3 tip)
+{
+    return himc_head_frame_from_world(head, tip).z - m->posture.skeleton.mallet_radius;
+}
+
+// a target below the head under the hand becomes a press; towards the rim it may go deeper, so that
+// one that goes past the rim does not jump
+static void limit_depth(const performance_motion *m, himc_hand hand, himc_target *tip)
+{
+    const himc_head_frame *head = &m->under[hand];
+    if (head->radius == 0)
+        return;
+    himc_vec3 at = himc_head_frame_from_world(head, tip->x), n = himc_head_frame_normal(head);
+    double out = fmax(hypot(at.x, at.y) / head->radius - PRESS_RIM, 0) / (1 - PRESS_RIM);
+    double h = at.z - m->posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
+           a = himc_vec3_dot(n, tip->a), free = h, free_v = v, free_a = a;
+    if (out >= 1)
+        return;
+    himc_grip_limit_depth(HIMC_GRIP_DEPTH / (1 - out), &h, &v, &a);
+    tip->x = himc_vec3_madd(tip->x, h - free, n);
+    tip->v = himc_vec3_madd(tip->v, v - free_v, n);
+    tip->a = himc_vec3_madd(tip->a, a - free_a, n);
+}
+
 static void fill_tick(performance_motion *m, const performance_settings *s, himc_setpoint *tick,
                       double t)
 {
     m->posture.trunk_posture = trunk_at(m, t);
     tick->time = t;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         tick->tip[hand] = himc_motion_planned(m, (himc_hand)hand, t);
+        limit_depth(m, (himc_hand)hand, &tick->tip[hand]);
+    }
     find_posture(m, s, t, tick->tip, &tick->posture);
     follow_regression(m, s, tick);
     crossfade(m, tick);
@@ -413,9 +461,25 @@ himc_pose himc_motion_mean_pose(const performance_motion *m, double t)
 
 // contact
 
-void himc_motion_release(performance_motion *m, himc_hand hand, bool released)
+void himc_motion_release(performance_motion *m, himc_hand hand, bool released, double yield)
 {
     m->reference.released[hand] = released;
+    m->reference.yield[hand] = yield;
+}
+
+void himc_motion_set_under(performance_motion *m, himc_hand hand, const himc_head_frame *head)
+{
+    m->under[hand] = head ? *head : (himc_head_frame){.radius = 0};
+}
+
+bool himc_motion_rests_after(const performance_motion *m, himc_hand hand, double time,
+                             const himc_head_frame *head)
+{
+    for (int i = 0; i < 2; i++)
+        if (!himc_motion_tracks(m, hand) ||
+            height_over(m, head, himc_motion_planned(m, hand, time + rests_at[i]).x) > RESTS_BELOW)
+            return false;
+    return true;
 }
 
 void himc_motion_set_normal(performance_motion *m, himc_hand hand, himc_vec3 normal)
@@ -473,6 +537,22 @@ himc_vec3 himc_motion_reachable(performance_motion *m, himc_hand hand, himc_vec3
     return x;
 }
 
+himc_vec3 himc_motion_ease_down(performance_motion *m, himc_hand hand, double t, himc_vec3 target,
+                                const himc_head_frame *head)
+{
+    live_target *live = &m->live[hand];
+    double gap = t - live->time, from = head ? height_over(m, head, live->x) : 0,
+           to = head ? height_over(m, head, target) : 0;
+    bool falls = head && gap > 0 && gap < JUMP_GAP && (live->eased || from - to > JUMP_SPEED * gap);
+    double most = sqrt(PRESS_ARRIVAL * PRESS_ARRIVAL + 2 * PRESS_BRAKE * fmax(from, 0)) * gap;
+    live->eased = falls && from - to > most;
+    if (live->eased)
+        target = himc_vec3_madd(target, from - most - to, himc_head_frame_normal(head));
+    live->x = target;
+    live->time = t;
+    return target;
+}
+
 himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame *head)
 {
     himc_vec3 least = {INFINITY, 0, 0};
@@ -500,7 +580,8 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
 long himc_motion_beat(performance_motion *m, double t)
 {
     double beat = himc_planner_beat(m->planner, t);
-    long whole = m->track || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    bool waits = m->track || himc_planner_is_preparing(m->planner, t);
+    long whole = waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
     bool begun = whole != m->last_beat;
     m->last_beat = whole;
     return begun ? whole : -1;

@@ -10,7 +10,14 @@
 #include "control/setpoint.h"
 #include "performance/performance_drums.h"
 #include "performance/performance_settings.h"
-#include "plan/track.h"
+#include "track/track.h"
+
+/// The last live target of a hand.
+typedef struct live_target {
+    himc_vec3 x; ///< (m)
+    double time; ///< (s)
+    bool eased;  ///< it comes down to a head more slowly than asked
+} live_target;
 
 /// The course of trunk and grip towards the posture for the next strokes.
 typedef struct trunk_course {
@@ -25,6 +32,8 @@ typedef struct planned_stroke {
     int drum;    ///< slot
     double x, y; ///< on the head (m)
     char nuance[HIMC_NAME_SIZE];
+    int bounces;        ///< of a stroke that bounces (himc_stroke)
+    double bounce_time; ///< (s)
 } planned_stroke;
 
 typedef struct performance_motion {
@@ -43,10 +52,12 @@ typedef struct performance_motion {
     double avoided;     ///< time of its last update (s)
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
-    himc_setpoint from, to;        ///< of the ticks before and after
-    himc_setpoint_course between;  ///< these ticks
-    himc_reference reference;      ///< now
-    bool replan;                   ///< `from` is read again, too
+    himc_setpoint from, to;            ///< of the ticks before and after
+    himc_setpoint_course between;      ///< these ticks
+    himc_reference reference;          ///< now
+    himc_head_frame under[HIMC_HANDS]; ///< head on which deeper targets press; radius 0: none
+    bool replan;                       ///< `from` is read again, too
+    live_target live[HIMC_HANDS];
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
@@ -90,8 +101,16 @@ HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, doub
 /// Continues the plan from that state of the tip, which has left the head.
 HIMC_RT void himc_motion_go_on_from(performance_motion *motion, himc_hand hand, double t,
                                     const himc_target *measured);
-/// Sets whether control releases the normal of a head.
-HIMC_RT void himc_motion_release(performance_motion *motion, himc_hand hand, bool released);
+/// Sets whether control releases the normal of a head, and the acceleration that the hand gives the
+/// stick there (m/s^2).
+HIMC_RT void himc_motion_release(performance_motion *motion, himc_hand hand, bool released,
+                                 double yield);
+/// The head on which targets of the hand press from the next tick on, not deeper; NULL: none.
+HIMC_RT void himc_motion_set_under(performance_motion *motion, himc_hand hand,
+                                   const himc_head_frame *head);
+/// True if the tip rests on a head of that level after the stroke at `time`, as a take can have it.
+HIMC_RT bool himc_motion_rests_after(const performance_motion *motion, himc_hand hand, double time,
+                                     const himc_head_frame *head);
 HIMC_RT void himc_motion_set_normal(performance_motion *motion, himc_hand hand, himc_vec3 normal);
 /// In `ik`: sets the tip's target to that state, and the posture accordingly.
 HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_settings *settings,
@@ -101,6 +120,9 @@ HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_
 HIMC_RT bool himc_motion_tracks(const performance_motion *motion, himc_hand hand);
 /// True for a hand without a task: not in the take, or on its way to the take's first frame.
 HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand hand, double t);
+/// Place of that hand's tip in the take that moves it; false if none does.
+HIMC_RT bool himc_motion_captured(const performance_motion *motion, himc_hand hand, double t,
+                                  himc_vec3 *x);
 /// Gives the hands of the take to the planner.
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
@@ -121,6 +143,10 @@ HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
 /// not the requested place, `first` true if the target before was reachable.
 HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand hand, himc_vec3 asked,
                                         bool *reachable, bool *first);
+/// Takes note of a live target at `t`, in that head (NULL: in none). One that has jumped into a head
+/// comes down to it slowly: returns where it is meanwhile.
+HIMC_RT himc_vec3 himc_motion_ease_down(performance_motion *motion, himc_hand hand, double t,
+                                        himc_vec3 target, const himc_head_frame *head);
 /// From the nearest place in reach of either hand to the usual strike point of a head (m); 0 if that
 /// is in reach.
 HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const himc_head_frame *head);

@@ -3,6 +3,7 @@
 #include "performance/performance_state.h"
 #include "base/head_frame.h"
 #include "capture/take.h"
+#include "plan/ornament.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,31 +17,101 @@
 
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
-static bool check_stroke(const himc_stroke *s, himc_error *error)
+// chosen: shorter than a contact, longer than a slow bounce
+#define LEAST_BOUNCE 0.01 // (s)
+#define MOST_BOUNCE 0.5   // (s)
+#define LEAST_ROLL 0.01   // (beats)
+
+static bool check_bounces(const himc_stroke *s, himc_error *error)
 {
+    bool rolls = s->ornament >= HIMC_ROLL_SINGLE;
+    if ((unsigned)s->ornament > HIMC_ROLL_PRESS || s->bounces < HIMC_BUZZ || s->bounces > 1)
+        return himc_error_set(error, "stroke: no such ornament, or %d bounces", s->bounces);
+    return himc_check_range("stroke: early", s->early, 0, 1, "s", error) &&
+           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : LEAST_BOUNCE,
+                            LEAST_BOUNCE, MOST_BOUNCE, "s", error) &&
+           himc_check_range("roll: LENGTH", rolls ? s->length : LEAST_ROLL, LEAST_ROLL, LATEST_BEAT,
+                            "beats", error) &&
+           himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
+}
+
+static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
+{
+    bool hand = (unsigned)s->hand < HIMC_HANDS || (any_hand && s->hand == HIMC_HAND_ANY);
     bool placed = s->spot == HIMC_SPOT_XY;
-    if ((unsigned)s->hand >= HIMC_HANDS || (unsigned)s->nuance >= HIMC_NUANCES ||
-        (unsigned)s->spot > HIMC_SPOT_XY || !memchr(s->drum, 0, sizeof s->drum))
+    if (!hand || (unsigned)s->nuance >= HIMC_NUANCES || (unsigned)s->spot > HIMC_SPOT_XY ||
+        !memchr(s->drum, 0, sizeof s->drum))
         return himc_error_set(error, "stroke: no such hand, nuance or spot, or no drum's name");
     return himc_check_range("stroke: DYNAMIC", s->dynamic, 0, 1, "", error) &&
            himc_check_range("stroke: X", placed ? s->x : 0, -1, 1, "m", error) &&
-           himc_check_range("stroke: Y", placed ? s->y : 0, -1, 1, "m", error);
+           himc_check_range("stroke: Y", placed ? s->y : 0, -1, 1, "m", error) &&
+           check_bounces(s, error);
 }
 
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
-    if (!check_stroke(stroke, error) ||
+    if (!check_stroke(stroke, false, error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
         return false;
-    if (!himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
+    bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
+    if (!rolls && !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
         himc_drum_release(drum.fresh);
         return false;
     }
     himc_performance_keep_drum(p, &drum);
     himc_motion_replan(p->motion);
-    return himc_planner_add(p->motion->planner, stroke, drum.index, error);
+    himc_stroke plain = *stroke;
+    plain.ornament = HIMC_PLAIN;
+    return (rolls || himc_planner_add(p->motion->planner, &plain, drum.index, error)) &&
+           himc_performance_add_ornament(p, stroke, drum.index, error);
+}
+
+bool himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum,
+                                   himc_error *error)
+{
+    if (stroke->ornament == HIMC_PLAIN)
+        return true;
+    int left_out = himc_planner_add_ornament(p->motion->planner, stroke, drum,
+                                             himc_drum_pitch(p->drums.slot[drum].drum), error);
+    if (left_out > 0)
+        himc_events_note(&p->events,
+                         "ornament at beat %g: %d of its strokes left out, too near to others",
+                         stroke->beat, left_out);
+    return left_out >= 0;
+}
+
+/// The time for which a command was meant that acts in this step (s): its sample's, up to a step
+/// before.
+static double asked_time(const himc_performance *p)
+{
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    return (double)sample / p->clock.sample_rate;
+}
+
+/// Plays a hit; returns the time from the moment it was asked to its contact (s), infinite if it is
+/// given up.
+static double hit(himc_performance *p, const himc_hit *asked)
+{
+    double now = step_time(p), from = asked_time(p);
+    himc_hit timed = *asked;
+    timed.at = from + p->settings.latency;
+    if (p->settings.latency > 0)
+        return himc_planner_hit_at(p->motion->planner, now, &timed) - from;
+    return himc_planner_hit(p->motion->planner, now, asked->stroke, asked->drum) - now;
+}
+
+/// Leaves a hit to the hands that no take moves; false if there is none.
+static bool give_to_free_hands(himc_performance *p, himc_stroke *stroke, bool *alone)
+{
+    double now = step_time(p);
+    bool left = himc_motion_free_hand(p->motion, HIMC_LEFT, now),
+         right = himc_motion_free_hand(p->motion, HIMC_RIGHT, now);
+    *alone = !left || !right;
+    if (*alone && stroke->hand == HIMC_HAND_ANY)
+        stroke->hand = left ? HIMC_LEFT : HIMC_RIGHT;
+    return stroke->hand == HIMC_HAND_ANY || (stroke->hand == HIMC_LEFT ? left : right);
 }
 
 // "too low" and so on, from the direction in which the reach ends
@@ -73,18 +144,18 @@ static void tell_places(himc_performance *p)
 
 bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
-    int drum;
-    double now = step_time(p);
-    if (!check_stroke(stroke, error))
+    himc_stroke own = *stroke;
+    himc_hit asked = {.stroke = &own};
+    if (!check_stroke(stroke, true, error))
         return false;
-    if (!himc_motion_free_hand(p->motion, stroke->hand, now))
+    if (!give_to_free_hands(p, &own, &asked.alone))
         return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
-    if (!himc_performance_ensure_drum(p, stroke->drum, &drum, error))
+    if (!himc_performance_ensure_drum(p, stroke->drum, &asked.drum, error))
         return false;
     tell_places(p);
-    double at = himc_planner_hit(p->motion->planner, now, stroke, drum);
-    if (isfinite(at))
-        himc_statistics_hit(&p->statistics, at - now);
+    double latency = hit(p, &asked);
+    if (isfinite(latency))
+        himc_statistics_hit(&p->statistics, latency);
     himc_motion_replan(p->motion);
     return true;
 }
@@ -115,17 +186,19 @@ void himc_performance_stop(himc_performance *p)
     himc_motion_stop(p->motion, step_time(p));
 }
 
-// limits the depth of a target in a head
-static himc_vec3 above_heads(const himc_performance *p, himc_vec3 x)
+// the head that a target is in, NULL if there is none; limits its depth
+static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
 {
     for (int i = 0; i < p->drums.count; i++) {
         const himc_head_frame *frame = himc_drums_frame(&p->drums, i);
-        himc_vec3 local = himc_head_frame_from_world(frame, x);
-        double under = p->body->skeleton.mallet_radius - DEEPEST_TARGET - local.z;
-        if (hypot(local.x, local.y) < frame->radius && under > 0 && under < UNDER_THE_HEAD)
-            return himc_vec3_madd(x, under, himc_head_frame_normal(frame));
+        himc_vec3 local = himc_head_frame_from_world(frame, *x);
+        double under = p->body->skeleton.mallet_radius - local.z;
+        if (hypot(local.x, local.y) >= frame->radius || under < 0 || under > UNDER_THE_HEAD)
+            continue;
+        *x = himc_vec3_madd(*x, fmax(under - DEEPEST_TARGET, 0), himc_head_frame_normal(frame));
+        return frame;
     }
-    return x;
+    return NULL;
 }
 
 // one note when a stream of targets begins to be refused, or leaves the reach
@@ -145,7 +218,9 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     if (!reachable && first)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
-    himc_planner_reach(p->motion->planner, step_time(p), hand, above_heads(p, x));
+    const himc_head_frame *head = head_of(p, &x);
+    x = himc_motion_ease_down(p->motion, hand, step_time(p), x, head);
+    himc_planner_reach(p->motion->planner, step_time(p), hand, x);
     himc_motion_replan(p->motion);
 }
 

@@ -5,6 +5,7 @@
 void himc_queue_clear(performance_queue *q)
 {
     q->count = 0;
+    q->acting = -1;
     q->dropped = 0;
 }
 
@@ -42,11 +43,13 @@ void himc_queue_run(performance_queue *q, int64_t sample, performance_action *ac
     int kept = 0;
     for (int i = 0; i < q->count; i++) {
         himc_error error;
+        q->acting = q->waiting[i].due;
         if (q->waiting[i].due > sample)
             keep_waiting(q, i, kept++);
         else if (!act(performance, &q->waiting[i].command, &error))
             himc_events_note(events, "%s", error.text);
     }
+    q->acting = -1;
     q->count = kept;
     if (q->dropped > 0 && kept < WAITING_COMMANDS / 2) {
         himc_events_note(events, "%ld commands dropped: more than %d waited", q->dropped,

@@ -17,7 +17,8 @@ typedef struct waiting_command {
 typedef struct performance_queue {
     waiting_command waiting[WAITING_COMMANDS]; ///< in their order of arrival
     int count;
-    long dropped; ///< because the queue was full
+    int64_t acting; ///< sample for which the command was meant that acts now; -1: none acts
+    long dropped;   ///< because the queue was full
 } performance_queue;
 
 /// Carries out a command now; false, and nothing changed, with the reason.

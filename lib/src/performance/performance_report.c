@@ -301,9 +301,9 @@ static void describe_playing(const himc_performance *p, reader to)
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
     snprintf(text, sizeof text,
-             "grip %s, hits %d, the last after %.0f ms, the slowest after %.0f ms",
-             word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, s.hits, 1e3 * s.hit_latency,
-             1e3 * s.longest_latency);
+             "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",
+             word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, p->settings.servo ? " servo" : "",
+             1e3 * p->settings.latency, s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
     to.line(to.user, text);
     if (p->settings.human.amount > 0) {
         snprintf(text, sizeof text, "human %g, seed %u", p->settings.human.amount,
@@ -318,6 +318,27 @@ static void describe_playing(const himc_performance *p, reader to)
     to.line(to.user, text);
 }
 
+static void describe_peaks(const himc_performance *p, reader to)
+{
+    char text[512];
+    himc_performance_stats s = himc_performance_measure(p);
+    snprintf(
+        text, sizeof text,
+        "contacts: %d unplanned, the longest %.3f s; joints up to %.1f rad/s (%s) and %.1f N m "
+        "(%s)",
+        s.unplanned_contacts, s.longest_contact, s.peak_rate, himc_joint_name(s.peak_rate_joint),
+        s.peak_torque, himc_joint_name(s.peak_torque_joint));
+    to.line(to.user, text);
+    if (isnan(s.captured_rms))
+        return;
+    snprintf(text, sizeof text,
+             "capture: tips %.2f mm RMS off it, at most %.1f mm; %.2f %% and %.1f %% of the "
+             "strokes' height",
+             1e3 * s.captured_rms, 1e3 * s.captured_most, s.captured_rms_percent,
+             s.captured_most_percent);
+    to.line(to.user, text);
+}
+
 void himc_performance_describe(const himc_performance *p, void (*line)(void *, const char *),
                                void *user)
 {
@@ -328,4 +349,5 @@ void himc_performance_describe(const himc_performance *p, void (*line)(void *, c
     describe_strength(p, to);
     describe_drums(p, to);
     describe_playing(p, to);
+    describe_peaks(p, to);
 }

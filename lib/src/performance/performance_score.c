@@ -31,7 +31,7 @@ typedef struct score_drum {
 } score_drum;
 
 /// In the order of installing.
-typedef enum score_part { BEGINNING, BEFORE_STROKES, STROKES, AFTER_STROKES } score_part;
+typedef enum score_part { BEGINNING, BEFORE_STROKES, CHANGES, STROKES, AFTER_STROKES } score_part;
 
 typedef struct score_job {
     himc_job job;
@@ -52,11 +52,14 @@ typedef struct score_job {
     // how far it is installed
     int tries;
     score_part part;
-    int at;                ///< next line or stroke
-    bool queued;           ///< it follows the one that plays
-    double from;           ///< its first beat
-    himc_job *line, *done; ///< owned; a line that takes long: under way, and finished
-    himc_track *dropped;   ///< owned
+    int at;                             ///< next line or stroke
+    bool queued;                        ///< it follows the one that plays
+    double from;                        ///< its first beat
+    himc_job *line, *done;              ///< owned; a line that takes long: under way, and finished
+    himc_track *dropped;                ///< owned
+    bool asked;                         ///< the changes of heads have been asked for
+    himc_drum_heads *heads[HIMC_DRUMS]; ///< owned; of form[i], to be installed
+    himc_drum_heads *over[HIMC_DRUMS];  ///< owned; what they replaced
 } score_job;
 
 static score_drum *find_drum(score_job *j, const char *name)
@@ -188,6 +191,49 @@ static bool count_drums(score_job *j, himc_error *error)
     return true;
 }
 
+// the changes of the head of a drum of that form; NULL with the reason
+static himc_drum_heads *heads_of(const score_job *j, const himc_drum_form *form, himc_error *error)
+{
+    himc_drum_heads *heads = himc_drum_heads_new(form, error);
+    for (int i = 0; heads && i < j->score->change_count; i++) {
+        const himc_score_line *line = &j->score->changes[i];
+        if (strcmp(line->drum, form->name) != 0 ||
+            himc_drum_heads_add(heads, j->from + line->beat, &line->command, error))
+            continue;
+        himc_error_prefix(error, "%s:%d: %s", j->path, line->line, line->drum);
+        himc_drum_heads_free(heads);
+        return NULL;
+    }
+    return heads;
+}
+
+static bool has_changes(const score_job *j, const char *drum)
+{
+    for (int i = 0; i < j->score->change_count; i++)
+        if (strcmp(j->score->changes[i].drum, drum) == 0)
+            return true;
+    return false;
+}
+
+/// Tries the changes of heads, after all other lines.
+static bool rehearse_changes(score_job *j, himc_error *error)
+{
+    for (int i = 0; i < j->score->change_count; i++)
+        if (!trial_drum(j, j->score->changes[i].drum, HIMC_INCHES_USUAL, DRUM_SILENT, error))
+            return himc_error_prefix(error, "%s:%d", j->path, j->score->changes[i].line);
+    bool good = true;
+    for (int i = 0; i < j->drums && good; i++) {
+        if (!has_changes(j, himc_drum_name(j->drum[i].trial)))
+            continue;
+        himc_drum_form form = himc_drum_form_of(j->drum[i].trial);
+        himc_drum_heads *heads = heads_of(j, &form, error);
+        good = heads != NULL;
+        himc_drum_heads_free(heads);
+        himc_drum_form_free(&form);
+    }
+    return good;
+}
+
 static bool rehearse(score_job *j, himc_error *error)
 {
     const himc_score *score = j->score;
@@ -200,7 +246,21 @@ static bool rehearse(score_job *j, himc_error *error)
             good = himc_error_set(error, "take: a score with strokes cannot play a take");
         good = good || himc_error_prefix(error, "%s:%d", j->path, score->lines[i].line);
     }
-    return good && (count_drums(j, error) || himc_error_prefix(error, "%s", j->path));
+    return good && rehearse_changes(j, error) &&
+           (count_drums(j, error) || himc_error_prefix(error, "%s", j->path));
+}
+
+/// Computes the heads to come, of the drums as they are with the score's other lines.
+static bool prepare_changes(score_job *j, himc_error *error)
+{
+    for (int i = 0; i < j->forms; i++) {
+        if (!has_changes(j, j->form[i].name))
+            continue;
+        j->heads[i] = heads_of(j, &j->form[i], error);
+        if (!j->heads[i] || !himc_drum_heads_prepare(j->heads[i], error))
+            return false;
+    }
+    return true;
 }
 
 static bool prefix_line(const score_job *j, himc_error *error)
@@ -216,6 +276,8 @@ static bool prepare(himc_job *job, himc_error *error)
     j->done = NULL;
     if (j->line)
         return j->line->prepare(j->line, error) || prefix_line(j, error);
+    if (j->part == CHANGES)
+        return prepare_changes(j, error);
     free_drums(j);
     himc_score_free(j->score);
     j->score = himc_score_load_in(j->command.folder, j->path, error);
@@ -322,23 +384,6 @@ static himc_job_state begin_strokes(score_job *j, himc_error *error)
     return HIMC_JOB_FAILED;
 }
 
-static himc_job_state add_strokes(score_job *j, himc_error *error)
-{
-    for (int added = 0; j->at < j->score->stroke_count; j->at++, added++) {
-        int drum;
-        himc_stroke stroke = j->score->strokes[j->at];
-        if (added == STROKES_AT_ONCE)
-            return HIMC_JOB_MORE;
-        stroke.beat += j->from;
-        if (!installed_drum(j, stroke.drum, &drum, error) ||
-            !himc_performance_add_stroke(j->performance, &stroke, error)) {
-            himc_error_prefix(error, "%s", j->path);
-            return HIMC_JOB_FAILED;
-        }
-    }
-    return HIMC_JOB_DONE;
-}
-
 static void copy_performance(score_job *j)
 {
     const himc_performance *p = j->performance;
@@ -352,6 +397,61 @@ static void copy_performance(score_job *j)
     j->task_rate = p->clock.task_rate;
     j->make_drums = p->host.make_drums;
     j->recording = p->recording.file != NULL;
+}
+
+// the heads that the score changes, and the end of those of the score before
+static himc_job_state install_changes(score_job *j)
+{
+    performance_drums *drums = &j->performance->drums;
+    double now = himc_planner_beat(j->performance->motion->planner, step_time(j->performance));
+    if (j->score->change_count > 0 && !j->asked) {
+        copy_performance(j);
+        j->asked = true;
+        return HIMC_JOB_AGAIN;
+    }
+    for (int i = 0; i < drums->count; i++) {
+        int k = 0; // its form
+        while (k < j->forms && strcmp(j->form[k].name, himc_drum_name(drums->slot[i].drum)) != 0)
+            k++;
+        himc_drum_heads *heads = k < j->forms ? j->heads[k] : NULL;
+        if (j->queued && !heads)
+            continue;
+        himc_drum_heads *before = himc_drums_set_heads(drums, i, heads);
+        if (heads)
+            j->heads[k] = NULL;
+        j->over[i] = j->queued ? himc_drum_heads_follow(heads, before, j->from, now) : before;
+    }
+    return HIMC_JOB_DONE;
+}
+
+// the strokes as written, then what ornaments add, which leaves out what does not fit
+static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_error *error)
+{
+    int drum;
+    stroke.beat += j->from;
+    if (!installed_drum(j, stroke.drum, &drum, error))
+        return false;
+    if (ornament)
+        return himc_performance_add_ornament(j->performance, &stroke, drum, error);
+    if (stroke.ornament >= HIMC_ROLL_SINGLE)
+        return true;
+    stroke.ornament = HIMC_PLAIN;
+    return himc_performance_add_stroke(j->performance, &stroke, error);
+}
+
+static himc_job_state add_strokes(score_job *j, himc_error *error)
+{
+    int count = j->score->stroke_count;
+    for (int added = 0; j->at < 2 * count; j->at++, added++) {
+        bool ornament = j->at >= count;
+        if (added == STROKES_AT_ONCE)
+            return HIMC_JOB_MORE;
+        if (!add_stroke(j, j->score->strokes[j->at % count], ornament, error)) {
+            himc_error_prefix(error, "%s", j->path);
+            return HIMC_JOB_FAILED;
+        }
+    }
+    return HIMC_JOB_DONE;
 }
 
 // true if the drums are those with which the score was tried; marks those that are not
@@ -393,6 +493,7 @@ static himc_job_state install_part(score_job *j, himc_error *error)
     case BEFORE_STROKES:
         state = run_lines(j, false, error);
         return state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
+    case CHANGES: return install_changes(j);
     case STROKES: return add_strokes(j, error);
     default: return run_lines(j, true, error);
     }
@@ -430,6 +531,10 @@ static void free_job(himc_job *job)
     free_drums(j);
     while (j->forms > 0)
         himc_drum_form_free(&j->form[--j->forms]);
+    for (int i = 0; i < HIMC_DRUMS; i++) {
+        himc_drum_heads_free(j->heads[i]);
+        himc_drum_heads_free(j->over[i]);
+    }
     himc_track_free(j->dropped);
     himc_score_free(j->score);
     free(j);

@@ -22,11 +22,16 @@ typedef struct performance_settings {
     himc_engine engine;
     himc_limits_kind limits;
     himc_grip grip;
+    bool servo; ///< strokes have one contact each, though they shall bounce
     himc_human human;
-    bool one_way; ///< the head's vibration does not push back on the stick
-    bool unbent;  ///< `id` follows a take's arms as captured
+    double latency; ///< of a hit, from its message to its contact; 0: as soon as it can (s)
+    bool one_way;   ///< the head's vibration does not push back on the stick
+    bool unbent;    ///< `id` follows a take's arms as captured
     captured_player captured;
 } performance_settings;
+
+/// Chosen: softer than f nothing is lost, at f 2 dB.
+#define USUAL_LATENCY 0.15 // (s)
 
 /// The settings of a new performance with that configuration.
 performance_settings himc_settings_default(const himc_performance_config *config);

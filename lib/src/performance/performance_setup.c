@@ -39,7 +39,8 @@ performance_settings himc_settings_default(const himc_performance_config *config
                               .control = himc_controller_config_default(),
                               .engine = HIMC_ENGINE_TREE,
                               .limits = HIMC_LIMITS_OFF,
-                              .grip = HIMC_GRIP_GERMAN};
+                              .grip = HIMC_GRIP_GERMAN,
+                              .latency = USUAL_LATENCY};
     for (int i = 0; i < HIMC_SEGMENTS; i++)
         s.weight[i] = 1;
     return s;
@@ -124,6 +125,7 @@ himc_performance *himc_performance_make(const himc_performance_config *config, h
     }
     p->host = (performance_host){.config = *config, .take_options = himc_take_default()};
     himc_clock_init(&p->clock, config->sample_rate);
+    himc_drums_begin(&p->drums);
     begin(p, &s, &parts);
     return p;
 }

@@ -120,6 +120,10 @@ himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *com
 himc_track *himc_performance_drop_track(himc_performance *p);
 
 // performance_play.c
+/// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many are
+/// left out. False if it is too long.
+bool himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum,
+                                   himc_error *error);
 /// The command `units FILE` as a job; NULL without memory.
 himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);

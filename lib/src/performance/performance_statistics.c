@@ -1,6 +1,8 @@
 /// performance_statistics.c: sums and counts since the performance was made or reset.
 #include "performance/performance_statistics.h"
 
+#include "control/tracking_error.h"
+
 void himc_statistics_clear(performance_statistics *s)
 {
     *s = (performance_statistics){.strokes = 0};
@@ -22,6 +24,37 @@ void himc_statistics_tip(performance_statistics *s, himc_vec3 away)
 {
     s->square_sum += himc_vec3_dot(away, away);
     s->square_count++;
+}
+
+void himc_statistics_captured(performance_statistics *s, himc_vec3 away)
+{
+    double square = himc_vec3_dot(away, away);
+    s->captured_sum += square;
+    s->captured_count++;
+    s->captured_most = fmax(s->captured_most, square);
+}
+
+// squares, in every step: peaks of a blow are shorter than a tick, and roots would cost more
+void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skeleton,
+                            const himc_body_state *state, const himc_vec3 *torque)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 rate = himc_relative_spin(skeleton, state, j);
+        double square = himc_vec3_dot(rate, rate);
+        s->rate[j] = square > s->rate[j] ? square : s->rate[j];
+        square = torque ? himc_vec3_dot(torque[j], torque[j]) : 0;
+        s->torque[j] = square > s->torque[j] ? square : s->torque[j];
+    }
+}
+
+void himc_statistics_unplanned(performance_statistics *s)
+{
+    s->unplanned++;
+}
+
+void himc_statistics_contact(performance_statistics *s, double duration)
+{
+    s->longest_contact = fmax(s->longest_contact, duration);
 }
 
 void himc_statistics_strokes(performance_statistics *s, int strokes, int played)
@@ -49,6 +82,24 @@ long himc_statistics_recovery(performance_statistics *s)
     return s->recoveries++;
 }
 
+static double peak(const double squares[HIMC_JOINTS], int *joint)
+{
+    *joint = 0;
+    for (int j = 1; j < HIMC_JOINTS; j++)
+        if (squares[j] > squares[*joint])
+            *joint = j;
+    return sqrt(squares[*joint]);
+}
+
+static void read_capture(const performance_statistics *s, himc_performance_stats *out)
+{
+    double percent = out->stroke_height > 0 ? 100 / out->stroke_height : NAN;
+    out->captured_rms = s->captured_count ? sqrt(s->captured_sum / (double)s->captured_count) : NAN;
+    out->captured_most = s->captured_count ? sqrt(s->captured_most) : NAN;
+    out->captured_rms_percent = percent * out->captured_rms;
+    out->captured_most_percent = percent * out->captured_most;
+}
+
 void himc_statistics_read(const performance_statistics *s, himc_performance_stats *out)
 {
     out->strokes = s->strokes;
@@ -62,4 +113,9 @@ void himc_statistics_read(const performance_statistics *s, himc_performance_stat
     out->tip_rms = s->square_count ? sqrt(s->square_sum / (double)s->square_count) : 0;
     out->stroke_height = s->height_count ? s->height_sum / (double)s->height_count : 0;
     out->tip_rms_percent = out->stroke_height > 0 ? 100 * out->tip_rms / out->stroke_height : NAN;
+    out->unplanned_contacts = s->unplanned;
+    out->longest_contact = s->longest_contact;
+    out->peak_rate = peak(s->rate, &out->peak_rate_joint);
+    out->peak_torque = peak(s->torque, &out->peak_torque_joint);
+    read_capture(s, out);
 }

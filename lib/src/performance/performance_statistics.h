@@ -2,6 +2,7 @@
 #ifndef HIMC_PERFORMANCE_STATISTICS_H
 #define HIMC_PERFORMANCE_STATISTICS_H
 
+#include "himc/body.h"
 #include "himc/performance.h"
 #include "himc/vec.h"
 
@@ -14,6 +15,13 @@ typedef struct performance_statistics {
     int strokes, played, hits;
     double hit_latency, longest_latency; ///< from a hit's command to its planned contact (s)
     double peak_force;                   ///< (N)
+    int unplanned;                       ///< contacts
+    double longest_contact;              ///< (s)
+    double captured_sum;                 ///< of squared distances from tip to capture (m^2)
+    long captured_count;
+    double captured_most;       ///< the largest of them (m^2)
+    double rate[HIMC_JOINTS];   ///< largest squared rate of each joint (rad^2/s^2)
+    double torque[HIMC_JOINTS]; ///< largest squared torque (N^2 m^2)
     long recoveries;
 } performance_statistics;
 
@@ -23,6 +31,16 @@ HIMC_RT void himc_statistics_height(performance_statistics *statistics, himc_han
                                     double height, bool touching);
 /// Adds the distance `away` of a tip from its target (m).
 HIMC_RT void himc_statistics_tip(performance_statistics *statistics, himc_vec3 away);
+/// Adds the distance `away` of a tip from its place in the capture (m).
+HIMC_RT void himc_statistics_captured(performance_statistics *statistics, himc_vec3 away);
+/// Adds the rates of the joints, and their torques (N m); NULL if there are none.
+HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
+                                    const himc_skeleton *skeleton, const himc_body_state *state,
+                                    const himc_vec3 *torque);
+/// Adds a contact that no stroke asked for.
+HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
+/// Adds a contact that has lasted so long (s).
+HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double duration);
 /// Adds finished strokes of the score; `played` of them landed on time and place.
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
 /// Adds a hit, with the time from its command to its planned contact (s).

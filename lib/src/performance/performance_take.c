@@ -59,6 +59,7 @@ typedef struct take_job {
     himc_take_tip tips[HIMC_HANDS];
     take_reach reach;
     int strikes, outside; ///< of the take, and those beside the drum
+    int left_out;         ///< motions as sharp as strikes, but off the head
     himc_posture_regression regression;
     bool fitted;
     himc_error unfitted; ///< why not; "" if no arm is shown
@@ -204,16 +205,18 @@ static bool count_strikes(take_job *j, himc_error *error)
 {
     if (!himc_take_tips(j->take, &j->options, j->tips, error))
         return false;
-    himc_take_strike *strikes = himc_take_find_strikes(j->take, j->tips, &j->strikes);
-    if (!strikes)
+    himc_strike_survey s;
+    if (!himc_take_strikes(j->take, j->tips, &s))
         return himc_error_set(error, "out of memory");
+    j->strikes = s.count;
+    j->left_out = s.left_out;
     j->outside = 0;
-    for (int i = 0; i < j->strikes; i++) {
-        himc_vec3 at = himc_vec3_add(strikes[i].x, himc_track_offset(j->track));
+    for (int i = 0; i < s.count; i++) {
+        himc_vec3 at = himc_vec3_add(s.strikes[i].x, himc_track_offset(j->track));
         himc_vec3 local = himc_head_frame_from_world(&j->frame, at);
         j->outside += hypot(local.x, local.y) > j->frame.radius;
     }
-    free(strikes);
+    free(s.strikes);
     return true;
 }
 
@@ -367,6 +370,9 @@ static void note_repairs(const take_job *j)
         himc_events_note(&p->events,
                          "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", j->name,
                          100.0 * j->reach.far / j->reach.count, j->reach.farthest);
+    if (j->left_out > 0)
+        himc_events_note(&p->events, "%s: %d motions as sharp as strikes end off the head", j->name,
+                         j->left_out);
     if (j->outside > 0)
         himc_events_note(&p->events, "%s: %d of %d strikes are beside drum %s and silent", j->name,
                          j->outside, j->strikes, himc_drum_name(p->drums.slot[0].drum));

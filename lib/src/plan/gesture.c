@@ -98,6 +98,14 @@ himc_gesture himc_gesture_scale(himc_gesture g, double factor)
     return g;
 }
 
+double himc_gesture_softer(double dynamic, double factor)
+{
+    double d = dynamic - FORTE, below = log(FORTE_OVER_PPP) / FORTE,
+           above = log(FFF_OVER_FORTE) / (1 - FORTE);
+    double level = d * (d < 0 ? below : above) + log(factor);
+    return fmin(fmax(FORTE + level / (level < 0 ? below : above), 0), 1);
+}
+
 double himc_gesture_time(const himc_gesture *gesture, double height)
 {
     double climb = fmin(fmax(1 - height / gesture->height, LEAST_CLIMB), 1);

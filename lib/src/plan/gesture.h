@@ -34,6 +34,9 @@ HIMC_RT himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance
 /// limits of all strokes.
 HIMC_RT himc_gesture himc_gesture_scale(himc_gesture gesture, double factor);
 
+/// The dynamic (0 .. 1) of a stroke with `factor` times the speed of one of that dynamic.
+HIMC_RT double himc_gesture_softer(double dynamic, double factor);
+
 /// Time of the stroke from a tip at rest `height` above the point of contact (s).
 HIMC_RT double himc_gesture_time(const himc_gesture *gesture, double height);
 

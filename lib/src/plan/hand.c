@@ -12,6 +12,7 @@
 /// Restitution of the predicted contact. Chosen; only until the measured state replaces the
 /// prediction at separation.
 #define PREDICTED_RESTITUTION 0.85
+#define BOUNCE_RATIO 0.5 // of the speeds of the last bounce and the stroke; chosen, as above
 
 // limits of a hand: beyond them a stroke is refused; chosen: well beyond captured strokes
 // (impacts of up to 10 m/s), so that only the impossible is refused
@@ -86,11 +87,11 @@ static himc_target unlifted_at(const himc_hand_plan *plan, double t)
                            himc_spline_at(&plan->height_profile, t));
 }
 
-/// The state at the plan's end in the frame of a head.
-static stroke_plan frame_at_end(const himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
+/// The state at t in the frame of a head.
+static stroke_plan frame_at(const himc_hand_plan *plan, double t, himc_vec3 spot, himc_vec3 n)
 {
-    himc_target now = unlifted_at(plan, plan->end);
-    stroke_plan s = {.n = n, .height_end = plan->end, .path_end = plan->end};
+    himc_target now = unlifted_at(plan, t);
+    stroke_plan s = {.n = n, .height_end = t, .path_end = t};
     s.height.h = himc_vec3_dot(n, himc_vec3_sub(now.x, spot));
     s.height.v = himc_vec3_dot(n, now.v);
     s.height.a = himc_vec3_dot(n, now.a);
@@ -100,7 +101,7 @@ static stroke_plan frame_at_end(const himc_hand_plan *plan, himc_vec3 spot, himc
 
 static stroke_plan plan_begin(himc_hand_plan *plan, himc_vec3 spot, himc_vec3 n)
 {
-    stroke_plan s = frame_at_end(plan, spot, n);
+    stroke_plan s = frame_at(plan, plan->end, spot, n);
     s.plan = plan;
     return s;
 }
@@ -248,7 +249,7 @@ static double distance_to(const stroke_plan *s, const himc_goal *goal)
 
 double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    stroke_plan s = frame_at(plan, plan->end, goal->spot, goal->normal);
     double T = himc_gesture_time(&goal->gesture, s.height.h);
     double move = himc_move_time(distance_to(&s, goal), GENTLE_MOVE) + goal->gesture.down;
     return fmax(T, fmax(move, plan->at_home ? LEAVE_HOME_TIME : 0));
@@ -256,7 +257,7 @@ double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 
 double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
+    stroke_plan s = frame_at(plan, plan->end, goal->spot, goal->normal);
     double T = HURRY_SHARE * himc_gesture_time(&goal->gesture, s.height.h);
     if (s.height.h >= RAISED_SHARE * goal->gesture.height)
         T = fmin(T, RAISED_TIME);
@@ -274,16 +275,21 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
     return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HARDEST_MOVE) <= T;
 }
 
+bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
+{
+    stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);
+    return is_possible(&s, goal);
+}
+
 bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = frame_at_end(plan, goal->spot, goal->normal);
-    return is_possible(&s, goal);
+    return himc_hand_can_strike_from(plan, plan->end, goal);
 }
 
 bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)
 {
     himc_vec3 way = himc_vec3_sub(first->spot, second->spot);
-    stroke_plan s = {.height_end = first->time + HIMC_CONTACT_TIME};
+    stroke_plan s = {.height_end = himc_goal_end(first)};
     s.height.h = himc_vec3_dot(second->normal, way);
     s.path.x = himc_vec3_madd(first->spot, -s.height.h, second->normal);
     return is_possible(&s, second);
@@ -319,6 +325,18 @@ static void fall(stroke_plan *s, double t, const himc_gesture *g, bool from_apex
     himc_height_profile_to(s, t, (height_state){0, -g->speed, 0});
 }
 
+/// The predicted contact; before the rebound from a bounce the hand stays level.
+static void contact(stroke_plan *s, const himc_goal *goal, double speed)
+{
+    double end = himc_goal_end(goal), rebound = PREDICTED_RESTITUTION * speed;
+    if (goal->hold > 0) {
+        himc_height_profile_to(s, goal->time + HIMC_CONTACT_TIME, (height_state){0, 0, 0});
+        himc_height_profile_to(s, end - HIMC_CONTACT_TIME, (height_state){0, 0, 0});
+        rebound *= BOUNCE_RATIO;
+    }
+    himc_height_profile_to(s, end, (height_state){0, rebound, 0});
+}
+
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
     stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
@@ -337,8 +355,7 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
             himc_height_profile_to(&s, top + g.dwell, s.height);
     }
     fall(&s, goal->time, &g, from_apex);
-    himc_height_profile_to(&s, goal->time + HIMC_CONTACT_TIME,
-                           (height_state){0, PREDICTED_RESTITUTION * g.speed, 0});
+    contact(&s, goal, g.speed);
     swing(&s, goal, &g, begin);
     plan_finish(&s);
     plan->last = *goal;

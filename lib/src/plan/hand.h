@@ -12,6 +12,7 @@ typedef struct himc_goal {
     himc_vec3 normal; ///< of the head, up
     himc_vec3 back;   ///< unit vector in the head's plane towards the player
     himc_gesture gesture;
+    double hold; ///< after the touch the tip bounces for so long, the hand at its height (s)
 } himc_goal;
 
 /// The tip's motion is the sum of three splines: along the head's plane, above it, and a lift over
@@ -29,6 +30,12 @@ typedef struct himc_hand_plan {
 /// Length of a predicted contact, touch to separation (s). Chosen: simulated contacts of
 /// patches/improvisation.txt last 6.3 to 10.4 ms.
 #define HIMC_CONTACT_TIME 0.007
+
+/// End of the goal's predicted contact, or of its bounces (s).
+static inline double himc_goal_end(const himc_goal *goal)
+{
+    return goal->time + HIMC_CONTACT_TIME + goal->hold;
+}
 
 /// At rest at `home` from time t on.
 HIMC_RT void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home);
@@ -58,6 +65,9 @@ HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal 
 
 /// True if a tip can reach the goal in time without superhuman speed or acceleration.
 HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
+
+/// True if the tip could do so if its plan were cut at t.
+HIMC_RT bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal);
 
 /// True if the tip can reach the second goal so after it has played the first.
 HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second);

@@ -100,6 +100,14 @@ void himc_planner_set_grip(himc_planner *planner, int grip)
     planner->grip = grip;
 }
 
+void himc_planner_set_servo(himc_planner *planner, bool servo)
+{
+    if (planner->servo == servo)
+        return;
+    planner->servo = servo;
+    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
+}
+
 void himc_planner_set_human(himc_planner *planner, himc_human human)
 {
     planner->human = human;
@@ -115,7 +123,7 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
     double t = planner->now + PLANNER_AHEAD;
     himc_planner_cut(planner, hand, t);
     double beat = part->list[at].stroke.beat,
-           time = himc_planner_score_time(score, part->round, beat);
+           time = himc_planner_score_time(score, part->round, beat) - part->list[at].stroke.early;
     if (at < part->next && time > planner->hand[hand].plan.end) {
         himc_planner_score_go(score, hand, at, part->round);
     } else if (at < part->next && !score->loop) {
@@ -189,14 +197,15 @@ void himc_planner_clear(himc_planner *planner)
     himc_planner_notes_begin(&planner->notes);
 }
 
-/// Begins at score->beat; the hands have been cut.
-static void start(himc_planner *planner, double t)
+/// Begins at score->beat; the hands have been cut. If the music was `running`, listeners miss the
+/// time that the first stroke needs.
+static void start(himc_planner *planner, double t, bool running)
 {
     planner_score *score = &planner->score;
     himc_planner_score_start(score, t);
     double late = himc_planner_lateness(planner);
     himc_planner_score_delay(score, late);
-    if (late > LATENESS_NOTED)
+    if (running && late > LATENESS_NOTED)
         himc_planner_say(&planner->notes, PLANNER_LATE,
                          "beat %g is %.2g s late: the first stroke must be prepared", score->beat,
                          late);
@@ -212,7 +221,7 @@ void himc_planner_play(himc_planner *planner, double t)
         himc_planner_score_seek(score, 0);
     himc_planner_notes_begin(&planner->notes);
     himc_planner_cut_both(planner, t);
-    start(planner, t);
+    start(planner, t, false);
 }
 
 void himc_planner_stop(himc_planner *planner, double t)
@@ -238,7 +247,7 @@ void himc_planner_seek(himc_planner *planner, double t, double beat)
     if (!planner->score.playing)
         return;
     himc_planner_cut_both(planner, t);
-    start(planner, t);
+    start(planner, t, true);
 }
 
 void himc_planner_loop(himc_planner *planner, double t, bool on)
@@ -291,6 +300,14 @@ double himc_planner_beat(const himc_planner *planner, double t)
     double beat = himc_planner_score_beat_at(score, t);
     return t < score->origin + himc_planner_score_round_length(score) ? fmax(beat, score->beat)
                                                                       : beat;
+}
+
+bool himc_planner_is_preparing(const himc_planner *planner, double t)
+{
+    const planner_score *score = &planner->score;
+    return score->playing && score->past == 0 &&
+           t < score->origin + himc_planner_score_round_length(score) &&
+           himc_planner_score_beat_at(score, t) < score->beat - BEAT_ROUNDING;
 }
 
 double himc_planner_end(const himc_planner *planner)

@@ -28,6 +28,14 @@ himc_planner_config himc_planner_default(void);
 
 typedef struct himc_planner himc_planner;
 
+/// A stroke that is asked for while it happens.
+typedef struct himc_hit {
+    const himc_stroke *stroke; ///< its beat is ignored; borrowed
+    int drum;
+    double at;  ///< time of touch (s)
+    bool alone; ///< no other hand takes it
+} himc_hit;
+
 /// A line for the user.
 typedef struct himc_planner_note {
     char text[160];
@@ -54,6 +62,9 @@ HIMC_RT void himc_planner_clear_units(himc_planner *planner);
 /// Units of this grip (himc_grip) are preferred.
 HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
 
+/// Strokes bounce that shall, or have one contact each (servo).
+HIMC_RT void himc_planner_set_servo(himc_planner *planner, bool servo);
+
 /// Strokes that can still be changed vary so from now on; hits are counted from 0 again.
 HIMC_RT void himc_planner_set_human(himc_planner *planner, himc_human human);
 
@@ -72,13 +83,14 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
 void himc_planner_clear(himc_planner *planner);
 
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been
-/// played; does nothing while strokes are still to come. If the first stroke cannot be prepared in
-/// time, all beats are delayed by the missing time, and a note says so.
+/// played; does nothing while strokes are still to come. The first beat waits until the first stroke
+/// can be prepared.
 HIMC_RT void himc_planner_play(himc_planner *planner, double t);
 /// Stops. A stroke less than 80 ms away is still played, waiting hits are dropped. `play` goes on
 /// from this beat.
 HIMC_RT void himc_planner_stop(himc_planner *planner, double t);
-/// Goes to a beat, playing or not.
+/// Goes to a beat, playing or not. If it plays, and the first stroke there cannot be prepared in
+/// time, a note says by how much all beats are late.
 HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
 /// If `on`, the score and its tempo map begin again at the whole beat after the last stroke. If
 /// not, the round under way is the last.
@@ -98,8 +110,15 @@ HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 
 /// A stroke as soon as the gesture allows, at least 0.12 s from any other of that hand. Returns the
 /// time of its touch (s); infinity if it is given up, because four wait already or there is no gap.
+/// HIMC_HAND_ANY: the nearer and better rested hand plays it.
 HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke,
                                 int drum);
+/// A hit that touches at its time, as strong as the time until then allows: in a hurry it is
+/// softer, and a soft one that must fall far is louder. The hand asked for plays it; the other one
+/// if that has less than 60 ms for it or cannot get there; of HIMC_HAND_ANY the nearer and better
+/// rested. Returns the time, varied as by himc_planner_set_human; infinity if no hand can play it:
+/// it is given up, and a note counts it.
+HIMC_RT double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit);
 /// A live target: the tip goes there smoothly and stays until the next target or stroke. Targets
 /// within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows one period late and
 /// comes to rest when the stream ends. A stroke less than 0.6 s away is played first.
@@ -130,6 +149,8 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
+/// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
+HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
 /// Time at which all has been played and the tips are at rest again (s). Infinite while stopped or
 /// in a loop.
 HIMC_RT double himc_planner_end(const himc_planner *planner);

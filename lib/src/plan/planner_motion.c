@@ -15,6 +15,7 @@
 /// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
+#include "plan/bounce.h"
 #include "base/format.h"
 #include "base/head_frame.h"
 
@@ -40,6 +41,11 @@
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
 #define TARGET_STROKE 0.6   // a stroke so near is prepared, live targets are not followed (s)
+
+// of the time to the hand's next stroke, at most; chosen: contacts of a double roll are even, and a
+// buzz ends when the other hand has struck
+#define DOUBLE_SHARE 0.25
+#define BUZZ_SHARE 0.55
 
 // the goal; chosen: half a mallet's radius, a mallet that does not touch the rim of a usual head,
 // and a unit of another spot further off than any of another speed, of another grip further still
@@ -113,6 +119,19 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
                 : himc_gesture_of(stroke->nuance, stroke->dynamic);
 }
 
+/// The gesture, no faster than fingers can turn the stick for its bounces.
+static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *stroke)
+{
+    himc_gesture g = gesture_of(planner, stroke);
+    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
+    if (g.speed <= most)
+        return g;
+    himc_planner_say(&planner->notes, PLANNER_SOFTER,
+                     "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
+                     stroke->bounce_time, most);
+    return himc_gesture_scale(g, most / g.speed);
+}
+
 /// Moves a place into the part of a head that is struck; true if it was beyond.
 static bool keep_inside(const himc_head_frame *head, double *x, double *y)
 {
@@ -146,7 +165,8 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
                        .spot = tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
                        .back = himc_vec3_scale(himc_head_frame_away(head), -1),
-                       .gesture = gesture_of(planner, stroke)};
+                       .gesture = bouncing_gesture(planner, stroke),
+                       .hold = stroke->bounces ? stroke->bounce_time : 0};
 }
 
 /// Lets the goal differ from the written one as a player's would.
@@ -170,11 +190,25 @@ static void vary(const himc_planner *planner, timed_stroke *s)
         s->goal.time += v->late;
 }
 
-/// A reassigned stroke keeps its beat, a hit its time.
-static double waiting_time(const himc_planner *planner, const timed_stroke *s)
+double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
-    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat)
+    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat) -
+                               s->stroke.early
                          : s->goal.time;
+}
+
+/// Bounces leave time for the hand's next stroke; none with the servo grip.
+static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t)
+{
+    planner_due after;
+    himc_stroke *stroke = &s->stroke;
+    if (planner->servo)
+        stroke->bounces = 0;
+    if (stroke->bounces == 0 || s->index < 0 ||
+        !himc_planner_score_next(&planner->score, stroke->hand, 1, &after))
+        return;
+    double share = stroke->bounces == HIMC_BUZZ ? BUZZ_SHARE : DOUBLE_SHARE;
+    stroke->bounce_time = fmin(stroke->bounce_time, share * (after.time - t));
 }
 
 /// The next stroke of a hand, of the score or waiting; false if there is none.
@@ -184,9 +218,9 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     planner_due due;
     bool scored = himc_planner_score_next(&planner->score, hand, 0, &due);
     double t = scored ? due.time : HUGE_VAL;
-    if (h->waiting_count > 0 && waiting_time(planner, &h->waiting[0]) < t) {
+    if (h->waiting_count > 0 && himc_planner_waiting_time(planner, &h->waiting[0]) < t) {
         *next = h->waiting[0];
-        t = waiting_time(planner, next);
+        t = himc_planner_waiting_time(planner, next);
     } else if (scored) {
         *next = (timed_stroke){.stroke = due.stroke->stroke,
                                .drum = due.stroke->drum,
@@ -195,6 +229,7 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     } else {
         return false;
     }
+    fit_bounces(planner, next, t);
     next->written = himc_planner_goal(planner, &next->stroke, next->drum, t);
     next->goal = next->written;
     next->varied = false;
@@ -232,9 +267,9 @@ static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *
     h->waiting[0].goal = s->written;
 }
 
-/// Lets a stroke wait, in the order of time.
-static void queue(planner_hand *h, const timed_stroke *s)
+void himc_planner_queue(himc_planner *planner, const timed_stroke *s)
 {
+    planner_hand *h = &planner->hand[s->stroke.hand];
     int i = h->waiting_count++;
     for (; i > 0 && h->waiting[i - 1].goal.time > s->goal.time; i--)
         h->waiting[i] = h->waiting[i - 1];
@@ -258,6 +293,11 @@ static double beyond(const himc_planner *planner, himc_hand hand, const himc_goa
 {
     const himc_planner_config *c = &planner->config;
     return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
+}
+
+bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, const himc_goal *goal)
+{
+    return beyond(planner, hand, goal) <= UNREACHED;
 }
 
 static himc_vec3 rest_over(const himc_planner *planner, himc_hand hand, int drum)
@@ -360,7 +400,7 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
 {
     himc_hand hand = s->stroke.hand;
     timed_stroke after;
-    if (beyond(planner, hand, &s->goal) > UNREACHED ||
+    if (!himc_planner_reaches(planner, hand, &s->goal) ||
         !himc_hand_can_strike(&planner->hand[hand].plan, &s->goal))
         return false;
     return !next_stroke(planner, hand, &after) || himc_hand_can_follow(&s->goal, &after.written) ||
@@ -470,7 +510,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     }
     double begin = h->plan.end;
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
-    if (beyond(planner, s->stroke.hand, &s->goal) > UNREACHED)
+    if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
     if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
         return NO_TIME;
@@ -495,7 +535,7 @@ static plan_result check_following(himc_planner *planner, himc_hand hand, timed_
     if (!next_stroke(planner, hand, following) || following->index < 0 ||
         is_settled(planner, following))
         return PLANNED;
-    if (beyond(planner, hand, &following->written) > UNREACHED)
+    if (!himc_planner_reaches(planner, hand, &following->written))
         return TOO_FAR;
     return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
 }
@@ -566,7 +606,7 @@ static void cut_plan(himc_planner *planner, himc_hand hand, double t)
     unplan_after(planner, hand, t, COMMIT_TIME);
     const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
     if (last && !last->separated)
-        t = fmax(t, last->goal.time + HIMC_CONTACT_TIME);
+        t = fmax(t, himc_goal_end(&last->goal));
     himc_hand_cut(&h->plan, t);
     if (!last)
         return;
@@ -574,8 +614,7 @@ static void cut_plan(himc_planner *planner, himc_hand hand, double t)
     h->plan.rebounding = h->plan.end - last->goal.time < BOUNCE_TIME;
 }
 
-/// Moves a time behind any stroke of the hand that is too near; false if there is no gap.
-static bool find_gap(const himc_planner *planner, himc_hand hand, double *t)
+bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *t)
 {
     const planner_hand *h = &planner->hand[hand];
     for (int tries = 0; tries < MOST_TRIES; tries++) {
@@ -602,8 +641,8 @@ static bool can_take(const himc_planner *planner, himc_hand hand, const timed_st
 {
     const planner_hand *h = &planner->hand[hand];
     double t = s->goal.time, gap = t;
-    return h->waiting_count < PLANNER_WAITING && beyond(planner, hand, &s->goal) <= UNREACHED &&
-           find_gap(planner, hand, &gap) && gap == t &&
+    return h->waiting_count < PLANNER_WAITING && himc_planner_reaches(planner, hand, &s->goal) &&
+           himc_planner_find_gap(planner, hand, &gap) && gap == t &&
            t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
 }
 
@@ -625,7 +664,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s)
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
     bool can = can_take(planner, other, &taken);
     if (can)
-        queue(h, &taken);
+        himc_planner_queue(planner, &taken);
     extend_alone(planner, other, from + PLANNER_HORIZON);
     return can;
 }
@@ -748,28 +787,6 @@ int himc_planner_last_round(const himc_planner *planner, int round)
     return round;
 }
 
-double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke, int drum)
-{
-    planner_hand *h = &planner->hand[stroke->hand];
-    if (drum < 0 || drum >= HIMC_DRUMS || !isfinite(t))
-        return HUGE_VAL;
-    himc_planner_cut(planner, stroke->hand, t);
-    timed_stroke hit = {.stroke = *stroke, .drum = drum, .index = -1};
-    hit.goal = himc_planner_goal(planner, stroke, drum, t);
-    hit.variation = himc_human_hit(&planner->human, stroke->hand, planner->hits++);
-    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
-    if (h->waiting_count == PLANNER_WAITING || !find_gap(planner, stroke->hand, &touch)) {
-        himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
-                         himc_hand_name(stroke->hand));
-        touch = HUGE_VAL;
-    } else {
-        hit.goal.time = touch;
-        queue(h, &hit);
-    }
-    himc_planner_extend(planner, stroke->hand, t + PLANNER_HORIZON);
-    return touch;
-}
-
 /// Whether a stroke of the hand is so near that it must be prepared now.
 static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t)
 {
@@ -823,6 +840,7 @@ void himc_planner_advance(himc_planner *planner, double t)
         drop_past(&planner->hand[hand], planner->now);
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
+    himc_planner_notes_tell_hits(&planner->notes, planner->now);
 }
 
 himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, double t)

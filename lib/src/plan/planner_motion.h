@@ -1,7 +1,8 @@
 /// planner_motion.h: the state of the planner, and the functions that plan motion from it.
 ///
 /// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
-/// score, planner_notes.c the notes, and planner_motion.c the hands and the clock.
+/// score, planner_notes.c the notes, planner_motion.c the hands and the clock, and planner_hits.c
+/// the strokes that are asked for while they happen.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
 
@@ -11,7 +12,8 @@
 #include "plan/planner_notes.h"
 #include "plan/planner_score.h"
 
-#define PLANNER_WAITING 4  ///< strokes that wait for a hand; chosen: a player remembers no more
+/// Strokes that wait for a hand; chosen: as many as can be planned, so that all can be put back.
+#define PLANNER_WAITING 16
 #define PLANNER_PLANNED 16 ///< strokes planned ahead; chosen: never reached at 40 ms a stroke
 /// Motion is planned so far beyond the last advance at least (s); chosen: twice PLANNER_COMMIT.
 #define PLANNER_HORIZON 0.15
@@ -51,6 +53,7 @@ struct himc_planner {
     bool known[HIMC_DRUMS]; ///< drums that have been set
     himc_unit unit[HIMC_UNITS];
     int unit_count, grip;
+    bool servo; ///< no stroke bounces
     himc_human human;
     planner_score score;
     planner_notes notes;
@@ -68,6 +71,15 @@ HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
+/// True if the hand reaches a stroke's spot.
+HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand,
+                                  const himc_goal *goal);
+/// Time of a waiting stroke (s): a reassigned one keeps its beat, a hit its time.
+HIMC_RT double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *stroke);
+/// Lets a stroke wait for its hand, in the order of time; there must be room.
+HIMC_RT void himc_planner_queue(himc_planner *planner, const timed_stroke *stroke);
+/// Moves a time behind any stroke of the hand that is too near; false if there is no gap.
+HIMC_RT bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *t);
 /// Takes back the strokes planned after t that can still be changed; the plan then ends at t or
 /// soon after.
 HIMC_RT void himc_planner_cut(himc_planner *planner, himc_hand hand, double t);

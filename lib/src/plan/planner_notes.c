@@ -11,6 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define QUIET_TIME 1.0 // chosen: longer than the pauses in a passage, short for a player (s)
+
 static void put(planner_notes *notes, const char *format, va_list args)
 {
     if (notes->count == PLANNER_NOTES) {
@@ -54,6 +56,32 @@ static void say_always(planner_notes *notes, const char *format, ...)
     va_start(args, format);
     put(notes, format, args);
     va_end(args);
+}
+
+void himc_planner_notes_hit(planner_notes *notes, double t, double late)
+{
+    notes->last_hit = t;
+    if (isinf(late)) {
+        notes->hits_lost++;
+        return;
+    }
+    notes->hits_late++;
+    notes->latest = fmax(notes->latest, late);
+}
+
+void himc_planner_notes_tell_hits(planner_notes *notes, double t)
+{
+    char lost[32] = "", late[48] = "";
+    if (notes->hits_lost + notes->hits_late == 0 || t < notes->last_hit + QUIET_TIME)
+        return;
+    if (notes->hits_lost > 0)
+        himc_format(lost, sizeof lost, " %d given up,", notes->hits_lost);
+    if (notes->hits_late > 0)
+        himc_format(late, sizeof late, " %d late by up to %.0f ms,", notes->hits_late,
+                    1e3 * notes->latest);
+    say_always(notes, "hit:%s%s no hand had the time", lost, late);
+    notes->hits_lost = notes->hits_late = 0;
+    notes->latest = 0;
 }
 
 void himc_planner_notes_sum_up(planner_notes *notes)

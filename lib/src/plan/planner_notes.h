@@ -14,6 +14,7 @@ typedef enum planner_kind {
     PLANNER_CROWDED,
     PLANNER_OUTSIDE,
     PLANNER_MEET,
+    PLANNER_SOFTER,
     PLANNER_KINDS
 } planner_kind;
 
@@ -23,6 +24,9 @@ typedef struct planner_notes {
     bool said[PLANNER_KINDS];   ///< since play
     int strokes[PLANNER_KINDS]; ///< counted since play
     int given_up;               ///< strokes given up since himc_planner_notes_given_up
+    int hits_lost, hits_late;   ///< hits given up and late since the last line about them ...
+    double latest;              ///< ... by so much at most (s) ...
+    double last_hit;            ///< ... the last of them at this time (s)
 } planner_notes;
 
 /// Adds a line, unless one of its kind has been added since play.
@@ -37,6 +41,12 @@ HIMC_RT void himc_planner_notes_begin(planner_notes *notes);
 
 /// Adds a line of the counts, if there is more than one stroke in them.
 HIMC_RT void himc_planner_notes_sum_up(planner_notes *notes);
+
+/// Counts a hit at t for which no hand has time until it is so `late` (s); infinite: given up.
+HIMC_RT void himc_planner_notes_hit(planner_notes *notes, double t, double late);
+
+/// One line of the counts of these hits, when there have been no more for a second.
+HIMC_RT void himc_planner_notes_tell_hits(planner_notes *notes, double t);
 
 /// Takes the oldest line; false if there is none.
 HIMC_RT bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note);

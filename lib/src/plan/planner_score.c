@@ -15,7 +15,6 @@
 #define CLOSEST_STROKES 0.04     // of one hand (s); chosen: faster than any roll of one hand
 #define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
 #define FIRST_ROOM 256           // strokes; then the room doubles
-#define BEAT_ROUNDING 1e-9       // of a beat to go to (beats)
 #define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
 #define MOST_ROUNDS 1e9          // they fit an int
 
@@ -39,6 +38,12 @@ static double seconds_to(const planner_score *score, double beat)
     return himc_score_seconds(score->tempi, score->tempo_count, beat);
 }
 
+/// Time of a stroke from beat 0 (s).
+static double seconds_of(const planner_score *score, const himc_stroke *stroke)
+{
+    return seconds_to(score, stroke->beat) - stroke->early;
+}
+
 /// The first stroke after `beat`, or with `from` the first at it or after it.
 static int first_after(const planner_part *part, double beat, bool from)
 {
@@ -59,7 +64,29 @@ static double gap(const planner_score *score, double a, double b)
     return fabs(seconds_to(score, b) - seconds_to(score, a));
 }
 
-static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum, int at,
+/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
+static int place_of(const planner_part *part, const himc_stroke *stroke)
+{
+    int at = first_after(part, stroke->beat, false);
+    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
+           part->list[at - 1].stroke.early < stroke->early)
+        at--;
+    return at;
+}
+
+double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)
+{
+    const planner_part *part = &score->part[stroke->hand];
+    int at = place_of(part, stroke);
+    double least = HUGE_VAL, time = seconds_of(score, stroke);
+    if (at > 0)
+        least = time - seconds_of(score, &part->list[at - 1].stroke);
+    if (at < part->count)
+        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
+    return least;
+}
+
+static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum,
                          himc_error *error)
 {
     const planner_part *part = &score->part[stroke->hand];
@@ -69,11 +96,7 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     if (part->count >= MOST_HAND_STROKES)
         return himc_error_set(error, "stroke: one too many, allowed %d for a hand",
                               MOST_HAND_STROKES);
-    double least = HUGE_VAL;
-    if (at > 0)
-        least = gap(score, part->list[at - 1].stroke.beat, stroke->beat);
-    if (at < part->count)
-        least = fmin(least, gap(score, part->list[at].stroke.beat, stroke->beat));
+    double least = himc_planner_score_room(score, stroke);
     if (least < CLOSEST_STROKES)
         return himc_error_set(
             error,
@@ -99,8 +122,8 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = first_after(part, stroke->beat, false);
-    return check_stroke(score, stroke, drum, at, error) && grow(part, error) ? at : -1;
+    int at = place_of(part, stroke);
+    return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
 }
 
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
@@ -244,7 +267,8 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
     if (!score->loop && due->round > score->rounds)
         return false;
     due->stroke = &part->list[due->index];
-    due->time = himc_planner_score_time(score, due->round, due->stroke->stroke.beat);
+    due->time = himc_planner_score_time(score, due->round, due->stroke->stroke.beat) -
+                due->stroke->stroke.early;
     return true;
 }
 
@@ -318,6 +342,18 @@ double himc_planner_score_gap(const planner_score *score, himc_hand hand, double
     double from = after < part->count ? gap(score, beat, part->list[after].stroke.beat)
                                       : gap(score, beat, length) + gap(score, 0, first);
     return fmin(to, from);
+}
+
+double himc_planner_score_since(const planner_score *score, double beat)
+{
+    double since = HUGE_VAL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_part *part = &score->part[hand];
+        int before = first_after(part, beat, true) - 1;
+        if (before >= 0)
+            since = fmin(since, gap(score, part->list[before].stroke.beat, beat));
+    }
+    return since;
 }
 
 planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat)

@@ -5,6 +5,8 @@
 
 #include "himc/score.h"
 
+#define BEAT_ROUNDING 1e-9 ///< of a time in seconds, in beats
+
 typedef struct planner_stroke {
     himc_stroke stroke;
     int drum;
@@ -117,6 +119,10 @@ HIMC_RT double himc_planner_score_period(const planner_score *score, double beat
 /// Time between a beat and the hand's nearest stroke on another beat, as in a loop (s); infinite
 /// without strokes.
 HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat);
+/// Time from a stroke to the nearest one of its hand (s); infinite without one.
+HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
+/// Time since the last stroke of either hand before a beat (s); infinite without one.
+HIMC_RT double himc_planner_score_since(const planner_score *score, double beat);
 /// A walk that begins at a beat of a round ...
 HIMC_RT planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat);
 /// ... and gives the onsets at and before it, the last one first; false when there is none left.

@@ -26,9 +26,11 @@
 typedef struct reader {
     himc_score *score;
     int *stroke_line;
-    int stroke_room, tempo_room, line_room;
+    int stroke_room, tempo_room, line_room, change_room;
     himc_command command; ///< of the current statement
     int line;
+    bool timed;  ///< the statement begins with `at BEAT` ...
+    double beat; ///< ... this one
     himc_error *error;
 } reader;
 
@@ -86,39 +88,54 @@ static bool add_tempo(reader *r)
     return true;
 }
 
-/// A command points into itself, so lines are copied one by one and not moved.
-static bool grow_lines(reader *r)
+/// Lines, as they grow.
+typedef struct line_list {
+    himc_score_line **lines;
+    int *count, *room;
+} line_list;
+
+static void copy_line(himc_score_line *to, const himc_score_line *from)
 {
-    himc_score *score = r->score;
-    if (score->line_count < r->line_room)
+    memcpy(to->drum, from->drum, sizeof to->drum);
+    to->line = from->line;
+    to->beat = from->beat;
+    himc_command_copy(&to->command, &from->command);
+}
+
+/// A command points into itself, so lines are copied one by one and not moved.
+static bool grow_lines(const line_list *list, himc_error *error)
+{
+    if (*list->count < *list->room)
         return true;
-    int wanted = r->line_room ? 2 * r->line_room : 16;
+    int wanted = *list->room ? 2 * *list->room : 16;
     himc_score_line *bigger = malloc((size_t)wanted * sizeof *bigger);
     if (!bigger)
-        return himc_error_set(r->error, "out of memory for %d lines", wanted);
-    for (int i = 0; i < score->line_count; i++) {
-        memcpy(bigger[i].drum, score->lines[i].drum, sizeof bigger[i].drum);
-        bigger[i].line = score->lines[i].line;
-        himc_command_copy(&bigger[i].command, &score->lines[i].command);
-    }
-    free(score->lines);
-    score->lines = bigger;
-    r->line_room = wanted;
+        return himc_error_set(error, "out of memory for %d lines", wanted);
+    for (int i = 0; i < *list->count; i++)
+        copy_line(&bigger[i], &(*list->lines)[i]);
+    free(*list->lines);
+    *list->lines = bigger;
+    *list->room = wanted;
     return true;
 }
 
+/// The present command, for that drum, in the lines that act at once or at their beats.
 static bool add_line(reader *r, const char *drum)
 {
     himc_score *score = r->score;
-    if (score->line_count == SCORE_LINES_MAX)
+    line_list list = {&score->lines, &score->line_count, &r->line_room};
+    if (r->timed)
+        list = (line_list){&score->changes, &score->change_count, &r->change_room};
+    if (score->line_count + score->change_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, allowed %d besides strokes",
                               SCORE_LINES_MAX);
-    if (!grow_lines(r))
+    if (!grow_lines(&list, r->error))
         return false;
-    himc_score_line *line = &score->lines[score->line_count++];
+    himc_score_line *line = &(*list.lines)[(*list.count)++];
     snprintf(line->drum, sizeof line->drum, "%s", drum);
     himc_command_copy(&line->command, &r->command);
     line->line = r->line;
+    line->beat = r->timed ? r->beat : 0;
     return true;
 }
 
@@ -142,7 +159,28 @@ static bool read_drum_line(reader *r, const himc_atom *atom, int count)
         return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
     if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2, r->error))
         return himc_error_prefix(r->error, "%s", atom[0].symbol);
+    const himc_command_row *row = himc_command_table((int)r->command.id);
+    if (r->timed && !(row->marks & HIMC_AT_BEAT))
+        return himc_error_set(r->error,
+                              "at: %s, allowed what changes a head: tune, tension, damp, "
+                              "decay, glide",
+                              row->name);
     return add_line(r, atom[0].symbol);
+}
+
+/// "at 12 kettle tune 110": a line for a drum, at a beat.
+static bool read_timed_line(reader *r, const himc_atom *atom, int count)
+{
+    const himc_argument *beat = himc_argument_find("BEAT", NULL);
+    if (count < 4 || atom[2].kind != HIMC_ATOM_SYMBOL || atom[3].kind != HIMC_ATOM_SYMBOL)
+        return himc_error_set(r->error, "at: allowed at BEAT DRUM COMMAND ...");
+    if (!himc_argument_accepts(beat, &atom[1]))
+        return himc_error_set(r->error, "at: BEAT: allowed %g .. %g", beat->low, beat->high);
+    r->timed = true;
+    r->beat = atom[1].number;
+    bool good = read_drum_line(r, atom + 2, count - 2);
+    r->timed = false;
+    return good;
 }
 
 static bool read_performer_line(reader *r, const himc_atom *atom, int count)
@@ -154,7 +192,11 @@ static bool read_performer_line(reader *r, const himc_atom *atom, int count)
     if (row->marks & HIMC_NOT_IN_SCORE)
         return himc_error_set(r->error, "%s: not allowed in a score", row->name);
     switch (row->id) {
-    case HIMC_COMMAND_STROKE: return add_stroke(r);
+    case HIMC_COMMAND_STROKE:
+    case HIMC_COMMAND_ROLL:
+    case HIMC_COMMAND_FLAM:
+    case HIMC_COMMAND_DRAG:
+    case HIMC_COMMAND_RUFF: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
     default: return add_line(r, "");
     }
@@ -168,6 +210,8 @@ static bool read_statement(reader *r, const himc_text_statement *s)
         return true;
     if (s->overflow)
         return himc_error_set(r->error, "more than %zu characters without a ;", s->size);
+    if (strcmp(atom[0].symbol, "at") == 0)
+        return read_timed_line(r, atom, count);
     bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
     if (two_words &&
         (himc_command_find(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
@@ -242,6 +286,32 @@ static bool sort_strokes(reader *r)
     return true;
 }
 
+/// Changes may stand in any order; those of one beat act as they stand.
+static bool sort_changes(reader *r)
+{
+    himc_score *score = r->score;
+    int count = score->change_count;
+    bool sorted = true;
+    for (int i = 1; i < count; i++)
+        sorted = sorted && score->changes[i].beat >= score->changes[i - 1].beat;
+    if (sorted)
+        return true;
+    sort_key *key = malloc((size_t)count * sizeof *key);
+    himc_score_line *lines = malloc((size_t)count * sizeof *lines);
+    if (!key || !lines) {
+        free(key), free(lines);
+        return himc_error_set(r->error, "out of memory for %d lines", count);
+    }
+    for (int i = 0; i < count; i++)
+        key[i] = (sort_key){score->changes[i].beat, i};
+    qsort(key, (size_t)count, sizeof *key, by_beat);
+    for (int i = 0; i < count; i++)
+        copy_line(&lines[i], &score->changes[key[i].index]);
+    free(key), free(score->changes);
+    score->changes = lines;
+    return true;
+}
+
 /// One hand cannot strike twice at once.
 static bool check_playable(reader *r)
 {
@@ -258,6 +328,8 @@ static bool check_playable(reader *r)
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
         r->line = r->stroke_line[i];
+        if (stroke->ornament >= HIMC_ROLL_SINGLE)
+            continue; // it leaves out what does not fit (ornament.h)
         if (seconds - last[stroke->hand] < STROKE_INTERVAL_MIN)
             return himc_error_set(
                 r->error,
@@ -281,7 +353,7 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
         return NULL;
     }
     r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
-    good = read_all(&r, text) && sort_strokes(&r) && check_playable(&r);
+    good = read_all(&r, text) && sort_strokes(&r) && sort_changes(&r) && check_playable(&r);
     free(r.stroke_line);
     if (good)
         return r.score;
@@ -297,6 +369,7 @@ void himc_score_free(himc_score *score)
     free(score->strokes);
     free(score->tempi);
     free(score->lines);
+    free(score->changes);
     free(score->report);
     free(score);
 }

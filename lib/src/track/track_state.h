@@ -2,10 +2,10 @@
 #ifndef HIMC_TRACK_STATE_H
 #define HIMC_TRACK_STATE_H
 
-#include "plan/track.h"
+#include "track/track.h"
 
 #include "base/interpolate.h"
-#include "plan/track_fit.h"
+#include "track/track_fit.h"
 
 /// From a stop to rest (s). Chosen: a stick at 5 m/s halts with less than 5 g.
 #define HIMC_TRACK_HALT 0.4
@@ -29,6 +29,7 @@ typedef struct bridge {
 /// Written by track.c alone.
 typedef struct hand_track {
     bool present;
+    himc_vec3 *captured;     ///< as the take has it, moved to the head (frames) (m)
     himc_target *frame;      ///< (frames)
     bridge *bridges, *built; ///< as they are played, as they were built
     int bridge_count;

@@ -2,7 +2,7 @@
 ///
 /// From rate 0 at -R/2 to rate 1 at R/2 in the time R the quintic passes over R/2 of the take, so
 /// that between the two ramps the take's time is the time itself.
-#include "plan/track_time.h"
+#include "track/track_time.h"
 
 #define WARP_BISECTIONS 50 // from 0.2 s to rounding
 

@@ -45,6 +45,9 @@ int himc_track_strikes(const himc_track *track, himc_hand hand);
 /// State of the tip at `t` (s from the take's start): on its approach before 0, at rest soon after
 /// the end.
 HIMC_RT himc_target himc_track_target(const himc_track *track, himc_hand hand, double t);
+/// Place of the tip in the capture itself, with its strikes, at `t` (m); false before the take's
+/// first frame, after its last, after a stop, and for a hand that is not in it.
+HIMC_RT bool himc_track_captured(const himc_track *track, himc_hand hand, double t, himc_vec3 *x);
 /// True if the take moves joints.
 bool himc_track_has_posture(const himc_track *track);
 /// Replaces the joints in `motion` by the captured ones at `t`, as far as the take has them; arms

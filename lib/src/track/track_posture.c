@@ -12,8 +12,8 @@
 /// the mode that follows joints as published, joints are neither cut nor bent: a second fit, of all
 /// frames. An arm whose tip is the end of a finger holds no stick: bent to the tip it would be out
 /// of shape, so it has the natural posture instead.
-#include "plan/track_state.h"
-#include "plan/track_time.h"
+#include "track/track_state.h"
+#include "track/track_time.h"
 
 #include "base/difference.h"
 #include "body/stretch.h"

@@ -6,8 +6,8 @@
 /// good frame to the head's plane, with an acceleration that fades to zero there; this gives the
 /// time of contact. Then a quintic leads back to the capture; at separation another one, from the
 /// measured state, replaces it.
-#include "plan/track_state.h"
-#include "plan/track_time.h"
+#include "track/track_state.h"
+#include "track/track_time.h"
 
 #include "base/noise.h"
 #include "capture/player.h"
@@ -27,6 +27,8 @@
 #define REJOIN_DISTANCE 0.02 // ... but from this much further off than a stick goes in it (m) ...
 #define REJOIN_PEAK 250.0    // ... as long as this peak acceleration takes (m/s^2)
 #define FASTEST_STICK 12.0   // a stick that leaves the head faster has been thrown (m/s)
+#define LATEST_REJOIN 0.1    // a capture under the head is rejoined within this time (s) ...
+#define REJOIN_HEIGHT 0.02   // ... once it is so far above (m): the way there does not dip
 #define NEXT_STRIKE_GAP 1e-3 // the way ends so much before the next bridge begins (s)
 #define LEAST_REJOIN 0.015   // with less time left the path is not changed (s)
 #define SLOWEST_REJOIN 0.2   // rate of the take's time below which nothing is replanned
@@ -136,7 +138,7 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
                        const himc_take_strike *strikes, int count, double mallet_radius)
 {
     hand_track *h = &track->hand[hand];
-    himc_vec3 *x = malloc((size_t)track->frames * sizeof *x);
+    himc_vec3 *x = h->captured = malloc((size_t)track->frames * sizeof *x);
     h->frame = calloc((size_t)track->frames, sizeof *h->frame);
     h->bridges = calloc((size_t)count + 1, sizeof *h->bridges);
     h->built = calloc((size_t)count + 1, sizeof *h->built);
@@ -149,7 +151,6 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
             make_bridge(track, h, &h->built[i], mallet_radius);
         memcpy(h->bridges, h->built, (size_t)h->bridge_count * sizeof *h->bridges);
     }
-    free(x);
     return h->present;
 }
 
@@ -223,6 +224,7 @@ void himc_track_free(himc_track *track)
     if (!track)
         return;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        free(track->hand[hand].captured);
         free(track->hand[hand].frame);
         free(track->hand[hand].bridges);
         free(track->hand[hand].built);
@@ -325,6 +327,20 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     return s;
 }
 
+bool himc_track_captured(const himc_track *track, himc_hand hand, double t, himc_vec3 *x)
+{
+    const hand_track *h = &track->hand[hand];
+    double at[3], length = himc_track_take_length(track);
+    if (!h->present || t >= track->stop || t < -0.5 * HIMC_TRACK_RAMP ||
+        t > length + 0.5 * HIMC_TRACK_RAMP)
+        return false;
+    himc_track_warp(length, t, at);
+    double u = fmin(fmax(at[0], 0), length) * track->rate;
+    int k = (int)fmin(u, track->frames - 2);
+    *x = himc_vec3_madd(h->captured[k], u - k, himc_vec3_sub(h->captured[k + 1], h->captured[k]));
+    return true;
+}
+
 bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
                         double *x, double *y)
 {
@@ -342,6 +358,19 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     *x = h->bridges[i].spot.x;
     *y = h->bridges[i].spot.y;
     return true;
+}
+
+// `t`, or if the capture is then below the level of a contact the time at which it is well above: a
+// way back to a place under the head would strike it again. A capture that stays there is pressed
+static double above_head(const himc_track *track, const hand_track *h, double t, double level)
+{
+    double least = level;
+    for (double at = t; at < t + LATEST_REJOIN; at += 1 / track->rate) {
+        if (himc_head_frame_from_world(&track->head, captured_at(track, h, at).x).z >= least)
+            return at;
+        least = level + REJOIN_HEIGHT;
+    }
+    return t;
 }
 
 void himc_track_separated(himc_track *track, himc_hand hand, double now,
@@ -362,6 +391,7 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     bridge *b = &h->bridges[i];
     double to =
         fmax(t + REJOIN_TIME, b->next / track->rate); // between last and next nothing is known
+    to = above_head(track, h, to, b->spot.z);
     himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, measured->x);
     if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
         to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);

@@ -1,7 +1,7 @@
 /// track_fit.c: local cubic fits, x(u) = c0 + c1 u + c2 u^2 + c3 u^3 by least squares over frames
 /// within +-FIT_HALF_WIDTH seconds on the same side of every strike (Savitzky and Golay 1964), so
 /// noise is smoothed before it is differentiated and no impact is smeared.
-#include "plan/track_fit.h"
+#include "track/track_fit.h"
 
 // chosen: a blow at 5 m/s loses less than 2 % of its speed, at 0.2 mm of noise less than 5 %
 // (tests/test_track.c)

@@ -1,0 +1,238 @@
+/// strike_heads.c: the planes of the drumheads that a take's sticks fall on.
+///
+/// A head is a plane, so blows lie on it however soft they are, and turns in the air do not. Speed
+/// alone cannot tell them apart: a pianissimo is slower than many a motion in the air. So speed
+/// only gives the seeds: the sharp falls above the threshold that divides the logarithms of the
+/// speeds best into two classes (Otsu 1979). Of the planes through three seeds the one with the
+/// most seeds within their tolerances is taken (RANSAC: Fischler & Bolles 1981; scored as MSAC:
+/// Torr & Zisserman 2000). Then any fall near the plane is on it, also the softest, and the plane
+/// is fitted again to all of these by weighted least squares. If a good part of the seeds lie
+/// elsewhere and agree on another plane, that is another drum.
+///
+/// The random numbers begin with the same seed each time, and no loop depends on the data but by
+/// the number of falls.
+#include "capture/strike_heads.h"
+
+#include "base/random.h"
+#include "capture/order.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// chosen by 400 synthetic takes (tests/test_take_mixed.c), where nothing else is said
+#define TRIPLES 300          // planes tried
+#define STEEPEST 0.15        // slope of a plane through three seeds; a tilted timpano's is 0.1
+#define LEAST_SEEDS 3        // with fewer all sharp falls are seeds; no fewer make another drum
+#define REFITS 5             // rounds of acceptance and fit
+#define USUAL_SLOPE 0.3      // one deviation of the slopes of drumheads
+#define BLUNT_SHARE 0.5      // of the tolerance, for falls that are not sharp
+#define OTHER_DRUM 0.2       // share of all seeds off the heads so far that is another drum's ...
+#define OTHER_DRUM_AGREE 0.6 // ... if this share of those is on one plane
+
+typedef struct seeds {
+    const himc_fall **fall;
+    int count;
+} seeds;
+
+// the value that divides sorted numbers into two classes with the largest variance between them
+static double otsu(const double *sorted, int count)
+{
+    double all = 0, low = 0, best = -1, threshold = -INFINITY;
+    for (int i = 0; i < count; i++)
+        all += sorted[i];
+    for (int i = 0; i < count - 1; i++) {
+        low += sorted[i];
+        double below = i + 1, above = count - below;
+        double apart = (all - low) / above - low / below, between = below * above * apart * apart;
+        if (between > best) {
+            best = between;
+            threshold = 0.5 * (sorted[i] + sorted[i + 1]);
+        }
+    }
+    return threshold;
+}
+
+static double dividing_speed(const himc_fall *falls, int count, double *scratch)
+{
+    for (int i = 0; i < count; i++)
+        scratch[i] = log(falls[i].speed);
+    qsort(scratch, (size_t)count, sizeof *scratch, himc_order_doubles);
+    return exp(otsu(scratch, count));
+}
+
+static void find_seeds(const himc_fall *falls, int count, double threshold, seeds *to)
+{
+    to->count = 0;
+    for (int i = 0; i < count; i++)
+        if (falls[i].sharp && falls[i].speed > threshold)
+            to->fall[to->count++] = &falls[i];
+}
+
+static double off(const himc_strike_head *head, const himc_fall *f)
+{
+    return fabs(f->x.z - himc_strike_head_at(head, f->x.x, f->x.y));
+}
+
+// the plane through three places; level through the first if they are in line or too steep
+static himc_strike_head through(himc_vec3 a, himc_vec3 b, himc_vec3 c)
+{
+    himc_vec3 n = himc_vec3_cross(himc_vec3_sub(b, a), himc_vec3_sub(c, a));
+    himc_strike_head head = {a.x, a.y, a.z, -n.x / n.z, -n.y / n.z, 0};
+    if (!(hypot(head.slope_x, head.slope_y) < STEEPEST)) // NaN in line
+        head.slope_x = head.slope_y = 0;
+    return head;
+}
+
+// of the seeds that are on no head yet; fast ones count more, so that they decide between few
+static double score(const himc_strike_head *head, const seeds *s)
+{
+    double sum = 0;
+    for (int i = 0; i < s->count; i++) {
+        double d = off(head, s->fall[i]) / s->fall[i]->within;
+        if (s->fall[i]->head < 0 && d < 1)
+            sum += s->fall[i]->speed * (1 - d * d);
+    }
+    return sum;
+}
+
+static const himc_fall *any_seed(const seeds *s, uint64_t *random)
+{
+    return s->fall[himc_random_bits(random) % (uint64_t)s->count];
+}
+
+// RANSAC: planes through three seeds, and level ones through one
+static himc_strike_head best_plane(const seeds *s)
+{
+    uint64_t random = 1;
+    double most = -1;
+    himc_strike_head best = {0};
+    for (int i = 0; i < TRIPLES; i++) {
+        himc_vec3 a = any_seed(s, &random)->x, b = any_seed(s, &random)->x,
+                  c = any_seed(s, &random)->x;
+        himc_strike_head tried = i % 2 ? through(a, b, c) : through(a, a, a);
+        double reached = score(&tried, s);
+        if (reached > most) {
+            most = reached;
+            best = tried;
+        }
+    }
+    return best;
+}
+
+static bool lies_on(const himc_strike_head *head, const himc_fall *f)
+{
+    return off(head, f) < f->within * (f->sharp ? 1 : BLUNT_SHARE);
+}
+
+typedef struct sums {
+    double w, x, y, z, xx, xy, yy, xz, yz;
+} sums;
+
+static void add(sums *s, double w, himc_vec3 x)
+{
+    s->w += w;
+    s->x += w * x.x, s->y += w * x.y, s->z += w * x.z;
+    s->xx += w * x.x * x.x, s->xy += w * x.x * x.y, s->yy += w * x.y * x.y;
+    s->xz += w * x.x * x.z, s->yz += w * x.y * x.z;
+}
+
+// least squares over the falls on head `index`, weighted by their tolerances. A slope is expected
+// to be 0 within USUAL_SLOPE, so that strikes on one spot say nothing about it
+static void fit(himc_strike_head *head, const himc_fall *falls, int count, int index)
+{
+    sums s = {0};
+    himc_vec3 middle = {head->x0, head->y0, head->height};
+    for (int i = 0; i < count; i++)
+        if (falls[i].head == index)
+            add(&s, 1 / (falls[i].within * falls[i].within), himc_vec3_sub(falls[i].x, middle));
+    if (s.w <= 0)
+        return;
+    double x = s.x / s.w, y = s.y / s.w, z = s.z / s.w, rest = 1 / (USUAL_SLOPE * USUAL_SLOPE);
+    double xx = s.xx - s.x * x + rest, xy = s.xy - s.x * y, yy = s.yy - s.y * y + rest,
+           xz = s.xz - s.x * z, yz = s.yz - s.y * z, det = xx * yy - xy * xy;
+    head->x0 += x, head->y0 += y, head->height += z;
+    head->slope_x = (xz * yy - yz * xy) / det;
+    head->slope_y = (yz * xx - xz * xy) / det;
+}
+
+// gives the head the free falls near it, and fits it to them, in turn
+static void settle(himc_strike_head *head, himc_fall *falls, int count, int index)
+{
+    for (int round = 0; round < REFITS; round++) {
+        head->strikes = 0;
+        for (int i = 0; i < count; i++) {
+            himc_fall *f = &falls[i];
+            if (f->head < 0 || f->head == index)
+                f->head = lies_on(head, f) ? index : -1;
+            head->strikes += f->head == index;
+        }
+        fit(head, falls, count, index);
+    }
+}
+
+static int seeds_on(const seeds *s, int head)
+{
+    int n = 0;
+    for (int i = 0; i < s->count; i++)
+        n += s->fall[i]->head == head;
+    return n;
+}
+
+static void drop(himc_fall *falls, int count, int head)
+{
+    for (int i = 0; i < count; i++)
+        if (falls[i].head == head)
+            falls[i].head = -1;
+}
+
+static int find_heads(himc_fall *falls, int count, const seeds *s,
+                      himc_strike_head heads[HIMC_STRIKE_HEADS])
+{
+    int n = 0;
+    for (; n < HIMC_STRIKE_HEADS; n++) {
+        int rest = seeds_on(s, -1);
+        if (rest == 0 || (n > 0 && rest <= OTHER_DRUM * s->count))
+            break;
+        heads[n] = best_plane(s);
+        settle(&heads[n], falls, count, n);
+        int on = seeds_on(s, n);
+        if (n > 0 && (on < LEAST_SEEDS || on < OTHER_DRUM_AGREE * rest)) {
+            drop(falls, count, n);
+            break;
+        }
+    }
+    return n;
+}
+
+// the most struck first
+static void order(himc_fall *falls, int count, himc_strike_head *heads, int n)
+{
+    for (int i = 1; i < n; i++)
+        for (int k = i; k > 0 && heads[k].strikes > heads[k - 1].strikes; k--) {
+            himc_strike_head head = heads[k];
+            heads[k] = heads[k - 1];
+            heads[k - 1] = head;
+            for (int j = 0; j < count; j++)
+                if (falls[j].head == k || falls[j].head == k - 1)
+                    falls[j].head = 2 * k - 1 - falls[j].head;
+        }
+}
+
+int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_STRIKE_HEADS])
+{
+    double *speeds = calloc((size_t)count + 1, sizeof *speeds);
+    seeds s = {calloc((size_t)count + 1, sizeof(himc_fall *)), 0};
+    int n = -1;
+    for (int i = 0; i < count; i++)
+        falls[i].head = -1;
+    if (speeds && s.fall) {
+        find_seeds(falls, count, dividing_speed(falls, count, speeds), &s);
+        if (s.count < LEAST_SEEDS)
+            find_seeds(falls, count, 0, &s);
+        n = find_heads(falls, count, &s, heads);
+        order(falls, count, heads, n);
+    }
+    free(speeds);
+    free((void *)(uintptr_t)s.fall);
+    return n;
+}

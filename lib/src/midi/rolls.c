@@ -1,0 +1,103 @@
+/// rolls.c: which fast repeats of the timpani are rolls.
+///
+/// A roll in a MIDI file is a row of notes as fast as its maker could; a player plays as many
+/// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, four at
+/// least, with no other drum between them, become a `roll` from the first to the end of the last.
+/// Where the dynamics do not lie on a line, another roll begins. The drum channel has no rolls:
+/// there such rows are fills, whose rhythm counts.
+#include "midi/part.h"
+
+#include <math.h>
+
+#define SLOWEST 9.0     // strokes of a roll (1/s)
+#define LEAST_NOTES 4   // of a roll
+#define MOST_NOTES 1000 // of a roll; chosen: a minute of a fast one
+#define LONGEST 60.0    // (s); chosen: half the planner's limit
+#define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
+#define LEAST_BEATS 0.05   // of a score's LENGTH
+#define MOST_BEATS 1000.0  // of it
+#define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
+
+/// The next stroke that is played, -1 after the last.
+static int next_played(const midi_part *part, int index)
+{
+    while (++index < part->count)
+        if (part->stroke[index].fate == MIDI_PLAYED)
+            return index;
+    return -1;
+}
+
+// true if the dynamics from the first to the last lie on a line
+static bool is_straight(const midi_part *part, int first, int last)
+{
+    const midi_stroke *a = &part->stroke[first], *b = &part->stroke[last];
+    double time = b->note->seconds - a->note->seconds;
+    for (int i = first; i != last; i = next_played(part, i)) {
+        const midi_stroke *s = &part->stroke[i];
+        double share = time > 0 ? (s->note->seconds - a->note->seconds) / time : 0;
+        if (fabs(s->dynamic - a->dynamic - share * (b->dynamic - a->dynamic)) > MOST_OFF_LINE)
+            return false;
+    }
+    return true;
+}
+
+static bool goes_on(const midi_part *part, int first, int last, int next)
+{
+    const midi_stroke *a = &part->stroke[first], *b = &part->stroke[last], *c = &part->stroke[next];
+    return c->head == a->head && c->note->seconds - b->note->seconds <= 1 / SLOWEST &&
+           c->note->seconds - a->note->seconds <= LONGEST && is_straight(part, first, next);
+}
+
+// the roll that may begin with a stroke; its last stroke, and how many they are
+static int follow(const midi_part *part, int first, int *notes)
+{
+    int last = first, next;
+    for (*notes = 1; *notes < MOST_NOTES && (next = next_played(part, last)) >= 0 &&
+                     goes_on(part, first, last, next);
+         ++*notes)
+        last = next;
+    return last;
+}
+
+// The roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands
+// that sticking.c gave them, one of which may go ahead. Its last stroke then.
+static int leave_time(const midi_part *part, int first, int last, int *notes)
+{
+    const midi_stroke *s = part->stroke;
+    int next = last, end = first;
+    while (next >= 0 && s[next].head == s[first].head)
+        next = next_played(part, next);
+    double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
+    *notes = 1;
+    for (int k = next_played(part, first); k >= 0 && k <= last && s[k].note->seconds <= until;
+         k = next_played(part, k)) {
+        end = k;
+        ++*notes;
+    }
+    return end;
+}
+
+// beats from the first stroke to the end of the last, which lasts as long as the others
+static double length_of(const midi_part *part, int first, int last, int notes)
+{
+    double beats = part->stroke[last].note->beat - part->stroke[first].note->beat;
+    return beats * notes / (notes - 1);
+}
+
+void himc_midi_find_rolls(midi_part *part)
+{
+    int notes, last;
+    for (int i = next_played(part, -1); i >= 0; i = next_played(part, last)) {
+        last = leave_time(part, i, follow(part, i, &notes), &notes);
+        double length = notes >= LEAST_NOTES ? length_of(part, i, last, notes) : 0;
+        if (length < LEAST_BEATS || length > MOST_BEATS) {
+            last = i;
+            continue;
+        }
+        part->stroke[i].roll = (midi_roll){length, part->stroke[last].dynamic};
+        for (int k = next_played(part, i); k >= 0 && k <= last; k = next_played(part, k))
+            part->stroke[k].in_roll = true;
+        part->rolls++;
+        part->rolled += notes;
+    }
+}

@@ -1,0 +1,145 @@
+/// ornament.c: which strokes rolls, flams, drags and ruffs are made of, and when.
+///
+/// No tables of their times have been published, and names differ by school; the figures are chosen
+/// as percussionists describe them. Timpani rolls are single strokes, faster on a higher drum and
+/// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll has
+/// fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce comes
+/// half a stroke later. In a press roll each stroke bounces on a little longer than to the next
+/// one, so that the hands overlap. Grace notes keep their time before the beat at any tempo.
+#include "plan/ornament.h"
+
+#include "plan/planner_motion.h"
+
+#define MOST_STROKES 2000 // of one roll; chosen: two minutes
+
+#define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
+
+// strokes of both arms together (1/s); chosen, see above
+#define USUAL_RATE 11.0
+#define USUAL_PITCH 110.0 // (Hz)
+#define SOFT_RATE 0.85    // share at ppp ...
+#define LOUD_RATE 0.3     // ... and so much more at fff
+#define SLOWEST_SINGLE 8.0
+#define FASTEST_SINGLE 16.0
+#define DOUBLE_SHARE 0.8 // of the rate of singles
+#define SLOWEST_DOUBLE 7.0
+#define FASTEST_DOUBLE 12.0
+#define PRESS_SHARE 0.6 // march tempo with five bounces each
+#define SLOWEST_PRESS 5.0
+#define FASTEST_PRESS 8.0
+#define PRESS_OVERLAP 1.1 // a buzz lasts so many strokes
+
+// grace notes; chosen, see above
+#define FLAM_TIME 0.025  // before the beat (s) ...
+#define FLAM_SHARE 0.12  // ... and of the time since the stroke before, at most
+#define DRAG_TIME 0.040  // between the notes of a drag (s)
+#define RUFF_TIME 0.045  // ... and of a ruff (s)
+#define GRACE_SHARE 0.35 // of the time since the stroke before, all together, at most
+#define GRACE_SPEED 0.4  // of the stroke's speed
+#define LOUD 0.8         // dynamic from which graces are wider
+#define SLOW_PERIOD 0.85 // a beat longer than this, too (s): 70 beats a minute
+#define WIDER 1.2
+
+typedef struct addition {
+    himc_planner *planner;
+    int drum, left_out;
+} addition;
+
+static void add(addition *to, const himc_stroke *stroke)
+{
+    himc_error unused;
+    to->left_out += himc_planner_score_room(&to->planner->score, stroke) < LEAST_ROOM ||
+                    !himc_planner_add(to->planner, stroke, to->drum, &unused);
+}
+
+static void add_grace(addition *to, const himc_stroke *stroke, bool other, double early,
+                      double bounce_time)
+{
+    himc_stroke grace = *stroke;
+    grace.ornament = HIMC_PLAIN;
+    if (other)
+        grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
+    grace.nuance = HIMC_LEGATO;
+    grace.dynamic = himc_gesture_softer(stroke->dynamic, GRACE_SPEED);
+    grace.early = early;
+    grace.bounces = bounce_time > 0;
+    grace.bounce_time = bounce_time;
+    add(to, &grace);
+}
+
+static void add_graces(addition *to, const himc_stroke *stroke)
+{
+    const planner_score *score = &to->planner->score;
+    double since = himc_planner_score_since(score, stroke->beat), wide = 1;
+    if (stroke->dynamic >= LOUD)
+        wide *= WIDER;
+    if (himc_planner_score_period(score, fmax(stroke->beat, 1)) > SLOW_PERIOD)
+        wide *= WIDER;
+    double drag = fmin(wide * DRAG_TIME, GRACE_SHARE * since / 2);
+    double ruff = fmin(wide * RUFF_TIME, GRACE_SHARE * since / 2);
+    if (stroke->ornament == HIMC_FLAM)
+        add_grace(to, stroke, true, fmin(wide * FLAM_TIME, FLAM_SHARE * since), 0);
+    if (stroke->ornament == HIMC_DRAG)
+        add_grace(to, stroke, true, 2 * drag, drag);
+    if (stroke->ornament == HIMC_RUFF) {
+        add_grace(to, stroke, false, 2 * ruff, 0);
+        add_grace(to, stroke, true, ruff, 0);
+    }
+}
+
+static double clip(double x, double low, double high)
+{
+    return fmin(fmax(x, low), high);
+}
+
+/// Strokes of both arms a second.
+static double rate_of(const himc_stroke *roll, double pitch)
+{
+    double dynamic = 0.5 * (roll->dynamic + roll->last_dynamic);
+    double rate = USUAL_RATE * sqrt(pitch / USUAL_PITCH) * (SOFT_RATE + LOUD_RATE * dynamic);
+    switch (roll->ornament) {
+    case HIMC_ROLL_DOUBLE: return clip(DOUBLE_SHARE * rate, SLOWEST_DOUBLE, FASTEST_DOUBLE);
+    case HIMC_ROLL_PRESS: return clip(PRESS_SHARE * rate, SLOWEST_PRESS, FASTEST_PRESS);
+    default: return clip(rate, SLOWEST_SINGLE, FASTEST_SINGLE);
+    }
+}
+
+static bool add_roll(addition *to, const himc_stroke *roll, double pitch, himc_error *error)
+{
+    const planner_score *score = &to->planner->score;
+    double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
+    double to_end = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
+    // an even number: what follows begins with the right hand again
+    double pairs = round(0.5 * rate_of(roll, pitch) * (to_end - from)),
+           strokes = fmax(2 * pairs, 1), step = (to_end - from) / strokes;
+    if (strokes > MOST_STROKES)
+        return himc_error_set(error, "roll: LENGTH: %g strokes, allowed %d", strokes, MOST_STROKES);
+    himc_stroke s = *roll;
+    s.ornament = HIMC_PLAIN;
+    s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
+                : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
+                                                    : 0;
+    s.bounce_time = s.bounces == HIMC_BUZZ ? PRESS_OVERLAP * step : 0.5 * step;
+    for (int i = 0; i < (int)strokes; i++) {
+        double share = strokes > 1 ? i / (strokes - 1) : 0;
+        s.hand = i % 2 ? HIMC_LEFT : HIMC_RIGHT;
+        s.dynamic = roll->dynamic + share * (roll->last_dynamic - roll->dynamic);
+        s.beat =
+            i ? himc_score_beat(score->tempi, score->tempo_count, from + i * step) : roll->beat;
+        add(to, &s);
+    }
+    return true;
+}
+
+int himc_planner_add_ornament(himc_planner *planner, const himc_stroke *stroke, int drum,
+                              double pitch, himc_error *error)
+{
+    addition to = {.planner = planner, .drum = drum};
+    if (stroke->ornament >= HIMC_ROLL_SINGLE) {
+        if (!add_roll(&to, stroke, pitch, error))
+            return -1;
+    } else {
+        add_graces(&to, stroke);
+    }
+    return to.left_out;
+}

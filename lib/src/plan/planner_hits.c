@@ -1,0 +1,210 @@
+/// planner_hits.c: strokes that are asked for while they happen.
+///
+/// A hit without a time comes as soon as its gesture allows, later if it was asked for in a hurry:
+/// nothing is lost, and nothing is even. A hit with a time of touch, its message plus a constant
+/// latency, keeps that time to the end: the gesture law (gesture.c) makes it as strong as the time
+/// left allows. Because the latency is longer than most intervals, the next hit is known before the
+/// last one has landed.
+///
+/// The hand asked for plays it, if it has LEAST_PREPARATION after its stroke before, can get there,
+/// and leaves as much to its stroke after; else the other hand. Where the performer chooses, the
+/// cheaper hand plays: far, short and crossed ways cost, a hand that has just struck costs, so in a
+/// run on one key the hands alternate. Where no hand has time, one that nothing else waits for plays
+/// late, by as little as its way there needs; else the hit is given up. Both are counted. Choosing
+/// changes nothing; only the plan of the hand that plays is cut.
+#include "plan/planner_motion.h"
+#include "plan/sticking.h"
+
+#define QUEUED_HITS 4 // without a time; chosen: a player remembers no more
+/// Time a hand has for a hit, at least (s). Chosen: with less a mezzo forte loses more than 5 dB.
+#define LEAST_PREPARATION 0.06
+#define SOON 0.15     // a hit without a time is expected so soon, to choose its hand (s)
+#define SETTLING 0.03 // chosen: from the end of a contact until the tip is under way again (s)
+#define LATER 0.01    // chosen: a hit that is late is tried so much later again (s) ...
+#define LATEST 0.5    // ... up to this; chosen: the longest way at ease
+
+#define ON_SPOT 0.03 // chosen: so short a way is none: a spot scatters as much (m)
+
+/// Strokes of a hand next to a time; their times are infinite if there are none.
+typedef struct neighbours {
+    himc_goal before, after;
+} neighbours;
+
+static void keep_nearer(neighbours *n, double at, const himc_goal *goal, double time)
+{
+    himc_goal *side = time <= at ? &n->before : &n->after;
+    if (time <= at ? time < side->time : time > side->time)
+        return;
+    *side = *goal;
+    side->time = time;
+}
+
+static neighbours neighbours_at(himc_planner *planner, himc_hand hand, double at)
+{
+    const planner_hand *h = &planner->hand[hand];
+    neighbours n = {{.time = -HUGE_VAL}, {.time = HUGE_VAL}};
+    planner_due due = {.time = -HUGE_VAL};
+    for (int i = 0; i < h->planned_count; i++)
+        keep_nearer(&n, at, &h->planned[i].goal, h->planned[i].goal.time);
+    for (int i = 0; i < h->waiting_count; i++)
+        keep_nearer(&n, at, &h->waiting[i].goal,
+                    himc_planner_waiting_time(planner, &h->waiting[i]));
+    for (int i = 0; due.time <= at; i++) {
+        if (!himc_planner_score_next(&planner->score, hand, i, &due))
+            break;
+        himc_goal goal =
+            himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
+        keep_nearer(&n, at, &goal, due.time);
+    }
+    return n;
+}
+
+/// A hand's way to a hit.
+typedef struct chance {
+    himc_goal goal; ///< at the time at which the hand can play it first
+    double late;    ///< so much after the time asked for (s); infinite: never
+    bool reaches;
+    neighbours near;
+    bool idle;      ///< no stroke of the hand is under way or to come before the hit
+    himc_vec3 from; ///< where the tip comes from (m)
+} chance;
+
+/// Whether a hand gets from one stroke to the next.
+static bool can_follow(const himc_goal *first, const himc_goal *second)
+{
+    himc_goal settled = *first;
+    settled.time += SETTLING;
+    return himc_hand_can_follow(&settled, second);
+}
+
+/// Whether the hand has time for the hit before and after it.
+static bool has_time(const planner_hand *h, double t, double least, const chance *c)
+{
+    double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
+    if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
+        return false;
+    return (c->idle ? himc_hand_can_strike_from(&h->plan, t, &c->goal)
+                    : can_follow(&c->near.before, &c->goal)) &&
+           (isinf(c->near.after.time) || can_follow(&c->goal, &c->near.after));
+}
+
+/// Delays the hit to the first time at which the hand can play it; for one with strokes to come
+/// that is the time asked for, or none.
+static void find_time(const planner_hand *h, double t, chance *c)
+{
+    double asked = c->goal.time, least = fmin(LEAST_PREPARATION, asked - t);
+    bool room = h->waiting_count + h->planned_count < PLANNER_WAITING;
+    for (c->late = 0; c->reaches && room && c->late < LATEST; c->late += LATER) {
+        c->goal.time = asked + c->late;
+        if (has_time(h, t, least, c))
+            return;
+        if (!c->idle)
+            break;
+    }
+    c->late = HUGE_VAL;
+}
+
+static chance chance_of(himc_planner *planner, himc_hand hand, double t, const himc_hit *hit)
+{
+    const planner_hand *h = &planner->hand[hand];
+    himc_stroke own = *hit->stroke;
+    own.hand = hand;
+    chance c = {.goal = himc_planner_goal(planner, &own, hit->drum, hit->at)};
+    c.near = neighbours_at(planner, hand, hit->at);
+    c.idle = himc_goal_end(&c.near.before) < t;
+    c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
+    c.reaches = himc_planner_reaches(planner, hand, &c.goal);
+    find_time(h, t, &c);
+    return c;
+}
+
+/// What the hit costs a hand; `other` is the other hand's chance.
+static double cost_of(himc_hand hand, const chance *c, const chance *other)
+{
+    himc_vec3 to = himc_vec3_sub(c->goal.spot, c->from), n = c->goal.normal;
+    double way = himc_vec3_length(himc_vec3_madd(to, -himc_vec3_dot(to, n), n)); // along the head
+    double aside = c->goal.spot.y - other->from.y; // the left hand is towards +y
+    himc_sticking s = {.gap = c->goal.time - c->near.before.time,
+                       .way = way < ON_SPOT ? 0 : way,
+                       .inwards = hand == HIMC_LEFT ? -aside : aside,
+                       .other_gap = other->goal.time - other->near.before.time};
+    return himc_sticking_cost(&s);
+}
+
+/// The hand that plays a hit: the one asked for if it is on time, else the earlier one.
+static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hit, chance *chosen)
+{
+    chance c[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        c[hand] = chance_of(planner, (himc_hand)hand, t, hit);
+    himc_hand best = hit->stroke->hand;
+    if (best == HIMC_HAND_ANY)
+        best = cost_of(HIMC_LEFT, &c[HIMC_LEFT], &c[HIMC_RIGHT]) <
+                       cost_of(HIMC_RIGHT, &c[HIMC_RIGHT], &c[HIMC_LEFT])
+                   ? HIMC_LEFT
+                   : HIMC_RIGHT;
+    himc_hand other = (himc_hand)(HIMC_HANDS - 1 - (int)best);
+    if (c[other].late < c[best].late && !hit->alone)
+        best = other;
+    *chosen = c[best];
+    return best;
+}
+
+static timed_stroke stroke_of(himc_planner *planner, const himc_hit *hit, himc_hand hand)
+{
+    timed_stroke s = {.stroke = *hit->stroke, .drum = hit->drum, .index = -1};
+    s.stroke.hand = hand;
+    s.variation = himc_human_hit(&planner->human, hand, planner->hits++);
+    return s;
+}
+
+static bool is_hit(const himc_hit *hit, double t)
+{
+    return hit->drum >= 0 && hit->drum < HIMC_DRUMS && isfinite(t) && isfinite(hit->at);
+}
+
+double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stroke, int drum)
+{
+    chance chosen;
+    himc_hit asked = {.stroke = stroke, .drum = drum, .at = t + SOON};
+    himc_hand hand = stroke->hand;
+    if (!is_hit(&asked, t))
+        return HUGE_VAL;
+    if (hand == HIMC_HAND_ANY)
+        hand = choose_hand(planner, t, &asked, &chosen);
+    planner_hand *h = &planner->hand[hand];
+    himc_planner_cut(planner, hand, t);
+    timed_stroke hit = stroke_of(planner, &asked, hand);
+    hit.goal = himc_planner_goal(planner, &hit.stroke, drum, t);
+    double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
+    if (h->waiting_count >= QUEUED_HITS || !himc_planner_find_gap(planner, hand, &touch)) {
+        himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
+                         himc_hand_name(hand));
+        touch = HUGE_VAL;
+    } else {
+        hit.goal.time = touch;
+        himc_planner_queue(planner, &hit);
+    }
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    return touch;
+}
+
+double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
+{
+    chance chosen;
+    if (!is_hit(hit, t))
+        return HUGE_VAL;
+    himc_hand hand = choose_hand(planner, t, hit, &chosen);
+    timed_stroke s = stroke_of(planner, hit, hand);
+    // planning says how far a drum is that is out of reach
+    if (chosen.reaches && chosen.late > 0)
+        himc_planner_notes_hit(&planner->notes, t, chosen.late);
+    if (chosen.reaches && isinf(chosen.late))
+        return HUGE_VAL;
+    s.goal = chosen.goal;
+    s.goal.time += s.variation.late;
+    himc_planner_cut(planner, hand, t);
+    himc_planner_queue(planner, &s);
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    return s.goal.time;
+}

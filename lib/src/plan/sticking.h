@@ -1,0 +1,36 @@
+/// sticking.h: what a stroke costs a hand, so that strokes are shared by both hands as a player
+/// shares them.
+///
+///     40 max(0, need - gap)/need + (.3 need/gap)^2 + 1.5 D + 2 max(0, .22 s/gap - 1)
+///     + .6 if the hands cross, 3 more if the other one has just struck
+///
+/// with `gap` the time since the hand's last stroke, D the way from there, and need = .10 + .1
+/// log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot). The weights are chosen: one
+/// drum is played hand by hand, two drums in the middle by sides, outer drums by the hand of their
+/// side.
+#ifndef HIMC_STICKING_H
+#define HIMC_STICKING_H
+
+#include <math.h>
+
+#define HIMC_STICKING_CROSS 0.05 ///< hands cross if one is so far past the other (m)
+
+/// A hand on its way to a stroke.
+typedef struct himc_sticking {
+    double gap;       ///< time since its last stroke, above 0 (s)
+    double way;       ///< from where it comes (m)
+    double inwards;   ///< of the stroke, past the other hand (m)
+    double other_gap; ///< time since the other hand's last stroke (s)
+} himc_sticking;
+
+static inline double himc_sticking_cost(const himc_sticking *s)
+{
+    double need = s->way > 0 ? 0.10 + 0.1 * log2(2 * s->way / 0.1 + 1) : 0.09;
+    double cost = 40 * fmax(0, need - s->gap) / need + pow(0.3 * need / s->gap, 2) + 1.5 * s->way +
+                  2 * fmax(0, 0.22 / s->gap - 1);
+    if (s->inwards > HIMC_STICKING_CROSS)
+        cost += s->other_gap < 0.15 ? 3.6 : 0.6;
+    return cost;
+}
+
+#endif

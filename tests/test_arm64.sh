@@ -1,0 +1,32 @@
+#!/bin/sh
+# The program for arm64, run by qemu: the strikes of a score are those of this machine, digit by digit, and so is the sound.
+# `make test-arm64` runs it.
+: "${HIMC_BUILD:=build}"
+root=$HIMC_BUILD/arm64/debian/root/usr/lib/aarch64-linux-gnu
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+printf '%s\n' "tempo 120;" "stroke 0 right legato mf;" "stroke 1 left accent f;" "stroke 2 right staccato p rim;" "play;" >"$work/score.txt"
+
+render() { # render NAME COMMAND...
+    name=$1
+    shift
+    "$@" render "$work/score.txt" -o "$work/$name.wav" --strokes "$work/$name.csv" >"$work/$name.log" 2>&1 || cat "$work/$name.log"
+}
+render here "$HIMC_BUILD/bin/himc"
+render arm64 qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH="$root" "$HIMC_BUILD/arm64/bin/himc"
+
+failures=0
+check() { # check NAME CONDITION...
+    name=$1
+    shift
+    "$@" && echo "tests/test_arm64.sh:0:$name:PASS" || { failures=$((failures + 1)); echo "tests/test_arm64.sh:0:$name:FAIL: not so: $*"; }
+}
+check test_three_strikes_are_played [ "$(wc -l <"$work/here.csv")" = 4 ]
+check test_strikes_are_those_of_this_machine cmp "$work/here.csv" "$work/arm64.csv"
+check test_sound_is_that_of_this_machine cmp "$work/here.wav" "$work/arm64.wav"
+needed=$(LC_ALL=C aarch64-linux-gnu-readelf -d "$HIMC_BUILD"/arm64/externals/himc/*.so | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
+    grep -vE '^(libc|libm|ld-linux.*)\.so\.[0-9]+$')
+check test_externals_need_the_c_library_alone [ -z "$needed" ]
+echo "-----------------------"
+echo "4 Tests $failures Failures 0 Ignored"
+[ $failures = 0 ]

@@ -1,0 +1,288 @@
+/// test_hits.c: hits land so long after their message as `latency` says, whatever the interval, the
+/// hand and the block; what cannot land in time is counted; `play` waits for its first stroke.
+#include "session.h"
+
+#define RATE 48000.0
+#define LATENCY 0.15 // (s) as a performer is made
+
+static himc_performance *with_kettle(const char *latency)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "latency %s", latency);
+    session_play(p, 0.6, NULL);
+    return p;
+}
+
+/// A run of taps at equal intervals.
+typedef struct taps {
+    heard h;
+    double latest; ///< largest |strike - (message + latency)| (s)
+    double speed;  ///< mean of impact (m/s)
+    int left;      ///< strikes of the left hand
+} taps;
+
+/// `count` messages "hit HAND how", each hand of the two in turn.
+static taps tap(himc_performance *p, int count, double interval, double latency,
+                const char *const hands[2], const char *how)
+{
+    taps r = {.speed = 0};
+    double begin = himc_performance_measure(p).seconds;
+    for (int i = 0; i < count; i++) {
+        session_do(p, "hit %s %s", hands[i % 2], how);
+        session_play(p, interval, &r.h);
+    }
+    session_play(p, latency + 0.1, &r.h);
+    for (int i = 0; i < r.h.strikes; i++) {
+        double since = r.h.strike[i].time - begin - latency;
+        r.latest = fmax(r.latest, fabs(since - interval * round(since / interval)));
+        r.speed += r.h.strike[i].velocity / r.h.strikes;
+        r.left += r.h.strike[i].hand == HIMC_LEFT;
+    }
+    return r;
+}
+
+static const char *const right[] = {"right", "right"}, *const both[] = {"left", "right"},
+                         *const any[] = {"any", "any"};
+
+static void test_taps_land_evenly_at_all_intervals_with_one_hand_and_two(void)
+{
+    static const double interval[] = {0.4, 0.25, 0.15, 0.1};
+    static const char *const *const hands[] = {right, both, any};
+    static const char *const how[] = {"legato mf", "accent ff", "staccato pp rim"};
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 4; i++) {
+            himc_performance *p = with_kettle("150");
+            taps r = tap(p, 8, interval[i], LATENCY, hands[k], how[(i + k) % 3]);
+            printf("%s, %s every %.0f ms: %d landed, %.3f ms off, %.2f m/s\n", hands[k][0],
+                   how[(i + k) % 3], 1e3 * interval[i], r.h.strikes, 1e3 * r.latest, r.speed);
+            TEST_ASSERT_EQUAL_INT(8, r.h.strikes);
+            TEST_ASSERT_TRUE(r.latest <= 0.0005);
+            TEST_ASSERT_EQUAL_INT(0, r.h.notes);
+            heard_free(&r.h);
+            himc_performance_free(p);
+        }
+}
+
+static void test_a_run_too_fast_for_its_hand_is_shared_and_a_roll_of_hits_is_counted(void)
+{
+    himc_performance *p = with_kettle("150");
+    taps r = tap(p, 12, 0.05, LATENCY, right, "legato mf");
+    TEST_ASSERT_EQUAL_INT(12, r.h.strikes);
+    TEST_ASSERT_EQUAL_INT(6, r.left);
+    TEST_ASSERT_TRUE(r.latest <= 0.0005);
+    TEST_ASSERT_EQUAL_INT(0, r.h.notes);
+    heard_free(&r.h);
+    session_play(p, 2, NULL);
+    r = tap(p, 40, 0.01, LATENCY, right, "legato mf");
+    session_play(p, 2, &r.h);
+    char line[80];
+    snprintf(line, sizeof line, "hit: %d given up, no hand had the time", 40 - r.h.strikes);
+    TEST_ASSERT_TRUE(r.h.strikes >= 8 && r.h.strikes < 40);
+    TEST_ASSERT_TRUE(r.latest <= 0.0005);
+    TEST_ASSERT_EQUAL_INT(1, r.h.notes);
+    TEST_ASSERT_EQUAL_STRING(line, r.h.note);
+    heard_free(&r.h);
+    himc_performance_free(p);
+}
+
+static void test_any_hand_is_the_other_one_in_a_fast_run_and_so_louder(void)
+{
+    himc_performance *p = with_kettle("150"), *q = with_kettle("150");
+    taps one = tap(p, 10, 0.1, LATENCY, right, "legato f"),
+         two = tap(q, 10, 0.1, LATENCY, any, "legato f");
+    for (int i = 1; i < two.h.strikes; i++)
+        TEST_ASSERT_NOT_EQUAL(two.h.strike[i - 1].hand, two.h.strike[i].hand);
+    TEST_ASSERT_TRUE(two.speed > 1.3 * one.speed);
+    heard_free(&one.h);
+    heard_free(&two.h);
+    himc_performance_free(p);
+    himc_performance_free(q);
+}
+
+static void test_a_hit_is_as_strong_as_its_latency_allows(void)
+{
+    static const char *const latency[] = {"80", "150", "auto"}, *const dynamic[] = {"p", "ff"};
+    static const double seconds[] = {0.08, 0.15, 0.33};
+    double speed[2][3];
+    for (int d = 0; d < 2; d++)
+        for (int i = 0; i < 3; i++) {
+            char how[32];
+            himc_performance *p = with_kettle(latency[i]);
+            snprintf(how, sizeof how, "legato %s", dynamic[d]);
+            taps r = tap(p, 2, 0.8, seconds[i], right, how);
+            TEST_ASSERT_EQUAL_INT(2, r.h.strikes);
+            TEST_ASSERT_TRUE(r.latest <= 0.0005);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, seconds[i], himc_performance_measure(p).hit_latency);
+            speed[d][i] = r.speed;
+            heard_free(&r.h);
+            himc_performance_free(p);
+        }
+    printf("ff after 80 ms %.2f, 150 ms %.2f, auto %.2f m/s\n", speed[1][0], speed[1][1],
+           speed[1][2]);
+    TEST_ASSERT_TRUE(speed[0][0] > 0.95 * speed[0][2]);
+    TEST_ASSERT_TRUE(speed[1][1] > 1.15 * speed[1][0] && speed[1][2] > 1.15 * speed[1][1]);
+    TEST_ASSERT_TRUE(speed[1][2] > 4.9); // 5.1 asked
+}
+
+/// Plays hits at samples that are not the beginnings of steps, in blocks of that size.
+static void play_blocks(int block, double *sound, int count, heard *h)
+{
+    himc_performance *p = session_new();
+    himc_command hit;
+    himc_event event;
+    session_do(p, "drum kettle");
+    TEST_ASSERT_TRUE(himc_command_parse_text(&hit, HIMC_PERFORMER, "hit any legato mf", &error));
+    for (int done = 0; done < count; done += block) {
+        int due = 20000 + 5003 * ((done - 20000 + 5002) / 5003);
+        if (due < 20000)
+            due = 20000;
+        for (; due < done + block; due += 5003)
+            TEST_ASSERT_TRUE(himc_performance_command(p, &hit, due - done, &error));
+        himc_performance_process(p, block, NULL);
+        himc_drum_read(himc_performance_drum(p, 0), (uint64_t)done, block, sound + done, NULL);
+        while (himc_performance_event(p, &event))
+            heard_event(h, &event);
+    }
+    himc_performance_free(p);
+}
+
+static void test_the_sample_of_the_message_counts_in_blocks_of_any_size(void)
+{
+    enum { COUNT = 61440 };
+    static double one[COUNT], other[COUNT];
+    heard h = {0};
+    play_blocks(64, one, COUNT, &h);
+    TEST_ASSERT_TRUE(h.strikes >= 6);
+    for (int i = 0; i < h.strikes; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, (20000 + 5003 * i) / RATE + LATENCY,
+                                  h.strike[i].planned_time);
+    heard_free(&h);
+    play_blocks(1, other, COUNT, &h);
+    TEST_ASSERT_EQUAL_MEMORY(one, other, sizeof one);
+    play_blocks(4096, other, COUNT, &h);
+    TEST_ASSERT_EQUAL_MEMORY(one, other, sizeof one);
+    heard_free(&h);
+}
+
+static void test_hits_leave_the_strokes_of_a_score_alone(void)
+{
+    himc_performance *p = with_kettle("150");
+    session_do(p, "tempo 60");
+    for (int i = 0; i < 8; i++)
+        session_do(p, "stroke %g left tenuto f", 1 + 0.15 * i);
+    session_do(p, "play");
+    taps r = tap(p, 40, 0.05, LATENCY, right, "legato mf");
+    int left = 0;
+    for (int i = 0; i < r.h.strikes; i++)
+        left += strcmp(r.h.strike[i].nuance, "tenuto") == 0;
+    TEST_ASSERT_EQUAL_INT(8, left);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+    heard_free(&r.h);
+    himc_performance_free(p);
+}
+
+static void test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_by_how_much(void)
+{
+    himc_performance *p = with_kettle("100");
+    heard h = {0};
+    session_do(p, "drum far");
+    session_drum(p, 1, "place 0.25 -0.84 0.85");
+    session_play(p, 0.5, NULL);
+    session_do(p, "hit right legato mf normal far");
+    session_play(p, 2, &h);
+    double late = himc_performance_measure(p).hit_latency - 0.1;
+    char line[80];
+    snprintf(line, sizeof line, "hit: 1 late by up to %.0f ms, no hand had the time", 1e3 * late);
+    TEST_ASSERT_EQUAL_INT(1, h.strikes);
+    TEST_ASSERT_TRUE(late > 0.02 && late < 0.2);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0005, h.strike[0].planned_time, h.strike[0].time);
+    TEST_ASSERT_EQUAL_INT(1, h.notes);
+    TEST_ASSERT_EQUAL_STRING(line, h.note);
+    heard_free(&h);
+    session_do(p, "latency auto");
+    session_do(p, "hit right legato mf normal far");
+    session_play(p, 2, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.33, himc_performance_measure(p).hit_latency);
+    TEST_ASSERT_EQUAL_INT(0, h.notes);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+/// Writes a take, y up, of the right tip alone: a blow of 4 m/s every 0.4 s.
+static void write_one_hand(const char *name)
+{
+    FILE *f = fopen(name, "w");
+    TEST_ASSERT_NOT_NULL(f);
+    fputs("PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n500\t1000\t1\tm\n", f);
+    fputs("Frame#\tTime\tRTIP\t\t\n\n", f);
+    for (int i = 0; i < 1000; i++) {
+        double u = fmod(i / 500.0, 0.4); // up at 4 m/s, down at 4 m/s
+        fprintf(f, "%d\t%.4f\t0.5\t%.6f\t0.1\n", i + 1, i / 500.0, 0.8 + 10 * u * (0.4 - u));
+    }
+    fclose(f);
+}
+
+static void test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may(void)
+{
+    static const char name[] = "build/hits.trc";
+    himc_performance *p = with_kettle("150");
+    heard h = {0};
+    write_one_hand(name);
+    session_do(p, "take %s", name);
+    session_do(p, "play");
+    session_play(p, 1.5, NULL);
+    TEST_ASSERT_FALSE(session_try(p, "hit right legato mf"));
+    session_do(p, "hit any tenuto mf");
+    for (int i = 0; i < 4; i++) // too fast for one hand, and the other one is away
+        session_do(p, "hit left tenuto mf");
+    session_play(p, 1.5, &h);
+    TEST_ASSERT_EQUAL_STRING("hit: 4 given up, no hand had the time", h.note);
+    int hits = 0;
+    for (int i = 0; i < h.strikes; i++)
+        if (strcmp(h.strike[i].nuance, "tenuto") == 0) {
+            hits++;
+            TEST_ASSERT_EQUAL_INT(HIMC_LEFT, h.strike[i].hand);
+        }
+    TEST_ASSERT_EQUAL_INT(1, hits);
+    TEST_ASSERT_TRUE(h.strikes > 1);
+    heard_free(&h);
+    himc_performance_free(p);
+    unlink(name);
+}
+
+static void test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds(void)
+{
+    himc_performance *p = with_kettle("150");
+    heard h = {0};
+    double told = 0;
+    session_do(p, "stroke 0 right legato f");
+    session_do(p, "stroke 1 left legato f");
+    session_do(p, "play");
+    while (h.strikes == 0) {
+        session_play(p, 0.01, &h);
+        if (h.beats == 1 && told == 0)
+            told = himc_performance_measure(p).seconds;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.0101, h.strike[0].planned_time, told); // a block
+    session_play(p, 4, &h);
+    TEST_ASSERT_EQUAL_INT(2, h.strikes);
+    TEST_ASSERT_EQUAL_INT(0, h.notes);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_taps_land_evenly_at_all_intervals_with_one_hand_and_two);
+    RUN_TEST(test_a_run_too_fast_for_its_hand_is_shared_and_a_roll_of_hits_is_counted);
+    RUN_TEST(test_any_hand_is_the_other_one_in_a_fast_run_and_so_louder);
+    RUN_TEST(test_a_hit_is_as_strong_as_its_latency_allows);
+    RUN_TEST(test_the_sample_of_the_message_counts_in_blocks_of_any_size);
+    RUN_TEST(test_hits_leave_the_strokes_of_a_score_alone);
+    RUN_TEST(test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_by_how_much);
+    RUN_TEST(test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may);
+    RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);
+    return UNITY_END();
+}

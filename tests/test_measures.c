@@ -1,0 +1,122 @@
+/// test_measures.c: the figures of a performance beside the error of its tips: contacts that nobody
+/// asked for, the longest contact, peaks of the joints.
+#include "himc/body.h"
+
+#include "session.h"
+
+#define HEAD 0.8675 // height of a tip that touches the usual head (m)
+
+static himc_performance *with_strokes(const char *settings)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "%s", settings);
+    for (int i = 0; i < 4; i++)
+        session_do(p, "stroke %d %s legato f", 2 + i, i % 2 ? "left" : "right");
+    return p;
+}
+
+static void test_strokes_are_planned_and_leave_the_head_at_once(void)
+{
+    himc_performance *p = with_strokes("mode himc");
+    session_do(p, "play");
+    session_play(p, 4, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(4, s.played);
+    TEST_ASSERT_EQUAL_INT(0, s.unplanned_contacts);
+    TEST_ASSERT_TRUE(s.longest_contact > 0.003 && s.longest_contact < 0.015);
+    TEST_ASSERT_TRUE(isnan(s.captured_rms) && isnan(s.captured_most_percent));
+    himc_performance_free(p);
+}
+
+static void find_contacts(void *user, const char *line)
+{
+    int unplanned;
+    if (sscanf(line, "contacts: %d unplanned", &unplanned) == 1)
+        *(int *)user = unplanned;
+}
+
+static void test_a_stick_laid_on_the_head_is_one_long_unplanned_contact(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "target right 0.55 -0.12 %g", HEAD + 0.2);
+    session_play(p, 1, NULL);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).unplanned_contacts);
+    session_do(p, "target right 0.55 -0.12 %g", HEAD - 0.02);
+    session_play(p, 3, NULL);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(1, s.unplanned_contacts);
+    TEST_ASSERT_TRUE(s.longest_contact > 1.5);
+    int told = 0;
+    himc_performance_describe(p, find_contacts, &told);
+    TEST_ASSERT_EQUAL_INT(1, told);
+    session_do(p, "reset");
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).unplanned_contacts);
+    TEST_ASSERT_TRUE(himc_performance_measure(p).longest_contact == 0);
+    himc_performance_free(p);
+}
+
+static himc_skeleton skeleton;
+
+// the fastest joint at the task ticks
+static void keep_fastest(void *user, const himc_tick *tick)
+{
+    double *most = user;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_vec3 rate = himc_vec3_sub(tick->body->spin[j + 1],
+                                       tick->body->spin[skeleton.segment[j + 1].parent]);
+        most[j] = fmax(most[j], himc_vec3_length(rate));
+    }
+}
+
+static void test_the_peak_rate_is_that_of_the_fastest_joint_in_any_step(void)
+{
+    static const char *const modes[] = {"mode himc", "mode ik"};
+    himc_skeleton_config body = himc_skeleton_default();
+    TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &body, &error));
+    for (int i = 0; i < 2; i++) {
+        double most[HIMC_JOINTS] = {0};
+        himc_performance *p = with_strokes(modes[i]);
+        himc_performance_on_tick(p, keep_fastest, most);
+        session_do(p, "play");
+        session_play(p, 4, NULL);
+        himc_performance_stats s = himc_performance_measure(p);
+        printf("%s: %.2f rad/s in %s, %.2f at ticks; %.1f N m in %s\n", modes[i], s.peak_rate,
+               himc_joint_name(s.peak_rate_joint), most[s.peak_rate_joint], s.peak_torque,
+               himc_joint_name(s.peak_torque_joint));
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            TEST_ASSERT_TRUE(most[j] <= s.peak_rate);
+        TEST_ASSERT_TRUE(most[s.peak_rate_joint] > 0.7 * s.peak_rate);
+        TEST_ASSERT_TRUE(i ? s.peak_torque == 0 : s.peak_torque > 10);
+        himc_performance_free(p);
+    }
+}
+
+static void test_the_peak_torque_is_within_the_strength_that_limits_it(void)
+{
+    himc_performance *p = with_strokes("mode himc");
+    session_do(p, "play");
+    session_play(p, 4, NULL);
+    himc_performance_stats freely = himc_performance_measure(p);
+    himc_performance_free(p);
+    double most = round(0.9 * freely.peak_torque);
+    p = with_strokes("mode himc");
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        session_do(p, "strength %s %g", himc_joint_name(j), most);
+    session_do(p, "play");
+    session_play(p, 4, NULL);
+    himc_performance_stats limited = himc_performance_measure(p);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, most, limited.peak_torque);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_strokes_are_planned_and_leave_the_head_at_once);
+    RUN_TEST(test_a_stick_laid_on_the_head_is_one_long_unplanned_contact);
+    RUN_TEST(test_the_peak_rate_is_that_of_the_fastest_joint_in_any_step);
+    RUN_TEST(test_the_peak_torque_is_within_the_strength_that_limits_it);
+    return UNITY_END();
+}

@@ -1,0 +1,18 @@
+#!/bin/sh
+# Debian's libraries for arm64, unpacked beside the build, not installed: packages of two machines with one header do not stand on one
+# system.
+#   tools/arm64.sh FOLDER
+set -eu
+mkdir -p "$1/lists/partial" "$1/packages"
+cd "$1"
+[ ! -e root/usr/lib/aarch64-linux-gnu/libode.a ] || exit 0
+options="-q -o APT::Architectures::=$(dpkg --print-architecture) -o APT::Architectures::=arm64 -o Dir::State::lists=$PWD/lists \
+    -o APT::Sandbox::User=$(id -un)"
+apt-get $options update >apt.log 2>&1
+cd packages
+for package in ode-dev ode8 ccd2 lo-dev lo7 sndfile1-dev sndfile1 flac12 vorbis0a vorbisenc2 opus0 ogg0 mpg123-0 mp3lame0; do
+    apt-get $options download "lib$package:arm64" >>../apt.log 2>&1 || { cat ../apt.log >&2; exit 1; }
+done
+for package in *.deb; do
+    dpkg-deb -x "$package" ../root
+done

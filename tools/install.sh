@@ -1,0 +1,65 @@
+#!/bin/sh
+# Installs what is built, or removes exactly that. Called by `make install` and `make uninstall`, which set the names below.
+#   BUILD=... DESTDIR=... PREFIX=... LIBDIR=... PDEXTRA=... VERSION=... tools/install.sh install|uninstall
+set -eu
+major=${VERSION%%.*}
+share=$PREFIX/share
+himc=$BUILD/bin/himc
+
+# MODE FOLDER FILE..., a line for all that goes into one folder
+lists() {
+    echo "755 $PREFIX/bin $himc $(ls "$BUILD/bin/himc-viewer" 2>/dev/null || true)"
+    echo "644 $LIBDIR $BUILD/libhimc.a $BUILD/libhimc.so.$VERSION"
+    echo "644 $LIBDIR/pkgconfig $BUILD/himc.pc"
+    echo "644 $PREFIX/include/himc" lib/himc/*.h
+    echo "644 $PDEXTRA/himc LICENSE" "$BUILD"/externals/himc/* patches/techniques/*
+    echo "644 $PDEXTRA/himc/clips" "$BUILD"/clips/*
+    echo "644 $PDEXTRA/himc/patches" patches/*.pd patches/*.txt
+    echo "644 $PDEXTRA/himc/patches/lib" patches/lib/*
+    echo "644 $PDEXTRA/himc/patches/pieces" patches/pieces/*
+    echo "644 $share/doc/himc LICENSE README.md CHANGELOG.md" docs/*.md
+    echo "644 $share/man/man1" "$BUILD"/share/*.1
+    echo "644 $share/bash-completion/completions $BUILD/share/himc"
+    echo "644 $share/zsh/site-functions $BUILD/share/_himc"
+}
+
+# manual pages and completions, from what the program says of itself
+make_pages() {
+    calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p')
+    rm -rf "$BUILD/share"
+    mkdir -p "$BUILD/share"
+    for call in "" $calls; do
+        "$himc" $call --help | awk -v call="$call" -v version="$VERSION" -f tools/man.awk >"$BUILD/share/himc${call:+-$call}.1"
+        echo "== $call"
+        "$himc" $call --help
+    done >"$BUILD/share/help"
+    awk -v shell=bash -f tools/completions.awk "$BUILD/share/help" >"$BUILD/share/himc"
+    awk -v shell=zsh -f tools/completions.awk "$BUILD/share/help" >"$BUILD/share/_himc"
+}
+
+install_all() {
+    lists | while read -r mode folder files; do
+        install -d "$DESTDIR$folder"
+        install -m "$mode" $files "$DESTDIR$folder"
+    done
+    ln -sf "libhimc.so.$VERSION" "$DESTDIR$LIBDIR/libhimc.so.$major"
+    ln -sf "libhimc.so.$major" "$DESTDIR$LIBDIR/libhimc.so"
+}
+
+# folders of ours that are empty then go, too; others' files in them stay
+uninstall_all() {
+    lists | while read -r mode folder files; do
+        for file in $files; do
+            rm -f "$DESTDIR$folder/${file##*/}"
+        done
+    done
+    rm -f "$DESTDIR$LIBDIR/libhimc.so.$major" "$DESTDIR$LIBDIR/libhimc.so"
+    lists | while read -r mode folder files; do
+        case $folder in */himc | */himc/*) echo "$folder" ;; esac
+    done | sort -r | while read -r folder; do
+        rmdir "$DESTDIR$folder" 2>/dev/null || true
+    done
+}
+
+make_pages
+"$1"_all
