@@ -246,7 +246,7 @@ check-realtime: all $(REALTIME)
 
 # how much of each file is played (s)
 MIDI_SECONDS ?= 15
-test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; two minutes)
+test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; some minutes)
 	@tools/deps.sh tools/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
 	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid

@@ -386,7 +386,9 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
 static bool is_small(himc_planner *planner, const timed_stroke *s, double since)
 {
     double high = planner->hand[s->stroke.hand].plan.last.gesture.height;
-    if (s->index < 0 || since >= SMALL_WITHIN || high >= SMALL_SHARE * s->goal.gesture.height)
+    // a roll's strokes are small by nature
+    if (s->index < 0 || s->stroke.ornament >= HIMC_ROLL_SINGLE || since >= SMALL_WITHIN ||
+        high >= SMALL_SHARE * s->goal.gesture.height)
         return false;
     himc_planner_say(&planner->notes, PLANNER_SMALLER,
                      "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
