@@ -212,6 +212,14 @@ void himc_motion_answer(performance_motion *m, himc_hand hand, double planned_ti
     m->answered[hand] = planned_time;
 }
 
+void himc_motion_correct(performance_motion *m, const performance_settings *s, himc_hand hand,
+                         double t, const himc_target *measured)
+{
+    if (s->control.law == HIMC_LAW_COMPUTED_TORQUE && !himc_motion_tracks(m, hand) &&
+        himc_planner_correct(m->planner, hand, t, measured))
+        m->replan = true;
+}
+
 void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
                             const himc_target *measured)
 {

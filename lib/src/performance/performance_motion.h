@@ -98,6 +98,10 @@ HIMC_RT planned_stroke himc_motion_stroke(const performance_motion *motion,
                                           const performance_drums *drums, himc_hand hand, double t);
 /// Ends the stroke planned for that time: struck or given up.
 HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, double planned_time);
+/// Corrects the last milliseconds of a hit from that state of the tip. Only control that feeds the
+/// acceleration forward can follow so short a plan.
+HIMC_RT void himc_motion_correct(performance_motion *motion, const performance_settings *settings,
+                                 himc_hand hand, double t, const himc_target *measured);
 /// Continues the plan from that state of the tip, which has left the head.
 HIMC_RT void himc_motion_go_on_from(performance_motion *motion, himc_hand hand, double t,
                                     const himc_target *measured);

@@ -337,6 +337,23 @@ static void contact(stroke_plan *s, const himc_goal *goal, double speed)
     himc_height_profile_to(s, end, (height_state){0, rebound, 0});
 }
 
+void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
+                    const himc_goal *goal)
+{
+    double speed = goal->gesture.speed;
+    himc_target touch = {goal->spot, himc_vec3_scale(goal->normal, -speed), {0, 0, 0}};
+    himc_target nothing = {0};
+    himc_hand_cut(plan, t);
+    himc_spline_add(&plan->tangential_path, t, measured, goal->time, &touch);
+    himc_spline_add(&plan->height_profile, t, &nothing, goal->time, &nothing);
+    plan->end = goal->time;
+    stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
+    contact(&s, goal, speed);
+    plan_finish(&s);
+    plan->last = *goal;
+    plan->rebounding = true;
+}
+
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
     stroke_plan s = plan_begin(plan, goal->spot, goal->normal);

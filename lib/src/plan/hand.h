@@ -76,6 +76,11 @@ HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *secon
 /// himc_hand_can_strike is false.
 HIMC_RT bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal);
 
+/// Goes from a state measured at t to the touch of a stroke that is planned already, and on to the
+/// end of its contact; what was planned after t is dropped.
+HIMC_RT void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
+                            const himc_goal *goal);
+
 /// Appends a wait, to `until` (s) at least: over the last spot when `ready`, else at home.
 HIMC_RT void himc_hand_wait(himc_hand_plan *plan, double until, bool ready);
 

@@ -119,6 +119,10 @@ HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stro
 /// rested. Returns the time, varied as by himc_planner_set_human; infinity if no hand can play it:
 /// it is given up, and a note counts it.
 HIMC_RT double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit);
+/// The tip is in this state at t. A himc_planner_hit_at that is to touch within 10 ms is planned
+/// anew from there, once, so that what has drifted is not late. True if the plan has changed.
+HIMC_RT bool himc_planner_correct(himc_planner *planner, himc_hand hand, double t,
+                                  const himc_target *measured);
 /// A live target: the tip goes there smoothly and stays until the next target or stroke. Targets
 /// within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows one period late and
 /// comes to rest when the stream ends. A stroke less than 0.6 s away is played first.

@@ -593,8 +593,7 @@ static void extend_alone(himc_planner *planner, himc_hand hand, double until)
     }
 }
 
-/// Takes back all strokes more than `margin` after t.
-static void unplan_after(himc_planner *planner, himc_hand hand, double t, double margin)
+void himc_planner_unplan(himc_planner *planner, himc_hand hand, double t, double margin)
 {
     planner_hand *h = &planner->hand[hand];
     while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time - margin > t)
@@ -605,7 +604,7 @@ static void unplan_after(himc_planner *planner, himc_hand hand, double t, double
 static void cut_plan(himc_planner *planner, himc_hand hand, double t)
 {
     planner_hand *h = &planner->hand[hand];
-    unplan_after(planner, hand, t, COMMIT_TIME);
+    himc_planner_unplan(planner, hand, t, COMMIT_TIME);
     const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
     if (last && !last->separated)
         t = fmax(t, himc_goal_end(&last->goal));
@@ -855,7 +854,7 @@ void himc_planner_resume(himc_planner *planner, double t, himc_hand hand, const 
     planner_hand *h = &planner->hand[hand];
     if (!isfinite(t) || !himc_target_finite(state))
         return;
-    unplan_after(planner, hand, t, 0);
+    himc_planner_unplan(planner, hand, t, 0);
     h->planned_count = 0;
     himc_hand_restart(&h->plan, t, state, HUGE_VAL);
     h->plan.rebounding = false;
@@ -869,7 +868,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     timed_stroke next;
     if (!isfinite(t) || !himc_target_finite(measured))
         return;
-    unplan_after(planner, hand, t, EARLY_TOUCH);
+    himc_planner_unplan(planner, hand, t, EARLY_TOUCH);
     bool more = next_stroke(planner, hand, &next);
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);
     if (h->planned_count > 0) {
