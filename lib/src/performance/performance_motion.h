@@ -4,6 +4,7 @@
 #define HIMC_PERFORMANCE_MOTION_H
 
 #include "plan/planner.h"
+#include "control/avoidance.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
@@ -47,6 +48,8 @@ typedef struct performance_motion {
     himc_posture_regression
         regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
+    himc_avoidance avoidance;
+    double avoided;     ///< time of its last update (s)
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;            ///< of the ticks before and after

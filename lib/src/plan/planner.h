@@ -19,7 +19,9 @@ typedef struct himc_planner_config {
     /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
     /// NULL: all is in reach.
     double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
-    const void *body; ///< given to `beyond`; borrowed
+    /// Least gap between hands and sticks with the tips there (m); HIMC_RT. NULL: they never meet.
+    double (*gap)(const void *body, const himc_vec3 tip[HIMC_HANDS]);
+    const void *body; ///< given to `beyond` and `gap`; borrowed
 } himc_planner_config;
 
 himc_planner_config himc_planner_default(void);

@@ -59,9 +59,10 @@ struct himc_planner {
     planner_score score;
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
-    int hits;   ///< since the last `clear` or change of `human`
-    double now; ///< of the last advance (s)
-    bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
+    himc_hand above; ///< of the hands that passed each other last, the one that was lifted
+    int hits;        ///< since the last `clear` or change of `human`
+    double now;      ///< of the last advance (s)
+    bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 /// Both hands wait at rest.
