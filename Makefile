@@ -25,7 +25,7 @@ HOW      = $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interpositi
            -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
 COMPILE  = $(CC) -std=c17 -Wmissing-prototypes $(HOW)
 # Eigen, which linear.cpp alone knows
-COMPILE_CXX = $(CXX) -std=c++17 -fno-rtti -isystem $(EIGEN) $(HOW)
+COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
@@ -246,7 +246,7 @@ check-realtime: all $(REALTIME)
 
 # how much of each file is played (s)
 MIDI_SECONDS ?= 15
-test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; two minutes)
+test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; some minutes)
 	@tools/deps.sh tools/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
 	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid

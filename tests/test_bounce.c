@@ -1,5 +1,5 @@
-/// test_bounce.c: strokes that bounce: the fingers' law by itself, doubles and buzzes of a performer,
-/// and the strokes that ornaments are made of.
+/// test_bounce.c: strokes that bounce: the fingers' law by itself, doubles and buzzes of a
+/// performer, and the strokes that ornaments are made of.
 #include "session.h"
 #include "plan/bounce.h"
 
@@ -174,6 +174,7 @@ static void plays_buzzes(const char *mode, const char *dynamic)
                                  g->time[k] - g->time[k - 1] < 0.06);
         }
     TEST_ASSERT_EQUAL_INT(himc_performance_measure(p).strokes, himc_performance_measure(p).played);
+    TEST_ASSERT_TRUE(h.notes <= 1); // faster than its bounces allow
     TEST_ASSERT_TRUE(himc_performance_measure(p).strokes > 5);
     heard_free(&h);
     himc_performance_free(p);
@@ -250,6 +251,21 @@ static void test_with_the_servo_grip_nothing_bounces(void)
     heard_free(&bounced);
 }
 
+static void keep_line(void *user, const char *text)
+{
+    strncat(user, text, 400);
+}
+
+static void test_info_tells_the_servo_grip(void)
+{
+    himc_performance *p = with_kettle("himc");
+    char told[4096] = "";
+    session_do(p, "grip french servo");
+    himc_performance_describe(p, keep_line, told);
+    TEST_ASSERT_NOT_NULL(strstr(told, "grip french servo,"));
+    himc_performance_free(p);
+}
+
 static void test_ornaments_do_not_depend_on_the_block_size(void)
 {
     static const char *const lines[] = {"roll 1 0.5 double mf", "drag 2 left legato f",
@@ -305,6 +321,22 @@ static void test_rolls_follow_tempo_seek_and_loop(void)
     himc_performance_free(p);
 }
 
+// the grace note of beat 0 comes before the round begins
+static void test_in_a_loop_the_grace_notes_of_beat_0_come_at_the_end_of_the_round(void)
+{
+    static const char *const lines[] = {"tempo 240", "flam 0 right legato f",
+                                        "drag 2 left legato f", "loop 1", NULL};
+    heard h = play_piece(lines, 3.9, 480);
+    int flams = 0;
+    for (int i = 0; i + 4 < h.strikes; i += 5, flams++) {
+        ABOUT(0.025, time_of(&h, i, HIMC_LEFT), time_of(&h, i + 1, HIMC_RIGHT));
+        ABOUT(0.500, time_of(&h, i + 1, HIMC_RIGHT), time_of(&h, i + 4, HIMC_LEFT));
+        ABOUT(0.750 * flams, time_of(&h, 1, HIMC_RIGHT), time_of(&h, i + 1, HIMC_RIGHT));
+    }
+    TEST_ASSERT_TRUE(flams >= 4);
+    heard_free(&h);
+}
+
 static void test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so(void)
 {
     himc_performance *p = with_kettle("himc");
@@ -324,6 +356,15 @@ static void test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so(void)
     s.bounce_time = 0.9;
     TEST_ASSERT_FALSE(himc_performance_add_stroke(p, &s, &error));
     heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_a_roll_too_long_is_refused_and_makes_no_drum(void)
+{
+    himc_performance *p = with_kettle("himc");
+    TEST_ASSERT_FALSE(session_try(p, "roll 4 755 double f pp normal other"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "roll: LENGTH"));
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
     himc_performance_free(p);
 }
 
@@ -360,10 +401,13 @@ int main(void)
     RUN_TEST(test_each_stroke_of_a_press_roll_has_five_contacts_or_more_that_get_softer);
     RUN_TEST(test_grace_notes_come_before_the_beat_by_their_hands_and_softer);
     RUN_TEST(test_with_the_servo_grip_nothing_bounces);
+    RUN_TEST(test_info_tells_the_servo_grip);
     RUN_TEST(test_ornaments_do_not_depend_on_the_block_size);
     RUN_TEST(test_rolls_are_faster_when_loud_and_on_high_drums);
     RUN_TEST(test_rolls_follow_tempo_seek_and_loop);
+    RUN_TEST(test_in_a_loop_the_grace_notes_of_beat_0_come_at_the_end_of_the_round);
     RUN_TEST(test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so);
+    RUN_TEST(test_a_roll_too_long_is_refused_and_makes_no_drum);
     RUN_TEST(test_a_roll_has_one_dynamic_or_two_and_a_place_or_none);
     return UNITY_END();
 }

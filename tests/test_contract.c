@@ -248,6 +248,8 @@ static void make_all(void)
         snprintf(text, sizeof text, "stroke %g %s legato f", 1 + i / 3.0, i % 2 ? "left" : "right");
         say(text, 0);
     }
+    say("roll 5.5 2 press mf", 0);
+    say("roll 8 2 double p", 0);
     say("limits euler", 0);
     say("strength human", 0);
     say("play", 0);

@@ -209,6 +209,62 @@ static void test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_b
     himc_performance_free(p);
 }
 
+// half a newton that control does not know of carries the stick 1 mm away; the last 10 ms of the
+// plan begin where it is
+static void test_a_stick_that_drifts_is_brought_back_before_it_lands(void)
+{
+    himc_performance *p = with_kettle("150");
+    session_do(p, "push right-stick 0 0 0.5 9");
+    taps r = tap(p, 12, 0.1, LATENCY, right, "legato ff");
+    printf("pushed: %.3f ms off\n", 1e3 * r.latest);
+    TEST_ASSERT_EQUAL_INT(12, r.h.strikes);
+    TEST_ASSERT_TRUE(r.latest < 0.0003);
+    heard_free(&r.h);
+    himc_performance_free(p);
+}
+
+/// Writes a take, y up, of the right tip alone: a blow of 4 m/s every 0.4 s.
+static void write_one_hand(const char *name)
+{
+    FILE *f = fopen(name, "w");
+    TEST_ASSERT_NOT_NULL(f);
+    fputs("PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n500\t1000\t1\tm\n", f);
+    fputs("Frame#\tTime\tRTIP\t\t\n\n", f);
+    for (int i = 0; i < 1000; i++) {
+        double u = fmod(i / 500.0, 0.4); // up at 4 m/s, down at 4 m/s
+        fprintf(f, "%d\t%.4f\t0.5\t%.6f\t0.1\n", i + 1, i / 500.0, 0.8 + 10 * u * (0.4 - u));
+    }
+    fclose(f);
+}
+
+static void test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may(void)
+{
+    static const char name[] = "build/hits.trc";
+    himc_performance *p = with_kettle("150");
+    heard h = {0};
+    write_one_hand(name);
+    session_do(p, "take %s", name);
+    session_do(p, "play");
+    session_play(p, 1.5, NULL);
+    TEST_ASSERT_FALSE(session_try(p, "hit right legato mf"));
+    session_do(p, "hit any tenuto mf");
+    for (int i = 0; i < 4; i++) // too fast for one hand, and the other one is away
+        session_do(p, "hit left tenuto mf");
+    session_play(p, 1.5, &h);
+    TEST_ASSERT_EQUAL_STRING("hit: 4 given up, no hand had the time", h.note);
+    int hits = 0;
+    for (int i = 0; i < h.strikes; i++)
+        if (strcmp(h.strike[i].nuance, "tenuto") == 0) {
+            hits++;
+            TEST_ASSERT_EQUAL_INT(HIMC_LEFT, h.strike[i].hand);
+        }
+    TEST_ASSERT_EQUAL_INT(1, hits);
+    TEST_ASSERT_TRUE(h.strikes > 1);
+    heard_free(&h);
+    himc_performance_free(p);
+    unlink(name);
+}
+
 static void test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds(void)
 {
     himc_performance *p = with_kettle("150");
@@ -240,6 +296,8 @@ int main(void)
     RUN_TEST(test_the_sample_of_the_message_counts_in_blocks_of_any_size);
     RUN_TEST(test_hits_leave_the_strokes_of_a_score_alone);
     RUN_TEST(test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_by_how_much);
+    RUN_TEST(test_a_stick_that_drifts_is_brought_back_before_it_lands);
+    RUN_TEST(test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may);
     RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);
     return UNITY_END();
 }

@@ -1,5 +1,6 @@
 /// test_membrane.c: pitch, decay, energy and pickups of a bare head, and changes while it sounds.
 #include "drum/membrane_probe.h"
+#include "head/air.h"
 #include "head/bessel.h"
 #include "head/pickup.h"
 
@@ -310,22 +311,36 @@ static void test_membrane_air_pickup_agrees_with_rayleighs_integral(void)
     }
 }
 
+// a mode's shape along its axis, mixed by a kettle
+static double along_axis(const himc_mode *mode, const himc_mixture *mix, double r)
+{
+    double sum = 0;
+    if (mode->m > 0)
+        return himc_bessel_j(mode->m, mode->zero * r);
+    for (int k = 0; k < HIMC_MIXED; k++)
+        sum += mix->part[mode->n - 1][k] * himc_bessel_j(0, himc_bessel_zero(0, k + 1) * r);
+    return sum;
+}
+
 // Rayleigh's integral near the head, per acceleration (kg/m)
-static double near_rayleigh(const himc_mode *mode, double radius, const himc_pickup *p)
+static double near_rayleigh(const himc_mode *mode, const himc_mixture *mix, double radius,
+                            const himc_pickup *p)
 {
     double k = 2 * HIMC_PI * mode->frequency / 344, re = 0, im = 0;
     double across = p->distance * cos(p->elevation), up = p->distance * sin(p->elevation);
-    for (double r = 0.005; r < 1; r += 0.01)
+    for (double r = 0.005; r < 1; r += 0.01) {
+        double shape = along_axis(mode, mix, r) * r;
         for (double th = 0; th < 2 * HIMC_PI; th += HIMC_PI / 48) {
             double far = hypot(hypot(across - r * radius * cos(th), r * radius * sin(th)), up);
-            double w = himc_bessel_j(mode->m, mode->zero * r) * cos(mode->m * th) * r / far;
-            re += w * cos(k * far);
-            im += w * sin(k * far);
+            re += shape * cos(mode->m * th) / far * cos(k * far);
+            im += shape * cos(mode->m * th) / far * sin(k * far);
         }
+    }
     return 1.21 / (2 * HIMC_PI) * radius * radius * 0.01 * (HIMC_PI / 48) * hypot(re, im);
 }
 
-// a slack 32 inch head at C2: (4, 1) is 9 dB louder at 1 m than its far field would be
+// a slack 32 inch head at C2: (4, 1) is 9 dB louder at 1 m than its far field would be, and (0, 1)
+// moves less air than its bare shape
 static void test_membrane_sounds_at_a_metre_as_rayleighs_integral_within_a_decibel(void)
 {
     himc_head slack = himc_head_default();
@@ -334,17 +349,20 @@ static void test_membrane_sounds_at_a_metre_as_rayleighs_integral_within_a_decib
     slack.uniformity = 1;
     himc_membrane *m = himc_membrane_new(&slack, RATE, NULL);
     himc_modes *modes = himc_modes_new(himc_membrane_shape(m), 60, NULL);
+    himc_air air = himc_air_around(&slack, himc_air_kettle(slack.radius));
+    himc_mixture mix = himc_air_mixture(&air);
+    himc_modes_mix_as(modes, &mix);
     for (double distance = 1; distance < 3; distance *= 2)
-        for (int i = 0, seen = 0; seen < 5; i++) {
+        for (int i = 0, seen = 0; seen < 7; i++) {
             himc_mode mode = himc_membrane_mode(m, i);
             himc_pickup p = {HIMC_PICKUP_AIR, 0, 0, 0, 0.17, distance};
-            if (mode.n > 1 || mode.sine || mode.m == 0)
+            if (mode.n > (mode.m > 0 ? 1 : 2) || mode.sine)
                 continue;
             pickup_weights w = himc_pickup_weights(&p, &slack, modes, i, &mode, 0);
             double omega = 2 * HIMC_PI * mode.frequency,
                    here = fmax(fabs(w.displacement) / omega, fabs(w.velocity)) / omega *
                           HIMC_PICKUP_PRESSURE,
-                   exact = near_rayleigh(&mode, slack.radius, &p);
+                   exact = near_rayleigh(&mode, &mix, slack.radius, &p);
             TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(here / exact));
             seen++;
         }

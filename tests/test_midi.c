@@ -1,4 +1,5 @@
 /// MIDI files: the reader held against mido's, and the scores made of them.
+#define _XOPEN_SOURCE 700
 #include "unity.h"
 
 #include "midi/import.h"
@@ -8,6 +9,7 @@
 #include "base/line.h"
 #include "plan/score.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -490,6 +492,17 @@ static void test_score_file_loads_midi_and_keeps_its_report(void)
     himc_score_free(text);
 }
 
+// over the network a file is read in one folder only, MIDI as any other
+static void test_a_midi_file_outside_the_folder_is_refused(void)
+{
+    char folder[PATH_MAX];
+    TEST_ASSERT_NOT_NULL(realpath("tests/midi", folder));
+    score = himc_score_load_in(folder, "roll.mid", &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_NULL(himc_score_load_in(folder, "../../patches/pieces/zarathustra.mid", &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "no such file in the folder given by --files"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -514,5 +527,6 @@ int main(void)
     RUN_TEST(test_a_name_stays_one_comment);
     RUN_TEST(test_a_tempo_that_scores_do_not_have_leaves_the_times);
     RUN_TEST(test_score_file_loads_midi_and_keeps_its_report);
+    RUN_TEST(test_a_midi_file_outside_the_folder_is_refused);
     return UNITY_END();
 }

@@ -211,7 +211,7 @@ static void test_force_is_the_same_with_200_and_2000_modes_for_each_mallet(void)
 static void test_contact_times_are_those_of_the_mallets(void)
 {
     static const double shortest[] = {7e-3, 6e-3, 5e-3, 3e-3};
-    static const double longest[] = {20e-3, 12e-3, 8e-3, 6.3e-3};
+    static const double longest[] = {20e-3, 12e-3, 8e-3, 6e-3};
     for (int i = 0; i < MALLETS; i++) {
         double time = 1, force = 0;
         for (double v = 0.5; v <= 8; v *= 2) {
@@ -220,7 +220,6 @@ static void test_contact_times_are_those_of_the_mallets(void)
                    1e3 * b.time, b.restitution);
             TEST_ASSERT_TRUE(b.time > shortest[i] && b.time < longest[i]);
             TEST_ASSERT_TRUE(b.time < time && b.force > 2 * force);
-            TEST_ASSERT_TRUE(i != WOOD || v < 2 || b.time < 6e-3);
             time = b.time;
             force = b.force;
         }

@@ -289,6 +289,7 @@ static himc_drum *drum_like(const himc_drum *d)
     c->placed = d->placed;
     c->technique = d->technique;
     c->gain = d->gain;
+    c->mute = d->mute;
     c->level = d->level;
     c->noise.amount = d->noise.amount;
     return c;

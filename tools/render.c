@@ -26,9 +26,9 @@
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
 /// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the left,
-/// 1.7 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
-/// its noise strong; from the front both ears hear the same.
-#define LISTENER "listener 2 0.8 1.4"
+/// 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
+/// its noise strong.
+#define LISTENER "listener 2.2 0.2 1.3"
 
 enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
 

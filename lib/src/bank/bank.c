@@ -488,7 +488,7 @@ void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *
                        const double *on_force, himc_readout *readout)
 {
     readout->direct = on_force != NULL;
-    readout->pass = 0;
+    readout->pass = readout->read_pass = 0;
     for (int i = 0; i < bank->capacity; i++) {
         double q = on_q && i < bank->count ? on_q[i] / bank->damped[i] : 0;
         double v = on_v && i < bank->count ? on_v[i] : 0;
@@ -666,12 +666,17 @@ double himc_bank_read(himc_bank *bank, himc_readout *readout)
         look_ahead(bank, readout);
         return readout->ahead[bank->at - 1];
     }
+    if (readout->read_pass == bank->pass)
+        return readout->value;
     double value = bank->loops->read(readout->p, readout->s, bank->p, bank->s, bank->live);
-    if (!f->on || !readout->film)
-        return value;
-    double sum = bank->loops->dot(readout->film, bank->p, coupled(bank));
-    return value - (readout->direct ? audible(f) * sum : 0) +
-           f->lead * film_slope(bank, readout, sum);
+    if (f->on && readout->film) {
+        double sum = bank->loops->dot(readout->film, bank->p, coupled(bank));
+        value = value - (readout->direct ? audible(f) * sum : 0) +
+                f->lead * film_slope(bank, readout, sum);
+    }
+    readout->read_pass = bank->pass;
+    readout->value = value;
+    return value;
 }
 
 double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)

@@ -62,6 +62,8 @@ typedef struct himc_readout {
     bool direct;                  ///< `film` is of its forces themselves, not of what they move
     uint64_t pass, part;          ///< to which `ahead` belongs; the caller begins with 0
     double ahead[HIMC_BANK_PASS]; ///< its values in the samples of that pass
+    uint64_t read_pass;           ///< the pass at whose start it was read last; ...
+    double value;                 ///< ... its value then
 } himc_readout;
 
 /// Fills `readout` from weights on displacements, on velocities and on the film's forces (each may

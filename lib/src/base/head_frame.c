@@ -30,7 +30,8 @@ typedef struct head_axes {
 static head_axes axes_of(const himc_head_frame *frame)
 {
     himc_vec3 e = outwards(frame);
-    double c = cos(frame->tilt), s = sin(frame->tilt);
+    bool level = frame->tilt == 0; // most are
+    double c = level ? 1 : cos(frame->tilt), s = level ? 0 : sin(frame->tilt);
     return (head_axes){{c * e.x, c * e.y, s}, {-e.y, e.x, 0}, {-s * e.x, -s * e.y, c}};
 }
 

@@ -168,6 +168,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
             himc_tracking_error_tip(c, skeleton, s, &reference->tip[hand], (himc_hand)hand,
                                     &jacobian[hand], &e);
     }
+    himc_limits_bound_errors(c, &e);
     if (c->config.law == HIMC_LAW_COMPUTED_TORQUE) {
         himc_vec3 wanted[HIMC_JOINTS];
         wanted_accelerations(c, s, &e, wanted);
@@ -177,7 +178,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     } else {
         servo_torques(c, skeleton, s, reference, &e, torque);
     }
-    himc_strength_apply(c, torque);
+    himc_strength_apply(c, skeleton, s, torque);
 }
 
 // inertia of all segments moved by a joint, about the child's axes

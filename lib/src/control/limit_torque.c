@@ -13,6 +13,12 @@
 /// of that orientation, so that nothing damps the way along the limit; implicit over the step like
 /// the servos themselves, which drive no joint further out. It is a spring and a damper: omega_lim
 /// has no more energy than omega, omega' I omega_lim <= omega' I omega, so it pumps none.
+///
+/// An arm that its limits hold off its target is asked for more and more: 1e5 rad/s^2 at a tip 0.2 m
+/// off, as if all joints could turn. What its limits leave of that threw it about at 50 to 100 m/s,
+/// and once in eight hours apart. So errors of angle pull no harder than LARGEST_ERROR, which brings
+/// a joint to w LARGEST_ERROR/2 against its damping, and no joint is asked for more than
+/// HARDEST_DEMAND: all joints of an arm for as much less, so that it still moves towards its target.
 #include "control/limit_torque.h"
 
 #include "body/dynamics.h"
@@ -37,6 +43,9 @@
 #define LEAST_CORRECTION (0.01 * HALF_SQUARE) // that of 0.01 rad/s^2 (rad)
 #define LEAST_AGAIN (10 * HALF_SQUARE) // after a compensation: the rest is for the next step (rad)
 #define SLIDE_STEP 1e-4                // over which motion along a limit is measured (s)
+// chosen: more than strokes within a player's own limits need, see above
+#define LARGEST_ERROR 0.4  // of a joint of an arm: beyond this it does not pull harder (rad)
+#define HARDEST_DEMAND 8e3 // on a joint of an arm (rad/s^2)
 
 /// A joint and its bounds; rotations in the world's frame.
 typedef struct joint_place {
@@ -130,6 +139,11 @@ static void find_stops(const himc_limits *limits, joint_place at[HIMC_JOINTS],
     }
 }
 
+static himc_vec3 reciprocal(himc_vec3 v)
+{
+    return himc_vec3_make(1 / v.x, 1 / v.y, 1 / v.z);
+}
+
 static void count_hit(himc_saturation_counts *saturation, int j)
 {
     if (!saturation || saturation->measure[j] < HIT_MEASURE)
@@ -179,6 +193,52 @@ static himc_vec3 lost_at_tip(const himc_skeleton *skeleton, const himc_body_stat
     return lost;
 }
 
+// the arm's vectors in the same proportions, none longer than `most`, if the longest is `longest`
+static void shorten(himc_hand hand, double longest, double most, himc_vec3 all[HIMC_JOINTS])
+{
+    for (int k = 0; k < HIMC_ARM_JOINTS && longest > most; k++) {
+        himc_vec3 *v = &all[himc_arm_joint(hand, k)];
+        *v = himc_vec3_scale(*v, most / longest);
+    }
+}
+
+void himc_limits_bound_errors(const himc_controller *c, tracking_error *e)
+{
+    if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
+        return;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double longest = 0;
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            longest = fmax(longest, himc_vec3_length(e->angle[himc_arm_joint((himc_hand)hand, k)]));
+        shorten((himc_hand)hand, longest, LARGEST_ERROR, e->angle);
+    }
+}
+
+// `part` is what the demand is per acceleration: an inertia, or NULL for 1
+static void bound_demand(const himc_body_state *s, himc_hand hand, const himc_vec3 *part,
+                         himc_vec3 demand[HIMC_JOINTS])
+{
+    double longest = 0;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        himc_vec3 a = demand[j];
+        if (part)
+            a = himc_mat3_scale_along(&s->rotation[j + 1], reciprocal(part[j]), a);
+        longest = fmax(longest, himc_vec3_length(a));
+    }
+    shorten(hand, longest, HARDEST_DEMAND, demand);
+}
+
+static bool is_beyond(const himc_limits *limits, himc_hand hand, const joint_place at[HIMC_JOINTS])
+{
+    bool beyond = false;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        beyond = beyond || (limits->joint[j].bound && at[j].beyond >= LEAST_BEYOND);
+    }
+    return beyond;
+}
+
 void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skeleton,
                             const himc_body_state *s, const himc_arm_jacobian jacobian[HIMC_HANDS],
                             himc_vec3 wanted[HIMC_JOINTS])
@@ -189,6 +249,8 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
     find_places(c, skeleton, s, RETURN_SPEED * HORIZON, at);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        bound_demand(s, (himc_hand)hand, NULL, wanted);
     memcpy(before, wanted, sizeof before);
     for (int pass = 0; pass <= COMPENSATION_PASSES; pass++) {
         double least = pass == 0 ? LEAST_CORRECTION : LEAST_AGAIN;
@@ -239,6 +301,9 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
     find_places(c, skeleton, s, 0, at);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (is_beyond(c->limits, (himc_hand)hand, at))
+            bound_demand(s, (himc_hand)hand, c->inertia, torque);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         himc_vec3 way, rate;
         if (!c->limits->joint[j].bound || at[j].beyond < LEAST_BEYOND)
@@ -248,7 +313,7 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
                  &rate);
         const himc_mat3 *parent = at[j].parent;
         const himc_mat3 *child = &s->rotation[j + 1];
-        himc_vec3 i = c->inertia[j], light = himc_vec3_make(1 / i.x, 1 / i.y, 1 / i.z);
+        himc_vec3 i = c->inertia[j], light = reciprocal(i);
         himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);
         himc_vec3 n = himc_mat3_apply(parent, himc_vec3_unit(way));
         // the servo's torque must not move the joint further out

@@ -3,6 +3,7 @@
 #define HIMC_LIMIT_TORQUE_H
 
 #include "control/controller.h"
+#include "control/tracking_error.h"
 
 /// Changes relative accelerations so that joints stay within their bounds or come back; the arms'
 /// other degrees of freedom compensate at the tips. So limits have priority over tips, and tips
@@ -18,5 +19,8 @@ HIMC_RT void himc_limits_compliance(const himc_controller *controller,
 HIMC_RT void himc_limits_resist(const himc_controller *controller, const himc_skeleton *skeleton,
                                 const himc_body_state *state, himc_vec3 torque[HIMC_JOINTS],
                                 himc_vec3 resistance[HIMC_JOINTS]);
+
+/// Bounds the errors of the joints of arms that have limits.
+HIMC_RT void himc_limits_bound_errors(const himc_controller *controller, tracking_error *errors);
 
 #endif

@@ -7,9 +7,17 @@
 /// 11 sideways (Delp, Grierson & Buchanan 1996, men). Those for a man of 75 kg are taken from their
 /// upper half; the elbow's stands near the shoulder's, the fingers' on a thin stick, the trunk's
 /// and the legs' are round figures of the size dynamometers show.
+///
+/// A muscle that shortens pulls less, and at its highest speed not at all (Hill 1938). So a maximum
+/// falls with the joint's speed v along the torque, most (1 - v/FASTEST), and no joint gets power
+/// above FASTEST: torques cut short one by one do not go together any more, and without this such an
+/// arm whirled at 100 m/s. A torque against the motion keeps its maximum.
 #include "control/strength.h"
 
+#include "control/tracking_error.h"
+
 #define MEASURED_MASS 75.0 // of the man of the table (kg)
+#define FASTEST 20.0       // (rad/s) chosen: an elbow that has nothing to lift reaches about that
 
 // isometric maxima (N m), see above
 static double measured(int joint)
@@ -26,11 +34,21 @@ void himc_controller_set_human_strength(himc_controller_config *c, double mass)
         c->strength[j] = measured(j) * mass / MEASURED_MASS;
 }
 
-void himc_strength_apply(const himc_controller *c, himc_vec3 torque[HIMC_JOINTS])
+// what a muscle of that maximum has left at the joint's speed along the torque
+static double left_of(double most, himc_vec3 spin, himc_vec3 torque, double asked)
+{
+    double speed = himc_vec3_dot(spin, torque) / asked;
+    return most * fmin(fmax(1 - speed / FASTEST, 0), 1);
+}
+
+void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton,
+                         const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS])
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
         double asked = himc_vec3_length(torque[j]), most = c->config.strength[j];
-        bool weak = most > 0 && asked > most;
+        if (most > 0 && asked > 0)
+            most = left_of(most, himc_relative_spin(skeleton, s, j), torque[j], asked);
+        bool weak = c->config.strength[j] > 0 && asked > most;
         if (weak)
             torque[j] = himc_vec3_scale(torque[j], most / asked);
         if (c->saturation) {

@@ -248,8 +248,10 @@ static void next_levels(himc_drum *drum, int n, double *levels)
     bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
     double goal = sounds ? drum->gain * drum->fader : 0;
     for (int i = 0; i < n && (levels || drum->level != goal); i++) {
-        double step = fmax(fmax(goal, drum->level), 1) / (LEVEL_RAMP * drum->rate);
-        drum->level += fmin(fmax(goal - drum->level, -step), step);
+        if (drum->level != goal) {
+            double step = fmax(fmax(goal, drum->level), 1) / (LEVEL_RAMP * drum->rate);
+            drum->level += fmin(fmax(goal - drum->level, -step), step);
+        }
         if (levels)
             levels[i] = drum->level;
     }

@@ -43,7 +43,7 @@ static const himc_mallet_head presets[] = {
                           .radius = 0.017,
                           .relaxation = 0.15e-3},
     [DRUM_MALLET_WOOD] =
-        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 5e-6},
+        {.stiffness = 3e8, .exponent = 1.5, .mass = 0.016, .radius = 0.008, .relaxation = 5e-6},
 };
 
 #define OWN_MALLET "own"

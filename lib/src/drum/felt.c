@@ -70,7 +70,7 @@ static void add_gradient(gradient *g, const felt_term *t, double r)
         return;
     }
     double force = c1 > 0 ? t->k * power(c1, n) : 0;
-    double mean = (force * fmax(c1, 0) / (n + 1) - t->potential) / r;
+    double mean = (c1 > 0 ? force * c1 / (n + 1) - t->potential : -t->potential) / r;
     g->mean += mean;
     g->mean_slope += (force - mean) / r;
     g->rise += force - t->force;

@@ -29,6 +29,7 @@
 #define FADE 0.005      // (s) chosen: no click
 #define CACHE_LINE 8    // doubles
 #define FORGOTTEN 5.0   // T60s until it is empty; chosen: -300 dB
+#define LEAST_GAIN 0.1  // g that counts for the level; chosen: all do from T60 = 0.21 s on
 
 // of each delay at both ears, and of what enters it: Walsh functions, orthogonal
 static const double AT_EAR[2][HIMC_ROOM_LINES] = {
@@ -55,7 +56,8 @@ static himc_room_form form_of(const himc_walls *walls, const int *delay, double 
     double loss = 0;
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
         set_wall(&f, l, delay[l] / rate, walls->seconds, rate);
-        double gain = f.take[l] / (1 - f.keep[l]);
+        // of a shorter T60 the longest ways, which nobody hears, would count for all
+        double gain = fmax(f.take[l] / (1 - f.keep[l]), LEAST_GAIN);
         loss += (1 / (gain * gain) - 1) / HIMC_ROOM_LINES;
     }
     double absorption = SABINE * walls->volume / walls->seconds;
@@ -85,7 +87,7 @@ static himc_room_form present(const himc_room *r)
 static void forget(himc_room *r)
 {
     for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        memset(r->line[l], 0, sizeof *r->line[l] * (size_t)r->size);
+        memset(r->line[l], 0, sizeof *r->line[l] * (size_t)r->delay[l]);
     memset(r->y, 0, sizeof r->y);
     r->silent = HIMC_ROOM_EMPTY;
 }
@@ -94,14 +96,12 @@ static void forget(himc_room *r)
 static void begin(himc_room *r, double rate)
 {
     r->rate = rate;
-    for (r->size = 1; r->size <= LONGEST * rate + 1;)
-        r->size *= 2;
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
         double part = (double)l / (HIMC_ROOM_LINES - 1);
         r->delay[l] = (int)lround(rate * SHORTEST * pow(LONGEST / SHORTEST, part));
     }
+    memset(r->at, 0, sizeof r->at);
     forget(r);
-    r->at = 0;
 }
 
 void himc_room_set(himc_room *r, const himc_walls *walls, double rate)
@@ -115,7 +115,7 @@ void himc_room_set(himc_room *r, const himc_walls *walls, double rate)
     r->from = present(r);
     if (r->on) {
         r->to = form_of(walls, r->delay, rate);
-        r->forget = (int)(FORGOTTEN * walls->seconds * rate) + r->size;
+        r->forget = (int)(FORGOTTEN * walls->seconds * rate) + r->delay[HIMC_ROOM_LINES - 1];
     }
     if (!before) {
         r->from = r->to;
@@ -142,26 +142,30 @@ static double sum(const double *x)
     return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
 }
 
-// what leaves each delay in n samples
+// A delay is a ring of its length: what leaves it makes room for what enters it. Here, `y` receives
+// what leaves each in n samples.
 static void read_lines(const himc_room *r, int n, double y[HIMC_ROOM_RUN][HIMC_ROOM_LINES])
 {
-    int mask = r->size - 1;
     for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        for (int i = 0; i < n; i++)
-            y[i][l] = r->line[l][(r->at + i - r->delay[l]) & mask];
+        for (int i = 0, at = r->at[l]; i < n; i++) {
+            y[i][l] = r->line[l][at];
+            at = at + 1 < r->delay[l] ? at + 1 : 0;
+        }
 }
 
-// what enters them; asks the memory for what leaves them next
+// x enters; asks the memory for what leaves next
 static void write_lines(himc_room *r, int n, double x[HIMC_ROOM_RUN][HIMC_ROOM_LINES])
 {
-    int mask = r->size - 1;
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        for (int i = 0; i < n; i++)
-            r->line[l][(r->at + i) & mask] = x[i][l];
-        for (int i = 0; i < n + CACHE_LINE; i += CACHE_LINE)
-            __builtin_prefetch(&r->line[l][(r->at + n + i - r->delay[l]) & mask]);
+        int at = r->at[l];
+        for (int i = 0; i < n; i++) {
+            r->line[l][at] = x[i][l];
+            at = at + 1 < r->delay[l] ? at + 1 : 0;
+        }
+        r->at[l] = at;
+        for (int i = 0; i <= HIMC_ROOM_RUN; i += CACHE_LINE)
+            __builtin_prefetch(&r->line[l][at + i], 1);
     }
-    r->at = (r->at + n) & mask;
 }
 
 // n samples of the network, fewer than any delay; their sound at both ears

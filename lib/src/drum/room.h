@@ -23,7 +23,6 @@ typedef struct himc_walls {
 #define HIMC_ROOM_LINES 16
 #define HIMC_ROOM_RUN 32     ///< (samples) at a time; chosen: less than the shortest delay at 8 kHz
 #define HIMC_ROOM_LINE 16384 ///< (samples) more than the longest delay at 192 kHz
-#define HIMC_ROOM_APART 8    ///< so that samples of one moment are not all in one set of a cache
 #define HIMC_ROOM_EMPTY INT32_MAX
 
 /// What a change of the room changes.
@@ -38,11 +37,10 @@ typedef struct himc_room {
     himc_room_form from, to; ///< it fades from one to the other
     double faded, step;      ///< 0 .. 1, and a sample's part of it
     double rate;
-    int size, at;       ///< of `line` (a power of two), and of the coming sample
     int silent, forget; ///< samples since a sound entered, or EMPTY; and as many make it so
-    int delay[HIMC_ROOM_LINES];
+    int delay[HIMC_ROOM_LINES], at[HIMC_ROOM_LINES]; ///< (samples); in it, of the coming sample
     double y[HIMC_ROOM_LINES];
-    double line[HIMC_ROOM_LINES][HIMC_ROOM_LINE + HIMC_ROOM_APART];
+    double line[HIMC_ROOM_LINES][HIMC_ROOM_LINE];
 } himc_room;
 
 /// Sets the walls, at a sample rate. They change over in 5 ms.

@@ -1,7 +1,8 @@
-/// stroke_noise.c: noise in four octaves, driven by the rate at which the contact's force changes.
+/// stroke_noise.c: noise in four bands, driven by the rate at which the contact's force changes.
 ///
 /// A blow also shakes what is not the head: felt rubs, the shaft bends, shell and stand ring, in
-/// more modes than anyone has measured. So each octave b has an energy (docs/model.md),
+/// more modes than anyone has measured. So each band b, the lowest from 250 Hz where a shaft of wood
+/// first bends (400 Hz) and kettles ring, has an energy (docs/model.md),
 ///     E_b' = -E_b 13.8/T60_b + q_b (min(F, STRONGEST)/F1)^BETA G^2/sqrt(1 + (G/G1)^2),
 ///     sound = amount sqrt(E_b) x unit noise,
 /// with a level that rises in RISE, and G the part of F' above EDGE: most of F' is the slow rise of
@@ -11,8 +12,8 @@
 /// head's sound is.
 ///
 /// Unit noise is white, from a counter that is scrambled (random.h), through Butterworth filters of
-/// second order at the lower edge of the octave and of fourth order at the upper one. Its sequence
-/// begins anew with each contact, from a seed that is the place in whole centimetres: equal blows
+/// second order at the lower edge of the band and of fourth order at the upper one. Its sequence
+/// begins anew with each contact, from a seed that is the place in steps of 2 cm: equal blows
 /// are equal to the last bit, and as soon as the place varies no two are. All is counted in
 /// samples, so how many are asked for at a time does not matter. It takes no energy from the head
 /// and gives it none.
@@ -27,28 +28,31 @@
 #define BETA 0.8       // chosen: 1 is a felt core, 0 its friction; brightness with force
 #define STRONGEST 55.0 // (N) chosen: fff is louder than ff, not noisier
 #define SLOPE 1e4      // G1 (N/s): of a loud medium blow; chosen: a wooden stick is not all noise
-#define EDGE 500.0     // (Hz) of G; chosen: where the lowest octave begins
-#define RISE 0.002     // (s) chosen: as the recordings rise
-#define TOP 0.45       // of the sample rate; an octave above it is silent
-#define SILENT 1e-14   // sum of energies; chosen: -140 dB
-#define PLACE 100      // seeds a metre; chosen: how well a player finds a place again
-#define COHERENCE 0.5  // of the two rows; chosen: shell and stand are larger than a head
-#define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
-#define MEASURED 0.02  // (s) of a filter's response; chosen: the lowest octave's is over
+#define LEAST_SLOPE 1e-30 // (N/s) of G; chosen: beside any blow's it is nothing
+#define EDGE 500.0        // (Hz) of G; chosen: what is above differs from mallet to mallet
+#define RISE 0.002        // (s) chosen: as the recordings rise
+#define TOP 0.45          // of the sample rate; a band above it is silent
+#define SILENT 1e-14      // sum of energies; chosen: -140 dB
+#define PLACE 50      // seeds a metre; chosen: a mallet covers as much, blows within it are alike
+#define COHERENCE 0.5 // of the two rows; chosen: shell and stand are larger than a head
+#define CHUNK 32      // samples at a time, so that vectors do not wait for single numbers
+#define MEASURED 0.04 // (s) of a filter's response; chosen: the lowest band's is over
 
 // q_b, fitted once on numbers of two recordings, hall included: with the head's own sound an accent
 // f of the medium mallet, at C2 on 32 inches and at G2 on 29, has about -13 -18 -25 -38 dB in its
 // first 100 ms. It shows that the form reaches them, and proves nothing about felt or stands.
 static const struct {
-    double low, t60, drive; // edge (Hz), decay (s)
-} octave[HIMC_NOISE_BANDS] = {
-    {500, 0.35, 1.44e-7}, {1000, 0.20, 7.1e-8}, {2000, 0.12, 2.3e-8}, {4000, 0.06, 1.8e-9}};
+    double low, high, t60, drive; // edges (Hz), decay (s)
+} bands[HIMC_NOISE_BANDS] = {{250, 1000, 0.35, 2.4e-7},
+                             {1000, 2000, 0.20, 7.1e-8},
+                             {2000, 4000, 0.12, 2.3e-8},
+                             {4000, 8000, 0.06, 1.8e-9}};
 
-// a low or high pass with damping d = 1/Q, by the bilinear transform, for an octave of both rows
-static void set_edge(himc_noise_edge *e, int octave_index, double k, bool high, double d)
+// a low or high pass with damping d = 1/Q, by the bilinear transform, for a band of both rows
+static void set_edge(himc_noise_edge *e, int band, double k, bool high, double d)
 {
     double n = 1 / (1 + k * d + k * k), b = (high ? 1 : k * k) * n;
-    for (int i = octave_index; i < HIMC_NOISE_LANES; i += HIMC_NOISE_BANDS) {
+    for (int i = band; i < HIMC_NOISE_LANES; i += HIMC_NOISE_BANDS) {
         e->b[0][i] = e->b[2][i] = b;
         e->b[1][i] = high ? -2 * b : 2 * b;
         e->a[0][i] = 2 * (k * k - 1) * n;
@@ -97,10 +101,10 @@ void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
     for (int k = 0; k < 3; k++)
         memset(noise->edge[k].b, 0, sizeof noise->edge[k].b);
     for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
-        double top = fmin(2 * octave[i].low, TOP * rate);
-        double low_k = tan(HIMC_PI * octave[i].low / rate), top_k = tan(HIMC_PI * top / rate);
-        noise->band[i].keep = exp(-6.9 / (octave[i].t60 * rate));
-        if (octave[i].low >= top)
+        double top = fmin(bands[i].high, TOP * rate);
+        double low_k = tan(HIMC_PI * bands[i].low / rate), top_k = tan(HIMC_PI * top / rate);
+        noise->band[i].keep = exp(-6.9 / (bands[i].t60 * rate));
+        if (bands[i].low >= top)
             continue;
         set_edge(&noise->edge[0], i, low_k, true, sqrt(2));
         set_edge(&noise->edge[1], i, top_k, false, 2 * cos(HIMC_PI / 8));
@@ -121,11 +125,16 @@ void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double y)
     noise->state = (uint64_t)llround(PLACE * x) * 4096 + (uint64_t)llround(PLACE * y);
 }
 
-// a sample of the force feeds the octaves
+// a sample of the force feeds the bands
 static void drive(himc_stroke_noise *noise, double force)
 {
-    double slope = (force - noise->force) * noise->rate, stronger = fmax(force, noise->force);
-    double *known = noise->slope, first = noise->pole * (known[1] + slope - known[0]);
+    double *known = noise->slope, stronger = force > noise->force ? force : noise->force;
+    if (stronger <= 0 && fabs(known[1]) + fabs(known[2]) < LEAST_SLOPE) {
+        known[0] = known[1] = known[2] = 0; // a denormal number costs as much as all the rest
+        return;
+    }
+    double slope = (force - noise->force) * noise->rate,
+           first = noise->pole * (known[1] + slope - known[0]);
     double g = noise->pole * (known[2] + first - known[1]);
     known[0] = slope;
     known[1] = first;
@@ -138,7 +147,7 @@ static void drive(himc_stroke_noise *noise, double force)
     power /= noise->rate;
     for (int i = 0; i < HIMC_NOISE_BANDS; i++)
         noise->band[i].root =
-            sqrt(noise->band[i].root * noise->band[i].root + octave[i].drive * power);
+            sqrt(noise->band[i].root * noise->band[i].root + bands[i].drive * power);
 }
 
 void himc_stroke_noise_rest(himc_stroke_noise *noise)
@@ -152,14 +161,14 @@ void himc_stroke_noise_rest(himc_stroke_noise *noise)
         memset(noise->edge[k].past, 0, sizeof noise->edge[k].past);
 }
 
-// white noise of power 1 for an octave, from 16 of 64 bits
-static double white(uint64_t bits, int octave_index)
+// white noise of power 1 for a band, from 16 of 64 bits
+static double white(uint64_t bits, int band)
 {
-    double part = (double)((bits >> (16 * octave_index)) & 0xffffu);
+    double part = (double)((bits >> (16 * band)) & 0xffffu);
     return sqrt(12) * ((part + 0.5) / 65536 - 0.5);
 }
 
-// white noise for all octaves of one row or two
+// white noise for all bands of one row or two
 static inline void draw(himc_stroke_noise *noise, int lanes, double x[HIMC_NOISE_LANES])
 {
     uint64_t bits = himc_random_bits(&noise->state), other = himc_random_bits(&noise->state);

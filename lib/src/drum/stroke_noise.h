@@ -9,13 +9,13 @@
 enum { HIMC_NOISE_BANDS = 4, HIMC_NOISE_ROWS = 2 };
 enum { HIMC_NOISE_LANES = HIMC_NOISE_BANDS * HIMC_NOISE_ROWS };
 
-/// A filter of second order for each octave of each row, with the octaves of a row side by side.
+/// A filter of second order for each band of each row, with the bands of a row side by side.
 typedef struct himc_noise_edge {
     double b[3][HIMC_NOISE_LANES], a[2][HIMC_NOISE_LANES]; ///< zeros, poles
     double past[2][HIMC_NOISE_LANES];
 } himc_noise_edge;
 
-/// One octave of the noise.
+/// One band of the noise.
 typedef struct himc_noise_band {
     double unit;  ///< makes the power of filtered white noise 1
     double keep;  ///< of its amplitude, a sample
@@ -25,7 +25,7 @@ typedef struct himc_noise_band {
 
 /// The noise of a drum. It takes a copy of the contact's force and gives nothing back.
 typedef struct himc_stroke_noise {
-    himc_noise_edge edge[3]; ///< the octaves' lower edge, their upper one twice
+    himc_noise_edge edge[3]; ///< the bands' lower edge, their upper one twice
     himc_noise_band band[HIMC_NOISE_BANDS];
     double amount; ///< 0 none .. 1; may change at any time
     double rate;   ///< (Hz)
@@ -41,8 +41,8 @@ typedef struct himc_stroke_noise {
 himc_stroke_noise himc_stroke_noise_at(double rate);
 /// Sets another sample rate; the sound goes on.
 HIMC_RT void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate);
-/// A contact begins at that place (m): its noise begins, the same for every blow within a
-/// centimetre.
+/// A contact begins at that place (m): its noise begins, the same for every blow within two
+/// centimetres.
 HIMC_RT void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double y);
 /// The next n samples at 1 m, for `rows` (1, 2) places far apart, while `force` (N) acts in each.
 HIMC_RT void himc_stroke_noise_run(himc_stroke_noise *noise, int n, double force, int rows,

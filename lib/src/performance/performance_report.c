@@ -314,9 +314,9 @@ static void describe_playing(const himc_performance *p, reader to)
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
     snprintf(text, sizeof text,
-             "grip %s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",
-             word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, 1e3 * p->settings.latency, s.hits,
-             1e3 * s.hit_latency, 1e3 * s.longest_latency);
+             "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",
+             word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, p->settings.servo ? " servo" : "",
+             1e3 * p->settings.latency, s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
     to.line(to.user, text);
     if (p->settings.human.amount > 0) {
         snprintf(text, sizeof text, "human %g, seed %u", p->settings.human.amount,
