@@ -216,10 +216,14 @@ static void free_lines(himc_job *job)
 himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
                               himc_error *error)
 {
-    write_job *j = lines->failed ? NULL : calloc(1, sizeof *j);
+    bool clean = himc_line_is_clean(path);
+    write_job *j = lines->failed || !clean ? NULL : calloc(1, sizeof *j);
     if (!j) {
         free(lines->bytes);
-        himc_error_set(error, "%s: out of memory", command);
+        himc_error_set(error,
+                       clean ? "%s: out of memory"
+                             : "%s: FILE: a control character, allowed a name without",
+                       command);
         return NULL;
     }
     j->job = (himc_job){write_lines, lines_written, free_lines};
