@@ -213,17 +213,26 @@ static void free_lines(himc_job *job)
     free(job);
 }
 
+// an ending of its own, so that no other file is replaced by mistake
+static bool is_text_name(const char *command, const char *path, himc_error *error)
+{
+    size_t length = strlen(path);
+    if (himc_line_is_clean(path) && length > 4 && strcmp(path + length - 4, ".txt") == 0)
+        return true;
+    return himc_error_set(error, "%s: FILE: %.80s, allowed a name that ends with .txt", command,
+                          path);
+}
+
 himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
                               himc_error *error)
 {
-    bool clean = himc_line_is_clean(path);
-    write_job *j = lines->failed || !clean ? NULL : calloc(1, sizeof *j);
+    write_job *j = NULL;
+    if (lines->failed)
+        himc_error_set(error, "%s: out of memory", command);
+    else if (is_text_name(command, path, error) && !(j = calloc(1, sizeof *j)))
+        himc_error_set(error, "%s: out of memory", command);
     if (!j) {
         free(lines->bytes);
-        himc_error_set(error,
-                       clean ? "%s: out of memory"
-                             : "%s: FILE: a control character, allowed a name without",
-                       command);
         return NULL;
     }
     j->job = (himc_job){write_lines, lines_written, free_lines};

@@ -191,6 +191,7 @@ static void dump_playing(const himc_performance *p, const himc_line_sink *to)
         himc_state_word(&grip, "servo");
     himc_state_end(&grip, to);
     himc_state_tell(to, "human", NULL, 2, (double[]){s->human.amount, s->human.seed});
+    tell_switch(to, "alive", s->alive);
     himc_state_tell(to, "latency", NULL, 1, (double[]){1e3 * s->latency});
 }
 
