@@ -323,8 +323,8 @@ static void test_rolls_follow_tempo_seek_and_loop(void)
 // the grace note of beat 0 comes before the round begins
 static void test_in_a_loop_the_grace_notes_of_beat_0_come_at_the_end_of_the_round(void)
 {
-    static const char *const lines[] = {"tempo 240", "flam 0 right legato f", "drag 2 left legato f",
-                                        "loop 1", NULL};
+    static const char *const lines[] = {"tempo 240", "flam 0 right legato f",
+                                        "drag 2 left legato f", "loop 1", NULL};
     heard h = play_piece(lines, 3.9, 480);
     int flams = 0;
     for (int i = 0; i + 4 < h.strikes; i += 5, flams++) {
