@@ -136,7 +136,6 @@ static bool add_roll(addition *to, const himc_stroke *roll, double pitch, himc_e
     if (!himc_planner_accepts_roll(to->planner, roll, pitch, error))
         return false;
     himc_stroke s = *roll;
-    s.ornament = HIMC_PLAIN;
     s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
                 : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
                                                     : 0;
