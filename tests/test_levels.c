@@ -13,7 +13,7 @@ static const struct timpano {
 #define SOFTEST 0.001 // -60 dB
 
 // shares of the radius; the blow at the loudest one excites all modes of low frequency
-#define LOUDEST_PLACE 0.2
+#define LOUDEST_PLACE 0.3
 #define SOFTEST_PLACE 0.92
 static const double places[] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.75, 0.85, 0.92};
 #define PLACES (int)(sizeof places / sizeof places[0])
