@@ -25,7 +25,7 @@ HOW      = $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interpositi
            -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
 COMPILE  = $(CC) -std=c17 -Wmissing-prototypes $(HOW)
 # Eigen, which linear.cpp alone knows
-COMPILE_CXX = $(CXX) -std=c++17 -fno-rtti -isystem $(EIGEN) $(HOW)
+COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it

@@ -99,6 +99,17 @@ static inline double ear_strength(const himc_ears *e, int ear)
            tap_strength(&e->now.direct[ear]) + tap_strength(&e->now.floor[ear]);
 }
 
+/// Largest sample that walls return to an ear per sample of the rays: each pass leaves them less.
+static inline double walls_strength(const himc_room *r)
+{
+    double gain = 0;
+    for (int l = 0; l < HIMC_ROOM_LINES; l++)
+        gain = fmax(gain, fmax(r->from.take[l] / (1 - r->from.keep[l]),
+                               r->to.take[l] / (1 - r->to.keep[l])));
+    double sum = fmax(r->from.out, r->to.out) * HIMC_ROOM_LINES / (1 - gain);
+    return himc_room_heard(r) ? HIMC_EARS_LEVEL * sum : 0;
+}
+
 /// Largest sample of a channel without declicks, of pickups, noise and ears.
 static inline double largest_in_channel(const himc_drum *d, int channel, double energy)
 {
@@ -109,8 +120,9 @@ static inline double largest_in_channel(const himc_drum *d, int channel, double 
         sum = largest_sample(d, channel, energy) +
               (at[channel].kind == HIMC_PICKUP_AIR ? noise / at[channel].distance : 0);
     if (channel < HIMC_EARS && himc_membrane_rays(d->membrane))
-        sum += ear_strength(&d->ears, channel) * (largest_sample(d, HIMC_PICKUPS, energy) + noise);
-    return sum * fmax(1, fmax(d->gain, d->level));
+        sum += (ear_strength(&d->ears, channel) + walls_strength(&d->ears.room)) *
+               (largest_sample(d, HIMC_PICKUPS, energy) + noise);
+    return sum * fmax(1, fmax(d->gain * d->fader, d->level));
 }
 
 /// Energy in the head and in its own mallets (J).

@@ -174,6 +174,7 @@ static void plays_buzzes(const char *mode, const char *dynamic)
                                  g->time[k] - g->time[k - 1] < 0.06);
         }
     TEST_ASSERT_EQUAL_INT(himc_performance_measure(p).strokes, himc_performance_measure(p).played);
+    TEST_ASSERT_TRUE(h.notes <= 1); // faster than its bounces allow
     TEST_ASSERT_TRUE(himc_performance_measure(p).strokes > 5);
     heard_free(&h);
     himc_performance_free(p);
@@ -323,8 +324,8 @@ static void test_rolls_follow_tempo_seek_and_loop(void)
 // the grace note of beat 0 comes before the round begins
 static void test_in_a_loop_the_grace_notes_of_beat_0_come_at_the_end_of_the_round(void)
 {
-    static const char *const lines[] = {"tempo 240", "flam 0 right legato f", "drag 2 left legato f",
-                                        "loop 1", NULL};
+    static const char *const lines[] = {"tempo 240", "flam 0 right legato f",
+                                        "drag 2 left legato f", "loop 1", NULL};
     heard h = play_piece(lines, 3.9, 480);
     int flams = 0;
     for (int i = 0; i + 4 < h.strikes; i += 5, flams++) {
@@ -355,6 +356,15 @@ static void test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so(void)
     s.bounce_time = 0.9;
     TEST_ASSERT_FALSE(himc_performance_add_stroke(p, &s, &error));
     heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_a_roll_too_long_is_refused_and_makes_no_drum(void)
+{
+    himc_performance *p = with_kettle("himc");
+    TEST_ASSERT_FALSE(session_try(p, "roll 4 755 double f pp normal other"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "roll: LENGTH"));
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
     himc_performance_free(p);
 }
 
@@ -397,6 +407,7 @@ int main(void)
     RUN_TEST(test_rolls_follow_tempo_seek_and_loop);
     RUN_TEST(test_in_a_loop_the_grace_notes_of_beat_0_come_at_the_end_of_the_round);
     RUN_TEST(test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so);
+    RUN_TEST(test_a_roll_too_long_is_refused_and_makes_no_drum);
     RUN_TEST(test_a_roll_has_one_dynamic_or_two_and_a_place_or_none);
     return UNITY_END();
 }

@@ -164,7 +164,7 @@ static void test_head_raised_past_resting_sticks_is_not_struck_from_below(void)
     session_drum(p, 0, "place 0.7 0 0.97");
     session_play(p, 3, &h);
     TEST_ASSERT_EQUAL_INT(0, h.strikes);
-    TEST_ASSERT_TRUE(himc_performance_measure(p).peak_force == 0);
+    TEST_ASSERT_TRUE(himc_performance_measure(p).peak_force < 0.01);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         rests_over(p, 0, (himc_hand)hand);
     session_do(p, "hit left legato mf");

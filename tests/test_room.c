@@ -80,6 +80,25 @@ static void test_room_returns_as_much_as_one_of_its_size(void)
         }
 }
 
+static double loudest_after_a_click(double seconds)
+{
+    double most = 0;
+    click((himc_walls){seconds, 600});
+    for (int i = 0; i < LONG; i++)
+        most = fmax(most, fabs(answer[0][i]));
+    return most;
+}
+
+static void test_room_of_a_short_time_is_soft(void)
+{
+    double usual = loudest_after_a_click(0.3);
+    for (double seconds = 0.2; seconds > 1e-3; seconds /= 1.5) {
+        double most = loudest_after_a_click(seconds);
+        printf("%.4f s: %.3g of that of 0.3 s\n", seconds, most / usual);
+        TEST_ASSERT_TRUE(most <= 1.2 * usual);
+    }
+}
+
 static void test_room_gives_each_ear_its_own_at_any_frequency(void)
 {
     static const double BAND[][2] = {{40, 200}, {200, 800}, {800, 3000}};
@@ -312,6 +331,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_room_rings_for_its_time_and_less_above);
     RUN_TEST(test_room_returns_as_much_as_one_of_its_size);
+    RUN_TEST(test_room_of_a_short_time_is_soft);
     RUN_TEST(test_room_gives_each_ear_its_own_at_any_frequency);
     RUN_TEST(test_room_never_gains_energy_also_while_its_walls_change);
     RUN_TEST(test_room_does_not_click_when_it_changes);

@@ -16,12 +16,8 @@ enum { OUT, PART, CURVE };
 
 static const cli_option options[] = {
     {"output", 'o', "SCORE", "the score; - is the standard output"},
-    {"part", 0, "timpani|drums",
-     "whose notes are played: program 48 and tracks of that name, or channel 10 (timpani if there "
-     "are any)"},
-    {"curve", 0, "notation|square[:DB]",
-     "how velocities become dynamics: as notation programs write them, 16 ppp .. 112 ff; or by the "
-     "square law of synthesisers over a range of 1 .. 80 dB, 22 when not given (notation)"},
+    {"part", 0, "PART", "timpani or drums (timpani if the file has any)"},
+    {"curve", 0, "CURVE", "how velocities become dynamics (notation)"},
     {0},
 };
 
@@ -105,7 +101,11 @@ const cli_call cli_import = {
     "Notes of timpani are played on up to four drums, with pedals that move between them;\n"
     "those of the drum channel of General MIDI on five heads of several sizes. One player\n"
     "has two hands: what cannot be played is said on stderr, a line for each reason.\n"
-    "render, info and the command `score` read a MIDI file in the same way by themselves.",
+    "render, info and the command `score` read a MIDI file in the same way by themselves.\n"
+    "\n"
+    "PART: timpani are program 48 of General MIDI and tracks of that name; drums channel 10.\n"
+    "CURVE: `notation`, as notation programs write them, 16 ppp .. 112 ff in equal steps; or\n"
+    "`square:DB`, the square law of synthesisers over a range of 1 .. 80 dB; `square` is 22.",
     options,
     run,
 };

@@ -65,6 +65,10 @@ himc stroke 4 left legato f
 himc stroke 4.5 right staccato ff rim other
 himc hit left accent fff
 himc hit right legato pp
+himc hit any tenuto mf
+himc latency 0
+himc latency 80
+himc latency auto
 himc tempo 150
 himc grip french
 himc loop 1

@@ -52,6 +52,7 @@
 #define LEAN_LIMIT 0.55         // ... up to this (rad)
 #define TURN_SHARE 0.85         // of the azimuth of the strike points; the arms do the rest
 #define TURN_LIMIT 1.05         // (rad)
+#define ARM_POSTURE_RATE 40.0   // chosen: a quarter of a second for elbow and wrist (rad/s)
 #define TRUNK_POSTURE_RATE 11.0 // chosen: half a second from drum to drum (rad/s)
 // Rest of the body. Chosen: looks at a head half a metre ahead, sits with the feet flat.
 #define LOOK_DOWN 0.22     // of neck and head together (rad)
@@ -134,9 +135,10 @@ static himc_trunk_posture trunk_posture_after(const himc_trunk_posture *b, doubl
 himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
                                                const himc_trunk_posture *goal, double dt)
 {
-    double w = TRUNK_POSTURE_RATE;
     himc_trunk_posture next = trunk_posture_after(now, dt);
     for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++) {
+        bool arms = i >= HIMC_TRUNK_POSTURE_ELBOW && i < HIMC_TRUNK_POSTURE_SIDE;
+        double w = arms ? ARM_POSTURE_RATE : TRUNK_POSTURE_RATE;
         double jerk = w * (-3 * now->acceleration[i] +
                            w * (-3 * now->rate[i] + w * (goal->value[i] - now->value[i])));
         next.value[i] += jerk * dt * dt * dt / 6;
@@ -144,6 +146,17 @@ himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
         next.acceleration[i] += jerk * dt;
     }
     return next;
+}
+
+himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
+                                               const himc_trunk_posture *goal, double time)
+{
+    // the step response of critically damped motion of third order; beyond 60 / w it is over
+    double wt = fmin(TRUNK_POSTURE_RATE * time, 60), left = exp(-wt) * (1 + wt + 0.5 * wt * wt);
+    himc_trunk_posture then = *goal;
+    for (int i = 0; i < HIMC_TRUNK_POSTURE_ELBOW; i++)
+        then.value[i] += left * (now->value[i] - goal->value[i]);
+    return then;
 }
 
 // an elevation with this slope at height 0 that saturates at +-limit
@@ -155,6 +168,8 @@ static double elevation_at(double height, double slope, double limit)
 typedef struct arm {
     himc_quat trunk;     // orientation in the world
     double turn, french; // of the trunk (rad); share of the French grip
+    double out, raise;   // of elbow and wrist beyond the usual (rad)
+    double aside;        // wrist to the left about the tip (rad)
     himc_vec3 shoulder, elbow, wrist, grip, tip;
     himc_vec3 stick, hand, side; // unit vectors; side is the flexion axis of wrist and grip
 } arm;
@@ -176,7 +191,11 @@ static arm arm_of(const himc_posture *posture, himc_hand hand)
     const himc_segment *segment = posture->skeleton.segment;
     arm a = {.trunk = trunk_of(&posture->trunk_posture),
              .turn = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_TURN],
-             .french = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP]};
+             .french = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP],
+             .out = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_ELBOW + hand],
+             .raise = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_WRIST + hand],
+             .aside = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_ASIDE + hand] *
+                      (hand == HIMC_LEFT ? 1 : -1)};
     himc_vec3 waist = himc_vec3_add(posture->skeleton.root, segment[HIMC_TRUNK].origin);
     a.shoulder =
         himc_vec3_add(waist, himc_quat_rotate(a.trunk, segment[HIMC_LEFT_UPPER_ARM + hand].origin));
@@ -189,13 +208,14 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
     double outside = hand == HIMC_LEFT ? PLANE_BESIDE : -PLANE_BESIDE;
     double dx = tip.x - (a->shoulder.x - PLANE_BEHIND * cos(a->turn) - outside * sin(a->turn));
     double dy = tip.y - (a->shoulder.y - PLANE_BEHIND * sin(a->turn) + outside * cos(a->turn));
-    double azimuth = atan2(dy, dx), height = tip.z - posture->level;
+    double azimuth = atan2(dy, dx) - a->aside, height = tip.z - posture->level;
     double hand_slope = blend_grips(HAND_SLOPE, FRENCH_HAND_SLOPE, a->french);
     a->tip = tip;
     double stick_slope = blend_grips(STICK_SLOPE, FRENCH_STICK_SLOPE, a->french);
-    a->stick = himc_vec3_elevated(azimuth, elevation_at(height, stick_slope, STICK_LIMIT));
-    a->hand =
-        himc_vec3_elevated(azimuth, HAND_LEVEL + elevation_at(height, hand_slope, HAND_LIMIT));
+    a->stick =
+        himc_vec3_elevated(azimuth, elevation_at(height, stick_slope, STICK_LIMIT) - a->raise);
+    a->hand = himc_vec3_elevated(
+        azimuth, HAND_LEVEL + elevation_at(height, hand_slope, HAND_LIMIT) - a->raise);
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     a->grip = himc_vec3_madd(tip, -himc_vec3_length(posture->skeleton.tip), a->stick);
     double palm = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_STICK + hand].origin);
@@ -227,7 +247,7 @@ static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     himc_vec3 down = downward(u, a->turn);
     down = himc_vec3_unit(himc_vec3_madd(down, -himc_vec3_dot(down, u), u));
     himc_vec3 out = himc_vec3_cross(down, u);
-    double elbow_out = blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french);
+    double elbow_out = blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french) + a->out;
     double turn = hand == HIMC_LEFT ? -elbow_out : elbow_out;
     himc_vec3 hang = himc_vec3_madd(himc_vec3_scale(down, cos(turn)), sin(turn), out);
     a->elbow = himc_vec3_madd(himc_vec3_madd(a->shoulder, along, u), away, hang);
@@ -264,6 +284,52 @@ double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[HIMC_HAN
     double left = arm_joints(posture, HIMC_LEFT, tip[HIMC_LEFT], pose);
     double right = arm_joints(posture, HIMC_RIGHT, tip[HIMC_RIGHT], pose);
     return fmax(left, right);
+}
+
+// a segment's capsule from its joint to another point
+static himc_capsule reach_to(const himc_posture *posture, int segment, himc_vec3 from, himc_vec3 to)
+{
+    return (himc_capsule){from, to, posture->skeleton.segment[segment].radius};
+}
+
+static double arm_capsules(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
+                           himc_capsule *capsule)
+{
+    arm a = arm_of(posture, hand);
+    solve_wrist(posture, hand, tip, &a);
+    himc_vec3 wrist = a.wrist;
+    double missing = solve_elbow(posture, hand, &a);
+    himc_vec3 joint[] = {a.shoulder, a.elbow, wrist, a.grip, tip};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int i = himc_arm_joint(hand, k) + 1;
+        capsule[i] = reach_to(posture, i, joint[k], joint[k + 1]);
+    }
+    capsule[himc_stick_segment(hand)].radius = HIMC_ROD_RADIUS;
+    return missing;
+}
+
+double himc_posture_capsules(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],
+                             himc_capsule capsule[HIMC_SEGMENTS])
+{
+    const himc_segment *s = posture->skeleton.segment;
+    himc_vec3 root = posture->skeleton.root, waist = himc_vec3_add(root, s[HIMC_TRUNK].origin);
+    himc_quat trunk = trunk_of(&posture->trunk_posture);
+    himc_vec3 up = himc_quat_rotate(trunk, himc_vec3_make(0, 0, 1));
+    himc_vec3 top = himc_vec3_madd(waist, s[HIMC_TRUNK].length, up);
+    himc_vec3 head =
+        himc_vec3_madd(himc_vec3_add(waist, himc_quat_rotate(trunk, s[HIMC_NECK].origin)),
+                       s[HIMC_NECK].length, up);
+    capsule[HIMC_TRUNK] = reach_to(posture, HIMC_TRUNK, waist, top);
+    capsule[HIMC_HEAD] =
+        reach_to(posture, HIMC_HEAD, head, himc_vec3_madd(head, s[HIMC_HEAD].length, up));
+    for (int i = HIMC_LEFT_UPPER_LEG; i <= HIMC_RIGHT_UPPER_LEG; i++) {
+        himc_vec3 hip = himc_vec3_add(root, s[i].origin);
+        himc_vec3 thigh =
+            himc_quat_rotate(posture->rest.joint[i - 1], himc_vec3_scale(s[i].axis, s[i].length));
+        capsule[i] = reach_to(posture, i, hip, himc_vec3_add(hip, thigh));
+    }
+    double left = arm_capsules(posture, HIMC_LEFT, tip[HIMC_LEFT], capsule);
+    return fmax(left, arm_capsules(posture, HIMC_RIGHT, tip[HIMC_RIGHT], capsule));
 }
 
 void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],

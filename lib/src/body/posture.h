@@ -5,6 +5,7 @@
 #define HIMC_POSTURE_H
 
 #include "base/quintic.h"
+#include "body/capsules.h"
 #include "himc/body.h"
 
 /// A pose and its motion, joint by joint, in the parent's frame.
@@ -18,11 +19,21 @@ typedef struct himc_posture_motion {
 /// move the stick. In the order of the words of `grip`.
 typedef enum himc_grip { HIMC_GRIP_GERMAN, HIMC_GRIP_FRENCH } himc_grip;
 
-/// The slowly changing parts of the posture, without the arms.
+/// The slowly changing parts of the posture: all that the tips do not decide.
 typedef enum himc_trunk_posture_part {
     HIMC_TRUNK_POSTURE_TURN,        ///< rotation of the trunk to the left (rad)
     HIMC_TRUNK_POSTURE_LEAN,        ///< rotation of the trunk forward (rad)
     HIMC_TRUNK_POSTURE_FRENCH_GRIP, ///< 0 German grip .. 1 French grip
+    HIMC_TRUNK_POSTURE_ELBOW, ///< of each hand: elbow further outwards about the line from shoulder
+                              ///< to wrist (rad)
+    HIMC_TRUNK_POSTURE_WRIST = HIMC_TRUNK_POSTURE_ELBOW + HIMC_HANDS,
+    ///< of each hand: hand and stick turned down about the tip, so that the wrist is higher (rad)
+    HIMC_TRUNK_POSTURE_ASIDE = HIMC_TRUNK_POSTURE_WRIST + HIMC_HANDS,
+    ///< of each hand: hand and stick turned about the vertical through the tip, the wrist outwards
+    ///< (rad)
+    HIMC_TRUNK_POSTURE_SIDE = HIMC_TRUNK_POSTURE_ASIDE + HIMC_HANDS, ///< trunk to the right (rad)
+    HIMC_TRUNK_POSTURE_LOOK_LEFT, ///< rotation of the head to the left, in the trunk's frame (rad)
+    HIMC_TRUNK_POSTURE_LOOK_DOWN, ///< and down, beyond its resting pose (rad)
     HIMC_TRUNK_POSTURE_PARTS
 } himc_trunk_posture_part;
 
@@ -58,6 +69,11 @@ HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS]
 HIMC_RT himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
                                                        const himc_trunk_posture *goal, double dt);
 
+/// Where that motion will be after `time` (s, may be infinite) from rest; elbows and wrists are at
+/// the goal.
+HIMC_RT himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
+                                                       const himc_trunk_posture *goal, double time);
+
 /// The pose of the whole body with both tips at `tip` (m), a smooth function of the tips. Towards a
 /// tip out of reach the arm is stretched. Returns the larger of the two remaining distances (m), 0
 /// if both tips are reached.
@@ -68,6 +84,11 @@ HIMC_RT double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[
 /// central differences.
 HIMC_RT void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                                  himc_posture_motion *motion);
+
+/// The capsules of arms, sticks, trunk, head and thighs in that posture; the others are left alone.
+/// Returns the larger distance of a tip out of reach (m).
+HIMC_RT double himc_posture_capsules(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],
+                                     himc_capsule capsule[HIMC_SEGMENTS]);
 
 /// A point near `tip` (m) that the arm of `hand` reaches when the trunk is turned towards it: `tip`
 /// itself if it is in reach, else the farthest reachable point on the line to it.

@@ -372,7 +372,7 @@ static contact_pair make_pair(const himc_membrane *m, const near_stick *n, doubl
 }
 
 // G of all sticks near
-static void find_compliances(const himc_membrane *m, const near_stick *near, int count,
+static void find_compliances(himc_membrane *m, const near_stick *near, int count,
                              double (*g)[MAX_PAIRS], double h)
 {
     for (int i = 0; i < count; i++) {

@@ -307,9 +307,9 @@ static void add_forces(himc_membrane *m, int index, sound_pair *sound)
         c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
     for (int i = 0; i < m->applied_count; i++) {
         const push *p = &m->applied[i];
-        const strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
+        strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
         sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
-        sound->next += p->force * s->response[HIMC_STEP_SAMPLE].sound[index];
+        sound->next += p->force * himc_strike_point_response(m, s, HIMC_STEP_SAMPLE)->sound[index];
     }
 }
 

@@ -58,7 +58,8 @@ struct strike_point {
     double *shape;        ///< phi_i W_i there, owned by the membrane (padded)
     himc_readout readout; ///< of the displacement there
     himc_residual residual;
-    unit_response response[HIMC_STEP_LENGTHS];
+    unit_response response[HIMC_STEP_LENGTHS]; ///< see himc_strike_point_response
+    bool responds[HIMC_STEP_LENGTHS];          ///< that is known
 };
 
 /// A force at a strike point of the head (m, N).
@@ -116,6 +117,9 @@ static inline bool himc_membrane_has(const himc_membrane *m, int k)
     return k < m->pickup_count || (m->rays && k >= HIMC_PICKUPS);
 }
 
+/// What a newton at the point does in a step of that length, found when first asked for.
+HIMC_RT const unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
+                                                        himc_step_length length);
 /// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
 HIMC_RT double himc_membrane_film_stiffness(const himc_membrane *m);
 

@@ -12,6 +12,7 @@
 #include "drum/membrane_probe.h"
 
 #include <math.h>
+#include <string.h>
 
 #define SUBSTEP_RATE 192000.0 // (Hz) least rate of substeps; chosen: contact.c
 
@@ -73,7 +74,7 @@ static void spread(himc_membrane *m, strike_point *s)
         s->residual = find_residual(m, s, b);
 }
 
-// finds the point's shapes and the responses to a newton there
+// finds the point's shapes; most points of a stick on its way feel no force
 static void move_point(himc_membrane *m, strike_point *s, double x, double y, double b)
 {
     const core *c = &m->core;
@@ -85,15 +86,24 @@ static void move_point(himc_membrane *m, strike_point *s, double x, double y, do
     spread(m, s);
     himc_modes_mix(c->modes, s->shape);
     himc_bank_readout(c->bank, s->shape, NULL, NULL, &s->readout);
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
-        unit_response *e = &s->response[k];
-        himc_bank_set_step(c->bank, (himc_step_length)k);
-        e->compliance = himc_bank_response(c->bank, s->shape, &s->readout);
-        for (int i = 0; i < HIMC_OUTPUTS; i++)
-            if (himc_membrane_has(m, i))
-                e->sound[i] = himc_bank_sum(c->bank, s->shape, c->outputs[i].response[k]);
-    }
+    memset(s->responds, 0, sizeof s->responds);
+}
+
+const unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
+                                                himc_step_length k)
+{
+    const core *c = &m->core;
+    unit_response *e = &s->response[k];
+    if (s->responds[k])
+        return e;
+    s->responds[k] = true;
+    himc_bank_set_step(c->bank, k);
+    e->compliance = himc_bank_response(c->bank, s->shape, &s->readout);
+    for (int i = 0; i < HIMC_OUTPUTS; i++)
+        if (himc_membrane_has(m, i))
+            e->sound[i] = himc_bank_sum(c->bank, s->shape, c->outputs[i].response[k]);
     himc_bank_set_step(c->bank, m->step);
+    return e;
 }
 
 int himc_membrane_substeps(const himc_membrane *membrane)
@@ -135,10 +145,9 @@ himc_residual himc_strike_point_residual(const strike_point *s)
     return s->residual;
 }
 
-double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
-                                    const strike_point *b)
+double himc_strike_point_compliance(himc_membrane *membrane, strike_point *a, strike_point *b)
 {
-    return a == b ? a->response[membrane->step].compliance
+    return a == b ? himc_strike_point_response(membrane, a, membrane->step)->compliance
                   : himc_bank_response(membrane->core.bank, b->shape, &a->readout);
 }
 
@@ -148,12 +157,12 @@ static bool is_wanted(const himc_membrane *m, int k)
     return himc_membrane_has(m, k) && !(m->muted && k < HIMC_PICKUPS);
 }
 
-void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, double force)
+void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double force)
 {
     if (force == 0)
         return;
     himc_bank_push(membrane->core.bank, s->shape, force);
-    const unit_response *e = &s->response[membrane->step];
+    const unit_response *e = himc_strike_point_response(membrane, s, membrane->step);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         if (is_wanted(membrane, i))
             membrane->sound[i] += e->sound[i] * force;

@@ -29,6 +29,7 @@
 #define FADE 0.005      // (s) chosen: no click
 #define CACHE_LINE 8    // doubles
 #define FORGOTTEN 5.0   // T60s until it is empty; chosen: -300 dB
+#define LEAST_GAIN 0.1  // g that counts for the level; chosen: all do from T60 = 0.21 s on
 
 // of each delay at both ears, and of what enters it: Walsh functions, orthogonal
 static const double AT_EAR[2][HIMC_ROOM_LINES] = {
@@ -55,7 +56,8 @@ static himc_room_form form_of(const himc_walls *walls, const int *delay, double 
     double loss = 0;
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
         set_wall(&f, l, delay[l] / rate, walls->seconds, rate);
-        double gain = f.take[l] / (1 - f.keep[l]);
+        // of a shorter T60 the longest ways, which nobody hears, would count for all
+        double gain = fmax(f.take[l] / (1 - f.keep[l]), LEAST_GAIN);
         loss += (1 / (gain * gain) - 1) / HIMC_ROOM_LINES;
     }
     double absorption = SABINE * walls->volume / walls->seconds;

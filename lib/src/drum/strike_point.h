@@ -27,8 +27,8 @@ HIMC_RT void himc_membrane_set_substep(himc_membrane *membrane, int index, int c
 /// What gives way there beside the head's modes: on a round head, under a patch.
 HIMC_RT himc_residual himc_strike_point_residual(const strike_point *s);
 /// Displacement at `a` at the end of a step per newton at `b` during it (m/N).
-HIMC_RT double himc_strike_point_compliance(const himc_membrane *membrane, const strike_point *a,
-                                            const strike_point *b);
+HIMC_RT double himc_strike_point_compliance(himc_membrane *membrane, strike_point *a,
+                                            strike_point *b);
 /// The head's displacement is nowhere larger until a force acts (m); INFINITY if that is not known.
 HIMC_RT double himc_membrane_swing(himc_membrane *membrane);
 /// Before a step's displacements are read: makes what changes the head between two steps.
@@ -38,6 +38,6 @@ HIMC_RT bool himc_membrane_at_rest(const himc_membrane *membrane);
 /// Runs one step with the pushed forces only (himc_membrane_push).
 HIMC_RT void himc_membrane_free_step(himc_membrane *membrane);
 /// Adds the effect of `force` (N, up positive) at the strike point during this step.
-HIMC_RT void himc_strike_point_apply(himc_membrane *membrane, const strike_point *s, double force);
+HIMC_RT void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double force);
 
 #endif

@@ -54,6 +54,17 @@ static void measure(himc_performance *p, double t, bool tick)
     }
 }
 
+// hits in their last milliseconds, from where the sticks are
+static void correct_hits(himc_performance *p, double t)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_target measured = {
+            p->body->state.tip[hand], p->body->state.tip_velocity[hand], {0, 0, 0}};
+        if (!p->contacts.hand[hand].touching)
+            himc_motion_correct(p->motion, &p->settings, (himc_hand)hand, t, &measured);
+    }
+}
+
 // inverse kinematics, inverse dynamics, forward dynamics; contact is solved inside the same step
 static void step_dynamics(himc_performance *p, int n, double t, double h, bool tick)
 {
@@ -62,6 +73,7 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
     if (!himc_body_observe(p->body, tick))
         recover(p);
     himc_contacts_finish(&p->contacts, &scene, t);
+    correct_hits(p, t);
     himc_body_control(p->body, &p->motion->reference, h);
     himc_contacts_advance(&p->contacts, &scene, n, tip_force);
     measure(p, t, tick);

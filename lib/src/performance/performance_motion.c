@@ -15,8 +15,9 @@
 #include <string.h>
 
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
-#define TRUNK_FORESIGHT 1.2 // chosen: strokes further ahead do not turn the trunk (s)
-#define TRUNK_STEP 0.02     // longest step of himc_trunk_posture_approach (s)
+#define TRUNK_FORESIGHT 1.2     // chosen: strokes further ahead do not turn the trunk (s)
+#define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
+#define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8   // postures in that mean
@@ -41,6 +42,32 @@ static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
     return himc_vec3_length(himc_vec3_sub(place, himc_posture_reachable(posture, hand, place)));
 }
 
+// least gap of each stick from the other arm and its stick
+static double sticks_gap(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS])
+{
+    himc_capsule capsule[HIMC_SEGMENTS];
+    double least = INFINITY;
+    himc_posture_capsules(posture, tip, capsule);
+    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
+        himc_capsule_pair p = himc_capsule_pairs[i];
+        bool arms = p.other >= HIMC_LEFT_UPPER_ARM && p.other <= HIMC_RIGHT_STICK;
+        if (arms && (p.part == HIMC_LEFT_STICK || p.other == HIMC_RIGHT_STICK))
+            least = fmin(least, himc_capsule_gap(&capsule[p.part], &capsule[p.other]));
+    }
+    return least;
+}
+
+// the same whether the trunk is still as now or has turned to the tips
+static double hands_gap(const void *body, const himc_vec3 tip[HIMC_HANDS])
+{
+    himc_posture posture = *(const himc_posture *)body;
+    himc_trunk_posture towards = himc_posture_trunk(tip, HIMC_GRIP_GERMAN);
+    double now = sticks_gap(&posture, tip);
+    for (int i = 0; i <= HIMC_TRUNK_POSTURE_LEAN; i++)
+        posture.trunk_posture.value[i] = towards.value[i];
+    return fmin(now, sticks_gap(&posture, tip));
+}
+
 performance_motion *himc_motion_new(himc_error *error)
 {
     performance_motion *m = calloc(1, sizeof *m);
@@ -51,6 +78,7 @@ performance_motion *himc_motion_new(himc_error *error)
     }
     planning.mallet_radius = himc_skeleton_default().mallet_radius;
     planning.beyond = beyond_reach;
+    planning.gap = hands_gap;
     planning.body = &m->posture;
     m->planner = himc_planner_new(&planning, error);
     if (!m->planner) {
@@ -184,6 +212,14 @@ void himc_motion_answer(performance_motion *m, himc_hand hand, double planned_ti
     m->answered[hand] = planned_time;
 }
 
+void himc_motion_correct(performance_motion *m, const performance_settings *s, himc_hand hand,
+                         double t, const himc_target *measured)
+{
+    if (s->control.law == HIMC_LAW_COMPUTED_TORQUE && !himc_motion_tracks(m, hand) &&
+        himc_planner_correct(m->planner, hand, t, measured))
+        m->replan = true;
+}
+
 void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
                             const himc_target *measured)
 {
@@ -213,6 +249,25 @@ static himc_trunk_posture trunk_at(const performance_motion *m, double t)
                                        fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
 }
 
+// keeps the planned tips of the next half second and the next strokes clear of the body
+static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
+{
+    static const double ahead[HIMC_FORESEEN] = {0.06, 0.13, 0.21, 0.3, 0.4, INFINITY};
+    himc_foreseen f[HIMC_FORESEEN];
+    if (t - m->avoided >= AVOIDANCE_PERIOD) {
+        for (int k = 0; k < HIMC_FORESEEN; k++) {
+            f[k].trunk = himc_trunk_posture_foreseen(&m->course.from, &m->course.goal, ahead[k]);
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                f[k].tip[hand] = k < HIMC_FORESEEN - 1
+                                     ? himc_motion_planned(m, (himc_hand)hand, t + ahead[k]).x
+                                     : place[hand];
+        }
+        himc_avoidance_update(&m->avoidance, &m->posture, f, t - m->avoided);
+        m->avoided = t;
+    }
+    himc_avoidance_apply(&m->avoidance, &m->course.goal);
+}
+
 // sets a new course, from trunk and grip at `t` to those for the next strokes
 static void set_course(performance_motion *m, const performance_settings *s,
                        const performance_drums *drums, double t)
@@ -227,6 +282,7 @@ static void set_course(performance_motion *m, const performance_settings *s,
         m->course.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
         m->course.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
     }
+    avoid(m, place, t);
     m->course.time = t;
 }
 

@@ -4,6 +4,7 @@
 #define HIMC_PERFORMANCE_MOTION_H
 
 #include "plan/planner.h"
+#include "control/avoidance.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
@@ -47,6 +48,8 @@ typedef struct performance_motion {
     himc_posture_regression
         regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
+    himc_avoidance avoidance;
+    double avoided;     ///< time of its last update (s)
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;            ///< of the ticks before and after
@@ -95,6 +98,10 @@ HIMC_RT planned_stroke himc_motion_stroke(const performance_motion *motion,
                                           const performance_drums *drums, himc_hand hand, double t);
 /// Ends the stroke planned for that time: struck or given up.
 HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, double planned_time);
+/// Corrects the last milliseconds of a hit from that state of the tip. Only control that feeds the
+/// acceleration forward can follow so short a plan.
+HIMC_RT void himc_motion_correct(performance_motion *motion, const performance_settings *settings,
+                                 himc_hand hand, double t, const himc_target *measured);
 /// Continues the plan from that state of the tip, which has left the head.
 HIMC_RT void himc_motion_go_on_from(performance_motion *motion, himc_hand hand, double t,
                                     const himc_target *measured);

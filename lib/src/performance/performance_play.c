@@ -56,7 +56,10 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
         return false;
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
-    if (!rolls && !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
+    const himc_drum *struck = drum.fresh ? drum.fresh : p->drums.slot[drum.index].drum;
+    if (rolls
+            ? !himc_planner_accepts_roll(p->motion->planner, stroke, himc_drum_pitch(struck), error)
+            : !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
         himc_drum_release(drum.fresh);
         return false;
     }

@@ -442,11 +442,14 @@ static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_err
 static himc_job_state add_strokes(score_job *j, himc_error *error)
 {
     int count = j->score->stroke_count;
-    for (int added = 0; j->at < 2 * count; j->at++, added++) {
+    for (int added = 0; j->at < 2 * count; j->at++) {
         bool ornament = j->at >= count;
-        if (added == STROKES_AT_ONCE)
+        const himc_stroke *stroke = &j->score->strokes[j->at % count];
+        if (added >= STROKES_AT_ONCE)
             return HIMC_JOB_MORE;
-        if (!add_stroke(j, j->score->strokes[j->at % count], ornament, error)) {
+        // a roll may be long: it is a portion by itself
+        added += ornament && stroke->ornament >= HIMC_ROLL_SINGLE ? STROKES_AT_ONCE : 1;
+        if (!add_stroke(j, *stroke, ornament, error)) {
             himc_error_prefix(error, "%s", j->path);
             return HIMC_JOB_FAILED;
         }

@@ -20,6 +20,10 @@
 #define FASTEST_FALL 9.0       // mean speed of a fall (m/s)
 #define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
 
+// over the other hand; chosen: as a wrist lifts a stick in a hurry, and sooner than any new touch
+#define HARDEST_LIFT 120.0 // peak acceleration (m/s^2)
+#define LIFT_FADE 0.1      // of a lift that is broken off (s)
+
 // habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
 #define QUICK_MOVE 80.0         // ... and of one without (m/s^2)
@@ -77,10 +81,16 @@
 /// and some to spare.
 #define MOST_SEGMENTS 16
 
+static himc_target unlifted_at(const himc_hand_plan *plan, double t)
+{
+    return himc_target_add(himc_spline_at(&plan->tangential_path, t),
+                           himc_spline_at(&plan->height_profile, t));
+}
+
 /// The state at t in the frame of a head.
 static stroke_plan frame_at(const himc_hand_plan *plan, double t, himc_vec3 spot, himc_vec3 n)
 {
-    himc_target now = himc_hand_at(plan, t);
+    himc_target now = unlifted_at(plan, t);
     stroke_plan s = {.n = n, .height_end = t, .path_end = t};
     s.height.h = himc_vec3_dot(n, himc_vec3_sub(now.x, spot));
     s.height.v = himc_vec3_dot(n, now.v);
@@ -164,8 +174,38 @@ void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home)
 
 himc_target himc_hand_at(const himc_hand_plan *plan, double t)
 {
-    return himc_target_add(himc_spline_at(&plan->tangential_path, t),
-                           himc_spline_at(&plan->height_profile, t));
+    himc_target s = unlifted_at(plan, t);
+    return plan->lift.count > 0 ? himc_target_add(s, himc_spline_at(&plan->lift, t)) : s;
+}
+
+/// Ends a lift that is under way at t within LIFT_FADE.
+static void cut_lift(himc_hand_plan *plan, double t)
+{
+    himc_spline *lift = &plan->lift;
+    himc_target nothing = {0}, now = himc_spline_at(lift, t);
+    if (lift->count == 0 || t >= lift->segment[lift->count - 1].t1)
+        return;
+    if (t <= lift->segment[0].t0) {
+        lift->count = 0;
+        return;
+    }
+    himc_spline_cut(lift, t);
+    himc_spline_add(lift, t, &now, t + LIFT_FADE, &nothing);
+}
+
+bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, double end,
+                    himc_vec3 way)
+{
+    himc_spline *lift = &plan->lift;
+    double up = himc_move_time(himc_vec3_length(way), HARDEST_LIFT);
+    himc_target nothing = {0}, raised = himc_target_at_rest(way);
+    bool busy = lift->count > 0 && lift->segment[lift->count - 1].t1 > begin;
+    if (busy || lift->count + 3 > HIMC_SPLINE_SEGMENTS || from - begin < up || end - to < up)
+        return false;
+    himc_spline_add(lift, begin, &nothing, from, &raised);
+    himc_spline_add(lift, from, &raised, to, &raised);
+    himc_spline_add(lift, to, &raised, end, &nothing);
+    return true;
 }
 
 void himc_hand_cut(himc_hand_plan *plan, double t)
@@ -175,6 +215,7 @@ void himc_hand_cut(himc_hand_plan *plan, double t)
     t = fmax(t, plan->tangential_path.segment[0].t0);
     himc_spline_cut(&plan->tangential_path, t);
     himc_spline_cut(&plan->height_profile, t);
+    cut_lift(plan, t);
     plan->end = t;
     plan->rebounding = false;
     himc_target s = himc_hand_at(plan, t);
@@ -185,6 +226,7 @@ void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state,
 {
     double T = fmin(ABSORB_TIME, fmax(ABSORB_SHARE * (next - t), LEAST_ABSORB_TIME));
     himc_hand_cut(plan, t);
+    plan->lift.count = 0; // the measured state contains it
     himc_target on = {himc_vec3_madd(state->x, T, state->v), state->v, {0, 0, 0}};
     himc_target nothing = {0};
     himc_spline_add(&plan->tangential_path, t, state, t + T, &on);
@@ -293,6 +335,23 @@ static void contact(stroke_plan *s, const himc_goal *goal, double speed)
         rebound *= BOUNCE_RATIO;
     }
     himc_height_profile_to(s, end, (height_state){0, rebound, 0});
+}
+
+void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
+                    const himc_goal *goal)
+{
+    double speed = goal->gesture.speed;
+    himc_target touch = {goal->spot, himc_vec3_scale(goal->normal, -speed), {0, 0, 0}};
+    himc_target nothing = {0};
+    himc_hand_cut(plan, t);
+    himc_spline_add(&plan->tangential_path, t, measured, goal->time, &touch);
+    himc_spline_add(&plan->height_profile, t, &nothing, goal->time, &nothing);
+    plan->end = goal->time;
+    stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
+    contact(&s, goal, speed);
+    plan_finish(&s);
+    plan->last = *goal;
+    plan->rebounding = true;
 }
 
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)

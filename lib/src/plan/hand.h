@@ -15,9 +15,10 @@ typedef struct himc_goal {
     double hold; ///< after the touch the tip bounces for so long, the hand at its height (s)
 } himc_goal;
 
-/// The tip's motion is the sum of two splines: along the head's plane, and above it.
+/// The tip's motion is the sum of three splines: along the head's plane, above it, and a lift over
+/// the other hand, which is zero at every touch.
 typedef struct himc_hand_plan {
-    himc_spline tangential_path, height_profile;
+    himc_spline tangential_path, height_profile, lift;
     double end;      ///< both splines reach to here (s)
     himc_goal last;  ///< the last touch before `end`, with the gesture as it was played
     bool rebounding; ///< at `end` the tip still rebounds from that touch
@@ -45,6 +46,10 @@ HIMC_RT himc_target himc_hand_at(const himc_hand_plan *plan, double t);
 /// Drops all motion after t; the plan ends there.
 HIMC_RT void himc_hand_cut(himc_hand_plan *plan, double t);
 
+/// Moves the tip by `way` (m) from `from` to `to` (s), not at all at `begin` and at `end`. False,
+/// and nothing changed, if no hand can be so quick, or another lift is under way.
+HIMC_RT bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, double end,
+                            himc_vec3 way);
 /// Goes on from a state measured at t, after a touch. The acceleration that the contact left fades
 /// to zero within a small part of the time to the `next` touch (s, may be infinite).
 HIMC_RT void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state,
@@ -70,6 +75,11 @@ HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *secon
 /// Appends the motion up to the end of that stroke's contact. False, and nothing appended, if
 /// himc_hand_can_strike is false.
 HIMC_RT bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal);
+
+/// Goes from a state measured at t to the touch of a stroke that is planned already, and on to the
+/// end of its contact; what was planned after t is dropped.
+HIMC_RT void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
+                            const himc_goal *goal);
 
 /// Appends a wait, to `until` (s) at least: over the last spot when `ready`, else at home.
 HIMC_RT void himc_hand_wait(himc_hand_plan *plan, double until, bool ready);

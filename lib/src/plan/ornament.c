@@ -104,18 +104,38 @@ static double rate_of(const himc_stroke *roll, double pitch)
     }
 }
 
+/// When a roll begins and ends (s), and its strokes.
+typedef struct roll_plan {
+    double from, to, strokes;
+} roll_plan;
+
+static roll_plan plan_of(const himc_planner *planner, const himc_stroke *roll, double pitch)
+{
+    const planner_score *score = &planner->score;
+    double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
+    double to = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
+    // an even number: what follows begins with the right hand again
+    double pairs = round(0.5 * rate_of(roll, pitch) * (to - from));
+    return (roll_plan){from, to, fmax(2 * pairs, 1)};
+}
+
+bool himc_planner_accepts_roll(const himc_planner *planner, const himc_stroke *roll, double pitch,
+                               himc_error *error)
+{
+    double strokes = plan_of(planner, roll, pitch).strokes;
+    if (strokes > MOST_STROKES)
+        himc_error_set(error, "roll: LENGTH: %g strokes, allowed %d", strokes, MOST_STROKES);
+    return !(strokes > MOST_STROKES);
+}
+
 static bool add_roll(addition *to, const himc_stroke *roll, double pitch, himc_error *error)
 {
     const planner_score *score = &to->planner->score;
-    double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
-    double to_end = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
-    // an even number: what follows begins with the right hand again
-    double pairs = round(0.5 * rate_of(roll, pitch) * (to_end - from)),
-           strokes = fmax(2 * pairs, 1), step = (to_end - from) / strokes;
-    if (strokes > MOST_STROKES)
-        return himc_error_set(error, "roll: LENGTH: %g strokes, allowed %d", strokes, MOST_STROKES);
+    roll_plan plan = plan_of(to->planner, roll, pitch);
+    double strokes = plan.strokes, from = plan.from, step = (plan.to - from) / strokes;
+    if (!himc_planner_accepts_roll(to->planner, roll, pitch, error))
+        return false;
     himc_stroke s = *roll;
-    s.ornament = HIMC_PLAIN;
     s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
                 : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
                                                     : 0;

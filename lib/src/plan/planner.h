@@ -19,7 +19,9 @@ typedef struct himc_planner_config {
     /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
     /// NULL: all is in reach.
     double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
-    const void *body; ///< given to `beyond`; borrowed
+    /// Least gap between hands and sticks with the tips there (m); HIMC_RT. NULL: they never meet.
+    double (*gap)(const void *body, const himc_vec3 tip[HIMC_HANDS]);
+    const void *body; ///< given to `beyond` and `gap`; borrowed
 } himc_planner_config;
 
 himc_planner_config himc_planner_default(void);
@@ -117,6 +119,10 @@ HIMC_RT double himc_planner_hit(himc_planner *planner, double t, const himc_stro
 /// rested. Returns the time, varied as by himc_planner_set_human; infinity if no hand can play it:
 /// it is given up, and a note counts it.
 HIMC_RT double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit);
+/// The tip is in this state at t. A himc_planner_hit_at that is to touch within 10 ms is planned
+/// anew from there, once, so that what has drifted is not late. True if the plan has changed.
+HIMC_RT bool himc_planner_correct(himc_planner *planner, himc_hand hand, double t,
+                                  const himc_target *measured);
 /// A live target: the tip goes there smoothly and stays until the next target or stroke. Targets
 /// within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows one period late and
 /// comes to rest when the stream ends. A stroke less than 0.6 s away is played first.

@@ -9,9 +9,9 @@
 /// The hand asked for plays it, if it has LEAST_PREPARATION after its stroke before, can get there,
 /// and leaves as much to its stroke after; else the other hand. Where the performer chooses, the
 /// cheaper hand plays: far, short and crossed ways cost, a hand that has just struck costs, so in a
-/// run on one key the hands alternate. Where no hand has time, one that nothing else waits for plays
-/// late, by as little as its way there needs; else the hit is given up. Both are counted. Choosing
-/// changes nothing; only the plan of the hand that plays is cut.
+/// run on one key the hands alternate. Where no hand has time, one without other strokes to come
+/// plays late, by as little as its way there needs; else the hit is given up. Both are counted.
+/// Choosing changes nothing; only the plan of the hand that plays is cut.
 #include "plan/planner_motion.h"
 #include "plan/sticking.h"
 
@@ -22,6 +22,11 @@
 #define SETTLING 0.03 // chosen: from the end of a contact until the tip is under way again (s)
 #define LATER 0.01    // chosen: a hit that is late is tried so much later again (s) ...
 #define LATEST 0.5    // ... up to this; chosen: the longest way at ease
+
+// a tip that has drifted from its plan; chosen: what a tenth of the time left can make good
+#define CORRECTION_TIME 0.01 // before the touch (s)
+#define LEAST_DRIFT 0.00005  // a smaller one is not heard (s at the speed of the touch) ...
+#define LARGEST_DRIFT 0.001  // ... and a larger one is a disturbance
 
 #define ON_SPOT 0.03 // chosen: so short a way is none: a spot scatters as much (m)
 
@@ -202,9 +207,33 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
     if (chosen.reaches && isinf(chosen.late))
         return HUGE_VAL;
     s.goal = chosen.goal;
+    s.exact = true;
     s.goal.time += s.variation.late;
     himc_planner_cut(planner, hand, t);
     himc_planner_queue(planner, &s);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     return s.goal.time;
+}
+
+bool himc_planner_correct(himc_planner *planner, himc_hand hand, double t,
+                          const himc_target *measured)
+{
+    planner_hand *h = &planner->hand[hand];
+    int i = 0;
+    while (i < h->planned_count && h->planned[i].goal.time <= t)
+        i++;
+    if (i == h->planned_count || !h->planned[i].exact ||
+        h->planned[i].goal.time - t > CORRECTION_TIME)
+        return false;
+    h->planned[i].exact = false;
+    himc_goal goal = h->planned[i].goal;
+    himc_target planned = himc_hand_at(&h->plan, t);
+    himc_target from = {measured->x, measured->v, planned.a};
+    double drift = himc_vec3_length(himc_vec3_sub(measured->x, planned.x)) / goal.gesture.speed;
+    if (!(drift > LEAST_DRIFT && drift < LARGEST_DRIFT) || !himc_target_finite(&from))
+        return false;
+    himc_planner_unplan(planner, hand, goal.time, 0);
+    himc_hand_land(&h->plan, t, &from, &goal);
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    return true;
 }

@@ -54,6 +54,19 @@
 #define OTHER_SPOT 10     // as a difference of log speed
 #define OTHER_GRIP 20     // as a difference of log speed
 
+// hands that pass each other; chosen: sticks that play one head side by side are 14 mm apart
+#define NEAR_STEP 0.01   // between two looks (s)
+#define NEAR_GAP 0.003   // hands nearer than this are kept apart (m) ...
+#define CROSSED_GAP 0.05 // ... and crossed ones nearer by this
+#define CROSSED 0.02     // one tip is so far on the other's side (m)
+#define FAR_APART 0.6    // tips so far apart are not looked at (m); two sticks' and hands' lengths
+#define NEAR_BESIDE 0.2  // a way past is tried so long before and after, too (s)
+#define WAYS 2           // directions of a way past ...
+#define LIFT 0.08        // ... its length in these steps (m) ...
+#define LIFTS 4          // ... and up to so many
+#define QUICK_LIFT 60.0  // peak acceleration of a lift with time (m/s^2)
+#define STILL 0.03       // no lift so near before a touch (s)
+
 // where a tip rests (m); chosen: near enough to look at rest, too high to touch a ringing head; at
 // the height of the usual strike point, the hands as far apart as the shoulders
 #define REST_OVER 0.085     // the mallet over the head: a hit at mf comes within a quarter second
@@ -373,7 +386,9 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
 static bool is_small(himc_planner *planner, const timed_stroke *s, double since)
 {
     double high = planner->hand[s->stroke.hand].plan.last.gesture.height;
-    if (s->index < 0 || since >= SMALL_WITHIN || high >= SMALL_SHARE * s->goal.gesture.height)
+    // a roll's strokes are small by nature
+    if (s->index < 0 || s->stroke.ornament >= HIMC_ROLL_SINGLE || since >= SMALL_WITHIN ||
+        high >= SMALL_SHARE * s->goal.gesture.height)
         return false;
     himc_planner_say(&planner->notes, PLANNER_SMALLER,
                      "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
@@ -394,6 +409,98 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
            !himc_hand_can_follow(&s->written, &after.written);
 }
 
+/// A time in which the hands come near.
+typedef struct near_time {
+    double lack;     ///< what gaps lack of NEAR_GAP, over the time (m s)
+    double gap;      ///< least (m)
+    double from, to; ///< first and last time of a gap below NEAR_GAP (s)
+} near_time;
+
+static bool is_crossed(const himc_vec3 tip[HIMC_HANDS])
+{
+    himc_vec3 left = tip[HIMC_LEFT], right = tip[HIMC_RIGHT];
+    return left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
+}
+
+static void tips_at(const himc_planner *planner, double t, himc_vec3 tip[HIMC_HANDS])
+{
+    for (int i = 0; i < HIMC_HANDS; i++)
+        tip[i] = himc_hand_at(&planner->hand[i].plan, t).x;
+}
+
+static near_time find_near(const himc_planner *planner, double begin, double end, double step)
+{
+    near_time n = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+    for (double t = begin; t < end; t += step) {
+        himc_vec3 tip[HIMC_HANDS];
+        tips_at(planner, t, tip);
+        if (himc_vec3_length(himc_vec3_sub(tip[HIMC_LEFT], tip[HIMC_RIGHT])) > FAR_APART)
+            continue;
+        double gap = planner->config.gap(planner->config.body, tip);
+        double lack = NEAR_GAP - gap + (is_crossed(tip) ? CROSSED_GAP : 0);
+        n.gap = fmin(n.gap, gap);
+        if (lack < 0)
+            continue;
+        n.lack += step * lack;
+        n.from = fmin(n.from, t);
+        n.to = t;
+    }
+    return n;
+}
+
+/// Ways past the other hand, in the order in which they are tried: over it, outside it, before it.
+static himc_vec3 way_past(himc_vec3 tip, int k)
+{
+    static const double share[WAYS][2] = {{1, 0}, {1, 0.7}};
+    double size = LIFT * (1 + k / WAYS), distance = hypot(tip.x, tip.y);
+    const double *s = share[k % WAYS];
+    return himc_vec3_make(size * s[1] * tip.x / distance, size * s[1] * tip.y / distance,
+                          size * s[0]);
+}
+
+static bool lift_past(himc_hand_plan *plan, double begin, double touch, const near_time *n,
+                      himc_vec3 way)
+{
+    double up = himc_move_time(himc_vec3_length(way), QUICK_LIFT);
+    double down = fmin(n->to, touch - STILL - up);
+    return himc_hand_lift(plan, fmax(begin, n->from - up), n->from, fmax(down, n->from), down + up,
+                          way);
+}
+
+/// Moves the hand past the other one where they would meet in what has just been planned, from
+/// `begin` (s) to the plan's end; the next touch is at `touch`. Of crossed hands the one that was
+/// lifted stays above. False if they meet nevertheless.
+static bool keep_clear(himc_planner *planner, himc_hand hand, double begin, double touch)
+{
+    himc_hand_plan *plan = &planner->hand[hand].plan;
+    double end = fmin(touch, planner->hand[other_hand(hand)].plan.end);
+    himc_vec3 tips[HIMC_HANDS], best = {0, 0, 0};
+    if (!planner->config.gap)
+        return true;
+    near_time n = find_near(planner, begin, end, NEAR_STEP), least = n;
+    tips_at(planner, begin, tips);
+    if (n.lack == 0 || (is_crossed(tips) && planner->above != hand))
+        return n.gap >= 0;
+    himc_vec3 tip = himc_hand_at(plan, n.from).x;
+    double from = fmax(begin, n.from - NEAR_BESIDE), to = fmin(end, n.to + NEAR_BESIDE);
+    for (int k = 0; k < LIFTS * WAYS && least.lack > 0; k++) {
+        himc_vec3 way = way_past(tip, k);
+        int lifts = plan->lift.count;
+        if (!lift_past(plan, begin, touch, &n, way))
+            continue;
+        near_time now = find_near(planner, from, to, 2 * NEAR_STEP);
+        plan->lift.count = lifts;
+        if (now.lack >= least.lack)
+            continue;
+        least = now;
+        best = way;
+    }
+    if (himc_vec3_length(best) == 0)
+        return n.gap >= 0;
+    planner->above = hand;
+    return lift_past(plan, begin, touch, &n, best) && least.gap >= 0;
+}
+
 /// Appends a stroke to its hand's plan, if the hand can play it.
 static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
@@ -403,6 +510,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         s->goal = s->written;
         s->varied = false;
     }
+    double begin = h->plan.end;
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
     if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
@@ -414,6 +522,11 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     planned->small = is_small(planner, s, since);
     h->drum = s->drum;
     h->targeted = false;
+    if (!keep_clear(planner, s->stroke.hand, begin, s->goal.time)) {
+        char name[64];
+        himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
+                         name_of(s, name));
+    }
     return PLANNED;
 }
 
@@ -440,7 +553,9 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
         if (!more)
             renew_home(planner, hand);
+        double begin = h->plan.end;
         himc_hand_wait(&h->plan, until, more);
+        keep_clear(planner, hand, begin, h->plan.end);
         return PLANNED;
     }
     take(planner, &next);
@@ -478,8 +593,7 @@ static void extend_alone(himc_planner *planner, himc_hand hand, double until)
     }
 }
 
-/// Takes back all strokes more than `margin` after t.
-static void unplan_after(himc_planner *planner, himc_hand hand, double t, double margin)
+void himc_planner_unplan(himc_planner *planner, himc_hand hand, double t, double margin)
 {
     planner_hand *h = &planner->hand[hand];
     while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time - margin > t)
@@ -490,7 +604,7 @@ static void unplan_after(himc_planner *planner, himc_hand hand, double t, double
 static void cut_plan(himc_planner *planner, himc_hand hand, double t)
 {
     planner_hand *h = &planner->hand[hand];
-    unplan_after(planner, hand, t, COMMIT_TIME);
+    himc_planner_unplan(planner, hand, t, COMMIT_TIME);
     const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
     if (last && !last->separated)
         t = fmax(t, himc_goal_end(&last->goal));
@@ -715,6 +829,8 @@ static void drop_past(planner_hand *h, double now)
     h->planned_count -= past;
     himc_spline_drop(&h->plan.tangential_path, now);
     himc_spline_drop(&h->plan.height_profile, now);
+    if (h->plan.lift.count > 0)
+        himc_spline_drop(&h->plan.lift, now);
 }
 
 void himc_planner_advance(himc_planner *planner, double t)
@@ -738,7 +854,7 @@ void himc_planner_resume(himc_planner *planner, double t, himc_hand hand, const 
     planner_hand *h = &planner->hand[hand];
     if (!isfinite(t) || !himc_target_finite(state))
         return;
-    unplan_after(planner, hand, t, 0);
+    himc_planner_unplan(planner, hand, t, 0);
     h->planned_count = 0;
     himc_hand_restart(&h->plan, t, state, HUGE_VAL);
     h->plan.rebounding = false;
@@ -752,7 +868,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     timed_stroke next;
     if (!isfinite(t) || !himc_target_finite(measured))
         return;
-    unplan_after(planner, hand, t, EARLY_TOUCH);
+    himc_planner_unplan(planner, hand, t, EARLY_TOUCH);
     bool more = next_stroke(planner, hand, &next);
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);
     if (h->planned_count > 0) {

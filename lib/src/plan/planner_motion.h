@@ -31,6 +31,7 @@ typedef struct timed_stroke {
     bool separated;  ///< the tip has left the head again
     bool small;      ///< played much smaller than written
     bool varied;     ///< the goal is not as written
+    bool exact;      ///< a hit with a time, still to be corrected before its touch
     himc_variation variation; ///< of a hit since it came, of another stroke since it was varied
     himc_goal written;
     himc_goal goal; ///< varied; once planned, with the gesture as it will be played
@@ -58,9 +59,10 @@ struct himc_planner {
     planner_score score;
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
-    int hits;   ///< since the last `clear` or change of `human`
-    double now; ///< of the last advance (s)
-    bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
+    himc_hand above; ///< of the hands that passed each other last, the one that was lifted
+    int hits;        ///< since the last `clear` or change of `human`
+    double now;      ///< of the last advance (s)
+    bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 /// Both hands wait at rest.
@@ -79,6 +81,8 @@ HIMC_RT double himc_planner_waiting_time(const himc_planner *planner, const time
 HIMC_RT void himc_planner_queue(himc_planner *planner, const timed_stroke *stroke);
 /// Moves a time behind any stroke of the hand that is too near; false if there is no gap.
 HIMC_RT bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *t);
+/// Takes back all strokes more than `margin` after t, without their motion.
+HIMC_RT void himc_planner_unplan(himc_planner *planner, himc_hand hand, double t, double margin);
 /// Takes back the strokes planned after t that can still be changed; the plan then ends at t or
 /// soon after.
 HIMC_RT void himc_planner_cut(himc_planner *planner, himc_hand hand, double t);

@@ -13,6 +13,7 @@ typedef enum planner_kind {
     PLANNER_LATE,
     PLANNER_CROWDED,
     PLANNER_OUTSIDE,
+    PLANNER_MEET,
     PLANNER_SOFTER,
     PLANNER_KINDS
 } planner_kind;

@@ -1,0 +1,45 @@
+/// capsules.h: the room that a body takes: a capsule around each segment, and the gaps between
+/// them.
+#ifndef HIMC_CAPSULES_H
+#define HIMC_CAPSULES_H
+
+#include "base/head_frame.h"
+#include "himc/body.h"
+
+/// Of a stick's rod (m). Chosen: twice a slim rod's, so there is room for an error.
+#define HIMC_ROD_RADIUS 0.008
+
+/// All points nearer than `radius` to the segment from `a` to `b`.
+typedef struct himc_capsule {
+    himc_vec3 a, b;
+    double radius; ///< (m)
+} himc_capsule;
+
+/// Distance of the surfaces of two capsules (m), negative if they overlap: closest points of two
+/// segments after Ericson 2005, section 5.1.9.
+HIMC_RT double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q);
+
+/// Distance of a capsule from a drum's shell (m), the cylinder under its head; exact at eight points
+/// along the capsule.
+HIMC_RT double himc_capsule_shell_gap(const himc_capsule *p, const himc_head_frame *head);
+
+/// The capsules of the segments of a state; a stick ends at its mallet's centre.
+HIMC_RT void himc_capsules_of(const himc_skeleton *skeleton, const himc_body_state *state,
+                              himc_capsule capsule[HIMC_SEGMENTS]);
+
+/// Two segments that must not meet.
+typedef struct himc_capsule_pair {
+    unsigned char part, other;
+} himc_capsule_pair;
+
+/// Pairs of an arm's part with the other arm's, and with trunk, head and thighs. Segments that a
+/// joint connects are no pair.
+#define HIMC_CAPSULE_PAIRS 46
+#define HIMC_CAPSULE_ARM_PAIRS 16 ///< the first ones: of the two arms
+extern const himc_capsule_pair himc_capsule_pairs[HIMC_CAPSULE_PAIRS];
+
+/// The least gap of all pairs (m), and the pair.
+HIMC_RT double himc_capsules_least(const himc_capsule capsule[HIMC_SEGMENTS],
+                                   const himc_capsule_pair **pair);
+
+#endif

@@ -1,0 +1,31 @@
+/// avoidance.h: keeps arms clear of each other and of the body, in the null space of the tips.
+#ifndef HIMC_AVOIDANCE_H
+#define HIMC_AVOIDANCE_H
+
+#include "body/posture.h"
+
+/// Elbow out, wrist up and wrist aside of each hand: the parts of the posture that make room.
+#define HIMC_AVOIDANCE_PARTS (3 * HIMC_HANDS)
+
+typedef struct himc_avoidance {
+    double goal[HIMC_AVOIDANCE_PARTS]; ///< beyond the usual posture (rad); all 0: nothing is near
+    int order; ///< of crossed arms: 1 the left one is above, -1 below, 0 none
+} himc_avoidance;
+
+/// Both tips at one time, with the posture of the trunk then.
+typedef struct himc_foreseen {
+    himc_vec3 tip[HIMC_HANDS]; ///< (m)
+    himc_trunk_posture trunk;
+} himc_foreseen;
+
+#define HIMC_FORESEEN 6 ///< postures looked at; chosen: half a second in steps of a tenth
+
+/// Moves the goal during `dt` (s) so that the foreseen postures come clear, or back to 0 when they
+/// are. All are in the order of time but the last, which has none: the next strokes.
+HIMC_RT void himc_avoidance_update(himc_avoidance *avoidance, const himc_posture *posture,
+                                   const himc_foreseen foreseen[HIMC_FORESEEN], double dt);
+
+/// Puts the goal into a trunk posture's values.
+HIMC_RT void himc_avoidance_apply(const himc_avoidance *avoidance, himc_trunk_posture *goal);
+
+#endif

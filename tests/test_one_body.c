@@ -1,0 +1,156 @@
+/// test_one_body.c: arms and sticks pass neither through each other nor through the body; where
+/// nothing is near, nothing changes.
+#include "session.h"
+
+#include "performance/performance_state.h"
+
+/// A simulated body, and its least gap so far.
+typedef struct watched {
+    himc_performance *p;
+    double least; ///< (m)
+    const himc_capsule_pair *pair;
+    bool avoided; ///< elbows or wrists have been moved
+} watched;
+
+static void watch(void *user, const himc_motion_row *row)
+{
+    watched *w = user;
+    himc_capsule capsule[HIMC_SEGMENTS];
+    const himc_capsule_pair *pair;
+    (void)row;
+    himc_capsules_of(&w->p->body->skeleton, &w->p->body->state, capsule);
+    double gap = himc_capsules_least(capsule, &pair);
+    if (gap < w->least) {
+        w->least = gap;
+        w->pair = pair;
+    }
+    for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
+        w->avoided = w->avoided || w->p->motion->avoidance.goal[i] != 0;
+}
+
+/// Drum a is to the left, b to the right.
+static watched begin_score(const char *const *drum, int drums)
+{
+    watched w = {.p = session_new(), .least = INFINITY};
+    for (int i = 0; i < drums; i++) {
+        char name[2] = {(char)('a' + i), 0};
+        session_do(w.p, "drum %s", name);
+        session_drum(w.p, i, drum[i]);
+    }
+    session_do(w.p, "tempo 50");
+    return w;
+}
+
+static void play_score(watched *w, double seconds, int strokes)
+{
+    char text[120];
+    himc_performance_on_motion(w->p, watch, w);
+    session_do(w->p, "play");
+    session_play(w->p, seconds, NULL);
+    TEST_ASSERT_EQUAL_INT(strokes, himc_performance_measure(w->p).played);
+    snprintf(text, sizeof text, "%s - %s: %.1f mm", himc_segment_name(w->pair->part),
+             himc_segment_name(w->pair->other), 1e3 * w->least);
+    TEST_ASSERT_TRUE_MESSAGE(w->least >= 0, text);
+    TEST_ASSERT_TRUE(himc_performance_measure(w->p).tip_rms < 3e-5);
+    himc_performance_free(w->p);
+}
+
+static void test_hands_crossed_over_two_drums_pass_each_other(void)
+{
+    static const char *const drum[] = {"place 0.55 0.4 0.85", "place 0.55 -0.4 0.85"};
+    watched w = begin_score(drum, 2);
+    for (int i = 0; i < 6; i++) {
+        session_do(w.p, "stroke %g left legato mf normal %s", 1 + 2.0 * i, i % 2 ? "b" : "a");
+        session_do(w.p, "stroke %g right legato mf normal %s", 1.5 + 2 * i, i % 2 ? "a" : "b");
+    }
+    session_do(w.p, "stroke 13 left legato f normal b");
+    session_do(w.p, "stroke 13 right legato f normal a");
+    play_score(&w, 19, 14);
+    TEST_ASSERT_TRUE(w.avoided);
+}
+
+static void test_hands_on_four_drums_pass_each_other(void)
+{
+    static const char *const drum[] = {"place 0.35 0.75 0.82", "place 0.72 0.30 0.82",
+                                       "place 0.72 -0.38 0.82", "place 0.35 -0.80 0.82"};
+    static const char left[] = "ababbabcab", right[] = "dcbdcbcddc";
+    watched w = begin_score(drum, 4);
+    for (int i = 0; i < 10; i++) {
+        session_do(w.p, "stroke %g left legato mf normal %c", 2 + 2.0 * i, left[i]);
+        session_do(w.p, "stroke %g right accent f normal %c", 3 + 2.0 * i, right[i]);
+    }
+    play_score(&w, 27, 20);
+}
+
+static void test_where_nothing_is_near_nothing_is_avoided(void)
+{
+    static const char *const drum[] = {"place 0.70 0 0.85"};
+    watched w = begin_score(drum, 1);
+    for (int i = 0; i < 8; i++)
+        session_do(w.p, "stroke %d %s legato mf", 1 + i, i % 2 ? "right" : "left");
+    play_score(&w, 11, 8);
+    TEST_ASSERT_FALSE(w.avoided);
+}
+
+static himc_capsule random_capsule(unsigned *seed)
+{
+    himc_vec3 a = {chance(seed), chance(seed), chance(seed)};
+    himc_vec3 b = {chance(seed), chance(seed), chance(seed)};
+    return (himc_capsule){a, b, 0.1 * chance(seed)};
+}
+
+static void test_gap_of_two_capsules_is_that_of_their_nearest_points(void)
+{
+    unsigned seed = 7;
+    for (int k = 0; k < 60; k++) {
+        himc_capsule p = random_capsule(&seed), q = random_capsule(&seed);
+        double least = INFINITY;
+        for (int i = 0; i <= 200; i++)
+            for (int j = 0; j <= 200; j++) {
+                himc_vec3 x = himc_vec3_madd(p.a, i / 200.0, himc_vec3_sub(p.b, p.a));
+                himc_vec3 y = himc_vec3_madd(q.a, j / 200.0, himc_vec3_sub(q.b, q.a));
+                least = fmin(least, himc_vec3_length(himc_vec3_sub(x, y)));
+            }
+        double gap = himc_capsule_gap(&p, &q) + p.radius + q.radius;
+        TEST_ASSERT_TRUE(gap <= least + 1e-12);
+        TEST_ASSERT_DOUBLE_WITHIN(8e-3, least, gap); // the samples' distance
+    }
+}
+
+static void test_posture_has_the_capsules_of_its_pose(void)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_skeleton skeleton;
+    himc_posture posture;
+    himc_pose pose;
+    himc_body_state state;
+    himc_capsule from_posture[HIMC_SEGMENTS], from_state[HIMC_SEGMENTS];
+    himc_vec3 tip[HIMC_HANDS] = {{0.4, 0.2, 1.0}, {0.5, -0.1, 0.9}};
+    TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
+    himc_posture_init(&posture, &skeleton, 0.8675);
+    for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
+        posture.trunk_posture.value[HIMC_TRUNK_POSTURE_ELBOW + i] = 0.05 * (i + 1);
+    posture.trunk_posture.value[HIMC_TRUNK_POSTURE_TURN] = 0.3;
+    TEST_ASSERT_TRUE(himc_posture_at(&posture, tip, &pose) == 0);
+    himc_pose_to_state(&skeleton, &pose, NULL, &state);
+    himc_capsules_of(&skeleton, &state, from_state);
+    himc_posture_capsules(&posture, tip, from_posture);
+    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
+        himc_capsule_pair pair = himc_capsule_pairs[i];
+        double a = himc_capsule_gap(&from_posture[pair.part], &from_posture[pair.other]);
+        double b = himc_capsule_gap(&from_state[pair.part], &from_state[pair.other]);
+        if (pair.other != HIMC_HEAD) // it looks down a little
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, b, a);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_hands_crossed_over_two_drums_pass_each_other);
+    RUN_TEST(test_hands_on_four_drums_pass_each_other);
+    RUN_TEST(test_where_nothing_is_near_nothing_is_avoided);
+    RUN_TEST(test_gap_of_two_capsules_is_that_of_their_nearest_points);
+    RUN_TEST(test_posture_has_the_capsules_of_its_pose);
+    return UNITY_END();
+}
