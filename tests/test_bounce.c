@@ -53,6 +53,16 @@ static void test_energy_of_a_bounce_never_grows_and_its_impacts_fall(void)
     }
 }
 
+static void test_bounces_end_in_time_also_without_a_head(void)
+{
+    for (int bounces = HIMC_BUZZ; bounces <= 1; bounces += 2) {
+        himc_bounce b = himc_bounce_begin(bounces, 0.1, 2, 1);
+        himc_bounce_separated(&b, 2.01, 0.001, 0, 0.8);
+        TEST_ASSERT_FALSE(himc_bounce_is_over(&b, 2.05, -1));
+        TEST_ASSERT_TRUE(himc_bounce_is_over(&b, 2.2, -1));
+    }
+}
+
 static void test_a_double_comes_when_it_shall_unless_it_is_too_fast_for_fingers(void)
 {
     double speed[4];
@@ -396,6 +406,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_energy_of_a_bounce_never_grows_and_its_impacts_fall);
+    RUN_TEST(test_bounces_end_in_time_also_without_a_head);
     RUN_TEST(test_a_double_comes_when_it_shall_unless_it_is_too_fast_for_fingers);
     RUN_TEST(test_doubles_have_two_contacts_a_quarter_period_apart_at_4_to_12_Hz);
     RUN_TEST(test_each_stroke_of_a_press_roll_has_five_contacts_or_more_that_get_softer);

@@ -1,4 +1,5 @@
 /// test_stroke_noise.c: the noise of blows: levels, decays, seeds, blocks; none without a blow.
+#include "drum/stroke_noise.h"
 #include "one_drum.h"
 
 #define LOWEST 500.0 // edge of the lowest octave (Hz)
@@ -125,6 +126,20 @@ static void test_pickups_on_the_head_hear_none_and_distance_weakens_it(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, near[i], 4 * far[i]);
 }
 
+// a filter that falls for ever ends among numbers that processors are slow with
+static void test_noise_drive_ends_at_0_while_the_noise_still_sounds(void)
+{
+    himc_stroke_noise noise = himc_stroke_noise_at(RATE);
+    double x;
+    himc_stroke_noise_begin(&noise, -0.2, 0);
+    for (int i = 0; i < (int)(0.3 * RATE); i++)
+        himc_stroke_noise_run(&noise, 1, i < 200 ? sin(HIMC_PI * i / 200) * 40 : 0, 1,
+                              (double *[HIMC_NOISE_ROWS]){&x, &x});
+    TEST_ASSERT_TRUE(noise.sounds);
+    for (int k = 0; k < 3; k++)
+        TEST_ASSERT_EQUAL_DOUBLE(0, noise.slope[k]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -134,5 +149,6 @@ int main(void)
     RUN_TEST(test_equal_blows_are_equal_and_others_are_not);
     RUN_TEST(test_noise_is_the_same_in_all_blocks);
     RUN_TEST(test_pickups_on_the_head_hear_none_and_distance_weakens_it);
+    RUN_TEST(test_noise_drive_ends_at_0_while_the_noise_still_sounds);
     return UNITY_END();
 }

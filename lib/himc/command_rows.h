@@ -60,6 +60,8 @@ HIMC_COMMAND_ROW(
 HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
                  "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
                  "all; each seed is another player")
+HIMC_COMMAND_ROW(ALIVE, alive, PERFORMER, AT_SAMPLE, 0, "SWITCH",
+                 "1: head and trunk follow the music, the player breathes; 0: they rest")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
                  "1: the score begins again after its last whole beat")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",

@@ -354,6 +354,15 @@ static bool do_human(himc_performance *p, const himc_command *c, himc_error *err
     return true;
 }
 
+static bool do_alive(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    (void)error;
+    s.alive = c->atom[0].number != 0;
+    himc_performance_adopt(p, &s);
+    return true;
+}
+
 static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;

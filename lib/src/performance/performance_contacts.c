@@ -28,7 +28,7 @@
 // chosen: a step at 30 m/s is 3 mm, and resting sticks hang over the rim
 #define NEAR_HEAD 0.02       // above the head at rest: sticks below this are simulated (m)
 #define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m) ...
-#define HIGHEST_BOUNCE 0.15  // above it: a stick that bounces is simulated below this (m)
+#define HIGHEST_BOUNCE 0.35  // above it: a stick that bounces is simulated below this (m)
 #define DEEPEST_ARRIVAL 0.03 // ... and a stick not from above is if deeper than this (m)
 // No arm moves a stick faster. A body that is thrown about by gains or a rate that cannot hold it
 // does, up to 100 m/s; the head then feels a blow as of the fastest free mallet, in each step.
@@ -304,7 +304,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
         himc_statistics_unplanned(s->statistics);
     if (!planned)
         return;
-    if (next.bounces)
+    if (next.bounces && !s->settings->servo)
         c->bounce = himc_bounce_begin(next.bounces, next.bounce_time, time, -velocity);
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     bool played =

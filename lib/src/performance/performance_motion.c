@@ -6,6 +6,8 @@
 /// source to another they cross-fade (posture_crossfade.h).
 #include "performance/performance_motion.h"
 
+#include "control/alive.h"
+
 #include "body/limits.h"
 #include "base/head_frame.h"
 #include "control/grip.h"
@@ -249,6 +251,21 @@ static himc_trunk_posture trunk_at(const performance_motion *m, double t)
                                        fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
 }
 
+// head, weight and breath; a take shows its own
+static void enliven(performance_motion *m, const performance_drums *drums, double t)
+{
+    himc_next_stroke next = {.in = INFINITY, .since = INFINITY};
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planned_stroke s = himc_motion_stroke(m, drums, (himc_hand)hand, t);
+        next.since = fmin(next.since, t - m->answered[hand]);
+        if (!s.any || s.time < t || s.time - t >= next.in)
+            continue;
+        next.in = s.time - t;
+        next.at = himc_head_frame_to_world(himc_drums_frame(drums, s.drum), s.x, s.y);
+    }
+    himc_alive_add(&m->posture, &next, t, &m->course.goal);
+}
+
 // keeps the planned tips of the next half second and the next strokes clear of the body
 static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
 {
@@ -282,6 +299,8 @@ static void set_course(performance_motion *m, const performance_settings *s,
         m->course.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
         m->course.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
     }
+    if (s->alive && !m->track)
+        enliven(m, drums, t);
     avoid(m, place, t);
     m->course.time = t;
 }

@@ -24,6 +24,7 @@ typedef struct performance_settings {
     himc_grip grip;
     bool servo; ///< strokes have one contact each, though they shall bounce
     himc_human human;
+    bool alive;     ///< head, weight and breath follow the music
     double latency; ///< of a hit, from its message to its contact; 0: as soon as it can (s)
     bool one_way;   ///< the head's vibration does not push back on the stick
     bool unbent;    ///< `id` follows a take's arms as captured

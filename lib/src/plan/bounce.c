@@ -31,7 +31,7 @@
 #define FLIGHT_STEP 5e-4 // of a trial flight (s)
 #define MOST_OMEGA 800.0 // of a grip that needs all of the fingers' bound (1/s)
 #define BISECTIONS 16    // to 0.01 1/s
-#define LATE_SHARE 1.5   // a bounce later than so many of its times does not come
+#define LATE_SHARE 1.5   // what lasts so many of its times is over; chosen: a drum may be moved
 
 double himc_bounce_fastest(int bounces, double time)
 {
@@ -127,7 +127,9 @@ bool himc_bounce_is_over(const himc_bounce *b, double t, double velocity)
 {
     double end = b->begin + b->time;
     bool full = b->contacts >= BUZZ_CONTACTS && t + 2 * velocity / b->press > end;
+    if (t > b->begin + LATE_SHARE * b->time)
+        return true;
     if (b->bounces == HIMC_BUZZ)
         return (t >= end || full) && velocity >= 0;
-    return b->contacts > b->bounces || t > b->begin + LATE_SHARE * b->time;
+    return b->contacts > b->bounces;
 }
