@@ -106,7 +106,7 @@ static void test_drum_made_again_from_its_dump_sounds_the_same_bit_by_bit(void)
 {
     static double first[HIMC_PICKUPS][LENGTH], again[HIMC_PICKUPS][LENGTH];
     random_seed seed = 17;
-    for (int trial = 0; trial < 60; trial++) {
+    for (int trial = 0; trial < 40; trial++) {
         himc_drum *drum = himc_drum_new("kettle", 23 + trial % 10, RATE, &error);
         for (int i = 0; i < 12; i++) {
             himc_command command;
@@ -130,7 +130,7 @@ static void test_drum_takes_the_dump_of_another_whatever_it_was_before(void)
 {
     random_seed seed = 5;
     himc_drum *other = himc_drum_new("kettle", 26, RATE, &error);
-    for (int trial = 0; trial < 60; trial++) {
+    for (int trial = 0; trial < 40; trial++) {
         himc_drum *drum = himc_drum_new("kettle", 26, RATE, &error);
         for (int i = 0; i < 8; i++) {
             himc_command command;

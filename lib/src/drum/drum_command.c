@@ -60,6 +60,13 @@ static double number(const himc_command *c, int index)
     return c->atom[index].number;
 }
 
+// What a command computes is kept in single precision, as what it is given: so another can say it. The
+// number as the value of that argument.
+static double as_said(const char *argument, double value)
+{
+    return himc_argument_number(himc_argument_find(argument, NULL), value);
+}
+
 static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
 {
     if (!himc_membrane_set_head(drum->membrane, head, error))
@@ -151,13 +158,12 @@ static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
     return set_head(drum, &head, error);
 }
 
-// what a command computes is kept in single precision, as what it is given: so another can say it
 static bool do_decay(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     enum { T60, BOTH };
     himc_head head = *himc_membrane_head(drum->membrane);
     head.decay_constant =
-        c->form == T60 ? himc_argument_single(log(1000) / number(c, 0)) : number(c, 0);
+        c->form == T60 ? as_said("SIGMA0", log(1000) / number(c, 0)) : number(c, 0);
     head.decay_square = c->form == BOTH ? number(c, 1) : 0;
     head.decay_constant = himc_argument_usual(head.decay_constant, drum->usual.decay_constant);
     head.decay_square = himc_argument_usual(head.decay_square, drum->usual.decay_square);
@@ -173,7 +179,7 @@ static bool do_tune(himc_drum *drum, const himc_command *c, himc_error *error)
     if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
                           himc_membrane_principal(drum->membrane, &highest), "Hz", error))
         return false;
-    head.tension = himc_argument_single(himc_membrane_tension_for(drum->membrane, &head, hz));
+    head.tension = as_said("TENSION", himc_membrane_tension_for(drum->membrane, &head, hz));
     return set_head(drum, &head, error);
 }
 
@@ -322,9 +328,9 @@ static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
     if (c->form == FROM_FILE)
         return load_shape(drum, c->atom[0].symbol, error);
     // those of a file or of a rectangle were not said
-    head.radius = himc_argument_usual(himc_argument_single(head.radius), drum->usual.radius);
-    head.tension = himc_argument_usual(himc_argument_single(head.tension), drum->usual.tension);
-    head.density = himc_argument_usual(himc_argument_single(head.density), drum->usual.density);
+    head.radius = himc_argument_usual(as_said("RADIUS", head.radius), drum->usual.radius);
+    head.tension = himc_argument_usual(as_said("TENSION", head.tension), drum->usual.tension);
+    head.density = himc_argument_usual(as_said("DENSITY", head.density), drum->usual.density);
     if (c->form == CIRCLE) {
         head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
         return replace_shape(drum, &shape, &head, error);
@@ -439,7 +445,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
     himc_state_end(&modes, to);
     himc_state_tell(to, "decay", NULL, 2, (double[]){head->decay_constant, head->decay_square});
     himc_state_tell(to, "air", NULL, 1, (double[]){head->air ? 1.0 : 0.0});
-    if (head->kettle > 0)
+    // without air the head may have grown too large for its kettle, which is then not heard
+    if (head->kettle > 0 && himc_air_check(head->kettle, head->radius, NULL))
         himc_state_tell(to, "kettle", NULL, 1, (double[]){head->kettle});
     himc_state_tell(to, "glide", NULL, 1, (double[]){head->glide});
     himc_state_tell(to, "damp", NULL, 1, (double[]){head->damp});
