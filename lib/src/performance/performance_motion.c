@@ -19,6 +19,7 @@
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
 #define TRUNK_FORESIGHT 1.2     // chosen: strokes further ahead do not turn the trunk (s)
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
+#define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
@@ -443,6 +444,23 @@ void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skelet
             posture->rest.joint[j] = captured->rest.joint[j];
 }
 
+// the trunk turned to the tips, elbows and wrists where nothing is near
+static void begin_clear(performance_motion *m, const performance_settings *s, double t)
+{
+    himc_foreseen f[HIMC_FORESEEN];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        f[0].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
+    f[0].trunk = himc_posture_trunk(f[0].tip, s->grip);
+    for (int k = 1; k < HIMC_FORESEEN; k++)
+        f[k] = f[0];
+    m->avoidance = (himc_avoidance){{0}, 0};
+    for (int i = 0; i < CLEARING_STEPS; i++)
+        himc_avoidance_update(&m->avoidance, &m->posture, f, AVOIDANCE_PERIOD);
+    m->course.goal = f[0].trunk;
+    himc_avoidance_apply(&m->avoidance, &m->course.goal);
+    m->course.from = m->course.goal;
+}
+
 void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {
@@ -451,12 +469,8 @@ void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
     himc_posture_crossfade_cancel(&m->crossfade);
     himc_motion_init_posture(&m->posture, skeleton, &s->captured, m->posture.level);
     himc_planner_set_body(m->planner);
-    if (m->course.time == 0) {
-        himc_vec3 tip[HIMC_HANDS];
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
-        m->course.from = m->course.goal = himc_posture_trunk(tip, s->grip);
-    }
+    if (m->course.time == 0)
+        begin_clear(m, s, t);
     fill_tick(m, s, &m->from, t);
     memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
     m->reference.posture = m->from.posture;
