@@ -79,6 +79,11 @@ static void himc_tilde_line(void *object, const char *line)
     outlet_words(((t_himc *)object)->x_messages, "info", line);
 }
 
+static void himc_tilde_state(void *object, const char *line)
+{
+    outlet_words(((t_himc *)object)->x_messages, "dump", line);
+}
+
 void himc_tilde_network(t_himc *x)
 {
     char line[HIMC_OSC_LINE];
@@ -151,7 +156,12 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return false;
     himc_command_when when = himc_command_table((int)command.id)->when;
     if (command.id == HIMC_COMMAND_INFO) {
-        himc_performance_describe(x->x_performance, himc_tilde_line, x);
+        himc_performance_describe(x->x_performance, HIMC_DESCRIBE_INFO, himc_tilde_line, x);
+        return true;
+    }
+    if (command.id == HIMC_COMMAND_DUMP && command.count == 0) {
+        himc_tilde_resolve(x, false);
+        himc_performance_describe(x->x_performance, HIMC_DESCRIBE_STATE, himc_tilde_state, x);
         return true;
     }
     if (when == HIMC_WHEN_NETWORK)

@@ -11,6 +11,7 @@ outlets  sound, one for each of CHANNELS pickups, or of the left and the right e
                                                    per radius, the principal mode's frequency (Hz)
          technique NAME                            the new technique of sound
          info ...
+         dump WORD ATOMS...                        one of the commands that make its state again
 
 A `touch` comes when its sample has been put out, by a block later than it sounds here and just as
 late in each block, so that what a patch starts on it is exact to the sample ([vline~]).
@@ -254,14 +255,23 @@ static void membrane_tick(t_membrane *x)
     }
 }
 
+static void membrane_line(void *object, const char *line)
+{
+    outlet_words(((t_membrane *)object)->x_messages, "info", line);
+}
+
+static void membrane_state(void *object, const char *line)
+{
+    outlet_words(((t_membrane *)object)->x_messages, "dump", line);
+}
+
 static void membrane_info(t_membrane *x)
 {
-    char text[512];
-    himc_drum_describe(x->x_link.l_drum, text, sizeof text);
-    outlet_words(x->x_messages, "info", text);
+    char text[80];
+    himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_INFO, membrane_line, x);
     if (x->x_refused) {
         snprintf(text, sizeof text, "refused %ld samples", x->x_refused);
-        outlet_words(x->x_messages, "info", text);
+        membrane_line(x, text);
     }
 }
 
@@ -311,6 +321,8 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
     himc_error error;
     if (s == gensym("info") && argc == 0)
         membrane_info(x);
+    else if (s == gensym("dump") && argc == 0)
+        himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, membrane_state, x);
     else if (!membrane_command(x, s, argc, argv, &error))
         pd_error(x, "membrane~: %s", error.text);
 }

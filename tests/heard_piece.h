@@ -49,7 +49,7 @@ static inline void play_piece(himc_performance *p, double seconds, heard_piece *
     himc_drum *kettle = himc_performance_drum(p, 0);
     int ahead = himc_clock_ahead(&p->clock);
     memset(h, 0, sizeof *h);
-    himc_performance_describe(p, keep_line, h->info);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, keep_line, h->info);
     take_events(p, NULL);
     himc_performance_on_motion(p, keep_row, h);
     session_do(p, "tempo 200");

@@ -203,6 +203,31 @@ static void test_a_mode_decays_as_without_neighbours_if_none_is_in_tune(void)
     }
 }
 
+// Alone, each mode loses what its sound takes wherever its drum stands; together, what a gives to b
+// is what b gives to a.
+static void test_exchange_is_mutual_and_takes_the_modes_own_losses(void)
+{
+    double mass[2 * HIMC_SHARED];
+    int n = 0, shared;
+    add(32, 0.7, 0.9, 73.4, "modes 30");
+    add(26, 0.3, -0.8, 116.5, "modes 30");
+    himc_air_between_join(&air, drum, count);
+    double t = himc_membrane_interval(RATE) / RATE;
+    for (int i = 0; i < count; i++) {
+        const himc_shared_mode *mode = himc_membrane_shared(head(i), &shared);
+        for (int k = 0; k < shared; k++, n++) {
+            double lost = 2 * t * mode[k].decay; // by the trapezoidal rule:
+            mass[n] = mode[k].mass;
+            TEST_ASSERT_DOUBLE_WITHIN(0.02 * lost, -lost / (1 + lost / 2), air.change[n][n]);
+        }
+    }
+    TEST_ASSERT_TRUE(n >= 8 && mass[0] > 1.2 * mass[n - 1]);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < i; j++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, air.change[i][j] * mass[i],
+                                      air.change[j][i] * mass[j]);
+}
+
 // in a performance
 
 static void tell(himc_performance *p, const char *text)
@@ -300,6 +325,7 @@ int main(void)
     RUN_TEST(test_neighbour_out_of_tune_answers_less);
     RUN_TEST(test_energy_of_drums_that_hear_each_other_never_rises);
     RUN_TEST(test_a_mode_decays_as_without_neighbours_if_none_is_in_tune);
+    RUN_TEST(test_exchange_is_mutual_and_takes_the_modes_own_losses);
     RUN_TEST(test_a_struck_drum_moves_its_neighbour_in_blocks_of_any_size);
     RUN_TEST(test_drums_far_apart_or_without_air_sound_as_if_alone);
     RUN_TEST(test_a_drum_given_back_is_alone);

@@ -173,13 +173,13 @@ static void test_reset_leaves_a_performer_as_just_made(void)
     char fresh[4096] = "", after[4096] = "";
     heard h = {0};
     himc_performance *new = session_new();
-    himc_performance_describe(new, describe, fresh);
+    himc_performance_describe(new, HIMC_DESCRIBE_INFO, describe, fresh);
     playing(2.4);
     session_do(p, "tempo 240");
     session_do(p, "limits ellipsoid");
     session_do(p, "gain right-elbow 7 1");
     session_do(p, "reset");
-    himc_performance_describe(p, describe, after);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, describe, after);
     TEST_ASSERT_EQUAL_STRING(fresh, after);
     TEST_ASSERT_EQUAL_MEMORY(new->body->controller.gain, p->body->controller.gain,
                              sizeof p->body->controller.gain);

@@ -313,6 +313,17 @@ static void test_no_stroke_becomes_impossible(void)
     printf("%d of 3600 strokes given up as written\n", written);
 }
 
+static void test_no_stroke_moves_by_more_than_a_fifth_of_its_hands_gap(void)
+{
+    const double gap = 0.16, most = 0.2 * gap;
+    double largest = 0;
+    play_equal(1, 3, 600, gap / 2, true);
+    for (int i = 0; i < count; i++)
+        largest = fmax(largest, fabs(late(&played[i], gap / 2)));
+    printf("moved by at most %.2f ms\n", 1e3 * largest);
+    TEST_ASSERT_TRUE(largest <= most + 1e-9 && largest > 0.999 * most);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -329,5 +340,6 @@ int main(void)
     RUN_TEST(test_hits_vary_and_never_come_early);
     RUN_TEST(test_hands_that_strike_together_do_not_come_nearer);
     RUN_TEST(test_no_stroke_becomes_impossible);
+    RUN_TEST(test_no_stroke_moves_by_more_than_a_fifth_of_its_hands_gap);
     return UNITY_END();
 }

@@ -13,7 +13,7 @@ static const struct timpano {
 #define SOFTEST 0.001 // -60 dB
 
 // shares of the radius; the blow at the loudest one excites all modes of low frequency
-#define LOUDEST_PLACE 0.2
+#define LOUDEST_PLACE 0.3
 #define SOFTEST_PLACE 0.92
 static const double places[] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.75, 0.85, 0.92};
 #define PLACES (int)(sizeof places / sizeof places[0])
@@ -56,7 +56,7 @@ static double decibels(double x)
 // single strokes are the hardest, a roll adds up; by the drum's own pickup, and by two ears
 static void check_strongest(const struct timpano *t, double place)
 {
-    static const char *const by[] = {"listener off", "listener 2.2 0.2 1.3"};
+    static const char *const by[] = {"listener off", "listener 2.2 0.4 1.3"};
     for (int i = 0; i < 2; i++) {
         double once = peak_of(t, "vertical-accent fff", place, 1, 1, by[i]);
         double roll = peak_of(t, "vertical-accent fff", place, 10, 0.1, by[i]);

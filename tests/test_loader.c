@@ -233,7 +233,8 @@ static void test_a_drum_changed_meanwhile_keeps_both_changes(void)
     const himc_head *head = himc_membrane_head(himc_drum_membrane(drum));
     TEST_ASSERT_TRUE(head->tension == 4321);
     TEST_ASSERT_EQUAL_INT(300, head->modes);
-    TEST_ASSERT_TRUE(head->damp == 0.25 && head->decay_constant == log(1000) / (double)0.7f);
+    TEST_ASSERT_TRUE(head->damp == 0.25 &&
+                     head->decay_constant == (float)(log(1000) / (double)0.7f));
     himc_loader_free(loader);
     himc_performance_free(p);
 }

@@ -49,7 +49,7 @@ static void test_a_stick_laid_on_the_head_is_one_long_unplanned_contact(void)
     TEST_ASSERT_EQUAL_INT(1, s.unplanned_contacts);
     TEST_ASSERT_TRUE(s.longest_contact > 1.5);
     int told = 0;
-    himc_performance_describe(p, find_contacts, &told);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, find_contacts, &told);
     TEST_ASSERT_EQUAL_INT(1, told);
     session_do(p, "reset");
     TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).unplanned_contacts);

@@ -121,12 +121,11 @@ static void add_line(void *user, const char *line)
 static void add_drum(const himc_drum *drum, int samples)
 {
     static double sound[HIMC_DRUM_RING], place[HIMC_DRUM_RING];
-    char text[500];
     himc_drum_read(drum, himc_drum_time(drum) - (uint64_t)samples, samples, sound, place);
     add_bytes(sound, (size_t)samples * sizeof *sound);
     add_bytes(place, (size_t)samples * sizeof *place);
-    himc_drum_describe(drum, text, sizeof text);
-    add_line(NULL, text);
+    himc_drum_describe(drum, HIMC_DESCRIBE_INFO, add_line, NULL);
+    himc_drum_describe(drum, HIMC_DESCRIBE_STATE, add_line, NULL);
 }
 
 static void add_event(const himc_event *event)
@@ -149,7 +148,7 @@ static uint64_t play_performance(himc_performance *p, double seconds)
         add_event(&event);
     himc_performance_stats stats = himc_performance_measure(p);
     add_bytes(&stats, sizeof stats);
-    himc_performance_describe(p, add_line, NULL);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, add_line, NULL);
     himc_drum *drum;
     for (int i = 0; (drum = himc_performance_drum(p, i)); i++)
         add_drum(drum, samples);

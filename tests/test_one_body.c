@@ -82,6 +82,18 @@ static void test_hands_on_four_drums_pass_each_other(void)
     play_score(&w, 27, 20);
 }
 
+static void test_forearms_do_not_pass_through_the_back_for_drums_behind(void)
+{
+    static const char *const drum[] = {"place -0.35 0.606 0.85", "place -0.35 -0.606 0.85"};
+    for (int side = 0; side < 2; side++) {
+        watched w = begin_score(&drum[side], 1);
+        for (int i = 0; i < 4; i++)
+            session_do(w.p, "stroke %d %s legato mf", 2 + i, i % 2 ? "right" : "left");
+        play_score(&w, 7, 4);
+        TEST_ASSERT_TRUE(w.avoided);
+    }
+}
+
 static void test_where_nothing_is_near_nothing_is_avoided(void)
 {
     static const char *const drum[] = {"place 0.70 0 0.85"};
@@ -149,6 +161,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_hands_crossed_over_two_drums_pass_each_other);
     RUN_TEST(test_hands_on_four_drums_pass_each_other);
+    RUN_TEST(test_forearms_do_not_pass_through_the_back_for_drums_behind);
     RUN_TEST(test_where_nothing_is_near_nothing_is_avoided);
     RUN_TEST(test_gap_of_two_capsules_is_that_of_their_nearest_points);
     RUN_TEST(test_posture_has_the_capsules_of_its_pose);

@@ -18,7 +18,7 @@ static void keep_line(void *user, const char *text)
 static const char *info(const himc_performance *p, const char *begin)
 {
     lines = 0;
-    himc_performance_describe(p, keep_line, NULL);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, keep_line, NULL);
     for (int i = 0; i < lines; i++)
         if (strncmp(told[i], begin, strlen(begin)) == 0)
             return told[i];

@@ -169,7 +169,7 @@ static void shows_in_the_measures(const himc_performance *p, double depth)
     TEST_ASSERT_TRUE(s.captured_most > 0.9 * depth && s.captured_most < depth + 0.02);
     TEST_ASSERT_TRUE(s.captured_rms > 0.4 * depth && s.captured_rms < s.captured_most);
     double told = 0;
-    himc_performance_describe(p, find_capture, &told);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, find_capture, &told);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, s.captured_rms, told);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100 * s.captured_rms / s.stroke_height, s.captured_rms_percent);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100 * s.captured_most / s.stroke_height,

@@ -102,10 +102,10 @@ static void test_reset_bends_arms_again(void)
     char mode[256] = "";
     lengthen_arms();
     tell("bend 0");
-    himc_performance_describe(performance, keep_mode, mode);
+    himc_performance_describe(performance, HIMC_DESCRIBE_INFO, keep_mode, mode);
     TEST_ASSERT_NOT_NULL(strstr(mode, "himc (in id, arms as captured), solver"));
     tell("reset");
-    himc_performance_describe(performance, keep_mode, mode);
+    himc_performance_describe(performance, HIMC_DESCRIBE_INFO, keep_mode, mode);
     TEST_ASSERT_NOT_NULL(strstr(mode, "himc, solver"));
     tell("mode id");
     TEST_ASSERT_TRUE(play() < 2e-4);

@@ -218,7 +218,7 @@ static void test_room_0_is_no_room_bit_by_bit(void)
         himc_performance *p = with_a_drum();
         double(*into)[RATE] = k ? with : without;
         session_do(p, k ? "room 2 100" : "room 0");
-        session_do(p, "listener 2.2 0.2 1.3");
+        session_do(p, "listener 2.2 0.4 1.3");
         play(p, into[0], into[1], 4800);
         session_do(p, "room 0");
         play(p, into[0], into[1], 4800);
@@ -234,13 +234,13 @@ static void test_room_is_around_every_listener_until_reset(void)
 {
     static double usual[2][RATE], other[2][RATE], again[2][RATE];
     himc_performance *p = with_a_drum();
-    session_do(p, "listener 2.2 0.2 1.3");
+    session_do(p, "listener 2.2 0.4 1.3");
     session_drum(p, 0, "strike -0.2 0 3");
     play(p, usual[0], usual[1], RATE);
     himc_performance_free(p);
     p = with_a_drum();
     session_do(p, "room 3");
-    session_do(p, "listener 2.2 0.2 1.3");
+    session_do(p, "listener 2.2 0.4 1.3");
     session_drum(p, 0, "strike -0.2 0 3");
     play(p, other[0], other[1], RATE);
     TEST_ASSERT_TRUE(memcmp(usual, other, sizeof usual) != 0);
@@ -249,7 +249,7 @@ static void test_room_is_around_every_listener_until_reset(void)
     session_do(p, "reset");
     session_do(p, "drum timpano");
     session_drum(p, 0, "pickups 2");
-    session_do(p, "listener 2.2 0.2 1.3");
+    session_do(p, "listener 2.2 0.4 1.3");
     session_drum(p, 0, "strike -0.2 0 3");
     play(p, again[0], again[1], RATE);
     TEST_ASSERT_EQUAL_MEMORY(usual, again, sizeof usual);

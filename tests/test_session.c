@@ -221,7 +221,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
     himc_performance *p = with_kettle();
     char before[4096] = "", after[4096], text[400];
     session_do(p, "stroke 1 left legato mf");
-    himc_performance_describe(p, keep_line, before);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, keep_line, before);
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         snprintf(text, sizeof text,
                  "grip french; drum second 29;\nkettle tune 150; player 1.9 90;\n"
@@ -230,7 +230,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         TEST_ASSERT_FALSE_MESSAGE(load_text(p, text), faults[i][0]);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, faults[i][1]), error.text);
         after[0] = 0;
-        himc_performance_describe(p, keep_line, after);
+        himc_performance_describe(p, HIMC_DESCRIBE_INFO, keep_line, after);
         TEST_ASSERT_EQUAL_STRING(before, after);
     }
     heard h = {0};

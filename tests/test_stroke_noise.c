@@ -1,4 +1,5 @@
 /// test_stroke_noise.c: the noise of blows: levels, decays, seeds, blocks; none without a blow.
+#include "drum/stroke_noise.h"
 #include "one_drum.h"
 
 #define LOWEST 500.0 // edge of the lowest octave (Hz)
@@ -125,6 +126,63 @@ static void test_pickups_on_the_head_hear_none_and_distance_weakens_it(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, near[i], 4 * far[i]);
 }
 
+// two rows of the noise of a force of 25 N that lasts so long (s)
+static void blow(double amount, double lasts, double *left, double *right)
+{
+    himc_stroke_noise noise = himc_stroke_noise_at(RATE);
+    noise.amount = amount;
+    himc_stroke_noise_begin(&noise, -0.2, 0);
+    for (int i = 0; i < LENGTH; i++) {
+        double t = i / (lasts * RATE), force = t < 1 ? 25 * sin(HIMC_PI * t) : 0;
+        himc_stroke_noise_run(&noise, 1, force, 2, (double *[]){&left[i], &right[i]});
+    }
+}
+
+static double product(const double *x, const double *y)
+{
+    double sum = 0;
+    for (int i = 0; i < LENGTH; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
+static void test_noise_is_half_alike_at_two_places_and_goes_with_its_amount(void)
+{
+    static double left[LENGTH], right[LENGTH], half[2][LENGTH];
+    blow(1, 0.005, left, right);
+    blow(0.5, 0.005, half[0], half[1]);
+    double power = product(left, left);
+    double alike = product(left, right) / sqrt(power * product(right, right));
+    printf("coherence %.2f\n", alike);
+    TEST_ASSERT_TRUE(power > 0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.15, 0.5, alike);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.25, product(half[0], half[0]) / power);
+}
+
+static void test_a_slow_press_makes_hardly_any_noise(void)
+{
+    static double fast[LENGTH], slow[LENGTH], unused[LENGTH];
+    blow(1, 0.005, fast, unused);
+    blow(1, 0.05, slow, unused);
+    double ratio = product(slow, slow) / product(fast, fast);
+    printf("a slow press has %.2g of the noise\n", ratio);
+    TEST_ASSERT_TRUE(ratio < 0.01);
+}
+
+// a filter that falls for ever ends among numbers that processors are slow with
+static void test_noise_drive_ends_at_0_while_the_noise_still_sounds(void)
+{
+    himc_stroke_noise noise = himc_stroke_noise_at(RATE);
+    double x;
+    himc_stroke_noise_begin(&noise, -0.2, 0);
+    for (int i = 0; i < (int)(0.3 * RATE); i++)
+        himc_stroke_noise_run(&noise, 1, i < 200 ? sin(HIMC_PI * i / 200) * 40 : 0, 1,
+                              (double *[HIMC_NOISE_ROWS]){&x, &x});
+    TEST_ASSERT_TRUE(noise.sounds);
+    for (int k = 0; k < 3; k++)
+        TEST_ASSERT_EQUAL_DOUBLE(0, noise.slope[k]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -133,6 +191,9 @@ int main(void)
     RUN_TEST(test_hard_mallets_and_fast_blows_have_more_noise_for_their_force);
     RUN_TEST(test_equal_blows_are_equal_and_others_are_not);
     RUN_TEST(test_noise_is_the_same_in_all_blocks);
+    RUN_TEST(test_noise_is_half_alike_at_two_places_and_goes_with_its_amount);
+    RUN_TEST(test_a_slow_press_makes_hardly_any_noise);
     RUN_TEST(test_pickups_on_the_head_hear_none_and_distance_weakens_it);
+    RUN_TEST(test_noise_drive_ends_at_0_while_the_noise_still_sounds);
     return UNITY_END();
 }

@@ -241,7 +241,7 @@ static void test_another_body_keeps_the_engine(void)
     himc_performance *p = session_new();
     session_do(p, "engine ode");
     session_do(p, "player 1.9 90");
-    himc_performance_describe(p, listen, info);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, listen, info);
     TEST_ASSERT_NOT_NULL(strstr(info, "engine ode"));
     TEST_ASSERT_EQUAL_INT(HIMC_ENGINE_ODE, himc_character_engine(p->body->character));
     session_do(p, "reset");

@@ -28,7 +28,7 @@
 /// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the left,
 /// 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
 /// its noise strong.
-#define LISTENER "listener 2.2 0.2 1.3"
+#define LISTENER "listener 2.2 0.4 1.3"
 
 enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
 

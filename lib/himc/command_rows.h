@@ -60,6 +60,8 @@ HIMC_COMMAND_ROW(
 HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
                  "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
                  "all; each seed is another player")
+HIMC_COMMAND_ROW(ALIVE, alive, PERFORMER, AT_SAMPLE, 0, "SWITCH",
+                 "1: head and trunk follow the music, the player breathes; 0: they rest")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
                  "1: the score begins again after its last whole beat")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
@@ -121,6 +123,9 @@ HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH",
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
+HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
+                 "answers with the state as commands that make it again, or writes it to a file, "
+                 "which is a score")
 HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "", "sets everything as when just made")
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
@@ -182,6 +187,8 @@ HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
                  "chooses how blows become sound: by the head, or by the patch around it in Pure "
                  "Data")
+HIMC_COMMAND_ROW(DRUM_DUMP, dump, DRUM, NOW, HIMC_WRITES_FILE, "[FILE]",
+                 "answers with the state as commands that make it again, or writes it to a file")
 HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes without a performer")
 
 #undef HIMC_ROW_STROKE

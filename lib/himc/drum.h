@@ -35,8 +35,10 @@ HIMC_RT himc_membrane *himc_drum_membrane(himc_drum *drum);
 
 /// Carries out a drum command now.
 bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error);
-/// One line about its state: size, tuning, modes, mallet, place. At most `size` bytes.
-void himc_drum_describe(const himc_drum *drum, char *text, size_t size);
+/// Calls `line` with one line about its state for a person (size, tuning, modes, mallet, place), or
+/// with a command for each setting.
+void himc_drum_describe(const himc_drum *drum, himc_description what,
+                        void (*line)(void *, const char *), void *user);
 
 /// Sample rate (Hz).
 HIMC_RT double himc_drum_rate(const himc_drum *drum);

@@ -192,8 +192,9 @@ typedef struct himc_performance_stats {
 HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *performance);
 
 /// Calls `line` with each of several lines about the state (mode, law, rates, drums, player,
-/// transport), for `info`.
-void himc_performance_describe(const himc_performance *performance,
+/// transport) for a person, or with the lines of a score that makes its settings, its drums and its
+/// score again.
+void himc_performance_describe(const himc_performance *performance, himc_description what,
                                void (*line)(void *, const char *), void *user);
 
 HIMC_END

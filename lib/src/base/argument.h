@@ -35,6 +35,21 @@ int himc_argument_choice(const himc_argument *argument, const himc_atom *atom);
 /// stay exactly as in the table: Pd's 2.2 is a little more than 2.2.
 double himc_argument_number(const himc_argument *argument, double number);
 
+/// The number in single precision. It goes through memory: GCC 12 leaves the rounding out where it packs
+/// two numbers into one vector (-O3).
+static inline double himc_argument_single(double number)
+{
+    volatile float single = (float)number;
+    return single;
+}
+
+/// A number that in single precision is the usual one is that, as it is in double precision: so a
+/// state that was sent as single numbers comes back as it was.
+static inline double himc_argument_usual(double number, double usual)
+{
+    return himc_argument_single(number) == himc_argument_single(usual) ? usual : number;
+}
+
 /// What would fit, for a person: "0 .. 1 m", "left right".
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size);
 

@@ -181,3 +181,63 @@ char *himc_file_load(const char *path, size_t most, size_t *size, himc_error *er
 {
     return himc_file_load_in(NULL, path, most, size, error);
 }
+
+typedef struct write_job {
+    himc_job job;
+    const char *command; ///< borrowed, static
+    char path[HIMC_PATH_SIZE];
+    himc_text_lines lines; ///< owned
+} write_job;
+
+static bool write_lines(himc_job *job, himc_error *error)
+{
+    write_job *j = (write_job *)job;
+    FILE *stream = himc_file_write(j->path, HIMC_FILE_REPLACE, error);
+    if (!stream)
+        return himc_error_prefix(error, "%s", j->command);
+    bool good = fwrite(j->lines.bytes, 1, j->lines.size, stream) == j->lines.size;
+    good = fclose(stream) == 0 && good;
+    return good || himc_error_set(error, "%s: %s: cannot be written: %s", j->command, j->path,
+                                  strerror(errno));
+}
+
+static himc_job_state lines_written(himc_job *job, himc_error *error)
+{
+    (void)job, (void)error;
+    return HIMC_JOB_DONE;
+}
+
+static void free_lines(himc_job *job)
+{
+    free(((write_job *)job)->lines.bytes);
+    free(job);
+}
+
+// an ending of its own, so that no other file is replaced by mistake
+static bool is_text_name(const char *command, const char *path, himc_error *error)
+{
+    size_t length = strlen(path);
+    if (himc_line_is_clean(path) && length > 4 && strcmp(path + length - 4, ".txt") == 0)
+        return true;
+    return himc_error_set(error, "%s: FILE: %.80s, allowed a name that ends with .txt", command,
+                          path);
+}
+
+himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
+                              himc_error *error)
+{
+    write_job *j = NULL;
+    if (lines->failed)
+        himc_error_set(error, "%s: out of memory", command);
+    else if (is_text_name(command, path, error) && !(j = calloc(1, sizeof *j)))
+        himc_error_set(error, "%s: out of memory", command);
+    if (!j) {
+        free(lines->bytes);
+        return NULL;
+    }
+    j->job = (himc_job){write_lines, lines_written, free_lines};
+    j->command = command;
+    j->lines = *lines;
+    snprintf(j->path, sizeof j->path, "%s", path);
+    return &j->job;
+}

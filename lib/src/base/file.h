@@ -2,7 +2,8 @@
 #ifndef HIMC_FILE_H
 #define HIMC_FILE_H
 
-#include "himc/base.h"
+#include "base/job.h"
+#include "base/text.h"
 
 #include <stdio.h>
 
@@ -19,6 +20,11 @@ typedef enum himc_file_write_mode {
 /// Opens a regular file, made if there is none, or /dev/null. NULL with one line if it cannot be
 /// written or is something else, which is then unchanged. Never waits. The caller closes it.
 FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *error);
+
+/// The job of writing lines, whose memory it takes over, into a file; `command` begins its error lines.
+/// NULL with the reason, also if `lines` have failed.
+himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
+                              himc_error *error);
 
 /// The whole of a regular file of at most `most` bytes, with a 0 after it. `size` (bytes, without
 /// that 0). NULL with one line. The caller frees it.

@@ -5,10 +5,13 @@
 /// single precision, in which Pure Data holds numbers.
 #include "base/text.h"
 
+#include "base/format.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct decimal {
     uint64_t digits;
@@ -128,4 +131,96 @@ void himc_text_shorten(char *out, size_t size, const char *word)
     int length = snprintf(out, size, "%s", word);
     if (length >= 0 && (size_t)length >= size && size > 4)
         snprintf(out + size - 4, 4, "...");
+}
+
+himc_state_line himc_state_begin(const char *name)
+{
+    himc_state_line line;
+    line.used = himc_format(line.text, sizeof line.text, "%s", name);
+    return line;
+}
+
+static void add_byte(himc_state_line *line, char byte)
+{
+    if (line->used < sizeof line->text - 1)
+        line->text[line->used++] = byte;
+    line->text[line->used] = '\0';
+}
+
+void himc_state_word(himc_state_line *line, const char *word)
+{
+    add_byte(line, ' ');
+    for (; *word; word++) {
+        if (strchr(" \t;,\\$", *word))
+            add_byte(line, '\\');
+        add_byte(line, *word);
+    }
+}
+
+static void add_number(himc_state_line *line, double number)
+{
+    static const char *const format[] = {"%.6g", "%.7g", "%.8g", "%.9g"};
+    char text[32];
+    double back = 0;
+    for (int i = 0; i < 4; i++) {
+        himc_format(text, sizeof text, format[i], (double)(float)number);
+        if (himc_text_number(text, &back) && (float)back == (float)number)
+            break;
+    }
+    himc_state_word(line, text);
+}
+
+void himc_state_numbers(himc_state_line *line, int count, const double *numbers)
+{
+    for (int i = 0; i < count; i++)
+        add_number(line, numbers[i]);
+}
+
+void himc_state_end(const himc_state_line *line, const himc_line_sink *to)
+{
+    to->line(to->user, line->text);
+}
+
+void himc_state_tell(const himc_line_sink *to, const char *name, const char *word, int count,
+                     const double *numbers)
+{
+    himc_state_line line = himc_state_begin(name);
+    if (word)
+        himc_state_word(&line, word);
+    himc_state_numbers(&line, count, numbers);
+    himc_state_end(&line, to);
+}
+
+bool himc_text_reserve(himc_text_lines *text, size_t size)
+{
+    if (text->size + size + 1 <= text->room)
+        return true;
+    size_t room = 2 * text->room + size + 1;
+    char *more = realloc(text->bytes, room);
+    if (!more)
+        return false;
+    text->bytes = more;
+    text->bytes[text->size] = '\0';
+    text->room = room;
+    return true;
+}
+
+void himc_text_clear(himc_text_lines *text)
+{
+    text->size = 0;
+    if (text->bytes)
+        text->bytes[0] = '\0';
+}
+
+void himc_text_add(void *object, const char *line)
+{
+    himc_text_lines *text = object;
+    size_t length = strlen(line);
+    if (!himc_text_reserve(text, length + 2)) {
+        text->failed = true;
+        return;
+    }
+    memcpy(text->bytes + text->size, line, length);
+    memcpy(text->bytes + text->size + length, ";\n", 3);
+    text->size += length + 2;
 }

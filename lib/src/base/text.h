@@ -2,6 +2,7 @@
 #ifndef HIMC_TEXT_H
 #define HIMC_TEXT_H
 
+#include "base/line.h"
 #include "himc/command.h"
 
 /// True if the whole `word` is a decimal number (".5", "-3", "1e-3"); "nan", "inf" and "0x1" are
@@ -22,6 +23,36 @@ typedef struct himc_text_statement {
 /// Reads the words up to the next `;` or the end. Advances `text` past it and `line` by the
 /// newlines in it. False if only white space is left.
 bool himc_text_next(const char **text, int *line, himc_text_statement *statement);
+
+/// A command that is told: its words and numbers, as himc_command_parse_text reads them.
+typedef struct himc_state_line {
+    char text[2 * HIMC_PATH_SIZE];
+    size_t used;
+} himc_state_line;
+
+himc_state_line himc_state_begin(const char *name);
+/// A word; what has a meaning in Pure Data's text is quoted.
+void himc_state_word(himc_state_line *line, const char *word);
+/// Numbers, as short as gives the same in single precision.
+void himc_state_numbers(himc_state_line *line, int count, const double *numbers);
+void himc_state_end(const himc_state_line *line, const himc_line_sink *to);
+/// A line of `name`, perhaps a word (or NULL), and numbers.
+void himc_state_tell(const himc_line_sink *to, const char *name, const char *word, int count,
+                     const double *numbers);
+
+/// Text that grows by lines. Zero at first; `bytes` is owned, NULL without lines or memory.
+typedef struct himc_text_lines {
+    char *bytes;
+    size_t size, room;
+    bool failed; ///< there was no memory
+} himc_text_lines;
+
+/// Room for `size` bytes more; false without memory.
+bool himc_text_reserve(himc_text_lines *lines, size_t size);
+/// Forgets the lines; keeps the memory.
+void himc_text_clear(himc_text_lines *lines);
+/// Adds a line and ";\n"; `lines` is a himc_text_lines.
+void himc_text_add(void *lines, const char *line);
 
 /// Copies a word for an error message into `out`; of a long word only the beginning.
 void himc_text_shorten(char *out, size_t size, const char *word);

@@ -181,9 +181,11 @@ static double blend_grips(double german, double french, double share)
 
 static himc_quat trunk_of(const himc_trunk_posture *trunk_posture)
 {
-    return himc_quat_mul(
+    double side = trunk_posture->value[HIMC_TRUNK_POSTURE_SIDE];
+    himc_quat q = himc_quat_mul(
         himc_quat_exp(himc_vec3_make(0, 0, trunk_posture->value[HIMC_TRUNK_POSTURE_TURN])),
         himc_quat_exp(himc_vec3_make(0, trunk_posture->value[HIMC_TRUNK_POSTURE_LEAN], 0)));
+    return side != 0 ? himc_quat_mul(q, himc_quat_exp(himc_vec3_make(side, 0, 0))) : q;
 }
 
 static arm arm_of(const himc_posture *posture, himc_hand hand)
@@ -276,11 +278,25 @@ static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 
     return missing;
 }
 
+// neck and head share the look
+static void look(const himc_posture *posture, himc_pose *pose)
+{
+    const double *value = posture->trunk_posture.value;
+    double left = value[HIMC_TRUNK_POSTURE_LOOK_LEFT], down = value[HIMC_TRUNK_POSTURE_LOOK_DOWN];
+    himc_quat half = himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, 0.5 * left)),
+                                   himc_quat_exp(himc_vec3_make(0, 0.5 * down, 0)));
+    if (left == 0 && down == 0)
+        return;
+    pose->joint[HIMC_NECK - 1] = himc_quat_mul(half, pose->joint[HIMC_NECK - 1]);
+    pose->joint[HIMC_HEAD - 1] = himc_quat_mul(half, pose->joint[HIMC_HEAD - 1]);
+}
+
 double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],
                        himc_pose *pose)
 {
     *pose = posture->rest;
     pose->joint[HIMC_TRUNK - 1] = trunk_of(&posture->trunk_posture);
+    look(posture, pose);
     double left = arm_joints(posture, HIMC_LEFT, tip[HIMC_LEFT], pose);
     double right = arm_joints(posture, HIMC_RIGHT, tip[HIMC_RIGHT], pose);
     return fmax(left, right);

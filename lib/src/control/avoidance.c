@@ -1,16 +1,15 @@
-/// avoidance.c: the elbows swing out and the wrists rise where arms would come too near.
+/// avoidance.c: the elbows swing out, the wrists rise and turn aside where arms come too near.
 ///
 /// With the tip held, an arm still turns about the line from shoulder to wrist, and hand and stick
-/// turn about the tip. These four angles g of both arms descend the potential
+/// turn about the tip, up and aside. These six angles g of both arms descend the potential
 ///     F(g) = sum over pairs (D - gap)+^2 / (2 D)
 /// of the gaps below D, summed over the postures foreseen: dg/dt = -K dF/dg - g / T. So they are
 /// constant zero while nothing is nearer than D, and the posture has the same bits as without. The
-/// body follows the goal by the third-order motion of the trunk (posture.h), so accelerations have no
-/// jumps. The tips' errors do not change: all of this is the null-space target. The sticks
+/// body follows by a motion of third order (posture.h), so accelerations have no jumps. The tips' errors do not change: all of this is the null-space target. The sticks
 /// themselves are kept apart by the plan.
 ///
-/// Which of two crossed arms passes above is decided once: the one that reaches further to the
-/// other's side, and it stays above until they are uncrossed.
+/// Of two crossed arms the one that is above when they first cross stays above until they are
+/// uncrossed: the gaps of crossed parts are counted along the vertical, in that order.
 #include "control/avoidance.h"
 
 #include <math.h>
@@ -27,7 +26,7 @@
 #define PROBE 1e-3      // of the gradient (rad)
 #define LONGEST_STEP 0.012 // (s); chosen: K dt stays below 1 / |F''|
 #define FASTEST 8.0        // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
-// limits of the four angles; chosen: what shoulders and wrists allow
+// limits of the three angles of an arm; chosen: what shoulders and wrists allow
 static const double least[HIMC_AVOIDANCE_PARTS / HIMC_HANDS] = {-0.5, -0.4, -0.6},
                                                  most[HIMC_AVOIDANCE_PARTS / HIMC_HANDS] = {
                                                      1.5, 1.0, 1.0};

@@ -46,6 +46,7 @@ static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc
     drum->level = drum->gain = drum->fader = 1;
     drum->walls = HIMC_WALLS_USUAL;
     drum->membrane = membrane;
+    drum->usual = *himc_membrane_head(membrane);
     himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
     drum->place = *place;
     drum->rate = himc_membrane_rate(membrane);
@@ -93,6 +94,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
         himc_membrane_watch(drum->membrane, form->head.watch_x, form->head.watch_y);
         himc_drum_enclose(drum, &form->walls);
         himc_drum_listen(drum, &form->listener);
+        drum->usual = form->usual;
         drum->external_sound = form->external_sound;
     }
     return drum;
@@ -129,6 +131,11 @@ void himc_drum_rest(himc_drum *drum)
 bool himc_drum_is_placed(const himc_drum *drum)
 {
     return drum->placed;
+}
+
+double himc_drum_usual_radius(const himc_drum *drum)
+{
+    return drum->usual.radius;
 }
 
 void himc_drum_fade(himc_drum *drum, double factor)

@@ -2,7 +2,11 @@
 /// drum. Each makes the new state aside, has it checked, and only then takes it.
 #include "drum/drum_state.h"
 
+#include "base/argument.h"
+#include "base/format.h"
+#include "base/text.h"
 #include "head/air.h"
+#include "head/grid.h"
 #include "himc/vec.h"
 
 #include <math.h>
@@ -42,6 +46,7 @@ static const himc_mallet_head presets[] = {
         {.stiffness = 3e8, .exponent = 1.5, .mass = 0.016, .radius = 0.008, .relaxation = 5e-6},
 };
 
+#define OWN_MALLET "own"
 #define OWN_RADIUS 0.0175 // (m) of a mallet given by numbers; chosen: a usual felt's
 
 void himc_drum_take_mallet(himc_drum *drum, drum_mallet_preset preset)
@@ -55,6 +60,13 @@ static double number(const himc_command *c, int index)
     return c->atom[index].number;
 }
 
+// What a command computes is kept in single precision, as what it is given: so another can say it. The
+// number as the value of that argument.
+static double as_said(const char *argument, double value)
+{
+    return himc_argument_number(himc_argument_find(argument, NULL), value);
+}
+
 static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
 {
     if (!himc_membrane_set_head(drum->membrane, head, error))
@@ -66,11 +78,29 @@ static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
     return true;
 }
 
+// the head that a drum of this shape has at first
+static himc_head usual_head(const himc_drum *drum)
+{
+    const himc_shape *shape = himc_membrane_shape(drum->membrane);
+    himc_head head = drum->usual;
+    if (shape->kind == HIMC_RECTANGLE)
+        head.radius = 0.5 * hypot(shape->length, shape->width);
+    if (shape->kind == HIMC_GRID) {
+        head.radius = shape->grid->radius;
+        head.tension = shape->grid->tension;
+        head.density = shape->grid->density;
+    }
+    return head;
+}
+
 // one number of the head
 static bool set_field(himc_drum *drum, const himc_command *c, size_t field, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane);
-    memcpy((char *)&head + field, &c->atom[0].number, sizeof(double));
+    himc_head head = *himc_membrane_head(drum->membrane), usual = usual_head(drum);
+    double value;
+    memcpy(&value, (char *)&usual + field, sizeof value);
+    value = himc_argument_usual(number(c, 0), value);
+    memcpy((char *)&head + field, &value, sizeof value);
     return set_head(drum, &head, error);
 }
 
@@ -111,7 +141,7 @@ static bool do_uniformity(himc_drum *drum, const himc_command *c, himc_error *er
 {
     himc_head head = *himc_membrane_head(drum->membrane);
     bool round = himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE;
-    head.uniformity = number(c, 0);
+    head.uniformity = himc_argument_usual(number(c, 0), drum->usual.uniformity);
     if (c->count == 2)
         head.uniformity_seed = (int)number(c, 1);
     if (head.uniformity < 1 && !round)
@@ -132,8 +162,11 @@ static bool do_decay(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     enum { T60, BOTH };
     himc_head head = *himc_membrane_head(drum->membrane);
-    head.decay_constant = c->form == T60 ? log(1000) / number(c, 0) : number(c, 0);
+    head.decay_constant =
+        c->form == T60 ? as_said("SIGMA0", log(1000) / number(c, 0)) : number(c, 0);
     head.decay_square = c->form == BOTH ? number(c, 1) : 0;
+    head.decay_constant = himc_argument_usual(head.decay_constant, drum->usual.decay_constant);
+    head.decay_square = himc_argument_usual(head.decay_square, drum->usual.decay_square);
     return set_head(drum, &head, error);
 }
 
@@ -146,7 +179,7 @@ static bool do_tune(himc_drum *drum, const himc_command *c, himc_error *error)
     if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
                           himc_membrane_principal(drum->membrane, &highest), "Hz", error))
         return false;
-    head.tension = himc_membrane_tension_for(drum->membrane, &head, hz);
+    head.tension = as_said("TENSION", himc_membrane_tension_for(drum->membrane, &head, hz));
     return set_head(drum, &head, error);
 }
 
@@ -159,7 +192,7 @@ static bool do_mallet(himc_drum *drum, const himc_command *c, himc_error *error)
                                           .exponent = number(c, 1),
                                           .mass = number(c, 2),
                                           .radius = OWN_RADIUS};
-        drum->mallet_name = (himc_word){"own"};
+        drum->mallet_name = (himc_word){OWN_MALLET};
     } else {
         himc_drum_take_mallet(drum, (drum_mallet_preset)c->choice[0]);
     }
@@ -191,8 +224,9 @@ static himc_pickup read_pickup(const himc_command *c, int first, himc_pickup pic
     enum { AIR, POINT };
     pickup.kind = c->form == AIR ? HIMC_PICKUP_AIR : HIMC_PICKUP_POINT;
     if (c->form == AIR) {
+        himc_pickup usual = himc_pickup_default();
         pickup.azimuth = number(c, first + 1);
-        pickup.elevation = number(c, first + 2);
+        pickup.elevation = himc_argument_usual(number(c, first + 2), usual.elevation);
         pickup.distance = number(c, first + 3);
     } else {
         pickup.x = number(c, first);
@@ -229,7 +263,7 @@ static bool do_pickups(himc_drum *drum, const himc_command *c, himc_error *error
         all[i] = all[i - 1];
         all[i].kind = HIMC_PICKUP_AIR;
         all[i].distance = fmax(all[i].distance, himc_pickup_default().distance);
-        all[i].azimuth = remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI);
+        all[i].azimuth = himc_argument_single(remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI));
     }
     return himc_membrane_set_pickups(drum->membrane, all, wanted, error);
 }
@@ -293,6 +327,10 @@ static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
     himc_shape shape = {.kind = HIMC_CIRCLE};
     if (c->form == FROM_FILE)
         return load_shape(drum, c->atom[0].symbol, error);
+    // those of a file or of a rectangle were not said
+    head.radius = himc_argument_usual(as_said("RADIUS", head.radius), drum->usual.radius);
+    head.tension = himc_argument_usual(as_said("TENSION", head.tension), drum->usual.tension);
+    head.density = himc_argument_usual(as_said("DENSITY", head.density), drum->usual.density);
     if (c->form == CIRCLE) {
         head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
         return replace_shape(drum, &shape, &head, error);
@@ -328,6 +366,12 @@ static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *err
     return true;
 }
 
+// without a file the host answers, with himc_drum_describe
+static bool do_dump(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return c->count == 0 || himc_job_carry_out(himc_drum_dump_job(drum, c, error), error);
+}
+
 static bool do_strike(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     return himc_drum_strike_at(drum, 0, number(c, 0), number(c, 1), number(c, 2), error);
@@ -350,12 +394,13 @@ bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error 
            actions[checked.id](drum, &checked, error);
 }
 
-void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
+static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
 {
+    char text[512];
     const himc_head *head = himc_membrane_head(drum->membrane);
     const himc_head_frame *p = &drum->place;
     double principal = himc_membrane_principal(drum->membrane, head);
-    snprintf(text, size,
+    snprintf(text, sizeof text,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), uniformity %.3g, seed %d, "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
@@ -364,4 +409,102 @@ void himc_drum_describe(const himc_drum *drum, char *text, size_t size)
              head->uniformity, head->uniformity_seed, drum->mallet_name.text,
              himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, p->center.x,
              p->center.y, p->center.z);
+    to->line(to->user, text);
+}
+
+// A state is told in an order in which each line is allowed whatever the drum was before: first the
+// outline, a kettle of any size, the size; what depends on them after.
+
+static void dump_outline(const himc_drum *drum, const himc_line_sink *to)
+{
+    const himc_shape *shape = himc_membrane_shape(drum->membrane);
+    himc_state_line line = himc_state_begin("shape");
+    if (shape->kind == HIMC_CIRCLE)
+        himc_state_word(&line, "circle");
+    if (shape->kind == HIMC_RECTANGLE)
+        himc_state_word(&line, "rectangle");
+    if (shape->kind == HIMC_RECTANGLE)
+        himc_state_numbers(&line, 2, (double[]){shape->length, shape->width});
+    if (shape->kind == HIMC_GRID)
+        himc_state_word(&line, shape->grid->path);
+    himc_state_end(&line, to);
+}
+
+static void dump_head(const himc_drum *drum, const himc_line_sink *to)
+{
+    const himc_head *head = himc_membrane_head(drum->membrane);
+    himc_state_line seeded = himc_state_begin("uniformity"), modes = himc_state_begin("modes");
+    himc_state_tell(to, "kettle", "usual", 0, NULL);
+    himc_state_tell(to, "radius", NULL, 1, (double[]){head->radius});
+    himc_state_tell(to, "density", NULL, 1, (double[]){head->density});
+    himc_state_tell(to, "tension", NULL, 1, (double[]){head->tension});
+    if (head->modes == HIMC_MODES_AUTO)
+        himc_state_word(&modes, "auto");
+    else
+        himc_state_numbers(&modes, 1, (double[]){head->modes});
+    himc_state_end(&modes, to);
+    himc_state_tell(to, "decay", NULL, 2, (double[]){head->decay_constant, head->decay_square});
+    himc_state_tell(to, "air", NULL, 1, (double[]){head->air ? 1.0 : 0.0});
+    // without air the head may have grown too large for its kettle, which is then not heard
+    if (head->kettle > 0 && himc_air_check(head->kettle, head->radius, NULL))
+        himc_state_tell(to, "kettle", NULL, 1, (double[]){head->kettle});
+    himc_state_tell(to, "glide", NULL, 1, (double[]){head->glide});
+    himc_state_tell(to, "damp", NULL, 1, (double[]){head->damp});
+    if (himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE) {
+        himc_state_numbers(&seeded, 1, &head->uniformity);
+        if (head->uniformity_seed != drum->usual.uniformity_seed)
+            himc_state_numbers(&seeded, 1, (double[]){head->uniformity_seed});
+        himc_state_end(&seeded, to);
+    }
+}
+
+static void dump_pickups(const himc_drum *drum, const himc_line_sink *to)
+{
+    int count;
+    const himc_pickup *all = himc_membrane_pickups(drum->membrane, &count);
+    himc_state_tell(to, "pickups", NULL, 1, (double[]){(double)count});
+    for (int i = 0; i < count; i++) {
+        himc_state_line line = himc_state_begin("channel");
+        himc_state_numbers(&line, 1, (double[]){i + 1});
+        if (all[i].kind == HIMC_PICKUP_AIR) {
+            himc_state_word(&line, "air");
+            himc_state_numbers(&line, 3,
+                               (double[]){all[i].azimuth, all[i].elevation, all[i].distance});
+        } else {
+            himc_state_numbers(&line, 2, (double[]){all[i].x, all[i].y});
+        }
+        himc_state_end(&line, to);
+    }
+}
+
+static void dump_rest(const himc_drum *drum, const himc_line_sink *to)
+{
+    const himc_mallet_head *m = &drum->mallet;
+    if (strcmp(drum->mallet_name.text, OWN_MALLET) == 0)
+        himc_state_tell(to, "mallet", NULL, 3, (double[]){m->stiffness, m->exponent, m->mass});
+    else
+        himc_state_tell(to, "mallet", drum->mallet_name.text, 0, NULL);
+    himc_state_tell(to, "noise", NULL, 1, (double[]){drum->noise.amount});
+    if (drum->placed)
+        himc_state_tell(to, "place", NULL, 4,
+                        (double[]){drum->place.center.x, drum->place.center.y, drum->place.center.z,
+                                   drum->place.tilt});
+    himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(drum->gain)});
+    himc_state_tell(to, "mute", NULL, 1, (double[]){drum->mute ? 1.0 : 0.0});
+    himc_state_tell(to, "technique",
+                    himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, 0, 0);
+}
+
+void himc_drum_describe(const himc_drum *drum, himc_description what,
+                        void (*line)(void *, const char *), void *user)
+{
+    himc_line_sink to = {line, user};
+    if (what == HIMC_DESCRIBE_INFO) {
+        describe_for_person(drum, &to);
+        return;
+    }
+    dump_outline(drum, &to);
+    dump_head(drum, &to);
+    dump_pickups(drum, &to);
+    dump_rest(drum, &to);
 }

@@ -11,6 +11,7 @@
 /// that of the last change at or before the last beat asked for.
 #include "drum/drum_state.h"
 
+#include "base/file.h"
 #include "head/statistical.h"
 
 #include <math.h>
@@ -25,6 +26,7 @@
 himc_drum_form himc_drum_form_of(const himc_drum *drum)
 {
     himc_drum_form form = {.head = himc_membrane_form_of(drum->membrane),
+                           .usual = drum->usual,
                            .place = drum->place,
                            .listener = drum->listener,
                            .walls = drum->walls,
@@ -78,6 +80,8 @@ bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command)
     int readouts = pickups + 1 + (heard ? HIMC_RAYS : 0); // and the watched point
     if (command->id == HIMC_COMMAND_PICKUPS)
         readouts = 1 + (int)fmax(pickups, command->atom[0].number);
+    if (command->id == HIMC_COMMAND_DRUM_DUMP)
+        return command->count > 0;
     if (command->id == HIMC_COMMAND_PLACE)
         return heard && himc_drum_listening_takes_long(drum);
     return command->id == HIMC_COMMAND_SHAPE || command->id == HIMC_COMMAND_MODES ||
@@ -152,8 +156,17 @@ static drum_job *job_new(himc_drum *drum, const char *what, himc_error *error)
     return j;
 }
 
+himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command, himc_error *error)
+{
+    himc_text_lines lines = {0};
+    himc_drum_describe(drum, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
+    return himc_file_write_job("dump", command->atom[0].symbol, &lines, error);
+}
+
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error)
 {
+    if (command->id == HIMC_COMMAND_DRUM_DUMP)
+        return himc_drum_dump_job(drum, command, error);
     drum_job *j = job_new(drum, himc_command_table((int)command->id)->name, error);
     if (!j)
         return NULL;

@@ -33,6 +33,8 @@ HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
 
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
+/// The radius that it had when it was made (m).
+HIMC_RT double himc_drum_usual_radius(const himc_drum *drum);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
 bool himc_drum_check_place(himc_vec3 center, himc_error *error);
 /// Brings the head to rest, without a click, and drops the drum's own mallets and waiting strikes.
@@ -55,6 +57,7 @@ HIMC_RT bool himc_drum_has_external_sound(const himc_drum *drum);
 typedef struct himc_drum_form {
     char name[HIMC_NAME_SIZE];
     himc_membrane_form head;
+    himc_head usual; ///< when the drum was made
     himc_head_frame place;
     himc_listener listener;
     himc_walls walls;
@@ -102,6 +105,9 @@ void himc_drum_heads_free(himc_drum_heads *heads);
 HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command);
 /// Such a command as a job; the drum must outlive it. NULL without memory.
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error);
+
+/// The command `dump FILE` as a job. NULL without memory.
+himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command, himc_error *error);
 
 /// True if himc_drum_listen would take longer than an audio block can wait.
 HIMC_RT bool himc_drum_listening_takes_long(const himc_drum *drum);

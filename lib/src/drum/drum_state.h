@@ -39,6 +39,7 @@ struct himc_drum {
     int references;
     himc_membrane *membrane;
     himc_mallet_head mallet;
+    himc_head usual;       ///< its head when it was made
     himc_word mallet_name; ///< "medium", or "own" when given by numbers
     himc_head_frame place;
     bool placed; ///< by the command `place`

@@ -18,10 +18,10 @@ himc_listener himc_listener_at(himc_vec3 place);
 /// True if both are off, or in one place and facing one way.
 bool himc_listener_equal(const himc_listener *a, const himc_listener *b);
 
-/// Sound of the ears per sound of a pickup at the same distance: a sound of 1.0 is 95 Pa.
+/// Sound of the ears per sound of a pickup at the same distance: a sound of 1.0 is 100 Pa.
 /// Chosen: listeners are 1.5 to 2.5 m from the drums, pickups 1 m, and the strongest stroke on any
 /// of four timpani around a performer stays below 1 at both.
-#define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 95)
+#define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 100)
 
 enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
 

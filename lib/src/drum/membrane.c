@@ -11,6 +11,7 @@
 /// aside, by another thread, and exchanged (himc_membrane_exchange). After any change of head, rate
 /// or pickups, oscillators and readouts are computed anew from the same tables; the bank keeps the
 /// modes' energy and phase, and a declick keeps the sound continuous.
+#include "base/argument.h"
 #include "drum/membrane_form.h"
 #include "drum/membrane_state.h"
 
@@ -26,9 +27,11 @@
 // arrays of a core: eleven of its own, those of each output, each patch and each strike point
 #define ARRAYS (11 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
-#define RIM_ROUNDING 1e-15    // relative; so a point moved to the rim is not outside it
-#define BISECTIONS 60         // halvings of ln T: exact to the last bit of a double
-#define SLACK 1e-6            // rise per tension; chosen: 0.001 cent
+// relative; so a point moved to the rim is not outside it in single precision, in which a command
+// can say it
+#define RIM_ROUNDING 1.2e-7
+#define BISECTIONS 60 // halvings of ln T: exact to the last bit of a double
+#define SLACK 1e-6    // rise per tension; chosen: 0.001 cent
 // Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as it
 // should whatever its angle w t in one, unless that is near pi, where its velocity would be met at
 // the same phase again and again.
@@ -239,8 +242,8 @@ static void keep_pickups_on_head(himc_membrane *m)
         double r = hypot(p->x, p->y);
         if (p->kind != HIMC_PICKUP_POINT || r <= m->head.radius)
             continue;
-        p->x *= (1 - RIM_ROUNDING) * m->head.radius / r;
-        p->y *= (1 - RIM_ROUNDING) * m->head.radius / r;
+        p->x = himc_argument_single((1 - RIM_ROUNDING) * m->head.radius / r * p->x);
+        p->y = himc_argument_single((1 - RIM_ROUNDING) * m->head.radius / r * p->y);
     }
 }
 

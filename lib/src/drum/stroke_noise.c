@@ -33,10 +33,10 @@
 #define RISE 0.002        // (s) chosen: as the recordings rise
 #define TOP 0.45          // of the sample rate; a band above it is silent
 #define SILENT 1e-14      // sum of energies; chosen: -140 dB
-#define PLACE 50      // seeds a metre; chosen: a mallet covers as much, blows within it are alike
-#define COHERENCE 0.5 // of the two rows; chosen: shell and stand are larger than a head
-#define CHUNK 32      // samples at a time, so that vectors do not wait for single numbers
-#define MEASURED 0.04 // (s) of a filter's response; chosen: the lowest band's is over
+#define PLACE 50       // seeds a metre; chosen: a mallet covers as much, blows within it are alike
+#define COHERENCE 0.65 // of the two rows; chosen: shell and stand are larger than a head
+#define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
+#define MEASURED 0.04  // (s) of a filter's response; chosen: the lowest band's is over
 
 // q_b, fitted once on numbers of two recordings, hall included: with the head's own sound an accent
 // f of the medium mallet, at C2 on 32 inches and at G2 on 29, has about -13 -18 -25 -38 dB in its

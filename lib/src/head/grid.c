@@ -463,6 +463,15 @@ static himc_grid *make(parts *p, himc_error *error)
     return NULL;
 }
 
+static bool keep_path(himc_grid *grid, const char *path)
+{
+    size_t size = strlen(path) + 1;
+    grid->path = malloc(size);
+    if (grid->path)
+        memcpy(grid->path, path, size);
+    return grid->path;
+}
+
 himc_grid *himc_grid_load(const char *path, himc_error *error)
 {
     parts p = {0};
@@ -474,6 +483,11 @@ himc_grid *himc_grid_load(const char *path, himc_error *error)
         grid = make(&p, error);
         if (!grid)
             himc_error_prefix(error, "%s", path);
+        else if (!keep_path(grid, path)) {
+            himc_error_set(error, "%s: out of memory", path);
+            himc_grid_release(grid);
+            grid = NULL;
+        }
     }
     free(r.text);
     free_parts(&p);

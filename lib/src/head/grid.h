@@ -22,6 +22,7 @@
 typedef struct himc_grid himc_grid;
 struct himc_grid {
     _Atomic int references;
+    char *path;              ///< of the file (owned)
     int places;              ///< that move
     int all;                 ///< with those that stand still
     int modes;               ///< in order of frequency

@@ -658,6 +658,7 @@ void himc_grid_release(himc_grid *grid)
 {
     if (!grid || --grid->references > 0)
         return;
+    free(grid->path);
     free(grid->x);
     free(grid->y);
     free(grid->area);

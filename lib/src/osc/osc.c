@@ -59,6 +59,7 @@ typedef struct osc_bucket {
 typedef struct osc_line {
     osc_address to;
     bool error; // else an information
+    bool paid;  // by a line before it
     char text[HIMC_OSC_LINE];
 } osc_line;
 
@@ -308,6 +309,7 @@ typedef struct sender {
     himc_osc *osc;
     const osc_address *address;
     bool error;
+    bool paid; // as the first line of this answer
 } sender;
 
 static void answer(void *object, const char *line)
@@ -319,6 +321,8 @@ static void answer(void *object, const char *line)
     r->kind = RECORD_LINE;
     r->line.to = *s->address;
     r->line.error = s->error;
+    r->line.paid = s->paid;
+    s->paid = true;
     snprintf(r->line.text, sizeof r->line.text, "%s", line);
     end(s->osc);
 }
@@ -326,7 +330,7 @@ static void answer(void *object, const char *line)
 static void refuse_to(himc_osc *osc, const osc_address *to, const char *error)
 {
     himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
-    answer(&(sender){osc, to, true}, error);
+    answer(&(sender){osc, to, true, false}, error);
 }
 
 // the loader has carried out a command, or refused it
@@ -388,8 +392,17 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
 {
     himc_error error = {""};
     const osc_request *request = &order->request;
-    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_INFO)
-        himc_performance_describe(performance, answer, &(sender){osc, &order->from, false});
+    sender from = {osc, &order->from, false, false};
+    himc_command_id id = request->command.id;
+    const himc_drum *drum = NULL;
+    if (id == HIMC_COMMAND_DRUM_DUMP)
+        drum = find_drum(performance, request->drum, &error);
+    if (id == HIMC_COMMAND_INFO)
+        himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
+    else if (id == HIMC_COMMAND_DUMP)
+        himc_performance_describe(performance, HIMC_DESCRIBE_STATE, answer, &from);
+    else if (drum)
+        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, answer, &from);
     else if (!carry_out(osc, performance, order, &error))
         refuse_to(osc, &order->from, error.text);
 }
@@ -442,8 +455,6 @@ himc_osc_counts himc_osc_count(const himc_osc *osc)
 
 static void send_line(himc_osc *osc, const osc_address *to, bool error, const char *text)
 {
-    if (!afford(&osc->answers, monotonic(osc), 1))
-        return;
     osc_packets *p = &osc->line;
     himc_osc_encode_begin(p, SMALL_PACKET, false, 0);
     himc_osc_encode_line(p, error, text);
@@ -454,9 +465,9 @@ static void send_line(himc_osc *osc, const osc_address *to, bool error, const ch
 static void refuse(himc_osc *osc, const osc_address *to, const char *line)
 {
     himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
-    if (to)
+    if (to && afford(&osc->answers, monotonic(osc), 1))
         send_line(osc, to, true, line);
-    else
+    else if (!to)
         himc_osc_tell(&osc->lines, "%s", line);
 }
 
@@ -517,7 +528,7 @@ static bool take_packet(himc_osc *osc)
     long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
     if (size < 0)
         return himc_osc_network_discard(&osc->network);
-    himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false});
+    himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false, false});
     return true;
 }
 
@@ -543,7 +554,10 @@ static void send_record(himc_osc *osc, const osc_record *r)
         counts = himc_osc_count(osc);
         himc_osc_deliver(&osc->subscriptions, &r->state, &counts, monotonic(osc));
         break;
-    case RECORD_LINE: send_line(osc, &r->line.to, r->line.error, r->line.text); break;
+    case RECORD_LINE:
+        if (r->line.paid || afford(&osc->answers, monotonic(osc), 1))
+            send_line(osc, &r->line.to, r->line.error, r->line.text);
+        break;
     case RECORD_CHANGE: subscribe(osc, &r->change); break;
     }
 }

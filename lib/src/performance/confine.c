@@ -19,7 +19,7 @@ bool himc_confine_command(himc_command *c, const char *folder, himc_error *error
     size_t used = used_storage(c), size = folder ? strlen(folder) + 1 : 0;
     int atom;
     bool names_file = himc_command_file(c, &atom) != HIMC_FILE_NONE;
-    if (row->marks & HIMC_WRITES_FILE || (names_file && !(row->marks & HIMC_IN_FOLDER)))
+    if (c->id == HIMC_COMMAND_RECORD || (names_file && !(row->marks & HIMC_IN_FOLDER)))
         return himc_error_set(error, "record, units and shapes from files: not over the network");
     if (!names_file)
         return true;

@@ -4,6 +4,7 @@
 /// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a queue until
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
+#include "base/argument.h"
 #include "base/format.h"
 #include "performance/performance_state.h"
 
@@ -68,6 +69,7 @@ static bool do_clear(himc_performance *p, const himc_command *c, himc_error *err
 {
     (void)c, (void)error;
     himc_planner_clear(p->motion->planner);
+    himc_text_clear(&p->written.score);
     himc_drums_drop_heads(&p->drums);
     himc_motion_replan(p->motion);
     return true;
@@ -124,6 +126,7 @@ static bool do_units(himc_performance *p, const himc_command *c, himc_error *err
         return carry_out(p, c, error);
     himc_motion_replan(p->motion);
     himc_planner_clear_units(p->motion->planner);
+    himc_text_clear(&p->written.units);
     return true;
 }
 
@@ -172,7 +175,8 @@ static bool do_damping(himc_performance *p, const himc_command *c, himc_error *e
 {
     performance_settings s = p->settings;
     (void)error;
-    s.control.damping = c->atom[0].number;
+    s.control.damping =
+        himc_argument_usual(c->atom[0].number, himc_controller_config_default().damping);
     himc_performance_adopt(p, &s);
     return true;
 }
@@ -208,9 +212,10 @@ static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *err
 static bool do_weights(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
+    const himc_controller_config usual = himc_controller_config_default();
     (void)error;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        s.control.weight[k] = c->atom[k].number;
+        s.control.weight[k] = himc_argument_usual(c->atom[k].number, usual.weight[k]);
     himc_performance_adopt(p, &s);
     return true;
 }
@@ -222,18 +227,6 @@ static bool do_law(himc_performance *p, const himc_command *c, himc_error *error
     s.control.law = (himc_law)c->choice[0];
     himc_performance_adopt(p, &s);
     return true;
-}
-
-// all joints: k_s is proportional to the square of the natural frequency, k_d to the frequency
-static void scale_frequencies(const himc_controller *controller, himc_controller_config *config,
-                              double factor)
-{
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_gain usual = himc_controller_usual_gain(controller, j);
-        config->gain[j].stiffness = himc_vec3_scale(usual.stiffness, factor * factor);
-        config->gain[j].damping = himc_vec3_scale(usual.damping, factor);
-        config->gain_set[j] = true;
-    }
 }
 
 static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
@@ -248,15 +241,19 @@ static bool do_gain(himc_performance *p, const himc_command *c, himc_error *erro
     }
     if (c->form == RESET) {
         memset(config->gain_set, 0, sizeof config->gain_set);
+        memset(s.gain, 0, sizeof s.gain);
     } else if (c->form == FREQUENCY) {
-        scale_frequencies(&p->body->controller, config, c->atom[1].number);
+        for (joint = 0; joint < HIMC_JOINTS; joint++) {
+            config->gain_set[joint] = true;
+            s.gain[joint] = (asked_gain){.frequency = c->atom[1].number};
+        }
     } else {
         if (!himc_body_find_joint(c->atom[0].symbol, "gain", &joint, error))
             return false;
-        config->gain[joint] =
-            himc_controller_gain(&p->body->controller, joint, c->atom[1].number, c->atom[2].number);
         config->gain_set[joint] = true;
+        s.gain[joint] = (asked_gain){c->atom[1].number, c->atom[2].number, 0};
     }
+    himc_settings_gains(&s, &p->body->controller);
     himc_performance_adopt(p, &s);
     return true;
 }
@@ -301,7 +298,9 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
     if (!physics && p->recording.file)
         return himc_error_set(error,
                               "rate task: %g: not while recording, allowed after record stop", hz);
-    *(physics ? &s.physics_rate : &s.task_rate) = hz;
+    const himc_performance_config *usual = &p->host.config;
+    *(physics ? &s.physics_rate : &s.task_rate) =
+        himc_argument_usual(hz, physics ? usual->physics_rate : usual->task_rate);
     himc_performance_adopt(p, &s);
     himc_performance_restart_steps(p);
     return true;
@@ -354,11 +353,21 @@ static bool do_human(himc_performance *p, const himc_command *c, himc_error *err
     return true;
 }
 
+static bool do_alive(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    (void)error;
+    s.alive = c->atom[0].number != 0;
+    himc_performance_adopt(p, &s);
+    return true;
+}
+
 static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
-    s.skeleton.height = c->atom[0].number;
-    s.skeleton.mass = c->atom[1].number;
+    const himc_skeleton_config usual = himc_skeleton_default();
+    s.skeleton.height = himc_argument_usual(c->atom[0].number, usual.height);
+    s.skeleton.mass = himc_argument_usual(c->atom[1].number, usual.mass);
     s.skeleton.seat = s.skeleton.shoulders = 0; // not those measured from a take
     memset(s.skeleton.length, 0, sizeof s.skeleton.length);
     return himc_performance_rebuild(p, &s, error);
@@ -401,7 +410,7 @@ static himc_listener listener_of(const himc_command *c)
     himc_listener listener =
         himc_listener_at(himc_vec3_make(c->atom[0].number, c->atom[1].number, c->atom[2].number));
     if (c->count > 3)
-        listener.yaw = c->atom[3].number;
+        listener.yaw = himc_argument_usual(c->atom[3].number, listener.yaw);
     return listener;
 }
 
@@ -421,10 +430,12 @@ static himc_job *listener_job(himc_performance *p, const himc_command *c, himc_e
 
 static bool do_room(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    himc_walls walls = {c->atom[0].number, p->drums.walls.volume};
+    const himc_walls usual = HIMC_WALLS_USUAL;
+    himc_walls walls = {himc_argument_usual(c->atom[0].number, usual.seconds),
+                        p->drums.walls.volume};
     (void)error;
     if (c->count > 1)
-        walls.volume = c->atom[1].number;
+        walls.volume = himc_argument_usual(c->atom[1].number, usual.volume);
     himc_drums_enclose(&p->drums, &walls);
     return true;
 }
@@ -439,6 +450,12 @@ static bool do_mute(himc_performance *p, const himc_command *c, himc_error *erro
 static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return carry_out(p, c, error);
+}
+
+// without a file the host answers, with himc_performance_describe
+static bool do_dump(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return c->count == 0 || carry_out(p, c, error);
 }
 
 static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
@@ -493,6 +510,7 @@ static himc_job *job_of(void *receiver, const himc_command *c, himc_error *error
     enum { STOP };
     switch (c->id) {
     case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, error);
+    case HIMC_COMMAND_DUMP: return himc_performance_dump_job(p, c, error);
     case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
     case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
     case HIMC_COMMAND_LISTENER: return listener_job(p, c, error);

@@ -6,6 +6,8 @@
 /// source to another they cross-fade (posture_crossfade.h).
 #include "performance/performance_motion.h"
 
+#include "control/alive.h"
+
 #include "body/limits.h"
 #include "base/head_frame.h"
 #include "control/grip.h"
@@ -17,6 +19,7 @@
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
 #define TRUNK_FORESIGHT 1.2     // chosen: strokes further ahead do not turn the trunk (s)
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
+#define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
@@ -249,6 +252,21 @@ static himc_trunk_posture trunk_at(const performance_motion *m, double t)
                                        fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
 }
 
+// head, weight and breath; a take shows its own
+static void enliven(performance_motion *m, const performance_drums *drums, double t)
+{
+    himc_next_stroke next = {.in = INFINITY, .since = INFINITY};
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planned_stroke s = himc_motion_stroke(m, drums, (himc_hand)hand, t);
+        next.since = fmin(next.since, t - m->answered[hand]);
+        if (!s.any || s.time < t || s.time - t >= next.in)
+            continue;
+        next.in = s.time - t;
+        next.at = himc_head_frame_to_world(himc_drums_frame(drums, s.drum), s.x, s.y);
+    }
+    himc_alive_add(&m->posture, &next, t, &m->course.goal);
+}
+
 // keeps the planned tips of the next half second and the next strokes clear of the body
 static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
 {
@@ -282,6 +300,8 @@ static void set_course(performance_motion *m, const performance_settings *s,
         m->course.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
         m->course.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
     }
+    if (s->alive && !m->track)
+        enliven(m, drums, t);
     avoid(m, place, t);
     m->course.time = t;
 }
@@ -424,6 +444,23 @@ void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skelet
             posture->rest.joint[j] = captured->rest.joint[j];
 }
 
+// the trunk turned to the tips, elbows and wrists where nothing is near
+static void begin_clear(performance_motion *m, const performance_settings *s, double t)
+{
+    himc_foreseen f[HIMC_FORESEEN];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        f[0].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
+    f[0].trunk = himc_posture_trunk(f[0].tip, s->grip);
+    for (int k = 1; k < HIMC_FORESEEN; k++)
+        f[k] = f[0];
+    m->avoidance = (himc_avoidance){{0}, 0};
+    for (int i = 0; i < CLEARING_STEPS; i++)
+        himc_avoidance_update(&m->avoidance, &m->posture, f, AVOIDANCE_PERIOD);
+    m->course.goal = f[0].trunk;
+    himc_avoidance_apply(&m->avoidance, &m->course.goal);
+    m->course.from = m->course.goal;
+}
+
 void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {
@@ -432,12 +469,8 @@ void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
     himc_posture_crossfade_cancel(&m->crossfade);
     himc_motion_init_posture(&m->posture, skeleton, &s->captured, m->posture.level);
     himc_planner_set_body(m->planner);
-    if (m->course.time == 0) {
-        himc_vec3 tip[HIMC_HANDS];
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
-        m->course.from = m->course.goal = himc_posture_trunk(tip, s->grip);
-    }
+    if (m->course.time == 0)
+        begin_clear(m, s, t);
     fill_tick(m, s, &m->from, t);
     memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
     m->reference.posture = m->from.posture;

@@ -48,7 +48,7 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
            check_bounces(s, error);
 }
 
-bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
     if (!check_stroke(stroke, false, error) ||
@@ -69,6 +69,15 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
     plain.ornament = HIMC_PLAIN;
     return (rolls || himc_planner_add(p->motion->planner, &plain, drum.index, error)) &&
            himc_performance_add_ornament(p, stroke, drum.index, error);
+}
+
+bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+{
+    if (!himc_written_room(&p->written.score, "stroke", error) ||
+        !himc_performance_put_stroke(p, stroke, error))
+        return false;
+    himc_written_stroke(&p->written.score, stroke);
+    return true;
 }
 
 bool himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum,
@@ -261,10 +270,12 @@ static himc_job_state add_units(himc_job *job, himc_error *error)
     units_job *j = (units_job *)job;
     himc_performance *p = j->performance;
     const char *path = j->command.atom[0].symbol;
-    if (!himc_planner_add_units(p->motion->planner, j->unit, j->count, error)) {
+    if (!himc_written_room(&p->written.units, "units", error) ||
+        !himc_planner_add_units(p->motion->planner, j->unit, j->count, error)) {
         himc_error_prefix(error, "%s", path);
         return HIMC_JOB_FAILED;
     }
+    himc_written_units(&p->written.units, &j->command);
     himc_motion_replan(p->motion);
     himc_events_note(&p->events, "%s: %d motion units of %s", path, j->count,
                      himc_nuance_name((himc_nuance)j->command.choice[1]));

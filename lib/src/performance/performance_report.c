@@ -284,15 +284,28 @@ static void describe_strength(const himc_performance *p, reader to)
     }
 }
 
+// of a drum, to `user`, a reader
+static void describe_drum(void *user, const char *line)
+{
+    char text[640];
+    reader *to = user;
+    snprintf(text, sizeof text, "drum %s", line);
+    to->line(to->user, text);
+}
+
+static void describe_silent_drum(void *user, const char *line)
+{
+    char text[600];
+    snprintf(text, sizeof text, "%s (silent)", line);
+    describe_drum(user, text);
+}
+
 static void describe_drums(const himc_performance *p, reader to)
 {
-    char text[512], about[400];
     for (int i = 0; i < p->drums.count; i++) {
         const drum_slot *slot = &p->drums.slot[i];
-        himc_drum_describe(slot->drum, about, sizeof about);
-        snprintf(text, sizeof text, "drum %s%s", about,
-                 slot->source == DRUM_SILENT ? " (silent)" : "");
-        to.line(to.user, text);
+        himc_drum_describe(slot->drum, HIMC_DESCRIBE_INFO,
+                           slot->source == DRUM_SILENT ? describe_silent_drum : describe_drum, &to);
     }
 }
 
@@ -339,10 +352,14 @@ static void describe_peaks(const himc_performance *p, reader to)
     to.line(to.user, text);
 }
 
-void himc_performance_describe(const himc_performance *p, void (*line)(void *, const char *),
-                               void *user)
+void himc_performance_describe(const himc_performance *p, himc_description what,
+                               void (*line)(void *, const char *), void *user)
 {
     reader to = {line, user};
+    if (what == HIMC_DESCRIBE_STATE) {
+        himc_performance_dump(p, &(himc_line_sink){line, user});
+        return;
+    }
     describe_player(p, to);
     describe_control(p, to);
     describe_limits(p, to);

@@ -375,8 +375,10 @@ static himc_job_state begin_strokes(score_job *j, himc_error *error)
     himc_performance *p = j->performance;
     himc_planner *planner = p->motion->planner;
     himc_performance_notice_drums(p);
-    if (!j->queued)
+    if (!j->queued) {
         himc_planner_clear(planner);
+        himc_text_clear(&p->written.score);
+    }
     j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
     if (himc_planner_append_tempi(planner, j->score->tempi, j->score->tempo_count, j->from, error))
         return HIMC_JOB_DONE;
@@ -428,15 +430,19 @@ static himc_job_state install_changes(score_job *j)
 static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_error *error)
 {
     int drum;
+    himc_text_lines *written = &j->performance->written.score;
     stroke.beat += j->from;
-    if (!installed_drum(j, stroke.drum, &drum, error))
+    if (!himc_written_room(written, "score", error) ||
+        !installed_drum(j, stroke.drum, &drum, error))
         return false;
+    if (!ornament)
+        himc_written_stroke(written, &stroke);
     if (ornament)
         return himc_performance_add_ornament(j->performance, &stroke, drum, error);
     if (stroke.ornament >= HIMC_ROLL_SINGLE)
         return true;
     stroke.ornament = HIMC_PLAIN;
-    return himc_performance_add_stroke(j->performance, &stroke, error);
+    return himc_performance_put_stroke(j->performance, &stroke, error);
 }
 
 static himc_job_state add_strokes(score_job *j, himc_error *error)

@@ -14,16 +14,24 @@ typedef struct captured_player {
     himc_trunk_posture trunk; ///< mean of the trunk; valid if its joint is known
 } captured_player;
 
+/// The gain of a joint as it was asked for.
+typedef struct asked_gain {
+    double stiffness, damping; ///< (N m/rad, N m s/rad)
+    double frequency;          ///< instead, over the usual natural frequency; 0: not so
+} asked_gain;
+
 typedef struct performance_settings {
     double physics_rate, task_rate; ///< requested (Hz)
     himc_skeleton_config skeleton;
     double weight[HIMC_SEGMENTS]; ///< mass of each simulated segment over its assumed mass
     himc_controller_config control;
+    asked_gain gain[HIMC_JOINTS]; ///< where control.gain_set
     himc_engine engine;
     himc_limits_kind limits;
     himc_grip grip;
     bool servo; ///< strokes have one contact each, though they shall bounce
     himc_human human;
+    bool alive;     ///< head, weight and breath follow the music
     double latency; ///< of a hit, from its message to its contact; 0: as soon as it can (s)
     bool one_way;   ///< the head's vibration does not push back on the stick
     bool unbent;    ///< `id` follows a take's arms as captured
@@ -35,6 +43,9 @@ typedef struct performance_settings {
 
 /// The settings of a new performance with that configuration.
 performance_settings himc_settings_default(const himc_performance_config *config);
+
+/// Sets the gains of the joints as they were asked for, for the body of that controller.
+void himc_settings_gains(performance_settings *settings, const himc_controller *controller);
 
 /// True if the captured trunk is known; it replaces the natural one.
 static inline bool himc_settings_trunk_known(const performance_settings *settings)

@@ -46,6 +46,22 @@ performance_settings himc_settings_default(const himc_performance_config *config
     return s;
 }
 
+void himc_settings_gains(performance_settings *s, const himc_controller *controller)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const asked_gain *asked = &s->gain[j];
+        double factor = asked->frequency;
+        himc_gain usual = himc_controller_usual_gain(controller, j);
+        if (!s->control.gain_set[j])
+            continue;
+        // k_s is proportional to the square of the natural frequency, k_d to the frequency
+        s->control.gain[j] =
+            factor > 0 ? (himc_gain){himc_vec3_scale(usual.stiffness, factor * factor),
+                                     himc_vec3_scale(usual.damping, factor)}
+                       : himc_controller_gain(controller, j, asked->stiffness, asked->damping);
+    }
+}
+
 // the stool as these drums need it
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
@@ -58,6 +74,14 @@ static void fit_stool(performance_motion *motion, performance_body *body,
     }
     himc_body_seat(body, himc_posture_seat(&s->skeleton, lowest, highest));
     himc_motion_seat(motion, body->skeleton.root.z);
+}
+
+// what gains that were asked for are with this body
+static void renew_gains(himc_performance *p)
+{
+    performance_settings s = p->settings;
+    himc_settings_gains(&s, &p->body->controller);
+    himc_performance_adopt(p, &s);
 }
 
 // body and motion begin together, at the targets of `t`
@@ -99,6 +123,9 @@ static bool make_parts(made_parts *parts, const performance_settings *s, himc_er
 static void begin(himc_performance *p, const performance_settings *s, const made_parts *parts)
 {
     p->settings = *s;
+    p->written.take[0] = '\0';
+    himc_text_clear(&p->written.score);
+    himc_text_clear(&p->written.units);
     p->motion = parts->motion;
     p->body = parts->body;
     himc_statistics_clear(&p->statistics);
@@ -106,6 +133,12 @@ static void begin(himc_performance *p, const performance_settings *s, const made
     himc_contacts_clear(&p->contacts);
     himc_clock_restart(&p->clock);
     himc_performance_restart_steps(p);
+}
+
+static void free_written(performance_written *written)
+{
+    free(written->score.bytes);
+    free(written->units.bytes);
 }
 
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
@@ -119,7 +152,10 @@ himc_performance *himc_performance_make(const himc_performance_config *config, h
         return NULL;
     }
     performance_settings s = himc_settings_default(config);
-    if (!make_parts(&parts, &s, error)) {
+    if (!himc_written_room(&p->written.score, "performance", error) ||
+        !himc_written_room(&p->written.units, "performance", error) ||
+        !make_parts(&parts, &s, error)) {
+        free_written(&p->written);
         free(p);
         return NULL;
     }
@@ -138,6 +174,7 @@ void himc_performance_free(himc_performance *p)
     if (p->recording.file)
         himc_performance_write_recording(p, NULL);
     himc_performance_drop_recording(p);
+    free_written(&p->written);
     free_parts(&(made_parts){p->motion, p->body});
     free(p);
 }
@@ -183,6 +220,7 @@ void himc_performance_embody(himc_performance *p, const performance_settings *wa
     p->settings = s;
     fit_stool(p->motion, p->body, &p->drums, &s);
     put_together(p->motion, p->body, &s, step_time(p));
+    renew_gains(p);
     himc_performance_renew_limits(p);
 }
 
@@ -248,8 +286,10 @@ void himc_performance_notice_drums(himc_performance *p)
     for (int i = 0; i < p->drums.count; i++)
         if (noticed[i])
             himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
-    if (unseen)
+    if (unseen) {
         put_together(p->motion, p->body, &p->settings, 0);
+        renew_gains(p);
+    }
     himc_drums_join(&p->drums);
     himc_performance_renew_limits(p);
 }
@@ -383,6 +423,7 @@ void himc_performance_set_posture_regression(himc_performance *p,
 
 himc_track *himc_performance_drop_track(himc_performance *p)
 {
+    p->written.take[0] = '\0';
     himc_track *track = himc_motion_set_track(p->motion, NULL, NULL, step_time(p));
     himc_performance_renew_limits(p);
     if (p->motion->regression_of_take)

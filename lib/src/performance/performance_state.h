@@ -15,6 +15,8 @@
 #define HIMC_PERFORMANCE_STATE_H
 
 #include "base/job.h"
+#include "base/line.h"
+#include "base/text.h"
 #include "drum/drum_performer.h"
 #include "himc/mocap.h"
 #include "performance/performance_body.h"
@@ -39,6 +41,13 @@ typedef struct performance_recording {
     bool full;            ///< and the user was notified
 } performance_recording;
 
+/// What commands have written, for `dump`.
+typedef struct performance_written {
+    himc_text_lines score;     ///< strokes, ornaments and changes of heads
+    himc_text_lines units;     ///< the commands `units`
+    char take[HIMC_PATH_SIZE]; ///< the file of the take; "" without one
+} performance_written;
+
 struct himc_performance {
     himc_runner runner; ///< the first, for loader.c; a score's lines are carried out by it, too
     performance_host host;
@@ -51,6 +60,7 @@ struct himc_performance {
     performance_contacts contacts;
     performance_statistics statistics;
     performance_recording recording;
+    performance_written written;
     performance_events events;
 };
 
@@ -74,6 +84,21 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
                                       himc_error *error);
 himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
                                            himc_error *error);
+
+// performance_dump.c
+/// The state as the lines of a score.
+void himc_performance_dump(const himc_performance *p, const himc_line_sink *to);
+/// The command `dump FILE` as a job; NULL without memory.
+himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
+                                    himc_error *error);
+
+/// Room for one more line; false with the reason, which begins with `command`.
+bool himc_written_room(himc_text_lines *lines, const char *command, himc_error *error);
+/// A stroke as it is asked for, with its ornament.
+void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke);
+/// A change of a head in a score whose beat 0 is at beat `from`.
+void himc_written_change(himc_text_lines *lines, const himc_score_line *change, double from);
+void himc_written_units(himc_text_lines *lines, const himc_command *command);
 
 // performance_setup.c
 /// A performance that takes no commands yet; NULL with the reason.
@@ -120,6 +145,8 @@ himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *com
 himc_track *himc_performance_drop_track(himc_performance *p);
 
 // performance_play.c
+/// himc_performance_add_stroke, but nothing is written.
+bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many are
 /// left out. False if it is too long.
 bool himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum,

@@ -336,3 +336,14 @@ bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note)
 {
     return himc_planner_notes_next(&planner->notes, note);
 }
+
+const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count)
+{
+    *count = planner->score.tempo_count;
+    return planner->score.tempi;
+}
+
+bool himc_planner_is_looped(const himc_planner *planner)
+{
+    return planner->score.loop;
+}

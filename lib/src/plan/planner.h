@@ -100,6 +100,10 @@ HIMC_RT double himc_planner_length(const himc_planner *planner);
 /// First beat for another score that shall follow this one: its length, or a later beat if that is
 /// past or too near to prepare for at `t`.
 HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
+/// The tempo map (*count), borrowed.
+HIMC_RT const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count);
+/// What himc_planner_loop has set.
+HIMC_RT bool himc_planner_is_looped(const himc_planner *planner);
 /// Appends a tempo map (copied) that holds from `beat` on; later changes of the old one are
 /// dropped.
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,

@@ -1,0 +1,282 @@
+/// performance_dump.c: the state of a performance as the lines of a score that makes it again.
+///
+/// Numbers are told in single precision, as commands take them; what a command computes is told by
+/// what it was given, the usual values by themselves (himc_argument_usual). So a new performance that
+/// loads the lines has the same settings, bit by bit. What is written (strokes, files of takes and
+/// units) is told as it was written, not as it is planned. The transport, moving sticks, sounding heads
+/// and hits that wait are no part of the state.
+#include "performance/performance_state.h"
+
+#include "base/argument.h"
+#include "base/file.h"
+#include "base/format.h"
+#include "base/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define METRES_PER_INCH 0.0254
+#define LINE_ROOM (2 * HIMC_PATH_SIZE + 2) // of the longest line (bytes)
+
+// what is written
+
+bool himc_written_room(himc_text_lines *lines, const char *command, himc_error *error)
+{
+    return himc_text_reserve(lines, LINE_ROOM) ||
+           himc_error_set(error, "%s: out of memory", command);
+}
+
+static void add_dynamic(himc_state_line *line, double dynamic)
+{
+    const char *const *words = himc_argument_find("DYNAMIC", "stroke")->words;
+    for (int k = 0; words[k]; k++)
+        if (dynamic == k / 7.0) {
+            himc_state_word(line, words[k]);
+            return;
+        }
+    himc_state_numbers(line, 1, &dynamic);
+}
+
+static void add_spot(himc_state_line *line, const himc_stroke *stroke)
+{
+    if (stroke->spot == HIMC_SPOT_XY)
+        himc_state_numbers(line, 2, (double[]){stroke->x, stroke->y});
+    else
+        himc_state_word(line, himc_spot_name(stroke->spot));
+    if (stroke->drum[0])
+        himc_state_word(line, stroke->drum);
+}
+
+void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
+{
+    // in the order of himc_ornament
+    static const char *const name[] = {"stroke", "flam", "drag", "ruff", "roll", "roll", "roll"};
+    himc_state_line line = himc_state_begin(name[stroke->ornament]);
+    himc_state_numbers(&line, 1, &stroke->beat);
+    if (stroke->ornament >= HIMC_ROLL_SINGLE) {
+        himc_state_numbers(&line, 1, &stroke->length);
+        himc_state_word(
+            &line,
+            himc_command_word(HIMC_COMMAND_ROLL, 2, stroke->ornament - HIMC_ROLL_SINGLE).text);
+        add_dynamic(&line, stroke->dynamic);
+        add_dynamic(&line, stroke->last_dynamic);
+    } else {
+        himc_state_word(&line, himc_hand_name(stroke->hand));
+        himc_state_word(&line, himc_nuance_name(stroke->nuance));
+        add_dynamic(&line, stroke->dynamic);
+    }
+    add_spot(&line, stroke);
+    himc_text_add(lines, line.text);
+}
+
+static void add_command(himc_state_line *line, const himc_command *c)
+{
+    himc_state_word(line, himc_command_table((int)c->id)->name);
+    for (int i = 0; i < c->count; i++)
+        if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
+            himc_state_word(line, c->atom[i].symbol);
+        else
+            himc_state_numbers(line, 1, &c->atom[i].number);
+}
+
+void himc_written_change(himc_text_lines *lines, const himc_score_line *change, double from)
+{
+    himc_state_line line = himc_state_begin("at");
+    himc_state_numbers(&line, 1, (double[]){from + change->beat});
+    himc_state_word(&line, change->drum);
+    add_command(&line, &change->command);
+    himc_text_add(lines, line.text);
+}
+
+void himc_written_units(himc_text_lines *lines, const himc_command *command)
+{
+    himc_state_line line = himc_state_begin("");
+    add_command(&line, command);
+    himc_text_add(lines, line.text + 1);
+}
+
+// to `to`, without ";\n"
+static void dump_written(const himc_text_lines *lines, const himc_line_sink *to)
+{
+    char text[LINE_ROOM];
+    const char *at = lines->bytes, *end;
+    for (; at && (end = strstr(at, ";\n")); at = end + 2) {
+        memcpy(text, at, (size_t)(end - at));
+        text[end - at] = '\0';
+        to->line(to->user, text);
+    }
+}
+
+// settings
+
+static void tell_word(const himc_line_sink *to, himc_command_id id, int choice)
+{
+    himc_state_tell(to, himc_command_table((int)id)->name, himc_command_word(id, 0, choice).text, 0,
+                    NULL);
+}
+
+static void tell_switch(const himc_line_sink *to, const char *name, bool on)
+{
+    himc_state_tell(to, name, NULL, 1, (double[]){on});
+}
+
+static void dump_rates(const himc_performance *p, const himc_line_sink *to)
+{
+    const performance_settings *s = &p->settings;
+    himc_state_tell(to, "rate", "physics", 1, &s->physics_rate);
+    himc_state_tell(to, "rate", "task", 1, &s->task_rate);
+    tell_word(to, HIMC_COMMAND_ENGINE, (int)s->engine);
+    tell_word(to, HIMC_COMMAND_COUPLING,
+              s->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY);
+}
+
+// a take has measured the player if it has lengths; then the take's line tells them
+static void dump_player(const himc_performance *p, const himc_line_sink *to)
+{
+    const himc_skeleton_config *s = &p->settings.skeleton;
+    bool measured = s->seat != 0 || s->shoulders != 0;
+    for (size_t i = 0; i < sizeof s->length / sizeof *s->length; i++)
+        measured = measured || s->length[i] != 0;
+    if (!measured)
+        himc_state_tell(to, "player", NULL, 2, (double[]){s->height, s->mass});
+}
+
+static void dump_control(const himc_performance *p, const himc_line_sink *to)
+{
+    const himc_controller_config *c = &p->settings.control;
+    tell_word(to, HIMC_COMMAND_MODE, (int)c->mode);
+    tell_word(to, HIMC_COMMAND_SOLVER, (int)c->solver);
+    himc_state_tell(to, "damping", NULL, 1, &c->damping);
+    tell_switch(to, "posture", !c->null_space_off);
+    tell_switch(to, "bend", !p->settings.unbent);
+    tell_switch(to, "elbow", c->elbow);
+    himc_state_tell(to, "weights", NULL, HIMC_ARM_JOINTS, c->weight);
+    tell_word(to, HIMC_COMMAND_LAW, (int)c->law);
+    tell_word(to, HIMC_COMMAND_LIMITS, (int)p->settings.limits);
+}
+
+static void dump_gains(const himc_performance *p, const himc_line_sink *to)
+{
+    const asked_gain *asked = p->settings.gain;
+    double frequency = 0;
+    himc_state_tell(to, "gain", "reset", 0, NULL);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        frequency = fmax(frequency, asked[j].frequency);
+    if (frequency > 0)
+        himc_state_tell(to, "gain", "frequency", 1, &frequency);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (p->settings.control.gain_set[j] && asked[j].frequency == 0)
+            himc_state_tell(to, "gain", himc_joint_name(j), 2,
+                            (double[]){asked[j].stiffness, asked[j].damping});
+}
+
+static void dump_strength(const himc_performance *p, const himc_line_sink *to)
+{
+    const himc_controller_config *c = &p->settings.control;
+    himc_controller_config usual = {.human_strength = false};
+    if (c->human_strength)
+        himc_controller_set_human_strength(&usual, p->settings.skeleton.mass);
+    himc_state_tell(to, "strength", c->human_strength ? "human" : "off", 0, NULL);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (c->strength[j] != usual.strength[j])
+            himc_state_tell(to, "strength", himc_joint_name(j), 1, &c->strength[j]);
+}
+
+static void dump_playing(const himc_performance *p, const himc_line_sink *to)
+{
+    const performance_settings *s = &p->settings;
+    himc_state_line grip = himc_state_begin("grip");
+    himc_state_word(&grip, himc_command_word(HIMC_COMMAND_GRIP, 0, (int)s->grip).text);
+    if (s->servo)
+        himc_state_word(&grip, "servo");
+    himc_state_end(&grip, to);
+    himc_state_tell(to, "human", NULL, 2, (double[]){s->human.amount, s->human.seed});
+    tell_switch(to, "alive", s->alive);
+    himc_state_tell(to, "latency", NULL, 1, (double[]){1e3 * s->latency});
+}
+
+static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
+{
+    const himc_listener *l = &d->listener;
+    if (l->on)
+        himc_state_tell(to, "listener", NULL, 4,
+                        (double[]){l->place.x, l->place.y, l->place.z, l->yaw});
+    else
+        himc_state_tell(to, "listener", "off", 0, NULL);
+    himc_state_tell(to, "room", NULL, 2, (double[]){d->walls.seconds, d->walls.volume});
+    himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(d->gain)});
+    tell_switch(to, "mute", d->mute);
+}
+
+// drums
+
+typedef struct named_sink {
+    const himc_line_sink *to;
+    const char *name;
+} named_sink;
+
+static void tell_named(void *object, const char *text)
+{
+    const named_sink *named = object;
+    himc_state_line line = himc_state_begin(named->name);
+    line.used = himc_format(line.text, sizeof line.text, "%s %s", named->name, text);
+    himc_state_end(&line, named->to);
+}
+
+// no line can be for the silent drum of strokes without a drum's name, whose name is a command's
+static bool can_be_named(const himc_drum *drum)
+{
+    return !himc_command_find(HIMC_PERFORMER, himc_drum_name(drum));
+}
+
+static void dump_drums(const himc_performance *p, const himc_line_sink *to)
+{
+    for (int i = 0; i < p->drums.count; i++) {
+        const himc_drum *drum = p->drums.slot[i].drum;
+        double inches = 2 * himc_drum_usual_radius(drum) / METRES_PER_INCH;
+        if (can_be_named(drum))
+            himc_state_tell(to, "drum", himc_drum_name(drum), 1, &inches);
+    }
+    for (int i = 0; i < p->drums.count; i++) {
+        const himc_drum *drum = p->drums.slot[i].drum;
+        named_sink named = {to, himc_drum_name(drum)};
+        if (can_be_named(drum))
+            himc_drum_describe(drum, HIMC_DESCRIBE_STATE, tell_named, &named);
+    }
+}
+
+static void dump_tempi(const himc_planner *planner, const himc_line_sink *to)
+{
+    int count;
+    const himc_tempo_change *tempi = himc_planner_tempi(planner, &count);
+    for (int i = 0; i < count; i++)
+        himc_state_tell(to, "tempo", NULL, tempi[i].beat > 0 ? 2 : 1,
+                        (double[]){tempi[i].bpm, tempi[i].beat});
+}
+
+void himc_performance_dump(const himc_performance *p, const himc_line_sink *to)
+{
+    dump_drums(p, to);
+    dump_rates(p, to);
+    if (p->written.take[0])
+        himc_state_tell(to, "take", p->written.take, 0, NULL);
+    dump_player(p, to);
+    dump_control(p, to);
+    dump_gains(p, to);
+    dump_strength(p, to);
+    dump_playing(p, to);
+    dump_hearing(&p->drums, to);
+    dump_written(&p->written.units, to);
+    dump_tempi(p->motion->planner, to);
+    tell_switch(to, "loop", himc_planner_is_looped(p->motion->planner));
+    if (!p->written.take[0])
+        dump_written(&p->written.score, to);
+}
+
+himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
+                                    himc_error *error)
+{
+    himc_text_lines lines = {0};
+    himc_performance_describe(p, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
+    return himc_file_write_job("dump", command->atom[0].symbol, &lines, error);
+}

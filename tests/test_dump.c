@@ -1,0 +1,270 @@
+/// test_dump.c: `dump` tells a state as commands: a new drum or performer that carries them out sounds
+/// the same, bit by bit.
+#include "session.h"
+
+#include "disc_mesh.h"
+#include "random_commands.h"
+
+#include "base/text.h"
+
+#include <math.h>
+
+#define RATE 48000.0
+#define LENGTH 4800
+static char folder[] = "/tmp/himc-dump-XXXXXX", grid[64], score[64];
+
+/// A command that is no setting, or a stroke: a score puts those in the order of beats.
+static bool is_no_setting(himc_command_id id)
+{
+    switch (id) {
+    case HIMC_COMMAND_STROKE:
+    case HIMC_COMMAND_ROLL:
+    case HIMC_COMMAND_FLAM:
+    case HIMC_COMMAND_DRAG:
+    case HIMC_COMMAND_RUFF:
+    case HIMC_COMMAND_SCORE:
+    case HIMC_COMMAND_TAKE:
+    case HIMC_COMMAND_UNITS:
+    case HIMC_COMMAND_RECORD:
+    case HIMC_COMMAND_DUMP:
+    case HIMC_COMMAND_DRUM_DUMP:
+    case HIMC_COMMAND_PLAY:
+    case HIMC_COMMAND_STOP:
+    case HIMC_COMMAND_SEEK:
+    case HIMC_COMMAND_TARGET:
+    case HIMC_COMMAND_HIT:
+    case HIMC_COMMAND_PUSH:
+    case HIMC_COMMAND_STRIKE: return true;
+    default:
+        return himc_command_table((int)id)->when == HIMC_WHEN_HOST ||
+               himc_command_table((int)id)->when == HIMC_WHEN_NETWORK;
+    }
+}
+
+/// A setting at random that the parser accepts.
+static void random_setting(himc_command *command, himc_receiver receiver, random_seed *seed)
+{
+    static const char *const files[] = {grid, NULL};
+    spoken said;
+    random_files = files;
+    for (;;) {
+        const himc_command_row *row = himc_command_table(any_of(seed, HIMC_COMMANDS));
+        if (row->receiver != receiver || is_no_setting(row->id))
+            continue;
+        random_command(&said, row, seed);
+        if (himc_command_parse(command, receiver, said.name, said.atom, said.count, &error))
+            return;
+    }
+}
+
+static himc_text_lines lines;
+
+static const char *state_of_drum(const himc_drum *drum)
+{
+    himc_text_clear(&lines);
+    himc_drum_describe(drum, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
+    return lines.bytes;
+}
+
+static const char *state_of(const himc_performance *p)
+{
+    himc_text_clear(&lines);
+    himc_performance_describe(p, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
+    return lines.bytes;
+}
+
+static char *copy_of(const char *text)
+{
+    char *copy = malloc(strlen(text) + 1);
+    return strcpy(copy, text);
+}
+
+static void send_to_drum(himc_drum *drum, const char *state)
+{
+    char line[2048];
+    himc_command command;
+    for (const char *end; (end = strstr(state, ";\n")); state = end + 2) {
+        snprintf(line, sizeof line, "%.*s", (int)(end - state), state);
+        bool good = himc_command_parse_text(&command, HIMC_DRUM, line, &error) &&
+                    himc_drum_command(drum, &command, &error);
+        if (!good)
+            printf("%s\n", line);
+        TEST_ASSERT_TRUE_MESSAGE(good, error.text);
+    }
+}
+
+static void sound_of(himc_drum *drum, double sound[HIMC_PICKUPS][LENGTH])
+{
+    himc_drum_advance(drum, LENGTH, NULL, NULL, NULL); // what changed over has changed
+    TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, 0.03, 0.01, 3, &error));
+    himc_drum_advance(drum, LENGTH, NULL, NULL, NULL);
+    for (int k = 0; k < HIMC_PICKUPS; k++)
+        himc_drum_read_channel(drum, k, himc_drum_time(drum) - LENGTH, LENGTH, sound[k]);
+}
+
+static void test_drum_made_again_from_its_dump_sounds_the_same_bit_by_bit(void)
+{
+    static double first[HIMC_PICKUPS][LENGTH], again[HIMC_PICKUPS][LENGTH];
+    random_seed seed = 17;
+    for (int trial = 0; trial < 40; trial++) {
+        himc_drum *drum = himc_drum_new("kettle", 23 + trial % 10, RATE, &error);
+        for (int i = 0; i < 12; i++) {
+            himc_command command;
+            random_setting(&command, HIMC_DRUM, &seed);
+            himc_drum_command(drum, &command, NULL);
+        }
+        char *state = copy_of(state_of_drum(drum));
+        himc_drum *other = himc_drum_new("kettle", 23 + trial % 10, RATE, &error);
+        send_to_drum(other, state);
+        TEST_ASSERT_EQUAL_STRING(state, state_of_drum(other));
+        sound_of(drum, first);
+        sound_of(other, again);
+        TEST_ASSERT_EQUAL_MEMORY(first, again, sizeof first);
+        free(state);
+        himc_drum_release(drum);
+        himc_drum_release(other);
+    }
+}
+
+static void test_drum_takes_the_dump_of_another_whatever_it_was_before(void)
+{
+    random_seed seed = 5;
+    himc_drum *other = himc_drum_new("kettle", 26, RATE, &error);
+    for (int trial = 0; trial < 40; trial++) {
+        himc_drum *drum = himc_drum_new("kettle", 26, RATE, &error);
+        for (int i = 0; i < 8; i++) {
+            himc_command command;
+            random_setting(&command, HIMC_DRUM, &seed);
+            himc_drum_command(drum, &command, NULL);
+        }
+        char *state = copy_of(state_of_drum(drum));
+        send_to_drum(other, state);
+        himc_drum_release(drum);
+        free(state);
+    }
+    himc_drum_release(other);
+}
+
+static void save(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void compare_playing(himc_performance *a, himc_performance *b, int seconds_of_ten)
+{
+    static double one[LENGTH], two[LENGTH];
+    session_do(a, "play");
+    session_do(b, "play");
+    for (int i = 0; i < seconds_of_ten; i++) {
+        himc_performance_process(a, LENGTH, NULL);
+        himc_performance_process(b, LENGTH, NULL);
+        himc_drum *drum;
+        for (int d = 0; (drum = himc_performance_drum(a, d)); d++)
+            for (int k = 0; k < 2; k++) {
+                himc_drum *other = himc_performance_drum(b, d);
+                himc_drum_read_channel(drum, k, (uint64_t)i * LENGTH, LENGTH, one);
+                himc_drum_read_channel(other, k, (uint64_t)i * LENGTH, LENGTH, two);
+                TEST_ASSERT_EQUAL_MEMORY(one, two, sizeof one);
+            }
+    }
+}
+
+static void test_performance_made_again_from_its_dump_plays_the_same_bit_by_bit(void)
+{
+    random_seed seed = 3;
+    for (int trial = 0; trial < 10; trial++) {
+        himc_performance *p = session_new(), *other = session_new();
+        for (int i = 0; i < 12; i++) {
+            himc_command command;
+            random_setting(&command, HIMC_PERFORMER, &seed);
+            himc_performance_command(p, &command, 0, NULL);
+        }
+        session_do(p, "stroke 0 right accent f");
+        char *state = copy_of(state_of(p));
+        save(score, state);
+        session_do(other, "score %s", score);
+        TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+        compare_playing(p, other, 3);
+        free(state);
+        himc_performance_free(p);
+        himc_performance_free(other);
+    }
+}
+
+static void test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump(void)
+{
+    static const char *const said[] = {"drum low 32",
+                                       "drum second 29",
+                                       "drum kettle 26",
+                                       "drum high 23",
+                                       "player 1.62 54.3",
+                                       "gain frequency 1.37",
+                                       "gain right-wrist 31.7 0.93",
+                                       "strength human",
+                                       "law feedforward",
+                                       "grip french",
+                                       "human 0.37 11",
+                                       "latency 87.3",
+                                       "damping 0.0137",
+                                       "weights 0.3 1.1 2.7 0.9",
+                                       "rate physics 7919",
+                                       "rate task 331",
+                                       "listener -1.3 0.7 1.4",
+                                       "room 2.3 731",
+                                       "gain -3.3",
+                                       "tempo 97.3",
+                                       "stroke 0 right accent f rim low",
+                                       "stroke 0.33 left legato 0.37 0.11 -0.07 kettle",
+                                       "flam 0.7 left tenuto mf second",
+                                       "roll 1 2 press pp ff high",
+                                       "loop 1"};
+    static const char *const drum_said[4][4] = {
+        {"tune A2", "decay 1.7", "mallet soft", "gain -4.1"},
+        {"tune 117.3", "density 0.31", "mallet 3e8 2.3 0.021", "noise 0.3"},
+        {"pickups 2", "radius 0.29", "uniformity 0.31 7", "glide 0.3"},
+        {"shape rectangle 0.5 0.37", "tune 151.3", "damp 0.1", "decay 2.7 1e-6"}};
+    himc_performance *p = session_new(), *other = session_new();
+    for (size_t i = 0; i < sizeof said / sizeof *said; i++)
+        session_do(p, "%s", said[i]);
+    for (int d = 0; d < 4; d++)
+        for (int i = 0; i < 4; i++) {
+            himc_command c;
+            TEST_ASSERT_TRUE_MESSAGE(
+                himc_command_parse_text(&c, HIMC_DRUM, drum_said[d][i], &error) &&
+                    himc_drum_command(himc_performance_drum(p, d), &c, &error),
+                error.text);
+        }
+    session_do(p, "dump %s", score);
+    session_do(other, "score %s", score);
+    char *state = copy_of(state_of(p));
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    free(state);
+    compare_playing(p, other, 30);
+    himc_performance_free(p);
+    himc_performance_free(other);
+}
+
+int main(void)
+{
+    char all[80];
+    disc_mesh disc = disc_mesh_new(4, 0.3, 4000, 0.3);
+    if (!mkdtemp(folder))
+        return 1;
+    disc_mesh_write(&disc, folder, 4000, 0.3);
+    disc_mesh_free(&disc);
+    snprintf(grid, sizeof grid, "%s/disc.txt", folder);
+    snprintf(score, sizeof score, "%s/score.txt", folder);
+    UNITY_BEGIN();
+    RUN_TEST(test_drum_made_again_from_its_dump_sounds_the_same_bit_by_bit);
+    RUN_TEST(test_drum_takes_the_dump_of_another_whatever_it_was_before);
+    RUN_TEST(test_performance_made_again_from_its_dump_plays_the_same_bit_by_bit);
+    RUN_TEST(test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump);
+    free(lines.bytes);
+    snprintf(all, sizeof all, "rm -rf %s", folder);
+    if (system(all) != 0)
+        return 1;
+    return UNITY_END();
+}
