@@ -55,6 +55,8 @@
 #define OTHER_GRIP 20     // as a difference of log speed
 
 // hands that pass each other; chosen: sticks that play one head side by side are 14 mm apart
+#define NEAR_SPAN \
+    10.0 // (s) of a plan that is searched; chosen: longer than any motion, a wait may be endless
 #define NEAR_STEP 0.01   // between two looks (s)
 #define NEAR_GAP 0.003   // hands nearer than this are kept apart (m) ...
 #define CROSSED_GAP 0.05 // ... and crossed ones nearer by this
@@ -477,6 +479,7 @@ static bool keep_clear(himc_planner *planner, himc_hand hand, double begin, doub
     himc_vec3 tips[HIMC_HANDS], best = {0, 0, 0};
     if (!planner->config.gap)
         return true;
+    begin = fmax(begin, end - NEAR_SPAN);
     near_time n = find_near(planner, begin, end, NEAR_STEP), least = n;
     tips_at(planner, begin, tips);
     if (n.lack == 0 || (is_crossed(tips) && planner->above != hand))
