@@ -12,6 +12,6 @@ for need in python3 chromedriver; do
 done
 mkdir -p "$dir"
 "$CC" -std=c17 -O2 -Wall -Wextra -Wpedantic -Ilib tests/viewer/sender.c "$HIMC_BUILD/libhimc.a" \
-    -Wl,--as-needed -lode -llo -lsndfile -llapacke -llapack -lblas -lpthread -lm -o "$dir/sender" || exit 1
+    -Wl,--as-needed -lode -llo -lsndfile -lstdc++ -lpthread -lm -o "$dir/sender" || exit 1
 "$HIMC_BUILD/bin/himc" render patches/improvisation.txt -o "$dir/play.wav" \
     --motion "$dir/motion.csv" --strokes "$dir/strokes.csv" >/dev/null 2>&1 || exit 1
