@@ -271,7 +271,7 @@ static void test_info_tells_the_servo_grip(void)
     himc_performance *p = with_kettle("himc");
     char told[4096] = "";
     session_do(p, "grip french servo");
-    himc_performance_describe(p, keep_line, told);
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, keep_line, told);
     TEST_ASSERT_NOT_NULL(strstr(told, "grip french servo,"));
     himc_performance_free(p);
 }
