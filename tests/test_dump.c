@@ -263,6 +263,9 @@ static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
     char *state = copy_of(state_of(p));
     TEST_ASSERT_EQUAL_STRING(state, state_of(other));
     free(state);
+    save("pedal.txt", "drum kettle 29;\nstroke 1 left accent f;\nat 2 kettle tune 120.3;\n");
+    session_do(p, "score pedal.txt");
+    TEST_ASSERT_NOT_NULL(strstr(state_of(p), "\nat 2 kettle tune 120.3;\n"));
     himc_drum *drum = himc_performance_drum(p, 0), *second = himc_performance_drum(other, 0);
     send_to_drum(drum, "tune A2;\nmallet wood;\nnoise 0.3;\nplace 0.6 0.1 0.8 0.1;\ngain -3;\n"
                        "dump timpano.txt;\n");
