@@ -32,6 +32,7 @@ typedef struct t_membrane {
     t_symbol *x_queue;  /* that it is bound to while another has its name, and after; or NULL */
     t_clock *x_clock;
     t_outlet *x_messages;
+    t_canvas *x_canvas; /* presets are beside its patch */
     int x_channels;
 
     himc_loader *x_loader; /* for heads that take long to compute */
@@ -293,12 +294,32 @@ static void membrane_changed(void *object, const char *refusal)
     membrane_tell_technique(x);
 }
 
+/* A preset and a dump are beside the patch. */
+static bool membrane_file(t_membrane *x, himc_command *command, himc_error *error)
+{
+    char path[HIMC_PATH_SIZE];
+    himc_command found;
+    bool preset = command->id == HIMC_COMMAND_DRUM_PRESET;
+    if (command->count == 0 || (!preset && command->id != HIMC_COMMAND_DRUM_DUMP))
+        return true;
+    const char *name = command->atom[0].symbol;
+    if (preset && strpbrk(name, "/\\"))
+        return himc_error_set(error, "preset: %.80s, allowed a name, without a folder", name);
+    canvas_makefilename(x->x_canvas, name, path, sizeof path);
+    if (!himc_command_parse(&found, HIMC_DRUM, himc_command_table((int)command->id)->name,
+                            &(himc_atom){HIMC_ATOM_SYMBOL, 0, path}, 1, error))
+        return false;
+    himc_command_copy(command, &found);
+    return true;
+}
+
 static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
     himc_drum *drum = x->x_link.l_drum;
     himc_load_target target = {.drum = drum, .done = membrane_changed, .user = x};
-    if (!command_from_pd(&command, HIMC_DRUM, s, argc, argv, error))
+    if (!command_from_pd(&command, HIMC_DRUM, s, argc, argv, error) ||
+        !membrane_file(x, &command, error))
         return false;
     if (!pd_in_real_time())
         himc_loader_finish(x->x_loader);
@@ -457,6 +478,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_layer = layer;
     x->x_loader = loader;
     x->x_load = clock_new(x, (t_method)membrane_load);
+    x->x_canvas = canvas_getcurrent();
     x->x_channels = (int)wish.w_channels;
     x->x_clock = clock_new(x, (t_method)membrane_tick);
     x->x_fit_clock = clock_new(x, (t_method)membrane_fit_layer);

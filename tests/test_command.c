@@ -157,7 +157,8 @@ static void refuses_atom(example *e, int i, himc_atom atom)
 static void check_choices(example *e)
 {
     TEST_ASSERT_TRUE_MESSAGE(parse(e, e->count), error.text);
-    TEST_ASSERT_EQUAL_INT(e->row->id, command.id);
+    bool preset = e->row->id == HIMC_COMMAND_PRESET; // `preset NAME` is `score NAME.txt`
+    TEST_ASSERT_EQUAL_INT(preset ? HIMC_COMMAND_SCORE : e->row->id, command.id);
     TEST_ASSERT_EQUAL_INT_MESSAGE(e->form, command.form, e->row->name);
     for (int i = 0; i < e->count; i++) {
         const himc_argument *a = e->argument[i];

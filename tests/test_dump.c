@@ -28,6 +28,8 @@ static bool is_no_setting(himc_command_id id)
     case HIMC_COMMAND_RECORD:
     case HIMC_COMMAND_DUMP:
     case HIMC_COMMAND_DRUM_DUMP:
+    case HIMC_COMMAND_PRESET:
+    case HIMC_COMMAND_DRUM_PRESET:
     case HIMC_COMMAND_PLAY:
     case HIMC_COMMAND_STOP:
     case HIMC_COMMAND_SEEK:
@@ -247,6 +249,39 @@ static void test_performance_with_four_drums_and_odd_settings_plays_the_same_fro
     himc_performance_free(other);
 }
 
+static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
+{
+    himc_command c;
+    himc_performance *p = session_new(), *other = session_new();
+    session_do(p, "drum kettle 29");
+    session_do(p, "human 0.3 2");
+    session_do(p, "dump %s/piece.txt", folder);
+    TEST_ASSERT_FALSE(session_try(p, "dump %s/piece", folder));
+    TEST_ASSERT_FALSE(session_try(p, "preset %s/piece", folder)); // a name, no path
+    TEST_ASSERT_EQUAL_INT(0, chdir(folder));
+    session_do(other, "preset piece");
+    char *state = copy_of(state_of(p));
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    free(state);
+    save("pedal.txt", "drum kettle 29;\nstroke 1 left accent f;\nat 2 kettle tune 120.3;\n");
+    session_do(p, "score pedal.txt");
+    TEST_ASSERT_NOT_NULL(strstr(state_of(p), "\nat 2 kettle tune 120.3;\n"));
+    himc_drum *drum = himc_performance_drum(p, 0), *second = himc_performance_drum(other, 0);
+    send_to_drum(drum, "tune A2;\nmallet wood;\nnoise 0.3;\nplace 0.6 0.1 0.8 0.1;\ngain -3;\n"
+                       "dump timpano.txt;\n");
+    send_to_drum(second, "preset timpano;\n");
+    state = copy_of(state_of_drum(drum));
+    TEST_ASSERT_EQUAL_STRING(state, state_of_drum(second));
+    save("bad.txt", "tune 150;\nmallet soft;\nnoise 7;\n");
+    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "preset bad", &error));
+    TEST_ASSERT_FALSE(himc_drum_command(second, &c, &error));
+    TEST_ASSERT_EQUAL_STRING("bad.txt:3: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
+    TEST_ASSERT_EQUAL_STRING(state, state_of_drum(second));
+    free(state);
+    himc_performance_free(p);
+    himc_performance_free(other);
+}
+
 int main(void)
 {
     char all[80];
@@ -262,6 +297,7 @@ int main(void)
     RUN_TEST(test_drum_takes_the_dump_of_another_whatever_it_was_before);
     RUN_TEST(test_performance_made_again_from_its_dump_plays_the_same_bit_by_bit);
     RUN_TEST(test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump);
+    RUN_TEST(test_presets_are_what_a_dump_has_written_all_or_nothing);
     free(lines.bytes);
     snprintf(all, sizeof all, "rm -rf %s", folder);
     if (system(all) != 0)

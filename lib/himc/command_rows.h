@@ -126,6 +126,8 @@ HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a f
 HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
                  "answers with the state as commands that make it again, or writes it to a file, "
                  "which is a score")
+HIMC_COMMAND_ROW(PRESET, preset, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDER, "NAME",
+                 "loads NAME.txt, a score or what `dump NAME.txt` has written")
 HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "", "sets everything as when just made")
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
@@ -189,6 +191,8 @@ HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
                  "Data")
 HIMC_COMMAND_ROW(DRUM_DUMP, dump, DRUM, NOW, HIMC_WRITES_FILE, "[FILE]",
                  "answers with the state as commands that make it again, or writes it to a file")
+HIMC_COMMAND_ROW(DRUM_PRESET, preset, DRUM, NOW, 0, "FILE",
+                 "loads FILE.txt, which `dump FILE.txt` has written: all of it, or nothing")
 HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes without a performer")
 
 #undef HIMC_ROW_STROKE

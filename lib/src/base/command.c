@@ -373,6 +373,15 @@ static himc_stroke read_stroke(const himc_command *c)
     return stroke;
 }
 
+// `preset NAME` is `score NAME.txt`, for whoever looks for the file and allows it
+static bool parse_preset(himc_command *out, const char *name, himc_error *error)
+{
+    char file[HIMC_NAME_SIZE + 8];
+    snprintf(file, sizeof file, "%s.txt", name);
+    return himc_command_parse(out, HIMC_PERFORMER, "score", &(himc_atom){HIMC_ATOM_SYMBOL, 0, file},
+                              1, error);
+}
+
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
                         const himc_atom *atoms, int count, himc_error *error)
 {
@@ -382,6 +391,8 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
         return refuse_name(receiver, name, error);
     if (!check(row, atoms, count, &read, error))
         return false;
+    if (row->id == HIMC_COMMAND_PRESET)
+        return parse_preset(out, atoms[0].symbol, error);
     out->id = row->id;
     store(out, atoms, count, &read);
     if (ornament_of(row->id) >= 0)

@@ -86,6 +86,24 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     return drum_new(name, himc_membrane_new(&head, sample_rate, error), &place, error);
 }
 
+himc_drum_manner himc_drum_manner_of(const himc_drum *drum)
+{
+    return (himc_drum_manner){drum->mallet, drum->mallet_name, drum->noise.amount, drum->gain,
+                              drum->mute,   drum->technique,   drum->placed};
+}
+
+void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner)
+{
+    drum->mallet = manner->mallet;
+    drum->mallet_name = manner->mallet_name;
+    drum->noise.amount = manner->noise;
+    drum->gain = manner->gain;
+    drum->mute = manner->mute;
+    drum->technique = manner->technique;
+    drum->placed = manner->placed;
+    drum->revision++;
+}
+
 himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
 {
     himc_drum *drum =
@@ -95,6 +113,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
         himc_drum_enclose(drum, &form->walls);
         himc_drum_listen(drum, &form->listener);
         drum->usual = form->usual;
+        himc_drum_set_manner(drum, &form->manner);
         drum->external_sound = form->external_sound;
     }
     return drum;

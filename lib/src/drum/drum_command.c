@@ -372,6 +372,11 @@ static bool do_dump(himc_drum *drum, const himc_command *c, himc_error *error)
     return c->count == 0 || himc_job_carry_out(himc_drum_dump_job(drum, c, error), error);
 }
 
+static bool do_preset(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    return himc_job_carry_out(himc_drum_job(drum, c, error), error);
+}
+
 static bool do_strike(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     return himc_drum_strike_at(drum, 0, number(c, 0), number(c, 1), number(c, 2), error);

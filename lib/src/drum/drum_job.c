@@ -12,9 +12,11 @@
 #include "drum/drum_state.h"
 
 #include "base/file.h"
+#include "base/text.h"
 #include "head/statistical.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +29,7 @@ himc_drum_form himc_drum_form_of(const himc_drum *drum)
 {
     himc_drum_form form = {.head = himc_membrane_form_of(drum->membrane),
                            .usual = drum->usual,
+                           .manner = himc_drum_manner_of(drum),
                            .place = drum->place,
                            .listener = drum->listener,
                            .walls = drum->walls,
@@ -84,7 +87,8 @@ bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command)
         return command->count > 0;
     if (command->id == HIMC_COMMAND_PLACE)
         return heard && himc_drum_listening_takes_long(drum);
-    return command->id == HIMC_COMMAND_SHAPE || command->id == HIMC_COMMAND_MODES ||
+    return command->id == HIMC_COMMAND_SHAPE || command->id == HIMC_COMMAND_DRUM_PRESET ||
+           command->id == HIMC_COMMAND_MODES ||
            ((himc_command_table((int)command->id)->marks & HIMC_CHANGES_HEAD) &&
             mode_work(drum->membrane) * readouts > SHORT_WORK);
 }
@@ -100,6 +104,45 @@ typedef struct drum_job {
     int tries;
 } drum_job;
 
+#define LONGEST_PRESET 65536 // chosen: thirty times what a drum tells (bytes)
+
+// a line of a preset: what sets something and names no file but a shape's
+static bool run_line(himc_drum *drum, const himc_text_statement *line, himc_error *error)
+{
+    himc_command c;
+    int count = line->count < line->capacity ? line->count : line->capacity;
+    if (line->overflow)
+        return himc_error_set(error, "a line is too long");
+    if (!himc_command_parse(&c, HIMC_DRUM, line->atom[0].symbol, line->atom + 1, count - 1, error))
+        return false;
+    if (c.id == HIMC_COMMAND_DRUM_PRESET || c.id == HIMC_COMMAND_DRUM_DUMP ||
+        c.id == HIMC_COMMAND_STRIKE)
+        return himc_error_set(error, "%s: not allowed in a preset", line->atom[0].symbol);
+    return himc_drum_command(drum, &c, error);
+}
+
+// a file's lines, on a copy of the drum
+static bool run_preset(himc_drum *drum, const char *name, himc_error *error)
+{
+    char path[HIMC_PATH_SIZE + 8], storage[2 * HIMC_PATH_SIZE];
+    himc_atom atoms[HIMC_COMMAND_ATOMS + 2];
+    himc_text_statement line = {.atom = atoms,
+                                .capacity = HIMC_COMMAND_ATOMS + 2,
+                                .storage = storage,
+                                .size = sizeof storage};
+    size_t size;
+    int at = 1;
+    bool good = true;
+    snprintf(path, sizeof path, "%s.txt", name);
+    char *text = himc_file_load(path, LONGEST_PRESET, &size, error);
+    const char *rest = text;
+    while (good && rest && himc_text_next(&rest, &at, &line))
+        good = line.count == 0 || run_line(drum, &line, error) ||
+               himc_error_prefix(error, "%s:%d", path, line.line);
+    free(text);
+    return text && good;
+}
+
 static bool prepare(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
@@ -107,7 +150,21 @@ static bool prepare(himc_job *job, himc_error *error)
     j->made = himc_drum_new_of(&j->form, error);
     if (j->made && j->listens)
         himc_drum_listen(j->made, &j->listener);
+    if (j->made && !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET)
+        return run_preset(j->made, j->command.atom[0].symbol, error);
     return j->made && (j->listens || himc_drum_command(j->made, &j->command, error));
+}
+
+// beside its head, all that a preset has set
+static himc_job_state take_preset(drum_job *j)
+{
+    himc_drum_manner manner = himc_drum_manner_of(j->made);
+    himc_head_frame place = j->made->place;
+    himc_drum_exchange(j->drum, j->made);
+    himc_drum_set_manner(j->drum, &manner);
+    j->drum->place = place;
+    himc_drum_find_ways(j->drum);
+    return HIMC_JOB_DONE;
 }
 
 // Carries it out on the drum itself. Where only rays change and the drum has them already, that is
@@ -123,12 +180,15 @@ static bool act(drum_job *j, himc_error *error)
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
+    bool preset = !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET;
+    if (preset && (himc_drum_has_form(j->drum, &j->form) || ++j->tries == HIMC_JOB_TRIES))
+        return take_preset(j);
     if (himc_drum_has_form(j->drum, &j->form)) {
         bool rays = j->listens || j->command.id == HIMC_COMMAND_PLACE;
         himc_drum_exchange(j->drum, j->made);
         return !rays || act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
     }
-    if (++j->tries == HIMC_JOB_TRIES)
+    if (!preset && ++j->tries == HIMC_JOB_TRIES)
         return act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
     himc_drum_form_free(&j->form);
     j->form = himc_drum_form_of(j->drum);

@@ -53,11 +53,23 @@ HIMC_RT bool himc_drum_has_external_sound(const himc_drum *drum);
 
 // Commands that compute a drum's head anew, carried out on a copy of the drum (drum_job.c).
 
+/// What commands set beside the head.
+typedef struct himc_drum_manner {
+    himc_mallet_head mallet;
+    himc_word mallet_name; ///< "medium", or "own" when given by numbers
+    double noise;          ///< its amount
+    double gain;           ///< of its sound (factor)
+    bool mute;
+    himc_technique technique;
+    bool placed; ///< by the command `place`
+} himc_drum_manner;
+
 /// All of a drum that its commands change, without its motion.
 typedef struct himc_drum_form {
     char name[HIMC_NAME_SIZE];
     himc_membrane_form head;
     himc_head usual; ///< when the drum was made
+    himc_drum_manner manner;
     himc_head_frame place;
     himc_listener listener;
     himc_walls walls;

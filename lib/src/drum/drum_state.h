@@ -71,6 +71,9 @@ struct himc_drum {
     himc_ears ears;   ///< of the listener
 };
 
+himc_drum_manner himc_drum_manner_of(const himc_drum *drum);
+void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner);
+
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
 HIMC_RT void himc_drum_find_ways(himc_drum *drum);
 

@@ -114,6 +114,12 @@ static bool do_score(himc_performance *p, const himc_command *c, himc_error *err
     return carry_out(p, c, error);
 }
 
+// which the parser makes a score
+static bool do_preset(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return carry_out(p, c, error);
+}
+
 static bool do_take(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return carry_out(p, c, error);

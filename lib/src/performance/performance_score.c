@@ -380,6 +380,11 @@ static himc_job_state begin_strokes(score_job *j, himc_error *error)
         himc_text_clear(&p->written.score);
     }
     j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
+    for (int i = 0; i < j->score->change_count; i++)
+        if (himc_written_room(&p->written.score, "score", error))
+            himc_written_change(&p->written.score, &j->score->changes[i], j->from);
+        else
+            return HIMC_JOB_FAILED;
     if (himc_planner_append_tempi(planner, j->score->tempi, j->score->tempo_count, j->from, error))
         return HIMC_JOB_DONE;
     himc_error_prefix(error, "%s", j->path);
