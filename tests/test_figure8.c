@@ -16,7 +16,7 @@
 static const char *const experiment[] = {"tempo 60",
                                          "stroke 1 right accent 0.55",
                                          "stroke 3 right accent 0.75",
-                                         "stroke 5 right vertical-accent 0.735",
+                                         "stroke 5 right vertical-accent 0.705",
                                          "stroke 5.4 left accent 0.81",
                                          "stroke 10 left accent 0.81",
                                          "play"};

@@ -255,6 +255,8 @@ void himc_player_free(himc_player *player)
 #define HIGHEST_SEAT 1.3
 #define ON_HEAD 0.97 // chosen: share of the radius within which strikes meet the head
 #define DENT 0.012   // chosen: dent of a struck head; a smaller change of the seat is not made (m)
+#define REST_OVER_HEAD 0.085 // of resting sticks (m), as the planner has them
+#define APPROACH_PARTS 20    // of the way from there, in which it is looked at
 #define OVER_HEAD 0.05       // chosen: height of the lowest position if nothing is struck (m)
 #define LOWEST_HEAD 0.1      // chosen: of the drum above the floor (m)
 #define BESIDE_HEAD 0.05     // chosen: a tip so near beside the head counts as over it (m)
@@ -401,7 +403,23 @@ static bool bring_into_reach(himc_player *player, const himc_take *take,
     return true;
 }
 
-// lowers a head under a take that strikes nothing until no tip touches it
+// how far a head is to be lowered for a stick that comes from rest over it to the take's first place
+// `first`, in the head's frame (m)
+static double under_approach(const himc_head_frame *drum, himc_hand hand, himc_vec3 first)
+{
+    double under = 0, x, aside;
+    usual_place(drum, &x, &aside);
+    const himc_vec3 rest = himc_vec3_make(x, hand == HIMC_LEFT ? aside : -aside, REST_OVER_HEAD);
+    for (int i = 1; i <= APPROACH_PARTS; i++) {
+        double part = (double)i / APPROACH_PARTS;
+        himc_vec3 at = himc_vec3_madd(rest, part, himc_vec3_sub(first, rest));
+        if (hypot(at.x, at.y) < drum->radius + BESIDE_HEAD)
+            under = fmax(under, (OVER_HEAD - at.z) / part);
+    }
+    return under;
+}
+
+// lowers a head under a take that strikes nothing until no tip touches it, nor on the way there
 static void clear_drum(himc_head_frame *drum, const himc_take *take,
                        const himc_take_tip tips[HIMC_HANDS], himc_vec3 offset)
 {
@@ -409,6 +427,8 @@ static void clear_drum(himc_head_frame *drum, const himc_take *take,
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; tips[hand].present && i < himc_take_frames(take); i++) {
             himc_vec3 x = himc_head_frame_from_world(drum, himc_vec3_add(tips[hand].x[i], offset));
+            if (i == 0)
+                under = fmax(under, under_approach(drum, (himc_hand)hand, x));
             if (hypot(x.x, x.y) < drum->radius + BESIDE_HEAD)
                 under = fmax(under, OVER_HEAD - x.z);
         }
