@@ -5,8 +5,9 @@
 ///     F(g) = sum over pairs (D - gap)+^2 / (2 D)
 /// of the gaps below D, summed over the postures foreseen: dg/dt = -K dF/dg - g / T. So they are
 /// constant zero while nothing is nearer than D, and the posture has the same bits as without. The
-/// body follows by a motion of third order (posture.h), so accelerations have no jumps. The tips' errors do not change: all of this is the null-space target. The sticks
-/// themselves are kept apart by the plan.
+/// body follows by a motion of third order (posture.h), so accelerations have no jumps. The tips'
+/// errors do not change: all of this is the null-space target. The sticks themselves are kept apart
+/// by the plan.
 ///
 /// Of two crossed arms the one that is above when they first cross stays above until they are
 /// uncrossed: the gaps of crossed parts are counted along the vertical, in that order.

@@ -17,7 +17,6 @@
 #include "plan/planner_motion.h"
 #include "plan/bounce.h"
 #include "base/format.h"
-#include "base/head_frame.h"
 
 #include <stdio.h>
 
@@ -49,33 +48,11 @@
 
 // the goal; chosen: half a mallet's radius, a mallet that does not touch the rim of a usual head,
 // and a unit of another spot further off than any of another speed, of another grip further still
-#define UNREACHED 0.01    // a goal so far out of reach is not tried (m)
 #define STRUCK_SHARE 0.97 // of the head's radius: nothing is struck outside it
 #define OTHER_SPOT 10     // as a difference of log speed
 #define OTHER_GRIP 20     // as a difference of log speed
 
-// hands that pass each other; chosen: sticks that play one head side by side are 14 mm apart
-#define NEAR_SPAN \
-    10.0 // (s) of a plan that is searched; chosen: longer than any motion, a wait may be endless
-#define NEAR_STEP 0.01   // between two looks (s)
-#define NEAR_GAP 0.003   // hands nearer than this are kept apart (m) ...
-#define CROSSED_GAP 0.05 // ... and crossed ones nearer by this
-#define CROSSED 0.02     // one tip is so far on the other's side (m)
-#define FAR_APART 0.6    // tips so far apart are not looked at (m); two sticks' and hands' lengths
-#define NEAR_BESIDE 0.2  // a way past is tried so long before and after, too (s)
-#define WAYS 2           // directions of a way past ...
-#define LIFT 0.08        // ... its length in these steps (m) ...
-#define LIFTS 4          // ... and up to so many
-#define QUICK_LIFT 60.0  // peak acceleration of a lift with time (m/s^2)
-#define STILL 0.03       // no lift so near before a touch (s)
-
-// where a tip rests (m); chosen: near enough to look at rest, too high to touch a ringing head; at
-// the height of the usual strike point, the hands as far apart as the shoulders
-#define REST_OVER 0.085     // the mallet over the head: a hit at mf comes within a quarter second
-#define REST_BACK (2.0 / 3) // from the centre towards the performer, of the radius
-#define REST_ASIDE 0.3      // to the hand's own side, of the radius ...
-#define REST_MOST_ASIDE 0.1 // ... and at most
-#define HOME_MOVED 1e-4     // a smaller change of the resting place moves nothing
+#define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
 typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME } plan_result;
@@ -145,14 +122,6 @@ static bool keep_inside(const himc_head_frame *head, double *x, double *y)
     return true;
 }
 
-/// The tip's position when it touches a head at (x, y).
-static himc_vec3 tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
-                        double y)
-{
-    return himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
-                          himc_head_frame_normal(head));
-}
-
 himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
     const himc_head_frame *head = &planner->drum[drum];
@@ -164,7 +133,7 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
                          "%s hand: %.3g %.3g is beyond the rim, struck inside it",
                          himc_hand_name(stroke->hand), asked_x, asked_y);
     return (himc_goal){.time = t,
-                       .spot = tip_at(planner, head, x, y),
+                       .spot = himc_planner_tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
                        .back = himc_vec3_scale(himc_head_frame_away(head), -1),
                        .gesture = bouncing_gesture(planner, stroke),
@@ -184,7 +153,7 @@ static void vary(const himc_planner *planner, timed_stroke *s)
     himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
     keep_inside(head, &at.x, &at.y);
     s->varied = true;
-    s->goal.spot = tip_at(planner, head, at.x, at.y);
+    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
     s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
     himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
     s->goal.back = himc_vec3_madd(himc_vec3_scale(s->goal.back, cos(v->turn)), sin(v->turn), aside);
@@ -299,54 +268,13 @@ static double beyond(const himc_planner *planner, himc_hand hand, const himc_goa
 
 bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, const himc_goal *goal)
 {
-    return beyond(planner, hand, goal) <= UNREACHED;
-}
-
-static himc_vec3 rest_over(const himc_planner *planner, himc_hand hand, int drum)
-{
-    const himc_head_frame *head = &planner->drum[drum];
-    double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
-    himc_vec3 at =
-        tip_at(planner, head, -REST_BACK * head->radius, hand == HIMC_LEFT ? aside : -aside);
-    return himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
-}
-
-static double azimuth(const himc_head_frame *head)
-{
-    return atan2(head->center.y, head->center.x);
-}
-
-/// The drum over which a hand rests: that of its last stroke, but the hands do not rest crossed.
-static int rest_drum(const himc_planner *planner, himc_hand hand)
-{
-    int left = planner->hand[HIMC_LEFT].drum, right = planner->hand[HIMC_RIGHT].drum;
-    bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
-    return (hand == HIMC_LEFT) != crossed ? left : right;
-}
-
-static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
-{
-    const himc_planner_config *c = &planner->config;
-    *place = rest_over(planner, hand, drum);
-    return planner->known[drum] && !(c->beyond && c->beyond(c->body, hand, *place) > UNREACHED);
-}
-
-/// Where a hand rests: over its drum or, out of its reach, over the first one in reach.
-static himc_vec3 rest_place(const himc_planner *planner, himc_hand hand)
-{
-    himc_vec3 place;
-    if (is_rest(planner, hand, rest_drum(planner, hand), &place))
-        return place;
-    for (int drum = 0; drum < HIMC_DRUMS; drum++)
-        if (is_rest(planner, hand, drum, &place))
-            return place;
-    return planner->config.rest[hand];
+    return beyond(planner, hand, goal) <= PLANNER_UNREACHED;
 }
 
 static void renew_home(himc_planner *planner, himc_hand hand)
 {
     planner_hand *h = &planner->hand[hand];
-    himc_vec3 home = h->targeted ? h->plan.home : rest_place(planner, hand);
+    himc_vec3 home = h->targeted ? h->plan.home : himc_planner_rest_place(planner, hand);
     if (himc_vec3_length(himc_vec3_sub(home, h->plan.home)) <= HOME_MOVED)
         return;
     h->plan.home = home;
@@ -358,7 +286,7 @@ void himc_planner_rest_again(himc_planner *planner)
     for (int i = 0; i < HIMC_HANDS; i++) {
         planner_hand *h = &planner->hand[i];
         if (!planner->begun && h->planned_count == 0 && h->plan.at_home && !h->targeted)
-            himc_hand_place(&h->plan, 0, rest_place(planner, (himc_hand)i));
+            himc_hand_place(&h->plan, 0, himc_planner_rest_place(planner, (himc_hand)i));
     }
 }
 
@@ -411,99 +339,6 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
            !himc_hand_can_follow(&s->written, &after.written);
 }
 
-/// A time in which the hands come near.
-typedef struct near_time {
-    double lack;     ///< what gaps lack of NEAR_GAP, over the time (m s)
-    double gap;      ///< least (m)
-    double from, to; ///< first and last time of a gap below NEAR_GAP (s)
-} near_time;
-
-static bool is_crossed(const himc_vec3 tip[HIMC_HANDS])
-{
-    himc_vec3 left = tip[HIMC_LEFT], right = tip[HIMC_RIGHT];
-    return left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
-}
-
-static void tips_at(const himc_planner *planner, double t, himc_vec3 tip[HIMC_HANDS])
-{
-    for (int i = 0; i < HIMC_HANDS; i++)
-        tip[i] = himc_hand_at(&planner->hand[i].plan, t).x;
-}
-
-static near_time find_near(const himc_planner *planner, double begin, double end, double step)
-{
-    near_time n = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL};
-    for (double t = begin; t < end; t += step) {
-        himc_vec3 tip[HIMC_HANDS];
-        tips_at(planner, t, tip);
-        if (himc_vec3_length(himc_vec3_sub(tip[HIMC_LEFT], tip[HIMC_RIGHT])) > FAR_APART)
-            continue;
-        double gap = planner->config.gap(planner->config.body, tip);
-        double lack = NEAR_GAP - gap + (is_crossed(tip) ? CROSSED_GAP : 0);
-        n.gap = fmin(n.gap, gap);
-        if (lack < 0)
-            continue;
-        n.lack += step * lack;
-        n.from = fmin(n.from, t);
-        n.to = t;
-    }
-    return n;
-}
-
-/// Ways past the other hand, in the order in which they are tried: over it, outside it, before it.
-static himc_vec3 way_past(himc_vec3 tip, int k)
-{
-    static const double share[WAYS][2] = {{1, 0}, {1, 0.7}};
-    double size = LIFT * (1 + k / WAYS), distance = hypot(tip.x, tip.y);
-    const double *s = share[k % WAYS];
-    return himc_vec3_make(size * s[1] * tip.x / distance, size * s[1] * tip.y / distance,
-                          size * s[0]);
-}
-
-static bool lift_past(himc_hand_plan *plan, double begin, double touch, const near_time *n,
-                      himc_vec3 way)
-{
-    double up = himc_move_time(himc_vec3_length(way), QUICK_LIFT);
-    double down = fmin(n->to, touch - STILL - up);
-    return himc_hand_lift(plan, fmax(begin, n->from - up), n->from, fmax(down, n->from), down + up,
-                          way);
-}
-
-/// Moves the hand past the other one where they would meet in what has just been planned, from
-/// `begin` (s) to the plan's end; the next touch is at `touch`. Of crossed hands the one that was
-/// lifted stays above. False if they meet nevertheless.
-static bool keep_clear(himc_planner *planner, himc_hand hand, double begin, double touch)
-{
-    himc_hand_plan *plan = &planner->hand[hand].plan;
-    double end = fmin(touch, planner->hand[other_hand(hand)].plan.end);
-    himc_vec3 tips[HIMC_HANDS], best = {0, 0, 0};
-    if (!planner->config.gap)
-        return true;
-    begin = fmax(begin, end - NEAR_SPAN);
-    near_time n = find_near(planner, begin, end, NEAR_STEP), least = n;
-    tips_at(planner, begin, tips);
-    if (n.lack == 0 || (is_crossed(tips) && planner->above != hand))
-        return n.gap >= 0;
-    himc_vec3 tip = himc_hand_at(plan, n.from).x;
-    double from = fmax(begin, n.from - NEAR_BESIDE), to = fmin(end, n.to + NEAR_BESIDE);
-    for (int k = 0; k < LIFTS * WAYS && least.lack > 0; k++) {
-        himc_vec3 way = way_past(tip, k);
-        int lifts = plan->lift.count;
-        if (!lift_past(plan, begin, touch, &n, way))
-            continue;
-        near_time now = find_near(planner, from, to, 2 * NEAR_STEP);
-        plan->lift.count = lifts;
-        if (now.lack >= least.lack)
-            continue;
-        least = now;
-        best = way;
-    }
-    if (himc_vec3_length(best) == 0)
-        return n.gap >= 0;
-    planner->above = hand;
-    return lift_past(plan, begin, touch, &n, best) && least.gap >= 0;
-}
-
 /// Appends a stroke to its hand's plan, if the hand can play it.
 static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
@@ -525,7 +360,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     planned->small = is_small(planner, s, since);
     h->drum = s->drum;
     h->targeted = false;
-    if (!keep_clear(planner, s->stroke.hand, begin, s->goal.time)) {
+    if (!himc_planner_keep_clear(planner, s->stroke.hand, begin, s->goal.time)) {
         char name[64];
         himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
                          name_of(s, name));
@@ -558,7 +393,7 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
             renew_home(planner, hand);
         double begin = h->plan.end;
         himc_hand_wait(&h->plan, until, more);
-        keep_clear(planner, hand, begin, h->plan.end);
+        himc_planner_keep_clear(planner, hand, begin, h->plan.end);
         return PLANNED;
     }
     take(planner, &next);

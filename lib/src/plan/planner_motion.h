@@ -1,11 +1,13 @@
 /// planner_motion.h: the state of the planner, and the functions that plan motion from it.
 ///
 /// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
-/// score, planner_notes.c the notes, planner_motion.c the hands and the clock, and planner_hits.c
+/// score, planner_notes.c the notes, planner_motion.c (with planner_clear.c and planner_rest.c) the hands
+/// and the clock, and planner_hits.c
 /// the strokes that are asked for while they happen.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
 
+#include "base/head_frame.h"
 #include "plan/follow.h"
 #include "plan/human.h"
 #include "plan/planner.h"
@@ -20,6 +22,8 @@
 /// Calls that carry no time change the plan from this long after the last advance (s); chosen: more
 /// than the longest period of advance, 10 ms.
 #define PLANNER_AHEAD 0.03
+
+#define PLANNER_UNREACHED 0.01 ///< a goal so far out of reach is not tried (m); chosen
 
 /// A stroke with its time and gesture, waiting to be planned or planned.
 typedef struct timed_stroke {
@@ -65,6 +69,14 @@ struct himc_planner {
     bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
+/// The tip's position when it touches a head at (x, y) (m). HIMC_RT.
+static inline himc_vec3 himc_planner_tip_at(const himc_planner *p, const himc_head_frame *head,
+                                            double x, double y)
+{
+    return himc_vec3_madd(himc_head_frame_to_world(head, x, y), p->config.mallet_radius,
+                          himc_head_frame_normal(head));
+}
+
 /// Both hands wait at rest.
 HIMC_RT void himc_planner_motion_init(himc_planner *planner);
 /// Drums or reach have changed: the hands rest elsewhere.
@@ -72,6 +84,14 @@ HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
+/// planner_rest.c: where a hand rests (m): over its drum or, out of its reach, over the first one in
+/// reach.
+HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
+/// planner_clear.c: moves the hand past the other one where they would meet in what has just been
+/// planned, from `begin` (s) to the plan's end; the next touch is at `touch` (s). Of crossed hands
+/// the one that was lifted stays above. False if they meet nevertheless.
+HIMC_RT bool himc_planner_keep_clear(himc_planner *planner, himc_hand hand, double begin,
+                                     double touch);
 /// True if the hand reaches a stroke's spot.
 HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand,
                                   const himc_goal *goal);
