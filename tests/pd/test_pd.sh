@@ -267,10 +267,13 @@ done
 "$pd_program" -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$externals" \
     -send "himc-test $PWD" -open reopen.pd >"$work/log" 2>&1 </dev/null &
 pd=$!
-memory() { # memory COUNT: the most Pd has held until so many patches have been opened (kB)
+memory() { # memory COUNT: the least Pd holds, patch closed, soon after opening so many (kB)
     for ((wait = 0; wait < 1200; wait++)); do
         if grep -q "^opened: $1\$" "$work/log"; then
-            awk '/VmHWM/ { print $2 }' /proc/$pd/status
+            for ((sample = 0; sample < 20; sample++)); do
+                awk '/VmRSS/ { print $2 }' /proc/$pd/status
+                sleep 0.007
+            done | sort -n | head -n 1
             return
         fi
         sleep 0.05
