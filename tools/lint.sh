@@ -40,7 +40,6 @@ sizes() {
     find lib tools pd-externals viewer mocap tests -name '*.[ch]' -o -name '*.cpp' | LC_ALL=C sort | LC_ALL=C xargs awk -f tools/sizes.awk
 }
 
-check "stray blanks and tabs" no_stray_whitespace
 check "includes and calls between rooms and files; who knows which library" rooms
 check "the public headers" door
 check "symbols of the shared library" shared_symbols
@@ -48,6 +47,7 @@ check "names the library shows its host" prefixed_symbols
 check "files are opened by base/file.c alone" one_opener
 check "sizes" sizes
 if [ $# -gt 0 ]; then
+    check "stray blanks and tabs" no_stray_whitespace
     check "layout (make format mends it)" clang-format --dry-run -Werror "$@"
     check "cppcheck" cppcheck -q -j2 --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
         --suppress=uninitvar --suppress=legacyUninitvar --suppress=missingInclude --suppress=checkersReport -Ilib -Ilib/src \
