@@ -169,6 +169,9 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
 
+/// The text of a score, borrowed, as a job. NULL without memory.
+himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
+
 // performance_command.c
 /// How a performance takes commands.
 extern const himc_runner himc_performance_runner;
