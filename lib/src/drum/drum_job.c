@@ -216,7 +216,8 @@ static drum_job *job_new(himc_drum *drum, const char *what, himc_error *error)
     return j;
 }
 
-himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command, himc_error *error)
+// the state of now into a file
+static himc_job *dump_job(const himc_drum *drum, const himc_command *command, himc_error *error)
 {
     himc_text_lines lines = {0};
     himc_drum_describe(drum, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
@@ -226,12 +227,25 @@ himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command,
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error)
 {
     if (command->id == HIMC_COMMAND_DRUM_DUMP)
-        return himc_drum_dump_job(drum, command, error);
+        return dump_job(drum, command, error);
     drum_job *j = job_new(drum, himc_command_table((int)command->id)->name, error);
     if (!j)
         return NULL;
     himc_command_copy(&j->command, command);
     return &j->job;
+}
+
+// `dump` without a file is answered by the host, with himc_drum_describe
+bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error)
+{
+    himc_command checked; // also one that was put together without the parser
+    if (!himc_command_check(&checked, HIMC_DRUM, command, error))
+        return false;
+    if (checked.id == HIMC_COMMAND_DRUM_DUMP && checked.count == 0)
+        return true;
+    if (checked.id == HIMC_COMMAND_DRUM_DUMP || checked.id == HIMC_COMMAND_DRUM_PRESET)
+        return himc_job_carry_out(himc_drum_job(drum, &checked, error), error);
+    return himc_drum_act(drum, &checked, error);
 }
 
 himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, himc_error *error)

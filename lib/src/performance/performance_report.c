@@ -333,13 +333,7 @@ himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_comma
 
 // info
 
-/// The receiver of the lines of `info`.
-typedef struct reader {
-    void (*line)(void *, const char *);
-    void *user;
-} reader;
-
-static void describe_player(const himc_performance *p, reader to)
+static void describe_player(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     const performance_settings *s = &p->settings;
@@ -354,7 +348,7 @@ static himc_word word(himc_command_id id, int choice)
     return himc_command_word(id, 0, choice);
 }
 
-static void describe_control(const himc_performance *p, reader to)
+static void describe_control(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     const performance_settings *s = &p->settings;
@@ -381,7 +375,7 @@ static const char *strength_word(const himc_controller_config *c)
     return c->human_strength ? "human" : any ? "as set" : "off";
 }
 
-static void describe_limits(const himc_performance *p, reader to)
+static void describe_limits(const himc_performance *p, himc_line_sink to)
 {
     char text[256];
     const himc_saturation_counts *s = &p->body->saturation;
@@ -401,7 +395,7 @@ static void describe_limits(const himc_performance *p, reader to)
     }
 }
 
-static void describe_strength(const himc_performance *p, reader to)
+static void describe_strength(const himc_performance *p, himc_line_sink to)
 {
     char text[256];
     const himc_saturation_counts *s = &p->body->saturation;
@@ -416,11 +410,11 @@ static void describe_strength(const himc_performance *p, reader to)
     }
 }
 
-// of a drum, to `user`, a reader
+// of a drum, to `user`, a sink
 static void describe_drum(void *user, const char *line)
 {
     char text[640];
-    reader *to = user;
+    himc_line_sink *to = user;
     snprintf(text, sizeof text, "drum %s", line);
     to->line(to->user, text);
 }
@@ -432,7 +426,7 @@ static void describe_silent_drum(void *user, const char *line)
     describe_drum(user, text);
 }
 
-static void describe_drums(const himc_performance *p, reader to)
+static void describe_drums(const himc_performance *p, himc_line_sink to)
 {
     for (int i = 0; i < p->drums.count; i++) {
         const drum_slot *slot = &p->drums.slot[i];
@@ -441,7 +435,7 @@ static void describe_drums(const himc_performance *p, reader to)
     }
 }
 
-static void describe_playing(const himc_performance *p, reader to)
+static void describe_playing(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
@@ -463,7 +457,7 @@ static void describe_playing(const himc_performance *p, reader to)
     to.line(to.user, text);
 }
 
-static void describe_peaks(const himc_performance *p, reader to)
+static void describe_peaks(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
@@ -484,14 +478,8 @@ static void describe_peaks(const himc_performance *p, reader to)
     to.line(to.user, text);
 }
 
-void himc_performance_describe(const himc_performance *p, himc_description what,
-                               void (*line)(void *, const char *), void *user)
+void himc_performance_inform(const himc_performance *p, himc_line_sink to)
 {
-    reader to = {line, user};
-    if (what == HIMC_DESCRIBE_STATE) {
-        himc_performance_dump(p, &(himc_line_sink){line, user});
-        return;
-    }
     describe_player(p, to);
     describe_control(p, to);
     describe_limits(p, to);

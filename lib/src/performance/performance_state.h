@@ -88,9 +88,10 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
 himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
                                            himc_error *error);
 
+/// The lines of `info`.
+void himc_performance_inform(const himc_performance *p, himc_line_sink to);
+
 // performance_dump.c
-/// The state as the lines of a score.
-void himc_performance_dump(const himc_performance *p, const himc_line_sink *to);
 /// The command `dump FILE` as a job; NULL without memory.
 himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
                                     himc_error *error);
