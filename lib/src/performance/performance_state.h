@@ -59,6 +59,7 @@ struct himc_performance {
     performance_body *body;
     performance_contacts contacts;
     performance_statistics statistics;
+    himc_energy energy; ///< at the last task tick, if rows of motion are asked for
     performance_recording recording;
     performance_written written;
     performance_events events;
@@ -74,6 +75,8 @@ static inline double step_time(const himc_performance *p)
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
 // performance_report.c
+/// Notes the energies at a task tick, before the step, if rows of motion are asked for.
+HIMC_RT void himc_performance_take_energy(himc_performance *p);
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 /// Writes the recording, reports it and ends it. If it cannot be written it continues.
