@@ -59,6 +59,7 @@ struct himc_performance {
     performance_body *body;
     performance_contacts contacts;
     performance_statistics statistics;
+    himc_energy energy; ///< at the last task tick, if rows of motion are asked for
     performance_recording recording;
     performance_written written;
     performance_events events;
@@ -74,6 +75,8 @@ static inline double step_time(const himc_performance *p)
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
 // performance_report.c
+/// Notes the energies at a task tick, before the step, if rows of motion are asked for.
+HIMC_RT void himc_performance_take_energy(himc_performance *p);
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 /// Writes the recording, reports it and ends it. If it cannot be written it continues.
@@ -85,9 +88,10 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
 himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
                                            himc_error *error);
 
+/// The lines of `info`.
+void himc_performance_inform(const himc_performance *p, himc_line_sink to);
+
 // performance_dump.c
-/// The state as the lines of a score.
-void himc_performance_dump(const himc_performance *p, const himc_line_sink *to);
 /// The command `dump FILE` as a job; NULL without memory.
 himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
                                     himc_error *error);
@@ -167,6 +171,9 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
 /// The command `score` as a job: all of the score, or nothing. NULL without memory.
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
+
+/// The text of a score, borrowed, as a job. NULL without memory.
+himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
 
 // performance_command.c
 /// How a performance takes commands.
