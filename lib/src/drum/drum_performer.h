@@ -118,6 +118,9 @@ HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *com
 /// Such a command as a job; the drum must outlive it. NULL without memory.
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error);
 
+/// A preset's lines, borrowed, as a job. NULL without memory.
+himc_job *himc_drum_state_job(himc_drum *drum, const char *state, himc_error *error);
+
 /// True if himc_drum_listen would take longer than an audio block can wait.
 HIMC_RT bool himc_drum_listening_takes_long(const himc_drum *drum);
 /// himc_drum_listen as a job; the drum must outlive it, but for `free`. NULL without memory.

@@ -14,6 +14,7 @@
 #define _GNU_SOURCE // setpriority of one thread is Linux's own
 #include "drum/drum_performer.h"
 #include "drum/membrane_probe.h"
+#include "head/modes.h"
 #include "himc/osc.h"
 #include "himc/body.h"
 #include "himc/membrane.h"

@@ -513,7 +513,12 @@ static bool run(void *receiver, const himc_command *c, int delay, himc_error *er
     return himc_performance_command(receiver, c, delay, error);
 }
 
-const himc_runner himc_performance_runner = {takes_long, run, job_of};
+static himc_job *state_job(void *receiver, const char *state, himc_error *error)
+{
+    return himc_performance_state_job(receiver, state, error);
+}
+
+const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job};
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)

@@ -11,6 +11,7 @@
 
 #include "capture/take.h"
 #include "midi/score_file.h"
+#include "plan/score.h"
 #include "performance/confine.h"
 
 #include <stdio.h>
@@ -45,6 +46,7 @@ typedef struct score_job {
     himc_performance *performance; ///< borrowed
     himc_command command;
     const char *path;
+    const char *text; ///< borrowed; the score, if it is in no file
     // of the performance, when the job was made
     himc_take_options options;
     himc_skeleton skeleton;
@@ -319,7 +321,8 @@ static bool prepare(himc_job *job, himc_error *error)
         return prepare_changes(j, error);
     free_drums(j);
     himc_score_free(j->score);
-    j->score = himc_score_load_in(j->command.folder, j->path, error);
+    j->score = j->text ? himc_score_parse(j->text, j->path, error)
+                       : himc_score_load_in(j->command.folder, j->path, error);
     return j->score && rehearse(j, error);
 }
 
@@ -608,8 +611,7 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     himc_error *error)
+static score_job *job_new(himc_performance *p, himc_error *error)
 {
     score_job *j = calloc(1, sizeof *j);
     if (!j) {
@@ -618,13 +620,32 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
     }
     j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
-    himc_command_copy(&j->command, command);
-    j->path = j->command.atom[0].symbol;
     copy_performance(j);
-    j->take = himc_performance_take_job(p, command, error);
+    j->take = himc_performance_take_trial(p, error);
     if (!j->take) {
         free_job(&j->job);
         return NULL;
     }
+    return j;
+}
+
+himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
+                                     himc_error *error)
+{
+    score_job *j = job_new(p, error);
+    if (!j)
+        return NULL;
+    himc_command_copy(&j->command, command);
+    j->path = j->command.atom[0].symbol;
+    return &j->job;
+}
+
+himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error)
+{
+    score_job *j = job_new(p, error);
+    if (!j)
+        return NULL;
+    j->path = "state";
+    j->text = state;
     return &j->job;
 }

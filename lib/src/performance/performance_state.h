@@ -59,6 +59,7 @@ struct himc_performance {
     performance_body *body;
     performance_contacts contacts;
     performance_statistics statistics;
+    himc_energy energy; ///< at the last task tick, if rows of motion are asked for
     performance_recording recording;
     performance_written written;
     performance_events events;
@@ -74,6 +75,8 @@ static inline double step_time(const himc_performance *p)
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
 // performance_report.c
+/// Notes the energies at a task tick, before the step, if rows of motion are asked for.
+HIMC_RT void himc_performance_take_energy(himc_performance *p);
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 /// Writes the recording, reports it and ends it. If it cannot be written it continues.
@@ -164,8 +167,10 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
 /// The command `take` as a job; NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
-/// True if that job could play another command's take, the first drum being at `place`, which may be
-/// NULL: there is none. Touches the job alone.
+/// A job to try takes with, as the performance is now; NULL without memory.
+himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error);
+/// True if it could play this command's take, the first drum being at `place`, which may be NULL:
+/// there is none. Touches the job alone.
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
                                const himc_head_frame *place, himc_error *error);
 /// Joint limits of a player with postures, as captured.
@@ -176,6 +181,9 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
 /// The command `score` as a job: all of the score, or nothing. NULL without memory.
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
+
+/// The text of a score, borrowed, as a job. NULL without memory.
+himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
 
 // performance_command.c
 /// How a performance takes commands.

@@ -19,7 +19,7 @@
 #define SCORE_STROKES_MAX 200000
 #define SCORE_LINES_MAX 10000
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
-#define LONGEST_ROLL 120.0             // (s) chosen: under 2000 strokes at 16 a second
+#define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 16 a second
 #define STROKE_INTERVAL_MIN \
     0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
 
