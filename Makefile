@@ -31,7 +31,8 @@ LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
 LIB_LIBS = -lode -lstdc++ -lpthread -lm
-LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
+LIBS     = $(AS_NEEDED) -lsndfile $(LIB_LIBS)
+AS_NEEDED = -Wl,--as-needed
 
 # what is built from what is there
 version    = $(shell sed -n 's/.*define HIMC_VERSION_$(1) //p' lib/himc/base.h)
@@ -39,12 +40,22 @@ MAJOR     := $(call version,MAJOR)
 VERSION   := $(MAJOR).$(call version,MINOR).$(call version,PATCH)
 LIBRARY   := $(BUILD)/libhimc.a
 SHARED    := $(BUILD)/libhimc.so.$(VERSION)
+LINK_SHARED = -shared -Wl,-soname,libhimc.so.$(MAJOR) -Wl,-Bsymbolic-functions -Wl,-z,defs $(AS_NEEDED)
+PD_ENDING := pd_linux
+# macOS, with clang as gcc: not tried on one (docs/pd.md)
+ifneq ($(findstring darwin,$(shell $(CC) -dumpmachine)),)
+LIB_LIBS    = -lode -lc++ -lm
+AS_NEEDED   =
+SHARED     := $(BUILD)/libhimc.$(VERSION).dylib
+LINK_SHARED = -dynamiclib -install_name @rpath/libhimc.$(VERSION).dylib
+PD_ENDING  := pd_darwin
+endif
 PKGCONFIG := $(BUILD)/himc.pc
 PROGRAM   := $(BUILD)/bin/himc$(EXE)
 VIEWER    := $(BUILD)/bin/himc-viewer
-EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
+EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.$(PD_ENDING),$(wildcard pd-externals/*~.c))
 # for Pd with samples of 64 bits, and for libpd with several instances
-EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.pd_linux=$(BUILD)/externals-64/%.linux-amd64-64.so)
+EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.$(PD_ENDING)=$(BUILD)/externals-64/%.linux-amd64-64.so)
 EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
 ROOMS     := system base body capture track plan midi control bank head drum performance osc
@@ -56,7 +67,7 @@ UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh tests/test_arm64.sh tests/test_windows.sh,$(wildcard tests/test_*.sh tests/pd/test_*.sh))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh $(addprefix tests/test_,arm64.sh windows.sh macos.sh libpd.sh),$(wildcard tests/test_*.sh tests/pd/test_*.sh))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -126,11 +137,28 @@ test-windows: all ## the same, run by wine: its strikes are those of Linux, in t
 	@tools/windows.sh $(BUILD)/windows/parts pd
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_windows.sh
 
+MACOS = $(abspath $(BUILD)/macos/parts)
+check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/macos; none of it has been run
+	@tools/deps.sh tools/deps-macos.txt
+	@tools/macos.sh $(BUILD)/macos/parts
+	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib \
+	    CPPFLAGS="-isystem $(MACOS)/root/include" CFLAGS="-Werror -Wno-unused-command-line-argument $(CFLAGS)"
+	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
+	@tests/test_macos.sh $(BUILD)/macos
+macos-here: $(PROGRAM) $(SHARED)
+	@echo "pd   $(BUILD)/externals"
+	$(call make_externals,$(BUILD)/externals extension=d_arm64 ARCHIVES=$(MACOS)/root/lib PDINCLUDEDIR=/usr/include/pd)
+
+deb: deps ## Debian packages (libhimc0, libhimc-dev, himc, pd-himc), in build/debian, held against lintian
+	@tools/deps.sh tools/deps-debian.txt
+	@tools/deb.sh $(BUILD)
+
 deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would
 	@tools/deps.sh tools/deps-package.txt
 	@$(MAKE) all externals-64
+	@$(MAKE) windows
 	@tools/package.sh $(BUILD) $(VERSION)
-	@tests/pd/test_package.sh $(BUILD)/package/*.dek
+	@HIMC_BUILD=$(BUILD) tests/pd/test_package.sh $(BUILD)/package/*.dek
 
 INSTALL = BUILD=$(BUILD) DESTDIR=$(DESTDIR) PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) PDEXTRA=$(PDEXTRA) VERSION=$(VERSION) tools/install.sh
 install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers)
@@ -255,6 +283,11 @@ test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd F
 	@HIMC_BUILD=$(BUILD) PD=$(NEWER) $(if $(filter 64,$(FLOATSIZE)),HIMC_EXTERNALS=$(abspath $(BUILD)/externals-64)) HIMC_LONG=1 JOBS=1 \
 	    tests/run.sh tests/pd/test_pd.sh
 
+test-libpd: deps ## a program with Pure Data and both objects in it, one and four instances: LIBPD=its/source (with pure-data)
+	@tools/deps.sh tools/deps-libpd.txt
+	@$(MAKE) all
+	@LIBPD=$(abspath $(LIBPD)) HIMC_BUILD=$(BUILD) TEST_TIMEOUT=1800 tests/run.sh tests/test_libpd.sh
+
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
 
@@ -335,7 +368,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: windows windows-here test-windows arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: deb test-libpd windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -344,11 +377,11 @@ say = @mkdir -p $(@D) $(if $(V),,&& echo "$(1) $@")
 
 $(LIBRARY): $(LIB_O)
 	$(call say,ar  )
-	$(Q)rm -f $@ && ar rcs $@ $^
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
 $(SHARED): $(LIB_O)
 	$(call say,link)
-	$(Q)$(LINK) -shared -Wl,-soname,libhimc.so.$(MAJOR) -Wl,-Bsymbolic-functions -Wl,-z,defs -Wl,--as-needed $^ $(LIB_LIBS) -o $@
+	$(Q)$(LINK) $(LINK_SHARED) $^ $(LIB_LIBS) -o $@
 
 # made anew each time, since it holds paths of the command line; touched only when it changes
 $(PKGCONFIG): tools/himc.pc.in FORCE

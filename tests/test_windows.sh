@@ -4,6 +4,7 @@
 : "${HIMC_BUILD:=build}"
 windows=$(realpath "$HIMC_BUILD/windows")
 here=$(realpath "$HIMC_BUILD")
+patch=$PWD/tests/pd/score.pd
 work=$(mktemp -d)
 export WINEPREFIX=$windows/wine WINEDEBUG=-all
 wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
@@ -52,29 +53,10 @@ check test_the_score_is_not_overwritten cmp score.txt "Pauken für zwei/Stück.t
 
 check test_dlls_need_pd_and_windows_alone [ -z "$(x86_64-w64-mingw32-objdump -p "$windows"/externals/himc/*.m_amd64 "$windows/bin/himc.exe" |
     sed -n 's/.*DLL Name: //p' | grep -viE '^(kernel32|msvcrt|user32|ws2_32|pd|advapi32)\.dll$')" ]
-cat >score.pd <<'EOF'
-#N canvas 0 0 400 300 12;
-#X obj 10 40 himc~ kettle;
-#X obj 10 70 membrane~ kettle 26;
-#X obj 10 110 print strike;
-#X obj 200 10 loadbang;
-#X obj 200 40 t b b;
-#X msg 200 70 tempo 120 \, stroke 0 right legato mf \, stroke 1 left accent f \, stroke 2 right staccato p rim \, play;
-#X msg 300 70 \; pd dsp 1;
-#X obj 200 110 delay 4000;
-#X msg 200 140 \; pd quit;
-#X connect 0 2 2 0;
-#X connect 3 0 4 0;
-#X connect 4 0 5 0;
-#X connect 4 0 7 0;
-#X connect 4 1 6 0;
-#X connect 5 0 0 0;
-#X connect 7 0 8 0;
-EOF
 play() { # play PATH_OF_EXTERNALS PD...
     path=$1
     shift
-    timeout 300 "$@" -nogui -stderr -noaudio -nomidi -r 48000 -batch -path "$path" -open score.pd 2>&1 </dev/null | tr -d '\r'
+    timeout 300 "$@" -nogui -stderr -noaudio -nomidi -r 48000 -batch -path "$path" -open "$patch" 2>&1 </dev/null | tr -d '\r'
 }
 play "$here/externals/himc" pd -nrt >here.log
 play "$windows/externals/himc" "$wine" "$windows/parts/pd/bin/pd.com" >there.log

@@ -1,0 +1,40 @@
+#!/bin/sh
+# Both objects as plain C files in a program that contains Pure Data (tests/libpd/embed.c): they say what they say in Debian's Pd,
+# alone and in four instances at once, a thread each; and no symbol of ours can clash. `make test-libpd LIBPD=path` runs it.
+: "${HIMC_BUILD:=build}"
+here=$(realpath "$HIMC_BUILD")
+dir=$here/libpd
+failures=0 tests=0
+
+check() { # check NAME CONDITION...
+    name=$1
+    shift
+    tests=$((tests + 1))
+    "$@" && echo "tests/test_libpd.sh:0:$name:PASS" || { failures=$((failures + 1)); echo "tests/test_libpd.sh:0:$name:FAIL: not so: $*"; }
+}
+build() { # build NAME OPTION...
+    kind=$1
+    shift
+    { cmake -S tests/libpd -B "$dir/$kind" -DLIBPD="$LIBPD" "$@" && cmake --build "$dir/$kind" -j "$(nproc)" --target embed; } \
+        >"$dir/$kind.log" 2>&1
+}
+mkdir -p "$dir"
+check test_program_builds build one
+check test_program_with_instances_builds build many -DPD_MULTI=ON
+check test_our_symbols_are_prefixed [ -z "$(nm -g --defined-only "$dir"/one/himc/libhimc*.a | awk 'NF == 3 { print $3 }' |
+    grep -vE '^(himc_|membrane_tilde_setup$|_Z.*10himc_eigen|_ZT|DW\.ref\.)')" ]
+cd tests/pd || exit 1
+pd -nrt -nogui -stderr -noaudio -nomidi -r 48000 -batch -path "$here/externals/himc" -open score.pd 2>&1 </dev/null |
+    grep '^strike: ' >"$dir/pd.txt"
+"$dir/one/embed" score.pd 4 2>/dev/null | grep '^strike: ' >"$dir/one.txt"
+check test_pd_strikes_three_times [ "$(grep -c '^strike: strike' "$dir/pd.txt")" = 3 ]
+check test_program_says_what_pd_says cmp "$dir/pd.txt" "$dir/one.txt"
+"$dir/many/embed" score.pd 4 4 2>/dev/null >"$dir/many.txt"
+for i in 0 1 2 3; do
+    awk -v i=$i '/^instance/ { now = $2 } now == i && /^strike: /' "$dir/many.txt" >"$dir/instance.txt"
+    check test_instance_${i}_says_what_pd_says cmp "$dir/pd.txt" "$dir/instance.txt"
+done
+
+echo "-----------------------"
+echo "$tests Tests $failures Failures 0 Ignored"
+[ $failures = 0 ]
