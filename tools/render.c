@@ -19,6 +19,7 @@
 // chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
+#define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest
 #define SILENCE 1e-4   // of the peak: 80 dB
 #define HEARD_BY_TWO 2 // channels, one for each ear
 #define BLOCK_MAX 8192 // samples; chosen: the longest block of Pd
@@ -227,8 +228,8 @@ static bool is_over(rendering *r, int rate)
         return false;
     if (!r->done_at)
         r->done_at = r->samples;
-    return (silent && r->samples > r->done_at) ||
-           (double)(r->samples - r->done_at) >= TAIL_SECONDS * rate;
+    double since = (double)(r->samples - r->done_at) / rate;
+    return (silent && since >= REST_SECONDS) || since >= TAIL_SECONDS;
 }
 
 /// Plays to the end; returns how long it took (s).
