@@ -209,7 +209,7 @@ report objects_with_nonsense_arguments_are_refused_with_a_line \
     "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
 membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 26]
 membrane~: argument 2: large, allowed: a diameter in inches
-membrane~: 4 arguments, allowed: NAME [INCHES [CHANNELS]]
+membrane~: 4 arguments, allowed: [-save] NAME [INCHES [CHANNELS]]
 membrane~: argument 3: loud, allowed: a number of channels
 membrane~: channels: 9, allowed 1 .. 8
 membrane~: channels: 1.5, allowed a whole number
