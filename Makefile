@@ -253,7 +253,7 @@ FLOATSIZE ?= 32
 test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd FLOATSIZE=32 or 64
 	@$(MAKE) all $(if $(filter 64,$(FLOATSIZE)),externals-64)
 	@HIMC_BUILD=$(BUILD) PD=$(NEWER) $(if $(filter 64,$(FLOATSIZE)),HIMC_EXTERNALS=$(abspath $(BUILD)/externals-64)) HIMC_LONG=1 JOBS=1 \
-	    tests/run.sh tests/pd/test_pd.sh
+	    tests/run.sh tests/pd/test_pd.sh tests/pd/test_patches.sh tests/pd/test_save.sh
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime

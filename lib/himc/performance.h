@@ -121,6 +121,7 @@ typedef struct himc_event {
     himc_strike strike;                       ///< of HIMC_EVENT_STRIKE
     double beat;                              ///< of HIMC_EVENT_BEAT
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE
+    bool minor; ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
 } himc_event;
 
 /// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and

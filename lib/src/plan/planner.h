@@ -39,6 +39,7 @@ typedef struct himc_hit {
 /// A line for the user.
 typedef struct himc_planner_note {
     char text[160];
+    bool minor; ///< all strokes are played
 } himc_planner_note;
 
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error);
