@@ -30,6 +30,25 @@ const himc_head_frame *himc_drums_frame(const performance_drums *d, int index)
     return himc_drum_head_frame(d->slot[index].drum);
 }
 
+const himc_head_axes *himc_drums_axes(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    const himc_head_frame *frame = himc_drums_frame(d, index);
+    if (!himc_head_frame_equal(&slot->seen, frame)) {
+        slot->seen = *frame;
+        slot->axes = himc_head_axes_of(frame);
+    }
+    return &slot->axes;
+}
+
+himc_vec3 himc_drums_local(performance_drums *d, int index, himc_vec3 point)
+{
+    const himc_head_axes *axes = himc_drums_axes(d, index);
+    himc_vec3 away = himc_vec3_sub(point, himc_drums_frame(d, index)->center);
+    return himc_vec3_make(himc_vec3_dot(away, axes->x), himc_vec3_dot(away, axes->y),
+                          himc_vec3_dot(away, axes->normal));
+}
+
 static bool is_clear(const performance_drums *d, int index, himc_vec3 center)
 {
     double radius = himc_drums_frame(d, index)->radius;
