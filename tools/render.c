@@ -9,6 +9,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "render_tables.h"
+#include "scene_record.h"
 
 #include <errno.h>
 #include <math.h>
@@ -30,7 +31,7 @@
 /// its noise strong.
 #define LISTENER "listener 2.2 0.4 1.3"
 
-enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
+enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, SCENE, MODE, LIMITS, TAKE };
 
 static const cli_option options[] = {
     {"output", 'o', "OUT.wav", "the sound of all drums, 32-bit float"},
@@ -41,6 +42,7 @@ static const cli_option options[] = {
      "drums' pickups, no ears (2)"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
     {"motion", 0, "F.csv", "a row every 4 ms: targets, sticks, joint angles, forces, elbows"},
+    {"scene", 0, "F.himc", "a recording for himc-viewer --play: motion, drums, strikes, sound"},
     {"mode", 0, "mode", "control pipeline (himc)"},
     {"limits", 0, "limits", "joint limits (off)"},
     CLI_TAKE_OPTIONS,
@@ -57,7 +59,8 @@ typedef struct job {
 /// The state of the rendering.
 typedef struct rendering {
     himc_performance *performance;
-    cli_file wav, strokes, motion;
+    cli_file wav, strokes, motion, scene;
+    scene_record *record; ///< NULL without a scene
     SNDFILE *sound;
     int channels;
     bool done;     ///< the performer has come to rest
@@ -82,11 +85,12 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                  .rate = 48000,
                  .block = 64,
                  .channels = HEARD_BY_TWO};
-    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION]};
+    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION], value[SCENE]};
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
-    for (int i = 0; i < 4; i++)
-        for (int k = i + 1; k < 4; k++)
+    enum { FILES = sizeof files / sizeof *files };
+    for (int i = 0; i < FILES; i++)
+        for (int k = i + 1; k < FILES; k++)
             if (cli_same_file(files[i], files[k]))
                 return himc_error_set(error, "%s: named twice, allowed are different files",
                                       files[k]);
@@ -177,6 +181,8 @@ static void take_events(rendering *r)
 {
     himc_event event;
     while (himc_performance_event(r->performance, &event)) {
+        if (r->record)
+            scene_record_event(r->record, &event);
         if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
             render_stroke_row(r->strokes.stream, &event.strike);
         else if (event.kind == HIMC_EVENT_NOTE) {
@@ -204,6 +210,15 @@ static void sum_drums(rendering *r, int channel, int n, float *out)
     }
 }
 
+static void take_row(void *rendering_, const himc_motion_row *row)
+{
+    rendering *r = rendering_;
+    if (r->motion.stream)
+        render_motion_row(r->motion.stream, row);
+    if (r->record)
+        scene_record_row(r->record, row);
+}
+
 static void play_block(rendering *r, int n)
 {
     float out[HEARD_BY_TWO * BLOCK_MAX];
@@ -215,6 +230,8 @@ static void play_block(rendering *r, int n)
         r->failed = errno ? errno : EIO;
     r->samples += (uint64_t)n;
     take_events(r);
+    if (r->record)
+        scene_record_block(r->record, out, n);
 }
 
 /// Called where a cell ends: true if nothing more can be heard.
@@ -250,7 +267,7 @@ static double play(rendering *r, const job *wanted)
     return elapsed;
 }
 
-/// All three files complete, or none of them.
+/// All files complete, or none of them.
 static bool keep_files(rendering *r, himc_error *error)
 {
     const char *path = r->wav.path;
@@ -263,18 +280,23 @@ static bool keep_files(rendering *r, himc_error *error)
     r->sound = NULL;
     if (!closed)
         return himc_error_set(error, "%s: cannot be written to its end", path);
-    return cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
-           cli_file_close(&r->motion, error) && cli_file_keep(&r->wav, error) &&
-           cli_file_keep(&r->strokes, error) && cli_file_keep(&r->motion, error);
+    bool recorded = scene_record_end(r->record, error);
+    r->record = NULL;
+    return recorded && cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
+           cli_file_close(&r->motion, error) && cli_file_close(&r->scene, error) &&
+           cli_file_keep(&r->wav, error) && cli_file_keep(&r->strokes, error) &&
+           cli_file_keep(&r->motion, error) && cli_file_keep(&r->scene, error);
 }
 
 static void close_all(rendering *r)
 {
     if (r->sound)
         sf_close(r->sound);
+    scene_record_end(r->record, NULL);
     cli_file_drop(&r->wav);
     cli_file_drop(&r->strokes);
     cli_file_drop(&r->motion);
+    cli_file_drop(&r->scene);
     himc_performance_free(r->performance);
 }
 
@@ -289,14 +311,20 @@ static bool open_all(rendering *r, const job *wanted, const char *const *value, 
     if (!r->performance || !prepare(r->performance, wanted, error) ||
         !open_sound(r, value[OUT], wanted, error) ||
         !cli_file_open(&r->strokes, value[STROKES], error) ||
-        !cli_file_open(&r->motion, value[MOTION], error))
+        !cli_file_open(&r->motion, value[MOTION], error) ||
+        !cli_file_open(&r->scene, value[SCENE], error))
+        return false;
+    if (r->scene.stream)
+        r->record = scene_record_begin(r->performance, r->scene.stream, wanted->source,
+                                       wanted->rate, wanted->channels, error);
+    if (r->scene.stream && !r->record)
         return false;
     if (r->strokes.stream)
         render_stroke_header(r->strokes.stream);
-    if (r->motion.stream) {
+    if (r->motion.stream)
         render_motion_header(r->motion.stream);
-        himc_performance_on_motion(r->performance, render_motion_row, r->motion.stream);
-    }
+    if (r->motion.stream || r->record)
+        himc_performance_on_motion(r->performance, take_row, r);
     return true;
 }
 

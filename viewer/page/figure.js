@@ -262,7 +262,7 @@ const parts = () => [
     [shoe("left"), "shoes"],
     [shoe("right"), "shoes"],
 ];
-const shirts = [
+export const shirts = [
     "#3f5f8c",
     "#8c3f45",
     "#3f7d62",
