@@ -198,6 +198,15 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
     return himc_command_parse(command, receiver, s->s_name, atom, count, error);
 }
 
+/* Takes a flag off the front of an object's arguments. */
+static inline bool take_flag(int *argc, t_atom **argv, const char *flag)
+{
+    if (*argc == 0 || (*argv)->a_type != A_SYMBOL || (*argv)->a_w.w_symbol != gensym(flag))
+        return false;
+    (*argc)--, (*argv)++;
+    return true;
+}
+
 /* Sends `selector` and the words of `line` as one message, without commas and semicolons, which
 mean something else in Pd. */
 static inline void outlet_words(t_outlet *outlet, const char *selector, const char *line)

@@ -1,4 +1,4 @@
-/* [membrane~ NAME [INCHES [CHANNELS]]]: a drum: a membrane that [himc~ NAME], a signal or a message
+/* [membrane~ [-save] [NAME [INCHES [CHANNELS]]]]: a drum: a membrane that [himc~ NAME], a signal or a message
 strikes.
 
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
@@ -21,6 +21,7 @@ head and sticks together, so the inlet's force plays on a second head beside it 
 displacement outlet follows x and y from block to block. */
 #include "drum-link.h"
 #include "layer.h"
+#include "saved-state.h"
 
 static t_class *membrane_class;
 
@@ -34,6 +35,7 @@ typedef struct t_membrane {
     t_outlet *x_messages;
     t_canvas *x_canvas; /* presets are beside its patch */
     int x_channels;
+    bool x_saves; /* its state in the patch */
 
     himc_loader *x_loader; /* for heads that take long to compute */
     t_clock *x_load;       /* looks for what it has loaded */
@@ -337,11 +339,41 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     return good;
 }
 
+static void membrane_save(t_gobj *object, t_binbuf *to)
+{
+    t_membrane *x = (t_membrane *)object;
+    t_saving saving = {&x->x_obj, x->x_canvas, to};
+    saved_object(&saving);
+    if (!x->x_saves)
+        return;
+    himc_loader_finish(x->x_loader);
+    binbuf_addv(to, "ss", gensym("#A"), gensym("state"));
+    himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, saved_line, &saving);
+    binbuf_addsemi(to);
+}
+
+/* The message that membrane_save has written. */
+static void membrane_saved(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
+{
+    (void)s;
+    himc_error error = {"state: out of memory"};
+    himc_load_target target = {.drum = x->x_link.l_drum};
+    char *state = saved_text(x->x_canvas, argc, argv);
+    bool good = state && himc_loader_restore(x->x_loader, &target, state, &error);
+    free(state);
+    x->x_saves = true;
+    membrane_changed(x, good ? NULL : error.text);
+}
+
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
 {
     himc_error error;
     if (s == gensym("info") && argc == 0)
         membrane_info(x);
+    else if (s == gensym("save") && saved_switch(&x->x_saves, argc, argv, &error))
+        return;
+    else if (s == gensym("save"))
+        pd_error(x, "membrane~: %s", error.text);
     else if (s == gensym("dump") && argc == 0)
         himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, membrane_state, x);
     else if (!membrane_command(x, s, argc, argv, &error))
@@ -386,7 +418,7 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
     if (wish->w_channels != floor(wish->w_channels))
         return himc_error_set(error, "channels: %g, allowed a whole number", wish->w_channels);
     return argc <= 3 ||
-           himc_error_set(error, "%d arguments, allowed: NAME [INCHES [CHANNELS]]", argc);
+           himc_error_set(error, "%d arguments, allowed: [-save] NAME [INCHES [CHANNELS]]", argc);
 }
 
 /* A drum with as many pickups as the object has outlets, and the head beside it. */
@@ -465,6 +497,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     double rate = sys_getsr();
     t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;
+    bool saves = take_flag(&argc, &argv, "-save");
     himc_loader *loader = himc_loader_new(&error);
     if (loader && membrane_arguments(argc, argv, &wish, &error))
         drum = membrane_make(&wish, rate, &layer, &error);
@@ -480,6 +513,8 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_load = clock_new(x, (t_method)membrane_load);
     x->x_canvas = canvas_getcurrent();
     x->x_channels = (int)wish.w_channels;
+    x->x_saves = saves;
+    saved_bind(&x->x_obj.ob_pd);
     x->x_clock = clock_new(x, (t_method)membrane_tick);
     x->x_fit_clock = clock_new(x, (t_method)membrane_fit_layer);
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
@@ -499,6 +534,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 static void membrane_free(t_membrane *x)
 {
     membrane_unbind(x);
+    saved_unbind(&x->x_obj.ob_pd);
     himc_loader_free(x->x_loader);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
@@ -522,5 +558,7 @@ void membrane_tilde_setup(void)
     CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);
     class_addmethod(membrane_class, (t_method)membrane_dsp, gensym("dsp"), A_CANT, A_NULL);
     class_addmethod(membrane_class, (t_method)membrane_name_free, gensym("name-free"), A_NULL);
+    class_addmethod(membrane_class, (t_method)membrane_saved, gensym("state"), A_GIMME, A_NULL);
     class_addanything(membrane_class, (t_method)membrane_anything);
+    class_setsavefn(membrane_class, membrane_save);
 }

@@ -209,7 +209,7 @@ report objects_with_nonsense_arguments_are_refused_with_a_line \
     "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
 membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 26]
 membrane~: argument 2: large, allowed: a diameter in inches
-membrane~: 4 arguments, allowed: NAME [INCHES [CHANNELS]]
+membrane~: 4 arguments, allowed: [-save] NAME [INCHES [CHANNELS]]
 membrane~: argument 3: loud, allowed: a number of channels
 membrane~: channels: 9, allowed 1 .. 8
 membrane~: channels: 1.5, allowed a whole number
@@ -267,10 +267,13 @@ done
 "$pd_program" -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$externals" \
     -send "himc-test $PWD" -open reopen.pd >"$work/log" 2>&1 </dev/null &
 pd=$!
-memory() { # memory COUNT: the most Pd has held until so many patches have been opened (kB)
+memory() { # memory COUNT: the least Pd holds, patch closed, soon after opening so many (kB)
     for ((wait = 0; wait < 1200; wait++)); do
         if grep -q "^opened: $1\$" "$work/log"; then
-            awk '/VmHWM/ { print $2 }' /proc/$pd/status
+            for ((sample = 0; sample < 20; sample++)); do
+                awk '/VmRSS/ { print $2 }' /proc/$pd/status
+                sleep 0.007
+            done | sort -n | head -n 1
             return
         fi
         sleep 0.05

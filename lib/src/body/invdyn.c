@@ -58,6 +58,14 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
     }
 }
 
+void himc_add_force(const himc_skeleton *skeleton, const himc_body_state *s, int segment,
+                    himc_vec3 at, himc_vec3 force, himc_vec3 torque[HIMC_JOINTS])
+{
+    for (int i = segment; i > 0; i = skeleton->segment[i].parent)
+        torque[i - 1] =
+            himc_vec3_add(torque[i - 1], himc_vec3_cross(himc_vec3_sub(at, s->origin[i]), force));
+}
+
 himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
                                 himc_hand hand, const himc_vec3 *relative)
 {

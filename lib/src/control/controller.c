@@ -84,15 +84,6 @@ static void release_forces(const himc_skeleton *skeleton, const himc_body_state 
     }
 }
 
-// a force at the tip as torques down the arm and the trunk
-static void add_tip_force(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
-                          himc_vec3 force, himc_vec3 torque[HIMC_JOINTS])
-{
-    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
-        torque[i - 1] = himc_vec3_add(
-            torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
-}
-
 // equation 2, implicit over the step, with or without feedforward of target velocity and gravity
 static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *s, const himc_reference *reference,
@@ -119,7 +110,8 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
             torque[j], himc_mat3_scale_along(&s->rotation[j + 1], resistance[j], relative[j]));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (reference->released[hand])
-            add_tip_force(skeleton, s, (himc_hand)hand, force[hand], torque);
+            himc_add_force(skeleton, s, himc_stick_segment((himc_hand)hand), s->tip[hand],
+                           force[hand], torque);
 }
 
 // stiffness and damping over inertia of one axis, as far as an implicit step lets them act

@@ -69,16 +69,17 @@ static void correct_hits(himc_performance *p, double t)
 static void step_dynamics(himc_performance *p, int n, double t, double h, bool tick)
 {
     contact_scene scene = scene_of(p);
-    himc_vec3 tip_force[HIMC_HANDS];
     if (!himc_body_observe(p->body, tick))
         recover(p);
+    if (tick)
+        himc_performance_take_energy(p);
     himc_contacts_finish(&p->contacts, &scene, t);
     correct_hits(p, t);
     himc_body_control(p->body, &p->motion->reference, h);
-    himc_contacts_advance(&p->contacts, &scene, n, tip_force);
+    himc_contacts_advance(&p->contacts, &scene, n, p->body->tip_force);
     measure(p, t, tick);
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, p->body->torque);
-    if (!himc_body_simulate(p->body, tip_force, t, h))
+    if (!himc_body_simulate(p->body, t, h))
         recover(p);
 }
 
@@ -86,11 +87,12 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
 static void step_kinematics(himc_performance *p, int n, double t, double h, bool tick)
 {
     contact_scene scene = scene_of(p);
-    himc_vec3 unused[HIMC_HANDS];
     if (!himc_body_follow(p->body, &p->motion->reference, h))
         recover(p);
+    if (tick)
+        himc_performance_take_energy(p);
     himc_contacts_finish(&p->contacts, &scene, t);
-    himc_contacts_advance(&p->contacts, &scene, n, unused);
+    himc_contacts_advance(&p->contacts, &scene, n, p->body->tip_force);
     measure(p, t, tick);
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
 }

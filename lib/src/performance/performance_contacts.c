@@ -15,6 +15,7 @@
 /// rests on the head: control acts on with a bounded force, and the plan is not changed. A press
 /// ends when the stick has clearly left the head, so a stick that rests has one contact.
 #include "performance/performance_contacts.h"
+#include "drum/contact.h"
 
 #include "body/dynamics.h"
 #include "base/head_frame.h"
@@ -58,11 +59,18 @@ void himc_contacts_clear(performance_contacts *c)
         c->hand[hand] = (stick_contact){.touching = false};
 }
 
-double himc_contacts_take_peak(performance_contacts *c, himc_hand hand)
+void himc_contacts_take_row(performance_contacts *c, himc_hand hand, double *peak, double *impulse)
 {
-    double peak = c->hand[hand].peak_row;
-    c->hand[hand].peak_row = 0;
-    return peak;
+    *peak = c->hand[hand].peak_row;
+    *impulse = c->hand[hand].impulse_row;
+    c->hand[hand].peak_row = c->hand[hand].impulse_row = 0;
+}
+
+double himc_contacts_felt_energy(const performance_contacts *c, himc_hand hand)
+{
+    const himc_stick *stick = &c->hand[hand].stick;
+    double kinetic = 0.5 * stick->mass * stick->velocity * stick->velocity;
+    return stick->touching ? himc_contact_energy(stick) - kinetic : 0;
 }
 
 static bool is_kinematic(const contact_scene *s)
@@ -335,6 +343,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     if (c->touching)
         c->strike.force = fmax(c->strike.force, c->stick.peak);
     c->strike.impulse += impulse;
+    c->impulse_row += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     himc_statistics_force(s->statistics, c->strike.force);
     himc_statistics_contact(s->statistics, c->strike.duration);
@@ -420,6 +429,14 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
     }
 }
 
+// work of a head on a stick from `a` to `b` (J): it is a free body under this and the hand's
+// acceleration, both constant in a sample
+static double work_on(const himc_stick *a, const himc_stick *b)
+{
+    double kinetic = 0.5 * b->mass * (b->velocity * b->velocity - a->velocity * a->velocity);
+    return kinetic - b->mass * b->acceleration * (b->height - a->height);
+}
+
 void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int n,
                            himc_vec3 tip_force[HIMC_HANDS])
 {
@@ -429,6 +446,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         memset(c->force[hand], 0, (size_t)n * sizeof(double));
     c->force_count = n;
     load_sticks(c, s, &near);
+    himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, &near);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         tip_force[hand] = himc_vec3_make(0, 0, 0);
@@ -436,6 +454,8 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             continue;
         double impulse =
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
+        if (impulse > 0)
+            himc_statistics_given(s->statistics, -work_on(&before[hand], &c->hand[hand].stick));
         himc_vec3 normal = himc_head_frame_normal(frame_of(s, near.below[hand]));
         tip_force[hand] = himc_vec3_scale(normal, impulse * s->clock->sample_rate / n);
     }
