@@ -30,13 +30,8 @@ COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring clang
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
-<<<<<<< HEAD
-LIB_LIBS = -lode -llo -lstdc++ -lpthread -lm
-LIBS     = -Wl,--as-needed -lsndfile -lz $(LIB_LIBS)
-=======
 LIB_LIBS = -lode -lstdc++ -lpthread -lm
-LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
->>>>>>> main
+LIBS     = -Wl,--as-needed -lsndfile -lz $(LIB_LIBS)
 
 # what is built from what is there
 version    = $(shell sed -n 's/.*define HIMC_VERSION_$(1) //p' lib/himc/base.h)
