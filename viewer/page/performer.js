@@ -150,8 +150,10 @@ function stool(envMap) {
     ];
     const cushion = new THREE.Mesh(
         new THREE.LatheBufferGeometry(
-            profile.map(p => new THREE.Vector2(...p)).reverse(),
-            40,
+            new THREE.SplineCurve(profile.map(p => new THREE.Vector2(...p)).reverse()).getPoints(
+                28,
+            ),
+            64,
         ).rotateX(Math.PI / 2),
         leather,
     );
