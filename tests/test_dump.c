@@ -258,13 +258,13 @@ static void test_a_state_is_restored_from_text_all_or_nothing(void)
     session_do(p, "stroke 0 right accent f");
     char *state = copy_of(state_of(p));
     himc_load_target performer = {.performance = other};
-    himc_load_target drum = {.drum = himc_performance_drum(other, 0)};
     TEST_ASSERT_TRUE_MESSAGE(himc_loader_restore(loader, &performer, state, &error), error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of(other));
     TEST_ASSERT_FALSE(himc_loader_restore(loader, &performer, "human 0.7;\nloop 3;\n", &error));
     TEST_ASSERT_EQUAL_STRING("state:2: loop: SWITCH: 3, allowed 0 .. 1, whole", error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of(other));
     free(state);
+    himc_load_target drum = {.drum = himc_performance_drum(other, 0)};
     state = copy_of(state_of_drum(drum.drum));
     TEST_ASSERT_FALSE(himc_loader_restore(loader, &drum, "mallet wood;\nnoise 7;\n", &error));
     TEST_ASSERT_EQUAL_STRING("state:2: noise: AMOUNT: 7, allowed 0 .. 1", error.text);

@@ -110,7 +110,8 @@ static void watch(himc_performance *p, double t)
     tell_planner_notes(p);
     long beat = himc_motion_beat(p->motion, t);
     if (beat >= 0)
-        himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_BEAT, .beat = (double)beat});
+        himc_events_add(&p->events,
+                        &(himc_event){.kind = HIMC_EVENT_BEAT, .beat = (double)beat, .time = t});
     if (!himc_contacts_any(&p->contacts) && himc_motion_done(p->motion, t)) {
         tell_planner_notes(p);
         himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_DONE});

@@ -232,3 +232,16 @@ bool himc_body_find_joint(const char *name, const char *command, int *joint, him
             himc_format(error->text + used, sizeof error->text - used, " %s", himc_joint_name(j));
     return false;
 }
+
+bool himc_body_find_segment(const char *name, int *segment, himc_error *error)
+{
+    for (*segment = HIMC_PELVIS + 1; *segment < HIMC_SEGMENTS; ++*segment)
+        if (strcmp(name, himc_segment_name(*segment)) == 0)
+            return true;
+    himc_error_set(error, "push: SEGMENT: %s, allowed", name);
+    size_t used = error ? strlen(error->text) : 0;
+    for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
+        used +=
+            himc_format(error->text + used, sizeof error->text - used, " %s", himc_segment_name(i));
+    return false;
+}

@@ -86,5 +86,7 @@ HIMC_RT long himc_body_limit_hits(const performance_body *body);
 
 /// The joint of that name; false if there is none, `command` begins the error.
 bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error);
+/// Finds a segment that can be pushed; false with the names allowed.
+bool himc_body_find_segment(const char *name, int *segment, himc_error *error);
 
 #endif

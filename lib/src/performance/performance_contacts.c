@@ -315,7 +315,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .velocity = -velocity,
                               .planned_time = planned ? next.time : NAN,
                               .planned_x = next.x,
-                              .planned_y = next.y};
+                              .planned_y = next.y,
+                              .beat = planned ? next.beat : NAN};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, nuance.text);
     if (bounced)

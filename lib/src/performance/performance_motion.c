@@ -217,12 +217,14 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         next.any =
             himc_track_current(m->track, hand, t - m->track_start, &next.time, &next.x, &next.y);
         next.time += m->track_start;
+        next.beat = NAN;
         strcpy(next.nuance, "none");
     } else if (himc_planner_current(m->planner, hand, t, &stroke, &next.drum, &next.time)) {
         next.any = next.drum < drums->count;
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.beat = stroke.beat;
         next.bounces = stroke.bounces;
         next.bounce_time = stroke.bounce_time;
     }

@@ -38,6 +38,7 @@ typedef struct planned_stroke {
     double time; ///< of contact (s)
     int drum;    ///< slot
     double x, y; ///< on the head (m)
+    double beat; ///< in the score, NaN of a take
     char nuance[HIMC_NAME_SIZE];
     int bounces;        ///< of a stroke that bounces (himc_stroke)
     double bounce_time; ///< (s)

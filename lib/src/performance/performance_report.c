@@ -286,7 +286,10 @@ static void free_recording(himc_job *job)
 static record_job *record_job_new(himc_performance *p, const himc_command *command,
                                   himc_error *error)
 {
-    record_job *j = calloc(1, sizeof *j);
+    record_job *j = NULL;
+    if (!himc_performance_allows(p->recording.file, command, error))
+        return NULL;
+    j = calloc(1, sizeof *j);
     if (!j) {
         himc_error_set(error, "record: out of memory");
         return NULL;
@@ -296,15 +299,25 @@ static record_job *record_job_new(himc_performance *p, const himc_command *comma
     return j;
 }
 
+bool himc_performance_allows(bool recording, const himc_command *c, himc_error *error)
+{
+    enum { STOP };
+    enum { PHYSICS };
+    if (c->id == HIMC_COMMAND_RATE)
+        return !recording || c->form == PHYSICS ||
+               himc_error_set(error,
+                              "rate task: %g: not while recording, allowed after record stop",
+                              c->atom[1].number);
+    if (recording && c->form != STOP)
+        return himc_error_set(error, "record: %s: already recording, allowed stop",
+                              c->atom[0].symbol);
+    return recording || c->form != STOP ||
+           himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
+}
+
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error)
 {
-    const char *path = command->atom[0].symbol;
-    if (p->recording.file) {
-        himc_error_set(error, "record: %s: already recording %s, allowed stop", path,
-                       himc_recording_path(p->recording.file));
-        return NULL;
-    }
     record_job *j = record_job_new(p, command, error);
     if (!j)
         return NULL;
@@ -317,10 +330,6 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
 himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
                                            himc_error *error)
 {
-    if (!p->recording.file) {
-        himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
-        return NULL;
-    }
     record_job *j = record_job_new(p, command, error);
     if (!j)
         return NULL;

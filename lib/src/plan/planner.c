@@ -78,11 +78,22 @@ void himc_planner_set_body(himc_planner *planner)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
+bool himc_planner_check_units(int count, int more, himc_error *error)
+{
+    return count + more <= HIMC_UNITS ||
+           himc_error_set(error, "units: %d more, allowed %d in all", more, HIMC_UNITS);
+}
+
+int himc_planner_units(const himc_planner *planner)
+{
+    return planner->unit_count;
+}
+
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
                             himc_error *error)
 {
-    if (planner->unit_count + count > HIMC_UNITS)
-        return himc_error_set(error, "units: %d more, allowed %d in all", count, HIMC_UNITS);
+    if (!himc_planner_check_units(planner->unit_count, count, error))
+        return false;
     memcpy(planner->unit + planner->unit_count, units, (size_t)count * sizeof *units);
     planner->unit_count += count;
     return true;
@@ -139,6 +150,12 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
                           himc_error *error)
 {
     return himc_planner_score_place(&planner->score, stroke, drum, error) >= 0;
+}
+
+bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strokes, int count,
+                           himc_error *error)
+{
+    return himc_planner_score_has_room(&planner->score, strokes, count, error);
 }
 
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum, himc_error *error)
@@ -286,7 +303,7 @@ double himc_planner_length(const himc_planner *planner)
 double himc_planner_next_start(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
-    double length = himc_planner_score_length(score);
+    double length = himc_planner_score_free_from(score);
     return score->playing
                ? fmax(length, ceil(himc_planner_score_beat_at(score, t + PREPARATION_TIME)))
                : length;

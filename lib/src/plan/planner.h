@@ -50,6 +50,10 @@ HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_
 
 #define HIMC_UNITS 256 ///< chosen: five nuances, two hands, and 25 strokes of each
 
+/// True if `more` units can be added to `count`; else the reason.
+bool himc_planner_check_units(int count, int more, himc_error *error);
+/// How many have been added since they were cleared.
+int himc_planner_units(const himc_planner *planner);
 /// Adds motion units (copied), to be played in place of the built-in strokes of their nuance and
 /// hand. False, and nothing added, if there would be more than HIMC_UNITS.
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
@@ -75,6 +79,10 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
+/// True if so many strokes can be added behind those of the score, as far as they are no rolls; else
+/// the reason.
+bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strokes, int count,
+                           himc_error *error);
 /// Replaces the tempo map (copied); beats must rise. While playing, the current beat stays where it
 /// is.
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
@@ -98,7 +106,7 @@ HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
 /// The whole beat after the last stroke, at which a loop begins again; 0 without strokes.
 HIMC_RT double himc_planner_length(const himc_planner *planner);
 /// First beat for another score that shall follow this one: its length, or a later beat if that is
-/// past or too near to prepare for at `t`.
+/// past, too near to prepare for at `t`, or so near to the last stroke that it could not be one.
 HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
 /// The tempo map (*count), borrowed.
 HIMC_RT const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count);
