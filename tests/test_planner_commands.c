@@ -63,7 +63,7 @@ static void test_fast_strokes_are_smaller_and_one_note_says_so(void)
 
 static void test_32_notes_are_kept_and_lost_ones_are_counted(void)
 {
-    himc_planner_note note, last = {""};
+    himc_planner_note note, last = {.text = ""};
     int count = 0;
     for (int i = 0; i < 40; i++) {
         himc_planner_clear(planner);
