@@ -49,6 +49,8 @@ EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
 ROOMS     := system base body capture track plan midi control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
+# the page in one file, for himc share, where the viewer can be built
+SHARE_O   := $(if $(EXE),,$(if $(wildcard /usr/share/javascript/three/three.module.js),$(patsubst %,$(BUILD)/viewer/%.o,pages recording scene share)))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
@@ -403,7 +405,7 @@ $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 
 $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
-	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
+	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
 
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )
@@ -444,7 +446,8 @@ $(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
 	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
 $(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
 
-$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
+$(BUILD)/tools/share.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
@@ -461,7 +464,7 @@ $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 
 # what of the viewer needs neither a socket nor a package of its own, for its tests
-VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o web.o),$(VIEWER_O))
+VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o share.o web.o),$(VIEWER_O))
 VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
 $(VIEWER_TESTS): $(VIEWER_PARTS)
 $(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h

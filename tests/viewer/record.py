@@ -106,6 +106,15 @@ def test_a_file_that_is_named_twice_is_refused():
     assert done.returncode == 1 and "named twice" in done.stderr, done.stderr
 
 
+def test_what_is_no_scene_is_not_shared():
+    for name, why in (("Makefile", "not a scene"), ("/nowhere.himc", "cannot be read")):
+        command = [HIMC, "share", name, "-o", path("page.html")]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1, done
+        assert why in done.stderr or "without three.js" in done.stderr, done.stderr
+        assert not os.path.exists(path("page.html"))
+
+
 if __name__ == "__main__":
     code = report.run(
         "tests/viewer/record.py",
