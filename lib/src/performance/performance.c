@@ -43,8 +43,7 @@ static void measure(himc_performance *p, double t, bool tick)
         if (himc_motion_is_idle(p->motion, (himc_hand)hand, t))
             continue;
         if (p->drums.count > 0) {
-            himc_vec3 over =
-                himc_head_frame_from_world(himc_drums_frame(&p->drums, c->drum), r->tip[hand].x);
+            himc_vec3 over = himc_drums_local(&p->drums, c->drum, r->tip[hand].x);
             double height = over.z - p->body->skeleton.mallet_radius;
             himc_statistics_height(&p->statistics, (himc_hand)hand, height, c->touching);
         }

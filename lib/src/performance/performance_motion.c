@@ -188,6 +188,26 @@ himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, dou
     return himc_planner_target(m->planner, hand, t);
 }
 
+static bool is_coming(const performance_motion *m, himc_hand hand, double time)
+{
+    return time > m->answered[hand] + REPLANNED && isfinite(time);
+}
+
+planned_contact himc_motion_next(const performance_motion *m, const performance_drums *drums,
+                                 himc_hand hand, double t)
+{
+    planned_contact next = {.any = false, .drum = 0};
+    double x, y;
+    if (himc_motion_tracks(m, hand)) {
+        next.any = himc_track_current(m->track, hand, t - m->track_start, &next.time, &x, &y);
+        next.time += m->track_start;
+    } else if (himc_planner_current(m->planner, hand, t, NULL, &next.drum, &next.time)) {
+        next.any = next.drum < drums->count;
+    }
+    next.any = next.any && is_coming(m, hand, next.time);
+    return next;
+}
+
 planned_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
                                   himc_hand hand, double t)
 {
@@ -208,7 +228,7 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         next.bounces = stroke.bounces;
         next.bounce_time = stroke.bounce_time;
     }
-    next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
+    next.any = next.any && is_coming(m, hand, next.time);
     return next;
 }
 
