@@ -51,6 +51,8 @@ ROOMS     := system base body capture track plan midi control bank head drum per
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
 # the page in one file, for himc share, where the viewer can be built
 SHARE_O   := $(if $(EXE),,$(if $(wildcard /usr/share/javascript/three/three.module.js),$(patsubst %,$(BUILD)/viewer/%.o,pages recording scene share)))
+# the sound card of himc play, where PortAudio is
+PORTAUDIO := $(if $(EXE)$(findstring aarch64,$(CC)),,$(wildcard /usr/include/portaudio.h /usr/local/include/portaudio.h))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
@@ -447,9 +449,10 @@ $(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
 $(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
 
 $(BUILD)/tools/share.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(BUILD)/tools/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
+	$(Q)$(LINK) $^ $(LIBS) $(if $(PORTAUDIO),-lportaudio) -o $@
 
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD; those of OSC listen with liblo
 $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)

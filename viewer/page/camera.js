@@ -60,7 +60,7 @@ export class View {
             Object.assign(this.goal, {
                 azimuth,
                 elevation,
-                distance: distance * narrow + 1.25 * this.spread,
+                distance: (distance * narrow + 1.25 * this.spread) * (1 + 2 * this.lift),
             });
             this.goal.target.set(...target);
             if (this.spread) this.goal.target.x += 0.35 * this.spread;

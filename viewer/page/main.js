@@ -24,7 +24,7 @@ const performers = new Map(),
 const PERFORMERS = 16, // as many as himc-viewer keeps
     DRUMS = 32,
     ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
-    LIFT = 0.1, // of the picture over the timeline, of the window's height
+    LIFT = 0.08, // of the picture over the timeline, of the window's height
     SECOND = 1000; // over which frames are counted (ms)
 const shown = { targets: false, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 0, script: 0, latency: null, render: 0 };
@@ -304,7 +304,7 @@ async function play(bytes, name) {
     panel.open(playback);
     panel.loading(null);
     view.lift = LIFT;
-    stage.resize(view);
+    dispatchEvent(new Event("resize"));
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
