@@ -30,7 +30,7 @@ COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring clang
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
-LIB_LIBS = -lode -llo -lstdc++ -lpthread -lm
+LIB_LIBS = -lode -lstdc++ -lpthread -lm
 LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
 
 # what is built from what is there
@@ -40,23 +40,23 @@ VERSION   := $(MAJOR).$(call version,MINOR).$(call version,PATCH)
 LIBRARY   := $(BUILD)/libhimc.a
 SHARED    := $(BUILD)/libhimc.so.$(VERSION)
 PKGCONFIG := $(BUILD)/himc.pc
-PROGRAM   := $(BUILD)/bin/himc
+PROGRAM   := $(BUILD)/bin/himc$(EXE)
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 # for Pd with samples of 64 bits, and for libpd with several instances
 EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.pd_linux=$(BUILD)/externals-64/%.linux-amd64-64.so)
 EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture track plan midi control bank head drum performance osc
+ROOMS     := system base body capture track plan midi control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
-TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
+TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh tests/test_arm64.sh,$(wildcard tests/test_*.sh tests/pd/test_*.sh))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh tests/test_arm64.sh tests/test_windows.sh,$(wildcard tests/test_*.sh tests/pd/test_*.sh))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -109,6 +109,22 @@ $(BUILD)/tools/render.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno
 test-arm64: all ## the same, run by qemu: its strikes and its sound are those of this machine
 	@$(MAKE) arm64
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_arm64.sh
+
+WINDOWS = $(abspath $(BUILD)/windows/parts/root)
+windows: deps ## program and externals for Windows, crossed by mingw-w64, in build/windows
+	@tools/deps.sh tools/deps-windows.txt
+	@tools/windows.sh $(BUILD)/windows/parts
+	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
+	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
+	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate evaluate_log trial pool"
+windows-here: $(PROGRAM)
+	@echo "pd   $(BUILD)/externals"
+	$(call make_externals,$(BUILD)/externals extension=m_amd64 ARCHIVES=$(WINDOWS)/lib PDBINDIR=$(WINDOWS)/lib PDINCLUDEDIR=/usr/include/pd)
+
+test-windows: all ## the same, run by wine: its strikes are those of Linux, in the program and in Pure Data
+	@$(MAKE) windows
+	@tools/windows.sh $(BUILD)/windows/parts pd
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_windows.sh
 
 deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would
 	@tools/deps.sh tools/deps-package.txt
@@ -319,7 +335,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: windows windows-here test-windows arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -368,7 +384,7 @@ $(BUILD)/viewer/%.o: viewer/%.c
 
 # names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
 # room base, the skeleton and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/base/%,$(LIB_O)))
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
@@ -385,7 +401,7 @@ $(VIEWER_O): $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
-$(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/base/%,$(LIB_O)))
+$(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
 
@@ -423,14 +439,19 @@ $(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
 # needs tools/deps-sound.txt
 $(BUILD)/tools/sound/loudness: private LIBS += -lebur128
 
+# names of files are UTF-8
+$(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
+	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
+$(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
+
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
-# a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD
+# a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD; those of OSC listen with liblo
 $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
+	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -llo -o $@
 
 # targets for arbitrary bytes: with clang's libFuzzer, or with a driver that mutates in the same way each time
 $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/fuzz/driver.o) $(LIBRARY)

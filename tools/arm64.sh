@@ -10,7 +10,7 @@ options="-q -o APT::Architectures::=$(dpkg --print-architecture) -o APT::Archite
     -o APT::Sandbox::User=$(id -un)"
 apt-get $options update >apt.log 2>&1
 cd packages
-for package in ode-dev ode8 ccd2 lo-dev lo7 sndfile1-dev sndfile1 flac12 vorbis0a vorbisenc2 opus0 ogg0 mpg123-0 mp3lame0; do
+for package in ode-dev ode8 ccd2 sndfile1-dev sndfile1 flac12 vorbis0a vorbisenc2 opus0 ogg0 mpg123-0 mp3lame0; do
     apt-get $options download "lib$package:arm64" >>../apt.log 2>&1 || { cat ../apt.log >&2; exit 1; }
 done
 for package in *.deb; do

@@ -6,6 +6,7 @@
 #define _XOPEN_SOURCE 700
 #include "base/file.h"
 #include "cli.h"
+#include "system/files.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -13,8 +14,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
+
+#ifndef SIGHUP // Windows has no terminal that hangs up
+#define SIGHUP SIGTERM
+#endif
 
 /// The temporary names an interrupt must remove; written before, cleared after the file exists.
 #define FILES_OPEN 8
@@ -84,7 +88,7 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
     bool exists = !stat(path, &status);
     mode_t mask = umask(0);
     umask(mask);
-    char *real = exists ? realpath(path, NULL) : NULL;
+    char *real = exists ? himc_system_real_path(path) : NULL;
     int length = snprintf(file->path, sizeof file->path, "%s", real ? real : path);
     free(real);
     if (length >= (int)sizeof file->path)
@@ -124,7 +128,7 @@ bool cli_file_keep(cli_file *file, himc_error *error)
 {
     if (!file->temp[0])
         return true;
-    if (rename(file->temp, file->path)) {
+    if (!himc_system_rename(file->temp, file->path)) {
         file_error(file->path, error);
         cli_file_drop(file);
         return false;
@@ -146,32 +150,25 @@ void cli_file_drop(cli_file *file)
     file->temp[0] = '\0';
 }
 
-static bool same_inode(const struct stat *a, const struct stat *b)
-{
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
-}
-
 // the folder that a file is or will be in; returns the file's own name
-static const char *stat_folder(const char *path, struct stat *folder, bool *there)
+static const char *folder_of(const char *path, char folder[PATH_MAX])
 {
-    char text[PATH_MAX];
     const char *slash = strrchr(path, '/');
     int length = slash ? (int)(slash - path) + 1 : 0;
-    snprintf(text, sizeof text, "%.*s.", length, path);
-    *there = !stat(text, folder);
+    snprintf(folder, PATH_MAX, "%.*s.", length, path);
     return path + length;
 }
 
 bool cli_same_file(const char *a, const char *b)
 {
     struct stat first, second;
+    char folder[2][PATH_MAX];
     if (!a || !b)
         return false;
     if (!strcmp(a, b))
         return true;
     if (!stat(a, &first) && !stat(b, &second))
-        return S_ISREG(first.st_mode) && same_inode(&first, &second);
-    bool there[2];
-    const char *name[2] = {stat_folder(a, &first, &there[0]), stat_folder(b, &second, &there[1])};
-    return there[0] && there[1] && same_inode(&first, &second) && !strcmp(name[0], name[1]);
+        return S_ISREG(first.st_mode) && himc_system_same(a, b);
+    const char *name[2] = {folder_of(a, folder[0]), folder_of(b, folder[1])};
+    return !strcmp(name[0], name[1]) && himc_system_same(folder[0], folder[1]);
 }

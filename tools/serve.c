@@ -4,12 +4,12 @@
 /// The blocks after a late one start at once until they have caught up; a delay of more than 0.2 s
 /// is given up and counted. No sound goes out: sound managers on other machines play the
 /// `/himc/strike` messages.
-#define _GNU_SOURCE // sched_setscheduler
+#define _POSIX_C_SOURCE 200809L // nanosleep
 #include "cli.h"
 #include "himc/osc.h"
+#include "system/thread.h"
 
 #include <math.h>
-#include <sched.h>
 #include <signal.h>
 #include <string.h>
 #include <time.h>
@@ -40,8 +40,9 @@ static void stop(int signal)
 
 static void sleep_until(double t)
 {
-    struct timespec at = {(time_t)t, (long)((t - floor(t)) * 1e9)};
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
+    double rest = t - cli_now();
+    if (rest > 0)
+        nanosleep(&(struct timespec){(time_t)rest, (long)((rest - floor(rest)) * 1e9)}, NULL);
 }
 
 static himc_performance *prepare(const char *source, himc_error *error)
@@ -126,11 +127,9 @@ static int run(const cli_arguments *arguments)
         himc_performance_free(performance);
         return cli_fail(&cli_serve, "%s", error.text);
     }
-    struct sigaction action = {.sa_handler = stop};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    // if the system allows it, ahead of processes without a deadline
-    sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &(struct sched_param){10});
+    signal(SIGINT, stop);
+    signal(SIGTERM, stop);
+    himc_system_go_first();
     himc_performance_on_tick(performance, himc_osc_tick, osc);
     printf("listening at %s port %d\n", config.bind ? config.bind : "127.0.0.1",
            himc_osc_port(osc));
