@@ -148,6 +148,8 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
 bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_c3d_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_csv_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_bvh_write(FILE *file, const himc_take *take, himc_error *error);
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error);
 bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error);
@@ -161,8 +163,12 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
 /// As himc_take_load; with a `folder` (not NULL) only a file inside it (himc_file_load_in).
 himc_take *himc_take_load_in(const char *folder, const char *path, const himc_take_options *options,
                              himc_error *error);
-/// True if the suffix is that of a format; else the error line lists the formats.
-bool himc_take_is_format(const char *path, himc_error *error);
+/// Suffixes of the formats that are read.
+#define HIMC_TAKE_SUFFIXES ".bvh .c3d .trc .csv .tsv"
+/// True if the suffix is that of a motion capture, also of one that is refused.
+bool himc_take_is_capture(const char *path);
+/// True if the suffix is that of a format that is written; else the error line lists them.
+bool himc_take_can_save(const char *path, himc_error *error);
 
 // Recordings: recording.c.
 
