@@ -31,7 +31,7 @@ LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
 LIB_LIBS = -lode -lstdc++ -lpthread -lm
-LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
+LIBS     = -Wl,--as-needed -lsndfile -lz $(LIB_LIBS)
 
 # what is built from what is there
 version    = $(shell sed -n 's/.*define HIMC_VERSION_$(1) //p' lib/himc/base.h)
@@ -155,8 +155,8 @@ view: deps ## build the viewer and show the improvisation in the browser
 	@tools/deps.sh tools/deps-viewer.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
-	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
-	$(VIEWER) --play $(BUILD)/demo/view.csv
+	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
+	$(VIEWER) --play $(BUILD)/demo/view.himc
 
 # the picture of `make still`: the camera (stage front side top eye) and the time (s)
 CAMERA ?= stage
@@ -165,8 +165,8 @@ still: deps ## a picture of it, by a browser without a window, in build/demo/sti
 	@tools/deps.sh tools/deps-viewer.txt tools/deps-browser.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
-	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
-	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png $(AT) $(CAMERA)
+	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
+	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.himc $(BUILD)/demo/still.png $(AT) $(CAMERA)
 
 viewer: ## the viewer alone, build/bin/himc-viewer
 	@tools/deps.sh tools/deps-viewer.txt
@@ -462,7 +462,7 @@ $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(L
 # targets for arbitrary bytes: with clang's libFuzzer, or with a driver that mutates in the same way each time
 $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/fuzz/driver.o) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
+	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -llo -o $@
 
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 

@@ -11,6 +11,7 @@
 #include "cli.h"
 #include "motion_table.h"
 #include "render_tables.h"
+#include "scene_record.h"
 
 #include <errno.h>
 #include <math.h>
@@ -41,6 +42,7 @@ enum {
     STROKES,
     MOTION,
     COLUMNS,
+    SCENE,
     MODE,
     LAW,
     SOLVER,
@@ -61,6 +63,7 @@ static const cli_option options[] = {
     {"motion", 0, "F", "a row every 4 ms, as CSV, or for NumPy if F ends with .npz"},
     {"columns", 0, "LIST",
      "what is in it: groups like tips,torques,energy, or all; help lists them"},
+    {"scene", 0, "F.himc", "a recording for himc-viewer --play: motion, drums, strikes, sound"},
     {"mode", 0, "mode", "control pipeline (himc)"},
     {"law", 0, "law", "inverse dynamics (computed-torque)"},
     {"solver", 0, "solver", "inverse kinematics (dls)"},
@@ -82,8 +85,9 @@ typedef struct job {
 /// The state of the rendering.
 typedef struct rendering {
     himc_performance *performance;
-    cli_file wav, strokes, motion;
-    motion_table *rows; ///< NULL without --motion
+    cli_file wav, strokes, motion, scene;
+    motion_table *rows;   ///< NULL without --motion
+    scene_record *record; ///< NULL without --scene
     SNDFILE *sound;
     int channels;
     bool done;     ///< the performer has come to rest
@@ -109,13 +113,14 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                  .channels = HEARD_BY_TWO};
     if (!out->source)
         return false;
-    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION]};
+    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION], value[SCENE]};
+    enum { FILES = sizeof files / sizeof *files };
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
     if (value[COLUMNS] && !value[MOTION])
         return himc_error_set(error, "--columns: no --motion F given");
-    for (int i = 0; i < 4; i++)
-        for (int k = i + 1; k < 4; k++)
+    for (int i = 0; i < FILES; i++)
+        for (int k = i + 1; k < FILES; k++)
             if (cli_same_file(files[i], files[k]))
                 return himc_error_set(error, "%s: named twice, allowed are different files",
                                       files[k]);
@@ -229,6 +234,8 @@ static void take_events(rendering *r)
 {
     himc_event event;
     while (himc_performance_event(r->performance, &event)) {
+        if (r->record)
+            scene_record_event(r->record, &event);
         if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
             render_stroke_row(r->strokes.stream, &event.strike);
         else if (event.kind == HIMC_EVENT_NOTE) {
@@ -259,7 +266,10 @@ static void sum_drums(rendering *r, int channel, int n, float *out)
 static void take_row(void *user, const himc_motion_row *row)
 {
     rendering *r = user;
-    motion_table_row(r->rows, row);
+    if (r->rows)
+        motion_table_row(r->rows, row);
+    if (r->record)
+        scene_record_row(r->record, row);
 }
 
 static void play_block(rendering *r, int n)
@@ -273,6 +283,8 @@ static void play_block(rendering *r, int n)
         r->failed = errno ? errno : EIO;
     r->samples += (uint64_t)n;
     take_events(r);
+    if (r->record)
+        scene_record_block(r->record, out, n);
 }
 
 /// Called where a cell ends: true if nothing more can be heard.
@@ -308,7 +320,7 @@ static double play(rendering *r, const job *wanted)
     return elapsed;
 }
 
-/// All three files complete, or none of them.
+/// All files complete, or none of them.
 static bool keep_files(rendering *r, himc_error *error)
 {
     const char *path = r->wav.path;
@@ -323,18 +335,23 @@ static bool keep_files(rendering *r, himc_error *error)
         return himc_error_set(error, "%s: cannot be written to its end", path);
     if (r->rows && !motion_table_end(r->rows, error))
         return false;
-    return cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
-           cli_file_close(&r->motion, error) && cli_file_keep(&r->wav, error) &&
-           cli_file_keep(&r->strokes, error) && cli_file_keep(&r->motion, error);
+    bool recorded = scene_record_end(r->record, error);
+    r->record = NULL;
+    return recorded && cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
+           cli_file_close(&r->motion, error) && cli_file_close(&r->scene, error) &&
+           cli_file_keep(&r->wav, error) && cli_file_keep(&r->strokes, error) &&
+           cli_file_keep(&r->motion, error) && cli_file_keep(&r->scene, error);
 }
 
 static void close_all(rendering *r)
 {
     if (r->sound)
         sf_close(r->sound);
+    scene_record_end(r->record, NULL);
     cli_file_drop(&r->wav);
     cli_file_drop(&r->strokes);
     cli_file_drop(&r->motion);
+    cli_file_drop(&r->scene);
     motion_table_free(r->rows);
     himc_performance_free(r->performance);
 }
@@ -350,16 +367,25 @@ static bool open_all(rendering *r, const job *wanted, const char *const *value, 
     if (!r->performance || !prepare(r->performance, wanted, error) ||
         !open_sound(r, value[OUT], wanted, error) ||
         !cli_file_open(&r->strokes, value[STROKES], error) ||
-        !cli_file_open(&r->motion, value[MOTION], error))
+        !cli_file_open(&r->motion, value[MOTION], error) ||
+        !cli_file_open(&r->scene, value[SCENE], error))
+        return false;
+    if (r->scene.stream)
+        r->record = scene_record_begin(r->performance, r->scene.stream, wanted->source,
+                                       wanted->rate, wanted->channels, error);
+    if (r->scene.stream && !r->record)
         return false;
     if (r->strokes.stream)
         render_stroke_header(r->strokes.stream);
     if (r->motion.stream) {
         r->rows = motion_table_new(r->motion.stream, motion_table_is_numpy(value[MOTION]),
                                    value[COLUMNS], error);
-        himc_performance_on_motion(r->performance, take_row, r);
+        if (!r->rows)
+            return false;
     }
-    return !r->motion.stream || r->rows;
+    if (r->rows || r->record)
+        himc_performance_on_motion(r->performance, take_row, r);
+    return true;
 }
 
 static int run(const cli_arguments *arguments)

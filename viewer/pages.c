@@ -31,7 +31,10 @@
     SCRIPT(FILE, strike)                                                   \
     SCRIPT(FILE, stage)                                                    \
     SCRIPT(FILE, camera)                                                   \
-    SCRIPT(FILE, motion)                                                   \
+    SCRIPT(FILE, scene)                                                    \
+    SCRIPT(FILE, playback)                                                 \
+    SCRIPT(FILE, sound)                                                    \
+    SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \
     FILE(skeleton, "/skeleton.js", "text/javascript", MADE "/skeleton.js") \

@@ -113,13 +113,15 @@ typedef struct himc_strike {
     double planned_time;         ///< of the planned stroke (s), NaN without one
     double planned_x;            ///< of the planned stroke, on the head (m)
     double planned_y;            ///< of the planned stroke, on the head (m)
+    double beat;                 ///< of the planned stroke in the score, NaN without one
 } himc_strike;
 
 /// Something that has happened; the fields of its kind are valid.
 typedef struct himc_event {
     himc_event_kind kind;                     ///< which fields are valid
     himc_strike strike;                       ///< of HIMC_EVENT_STRIKE
-    double beat;                              ///< of HIMC_EVENT_BEAT
+    double beat;                              ///< of HIMC_EVENT_BEAT ...
+    double time;                              ///< ... and when it began (s, as of a strike)
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE
 } himc_event;
 

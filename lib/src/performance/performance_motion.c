@@ -188,6 +188,26 @@ himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, dou
     return himc_planner_target(m->planner, hand, t);
 }
 
+static bool is_coming(const performance_motion *m, himc_hand hand, double time)
+{
+    return time > m->answered[hand] + REPLANNED && isfinite(time);
+}
+
+planned_contact himc_motion_next(const performance_motion *m, const performance_drums *drums,
+                                 himc_hand hand, double t)
+{
+    planned_contact next = {.any = false, .drum = 0};
+    double x, y;
+    if (himc_motion_tracks(m, hand)) {
+        next.any = himc_track_current(m->track, hand, t - m->track_start, &next.time, &x, &y);
+        next.time += m->track_start;
+    } else if (himc_planner_current(m->planner, hand, t, NULL, &next.drum, &next.time)) {
+        next.any = next.drum < drums->count;
+    }
+    next.any = next.any && is_coming(m, hand, next.time);
+    return next;
+}
+
 planned_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
                                   himc_hand hand, double t)
 {
@@ -197,16 +217,18 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         next.any =
             himc_track_current(m->track, hand, t - m->track_start, &next.time, &next.x, &next.y);
         next.time += m->track_start;
+        next.beat = NAN;
         strcpy(next.nuance, "none");
     } else if (himc_planner_current(m->planner, hand, t, &stroke, &next.drum, &next.time)) {
         next.any = next.drum < drums->count;
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.beat = stroke.beat;
         next.bounces = stroke.bounces;
         next.bounce_time = stroke.bounce_time;
     }
-    next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
+    next.any = next.any && is_coming(m, hand, next.time);
     return next;
 }
 

@@ -158,7 +158,7 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
 
 /// The current stroke of a hand at `t`, its drum and the planned time of contact: the stroke to be
 /// played next, until 50 ms after its time or half way to the one after it. The spot of a varied
-/// stroke is where it will be played. False if there is none.
+/// stroke is where it will be played; `stroke` may be NULL. False if there is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 
