@@ -3,7 +3,7 @@
 /// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
 /// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
 /// that the link stays and its file changes.
-#define _XOPEN_SOURCE 700
+#define _DEFAULT_SOURCE // mkstemps
 #include "base/file.h"
 #include "cli.h"
 #include "system/files.h"
@@ -84,6 +84,12 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
         return true;
     if (!path[0])
         return himc_error_set(error, "\"\": no file has an empty name");
+    if (cli_is_standard(path)) {
+        file->standard = true;
+        file->path[0] = '-';
+        file->stream = tmpfile();
+        return file->stream || file_error("/tmp", error);
+    }
     struct stat status;
     bool exists = !stat(path, &status);
     mode_t mask = umask(0);
@@ -109,7 +115,7 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
 
 bool cli_file_close(cli_file *file, himc_error *error)
 {
-    if (!file->stream)
+    if (!file->stream || file->standard)
         return true;
     errno = 0;
     bool bad = fflush(file->stream) || ferror(file->stream);
@@ -124,8 +130,25 @@ bool cli_file_close(cli_file *file, himc_error *error)
     return false;
 }
 
+// all of a nameless file to the standard output
+static bool copy_out(cli_file *file, himc_error *error)
+{
+    char bytes[65536];
+    size_t size;
+    errno = 0;
+    rewind(file->stream);
+    while ((size = fread(bytes, 1, sizeof bytes, file->stream)) > 0)
+        fwrite(bytes, 1, size, stdout);
+    bool good = !ferror(file->stream) && !fflush(stdout) && !ferror(stdout);
+    int fault = errno ? errno : EIO;
+    cli_file_drop(file);
+    return good || himc_error_set(error, "standard output: %s", strerror(fault));
+}
+
 bool cli_file_keep(cli_file *file, himc_error *error)
 {
+    if (file->standard && file->stream)
+        return copy_out(file, error);
     if (!file->temp[0])
         return true;
     if (!himc_system_rename(file->temp, file->path)) {
@@ -171,4 +194,61 @@ bool cli_same_file(const char *a, const char *b)
         return S_ISREG(first.st_mode) && himc_system_same(a, b);
     const char *name[2] = {folder_of(a, folder[0]), folder_of(b, folder[1])};
     return !strcmp(name[0], name[1]) && himc_system_same(folder[0], folder[1]);
+}
+
+bool cli_is_standard(const char *path)
+{
+    return path && !strcmp(path, "-");
+}
+
+// where the standard input is kept, until the program ends
+static char input[64];
+
+static void remove_input(void)
+{
+    unlink(input);
+    forget(input);
+}
+
+// by its first bytes; anything else is a score
+static const char *suffix_of(const char *bytes, size_t size)
+{
+    static const struct {
+        const char *begin, *suffix;
+    } known[] = {{"HIERARCHY", ".bvh"},
+                 {"PathFileType", ".trc"},
+                 {"MThd", ".mid"},
+                 {"Trajectories", ".csv"},
+                 {"NO_OF_FRAMES", ".tsv"}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (size >= strlen(known[i].begin) &&
+            !memcmp(bytes, known[i].begin, strlen(known[i].begin)))
+            return known[i].suffix;
+    return size > 1 && bytes[1] == 0x50 && (unsigned char)bytes[0] < 8 ? ".c3d" : ".txt";
+}
+
+const char *cli_input(const char *operand, himc_error *error)
+{
+    char bytes[65536];
+    if (!cli_is_standard(operand))
+        return operand;
+    size_t size = fread(bytes, 1, sizeof bytes, stdin);
+    const char *suffix = suffix_of(bytes, size);
+    snprintf(input, sizeof input, "/tmp/himc-stdin-XXXXXX%s", suffix);
+    int descriptor = mkstemps(input, (int)strlen(suffix));
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
+    if (!file) {
+        file_error(input, error);
+        return NULL;
+    }
+    remember(input);
+    atexit(remove_input);
+    for (; size > 0; size = fread(bytes, 1, sizeof bytes, stdin))
+        fwrite(bytes, 1, size, file);
+    bool bad = ferror(stdin) || ferror(file);
+    if (fclose(file) || bad) {
+        himc_error_set(error, "standard input: cannot be read to its end");
+        return NULL;
+    }
+    return input;
 }

@@ -38,6 +38,8 @@ static inline void Microseconds(UnsignedWide *now)
     now->hi = all >> 32, now->lo = (unsigned)all;
 }
 END
-cross_libraries -DCMAKE_C_FLAGS=-w -DCMAKE_CXX_FLAGS="-w -I$PWD/names" -DCMAKE_SYSTEM_NAME=Darwin -DCMAKE_C_COMPILER="$PWD/bin/cc" -DCMAKE_CXX_COMPILER="$PWD/bin/c++" -DCMAKE_AR="$PWD/bin/ar" \
-    -DCMAKE_RANLIB="$PWD/bin/ranlib" -DCMAKE_INSTALL_NAME_TOOL=true -DCMAKE_OSX_SYSROOT= -DCMAKE_SYSTEM_PROCESSOR=arm64 \
-    -DCMAKE_FIND_ROOT_PATH="$PWD/root"
+for libraries in cross_libraries "cross zlib libz.a"; do
+    $libraries -DCMAKE_C_FLAGS=-w -DCMAKE_CXX_FLAGS="-w -I$PWD/names" -DCMAKE_SYSTEM_NAME=Darwin -DCMAKE_C_COMPILER="$PWD/bin/cc" -DCMAKE_CXX_COMPILER="$PWD/bin/c++" -DCMAKE_AR="$PWD/bin/ar" \
+        -DCMAKE_RANLIB="$PWD/bin/ranlib" -DCMAKE_INSTALL_NAME_TOOL=true -DCMAKE_OSX_SYSROOT= -DCMAKE_SYSTEM_PROCESSOR=arm64 \
+        -DCMAKE_FIND_ROOT_PATH="$PWD/root"
+done

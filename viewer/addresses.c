@@ -4,6 +4,7 @@
 ///     /himc/targets   hand x y z                      (m)
 ///     /himc/strike    time hand drum x y velocity force duration nuance ...
 ///     /himc/beat      beat
+///     /himc/sound     first sample, rate, channels, blob (16 bits, highest byte first)
 ///     /himc/status    name value ...
 ///     /himc/pose      (allowed before the bodies, without effect)
 ///     /membrane/NAME/head    amplitude ...            (m), in the order of Bessel's zeros
@@ -14,7 +15,6 @@
 /// Numbers may have any numeric OSC type but must be finite. Types are written n for a number, s
 /// for a word, * for any further atoms.
 #include "addresses.h"
-#include "base/line.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,16 +61,6 @@ static bool is_number(char type)
 static bool is_string(char type)
 {
     return type == LO_STRING || type == LO_SYMBOL;
-}
-
-// copies a word for JSON, cut to `size`; '?' replaces what is not UTF-8, and characters that JSON
-// would have to escape
-static void json_word(char *out, size_t size, const char *from)
-{
-    snprintf(out, size, "%s", from);
-    himc_line_clean(out);
-    for (; (out += strcspn(out, "\"\\"))[0]; out++)
-        *out = '?';
 }
 
 // types as in the table, numbers finite
@@ -149,8 +139,8 @@ static bool on_strike(received *h)
     char drum[SCENE_NAME], nuance[SCENE_NAME];
     if (find_hand(text(h, 1)) < 0 || !in_range(h, 3, 2))
         return false;
-    json_word(drum, sizeof drum, text(h, 2));
-    json_word(nuance, sizeof nuance, text(h, 8));
+    scene_word(drum, sizeof drum, text(h, 2));
+    scene_word(nuance, sizeof nuance, text(h, 8));
     scene_add_event(
         h->s, h->now,
         "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
@@ -176,7 +166,7 @@ static bool json_list(const received *h, char *out, size_t size)
         char atom[64];
         if (is_string(h->types[i])) {
             char clean[48];
-            json_word(clean, sizeof clean, text(h, i));
+            scene_word(clean, sizeof clean, text(h, i));
             snprintf(atom, sizeof atom, "\"%s\"", clean);
         } else if (is_number(h->types[i]) && isfinite(number(h, i)))
             snprintf(atom, sizeof atom, "%.7g", number(h, i));
@@ -205,7 +195,7 @@ static bool on_view(received *h)
     char values[1000] = "", what[SCENE_NAME];
     if (!json_list(h, values, sizeof values))
         return false;
-    json_word(what, sizeof what, h->name);
+    scene_word(what, sizeof what, h->name);
     scene_add_event(h->s, h->now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what,
                     values);
     return true;
@@ -241,11 +231,34 @@ static bool on_place(received *h)
     return true;
 }
 
+static bool on_sound(received *h)
+{
+    if (h->count != 4 || strcmp(h->types, "iiib") != 0)
+        return false;
+    lo_blob blob = (lo_blob)h->args[3];
+    const unsigned char *from = lo_blob_dataptr(blob);
+    uint32_t count = lo_blob_datasize(blob) / 2;
+    double rate = number(h, 1), channels = number(h, 2);
+    if (rate < 8000 || rate > 192000 || (channels != 1 && channels != 2) || count > SCENE_SAMPLES)
+        return false;
+    scene_sound *s = &h->s->sound[h->s->sounds++ % SCENE_SOUNDS];
+    *s = (scene_sound){.time = h->now,
+                       .first = (uint32_t)(int64_t)number(h, 0),
+                       .rate = (uint32_t)rate,
+                       .channels = (uint32_t)channels,
+                       .count = count};
+    snprintf(s->key, sizeof s->key, "%s", h->key);
+    for (uint32_t i = 0; i < count; i++)
+        s->sample[i] = (int16_t)(from[2 * i] << 8 | from[2 * i + 1]);
+    return true;
+}
+
 static const address addresses[] = {
-    {"himc", "body", "snnnnnnn", on_body},   {"himc", "pose", "*", on_pose},
-    {"himc", "targets", "snnn", on_targets}, {"himc", "strike", "nssnnnnns*", on_strike},
-    {"himc", "beat", "n", on_beat},          {"himc", "status", "*", on_status},
-    {"membrane", "head", "*", on_head},      {"membrane", "place", "nnnnn", on_place},
+    {"himc", "body", "snnnnnnn", on_body},    {"himc", "pose", "*", on_pose},
+    {"himc", "targets", "snnn", on_targets},  {"himc", "strike", "nssnnnnns*", on_strike},
+    {"himc", "beat", "n", on_beat},           {"himc", "status", "*", on_status},
+    {"himc", "sound", "*", on_sound},         {"membrane", "head", "*", on_head},
+    {"membrane", "place", "nnnnn", on_place},
 };
 
 // copies the next "/part" of an address and returns the rest; NULL if there is none or it is too
@@ -301,7 +314,7 @@ void address_dispatch(scene *s, const char *key, const char *path, lo_message me
         s->count.unknown++;
         return;
     }
-    json_word(h.name, sizeof h.name, w == &view ? what : name);
+    scene_word(h.name, sizeof h.name, w == &view ? what : name);
     bool named = w != &view && strcmp(group, "himc") == 0 && name[0];
     snprintf(h.key, sizeof h.key, "%.46s%s%s", key, named ? "/" : "", named ? h.name : "");
     if (!types_match(&h, w->types) || !w->act(&h))

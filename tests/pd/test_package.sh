@@ -81,7 +81,7 @@ else
     echo "tests/pd/test_package.sh:0:objects_are_found_on_windows:IGNORE: no Pd for Windows, make test-windows crosses it"
     ignored=1
 fi
-for patch in "$himc"/*-help.pd "$himc"/patches/0*.pd "$himc"/patches/performance.pd "$himc"/patches/pieces/*.pd; do
+for patch in "$himc"/*-help.pd "$himc"/patches/[01]*.pd "$himc"/patches/performance.pd "$himc"/patches/pieces/*.pd; do
     play "$patch" -send "pd quit"
     report "$(basename "$patch" .pd)_opens_with_nothing_to_say" "$(silent)"
 done

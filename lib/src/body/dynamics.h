@@ -48,6 +48,12 @@ HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state
                             int segment, himc_vec3 at, himc_vec3 force,
                             himc_vec3 torque[HIMC_JOINTS]);
 
+/// himc_inverse_dynamics of a moving body, of segments `begin` .. `end` - 1: 1 .. HIMC_LEGS - 1, the
+/// legs, or all. Only their joints' torques are written.
+HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
+                                      const himc_vec3 *relative, int begin, int end,
+                                      himc_vec3 torque[HIMC_JOINTS]);
+
 /// Acceleration of a drumstick tip (m/s^2) under the joints' relative accelerations (rad/s^2)
 /// (HIMC_JOINTS; NULL for zero).
 HIMC_RT himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *state,

@@ -63,6 +63,7 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
     b->character = parts->character;
     b->skeleton = parts->skeleton;
     b->plant = parts->plant;
+    b->legs.known = false;
 }
 
 bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
@@ -102,6 +103,8 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
     himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     b->controller.saturation = &b->saturation;
+    b->controller.legs = &b->legs;
+    b->legs.known = false;
     himc_character_use(b->character, s->engine);
 }
 

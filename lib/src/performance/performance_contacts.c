@@ -4,7 +4,9 @@
 /// acceleration of forward dynamics, and is solved with the head's modes sample by sample
 /// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
 /// ends of the contact see the same force, and the body's tip and the point differ only by the
-/// change of M in a step; that offset is kept during contact and decays afterwards. From the
+/// change of M in a step; that offset is kept during contact and decays afterwards. What the drum's
+/// mallet has more or less than the body's own stick, it has at the end of the stick while it is
+/// near the head: the body feels the part of the force that moves its own mass. From the
 /// planned time of a stroke's contact, or its first force, to separation, control does not act along
 /// the head's normal. Then the plan continues from the measured state of the stick.
 ///
@@ -51,6 +53,8 @@
 #define RESTING_SPEED 0.25  // a contact slower than this ...
 #define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
+// chosen: about a stick's shaft without its ball
+#define LEAST_STICK 0.25    // of the body's stick
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
 
 void himc_contacts_clear(performance_contacts *c)
@@ -83,10 +87,15 @@ static const himc_head_frame *frame_of(const contact_scene *s, int drum)
     return himc_drums_frame(s->drums, drum);
 }
 
+static himc_vec3 normal_of(const contact_scene *s, int drum)
+{
+    return himc_drums_axes(s->drums, drum)->normal;
+}
+
 // place of a tip on a head, z the mallet's height over it (m)
 static himc_vec3 over_head(const contact_scene *s, int drum, himc_vec3 tip)
 {
-    himc_vec3 at = himc_head_frame_from_world(frame_of(s, drum), tip);
+    himc_vec3 at = himc_drums_local(s->drums, drum, tip);
     at.z -= s->body->skeleton.mallet_radius;
     return at;
 }
@@ -105,7 +114,7 @@ static double height_of(const stick_contact *c, const contact_scene *s, himc_han
 
 static double velocity_of(const stick_contact *c, const contact_scene *s, himc_hand hand)
 {
-    himc_vec3 n = himc_head_frame_normal(frame_of(s, c->drum));
+    himc_vec3 n = normal_of(s, c->drum);
     return is_kinematic(s) ? c->stick.velocity
                            : himc_vec3_dot(n, s->body->state.tip_velocity[hand]);
 }
@@ -125,10 +134,10 @@ static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc
 }
 
 // true for a stroke of a take after which the tip stays on the head
-static bool rests_after(const contact_scene *s, himc_hand hand, const planned_stroke *stroke)
+static bool rests_after(const contact_scene *s, himc_hand hand, int drum, double time)
 {
-    return stroke->drum < s->drums->count &&
-           himc_motion_rests_after(s->motion, hand, stroke->time, frame_of(s, stroke->drum));
+    return drum < s->drums->count &&
+           himc_motion_rests_after(s->motion, hand, time, frame_of(s, drum));
 }
 
 // the highest head that the hand's tip is above or on, or -1
@@ -153,12 +162,12 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         const stick_contact *c = &contacts->hand[i];
-        planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
+        planned_contact stroke = himc_motion_next(s->motion, s->drums, hand, t);
         // the plan of a stroke that rebounds dips into the head, and nothing follows it there
         bool rebounds = c->bounce.on  ? true
                         : c->touching ? !c->pressed
                                       : stroke.any && stroke.time < next + (next - t) &&
-                                            !rests_after(s, hand, &stroke);
+                                            !rests_after(s, hand, stroke.drum, stroke.time);
         int under = rebounds ? -1 : head_under(c, s, hand);
         himc_motion_set_under(s->motion, hand, under < 0 ? NULL : frame_of(s, under));
     }
@@ -166,7 +175,7 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
 
 // gives up a planned contact that has not come; the plan continues
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
-                    const planned_stroke *next)
+                    const planned_contact *next)
 {
     bool known = next->drum < s->drums->count;
     himc_motion_answer(s->motion, hand, next->time);
@@ -196,24 +205,24 @@ static double hand_acceleration(const stick_contact *c, const contact_scene *s, 
     if (!c->touching || !c->pressed)
         return 0;
     himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
-    return himc_grip_press(&s->motion->reference.tip[hand], &tip,
-                           himc_head_frame_normal(frame_of(s, c->drum)), c->stick.mass);
+    return himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
+                           c->stick.mass);
 }
 
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
+    planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool due = next.any && t >= next.time && !is_free(c);
     if (due && t >= next.time + LATEST_CONTACT) {
         give_up(c, s, hand, t, &next);
         due = false;
     }
     int drum = is_free(c) ? c->drum : next.drum;
-    c->released = is_free(c) || (due && !rests_after(s, hand, &next));
+    c->released = is_free(c) || (due && !rests_after(s, hand, next.drum, next.time));
     c->hand = hand_acceleration(c, s, hand);
     himc_motion_release(s->motion, hand, c->released, c->hand);
     if (drum < s->drums->count)
-        himc_motion_set_normal(s->motion, hand, himc_head_frame_normal(frame_of(s, drum)));
+        himc_motion_set_normal(s->motion, hand, normal_of(s, drum));
     if (is_free(c) && is_kinematic(s))
         follow_stick(c, s, hand, t);
 }
@@ -245,14 +254,21 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
 static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand hand,
                       himc_vec3 *local)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, himc_clock_time(s->clock));
-    int meant = is_free(c) ? c->drum : next.any ? next.drum : -1;
-    if (meant >= 0 && meant < s->drums->count && is_over(c, s, hand, meant, local))
-        return meant;
-    for (int i = 0; i < s->drums->count; i++)
-        if (is_over(c, s, hand, i, local))
-            return i;
-    return -1;
+    int below = -1;
+    for (int i = 0; i < s->drums->count; i++) {
+        himc_vec3 at;
+        if (!is_over(c, s, hand, i, &at))
+            continue;
+        if (below >= 0) { // which one is meant matters here alone
+            planned_contact next =
+                himc_motion_next(s->motion, s->drums, hand, himc_clock_time(s->clock));
+            if (i != (is_free(c) ? c->drum : next.any ? next.drum : -1))
+                continue;
+        }
+        below = i;
+        *local = at;
+    }
+    return below;
 }
 
 static double bounded(double x, double most)
@@ -260,15 +276,26 @@ static double bounded(double x, double most)
     return x > most ? most : x < -most ? -most : x;
 }
 
+// effective mass of the body's stick at its end, held at the grip
+static double own_mass(const himc_skeleton *skeleton, himc_hand hand)
+{
+    const himc_segment *stick = &skeleton->segment[HIMC_LEFT_STICK + hand];
+    double turned = stick->inertia.x + stick->mass * stick->center.z * stick->center.z;
+    return turned / (skeleton->tip.z * skeleton->tip.z);
+}
+
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
                        const himc_articulation *art, const himc_vec3 *relative)
 {
     const performance_body *b = s->body;
-    himc_vec3 n = himc_head_frame_normal(frame_of(s, c->drum));
+    himc_vec3 n = normal_of(s, c->drum);
     if (!c->stick.touching) // mallets are changed in the air
         c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum);
-    c->stick.mass = himc_effective_mass(&b->plant, &b->state, art, hand, n);
+    double body = himc_effective_mass(&b->plant, &b->state, art, hand, n);
+    double added = c->stick.head.mass - own_mass(&b->skeleton, hand);
+    c->stick.mass = fmax(body + added, LEAST_STICK * body);
+    c->share = body / c->stick.mass;
     c->stick.one_way = s->settings->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
@@ -295,7 +322,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     strcpy(nuance.text, planned ? next.nuance : bounced ? c->strike.nuance : "none");
     c->touching = true;
     c->told = false;
-    c->pressed = !bounced && (!planned || rests_after(s, hand, &next));
+    c->pressed = !bounced && (!planned || rests_after(s, hand, next.drum, next.time));
     c->strike = (himc_strike){.time = time,
                               .hand = hand,
                               .x = c->stick.x,
@@ -303,7 +330,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .velocity = -velocity,
                               .planned_time = planned ? next.time : NAN,
                               .planned_x = next.x,
-                              .planned_y = next.y};
+                              .planned_y = next.y,
+                              .beat = planned ? next.beat : NAN};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, nuance.text);
     if (bounced)
@@ -455,8 +483,9 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
         if (impulse > 0)
             himc_statistics_given(s->statistics, -work_on(&before[hand], &c->hand[hand].stick));
-        himc_vec3 normal = himc_head_frame_normal(frame_of(s, near.below[hand]));
-        tip_force[hand] = himc_vec3_scale(normal, impulse * s->clock->sample_rate / n);
+        double force = impulse * s->clock->sample_rate / n;
+        tip_force[hand] =
+            himc_vec3_scale(normal_of(s, near.below[hand]), c->hand[hand].share * force);
     }
 }
 
@@ -487,7 +516,7 @@ static void end_contact(stick_contact *c, const contact_scene *s, himc_hand hand
 // the hand takes up a stick that has bounced, also when the next stroke is near
 static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
+    planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool near = next.any && t > next.time - LEAST_PREPARATION;
     bool presses = c->touching && t < c->strike.time + RESTING_CONTACT;
     if (!near && (presses || !himc_bounce_is_over(&c->bounce, t, velocity_of(c, s, hand))))

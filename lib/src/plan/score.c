@@ -8,6 +8,7 @@
 #include "plan/score.h"
 
 #include "base/argument.h"
+#include "base/format.h"
 #include "base/text.h"
 
 #include <math.h>
@@ -227,6 +228,28 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     return read_performer_line(r, atom, count);
 }
 
+// If a line inside the refused statement begins with a command's name, says so. Returns false.
+static bool suggest_end(reader *r, const char *begin, const char *end)
+{
+    char word[HIMC_NAME_SIZE];
+    for (const char *at = begin + strspn(begin, " \t\r\n"); at < end;) {
+        at += strcspn(at, "\n");
+        at += strspn(at, " \t\r\n");
+        size_t length = strcspn(at, " \t\r\n;");
+        if (at >= end || length == 0 || length >= sizeof word)
+            continue;
+        memcpy(word, at, length);
+        word[length] = '\0';
+        size_t used = r->error ? strlen(r->error->text) : 0;
+        if (!r->error || !himc_command_find(HIMC_PERFORMER, word))
+            continue;
+        himc_format(r->error->text + used, sizeof r->error->text - used,
+                    " (is a ; missing before \"%s\"?)", word);
+        return false;
+    }
+    return false;
+}
+
 static bool read_all(reader *r, const char *text)
 {
     himc_atom atoms[HIMC_COMMAND_ATOMS + 4];
@@ -238,10 +261,10 @@ static bool read_all(reader *r, const char *text)
     int line = 1;
     if (strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK)) == 0)
         text += strlen(BYTE_ORDER_MARK);
-    while (himc_text_next(&text, &line, &s)) {
+    for (const char *begin = text; himc_text_next(&text, &line, &s); begin = text) {
         r->line = s.line;
         if (!read_statement(r, &s))
-            return false;
+            return suggest_end(r, begin, text);
     }
     return true;
 }
