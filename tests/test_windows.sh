@@ -42,6 +42,8 @@ mkdir -p "Pauken für zwei"
 cp score.txt "Pauken für zwei/Stück.txt"
 himc render "Pauken für zwei/Stück.txt" -o "Pauken für zwei/Stück.wav" >there.log 2>&1
 check test_names_of_files_are_utf-8 cmp there.wav "Pauken für zwei/Stück.wav"
+himc render - -o - <score.txt >piped.wav 2>there.log
+check test_standard_input_and_output_are_bytes cmp there.wav piped.wav
 himc render nothing.txt -o x.wav >refused 2>&1
 check test_a_missing_file_is_refused_in_a_line [ "$(grep -c 'nothing.txt: cannot be read: No such file' refused)/$(wc -l <refused)" = 1/1 ]
 himc render . -o x.wav >refused 2>&1

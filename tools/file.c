@@ -202,7 +202,7 @@ bool cli_is_standard(const char *path)
 }
 
 // where the standard input is kept, until the program ends
-static char input[64];
+static char input[HIMC_PATH_SIZE];
 
 static void remove_input(void)
 {
@@ -233,9 +233,7 @@ const char *cli_input(const char *operand, himc_error *error)
     if (!cli_is_standard(operand))
         return operand;
     size_t size = fread(bytes, 1, sizeof bytes, stdin);
-    const char *suffix = suffix_of(bytes, size);
-    snprintf(input, sizeof input, "/tmp/himc-stdin-XXXXXX%s", suffix);
-    int descriptor = mkstemps(input, (int)strlen(suffix));
+    int descriptor = himc_system_temporary(input, sizeof input, suffix_of(bytes, size));
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     if (!file) {
         file_error(input, error);

@@ -4,6 +4,7 @@
 /// allowed.
 #include "cli.h"
 #include "himc/himc.h"
+#include "system/files.h"
 
 #include <string.h>
 
@@ -64,6 +65,7 @@ static int run_call(const cli_call *call, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    himc_system_binary();
     if (argc < 2)
         return refuse("no call given", NULL);
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))

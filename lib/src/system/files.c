@@ -91,6 +91,23 @@ bool himc_system_same(const char *a, const char *b)
     return same;
 }
 
+int himc_system_temporary(char *path, size_t size, const char *ending)
+{
+    char folder[MAX_PATH];
+    DWORD length = GetTempPathA(sizeof folder, folder);
+    int wanted = snprintf(path, size, "%shimc-%lu%s", folder, GetCurrentProcessId(), ending);
+    if (length > 0 && length < sizeof folder && wanted < (int)size)
+        return himc_system_open(path, O_CREAT | O_EXCL | O_WRONLY | O_BINARY);
+    errno = ENAMETOOLONG;
+    return -1;
+}
+
+void himc_system_binary(void)
+{
+    _setmode(0, O_BINARY);
+    _setmode(1, O_BINARY);
+}
+
 int himc_system_open_inside(const char *folder, const char *name)
 {
     char wanted[PATH_MAX], real[3 * PATH_MAX];
@@ -134,6 +151,16 @@ bool himc_system_same(const char *a, const char *b)
     struct stat first, second;
     return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
            first.st_ino == second.st_ino;
+}
+
+int himc_system_temporary(char *path, size_t size, const char *ending)
+{
+    snprintf(path, size, "/tmp/himc-XXXXXX%s", ending);
+    return mkstemps(path, (int)strlen(ending));
+}
+
+void himc_system_binary(void)
+{
 }
 
 // opens "/a/b/c" from the folder down, without following a link
