@@ -92,7 +92,7 @@ static void update(osc_subscriptions *s)
         count++;
         if (one->stream == STREAM_HEAD)
             head = fmax(head, one->hz);
-        else if (one->stream != STREAM_STRIKES)
+        else if (one->stream != STREAM_STRIKES && one->stream != STREAM_ERRORS)
             pose = fmax(pose, one->hz);
     }
     atomic_store(&s->pose_hz, (int)ceil(pose));
@@ -297,7 +297,7 @@ static void deliver_pose(osc_subscriptions *s, const osc_state *state, osc_packe
     memset(s->encoded, 0, sizeof s->encoded);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
         if (!one->used || one->stream == STREAM_STRIKES || one->stream == STREAM_HEAD ||
-            !due(one, now))
+            one->stream == STREAM_ERRORS || !due(one, now))
             continue;
         bool only_targets = one->stream == STREAM_TARGETS;
         send_packets(s, &one->to, only_targets ? targets : encoded_pose(s, state, one), now);
@@ -310,6 +310,15 @@ static void send_once(osc_subscriptions *s, const osc_packets *p, double now)
     for (int i = 0; i < SUBSCRIPTIONS; i++)
         if (s->subscription[i].used && s->subscription[i].first)
             send_packets(s, &s->subscription[i].to, p, now);
+}
+
+const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
+                                             const osc_subscription *one)
+{
+    for (one = one ? one + 1 : s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && one->stream == STREAM_ERRORS)
+            return one;
+    return NULL;
 }
 
 static double principal_mode(const osc_subscriptions *s, const char *drum)
