@@ -613,19 +613,21 @@ void himc_bank_rest(himc_bank *bank)
     bank->forced = true;
 }
 
-// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`, its weights
-// enlarged by those of the film times `by`. Returns the sum of the film's weights on the state.
-static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, double by,
-                        int n, double *out)
+// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`; where `stretched`
+// its weights are enlarged by those of the film times `by`. Returns the sum of these on the state.
+static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, bool stretched,
+                        double by, int n, double *out)
 {
-    const double *more = r->film ? r->film : r->p;
     double sum = 0;
     for (int i = first; i < end; i += BLOCK) {
         int count = end - i < BLOCK ? end - i : BLOCK;
         himc_bank_waves waves = {bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
                                  bank->twice + i, bank->fall + i};
-        sum += bank->loops->weigh(&waves, r->p + i, r->s + i, more + i, by, bank->p + i,
-                                  bank->s + i, count);
+        if (stretched)
+            sum += bank->loops->weigh_more(&waves, r->p + i, r->s + i, r->film + i, by, bank->p + i,
+                                           bank->s + i, count);
+        else
+            bank->loops->weigh(&waves, r->p + i, r->s + i, bank->p + i, bank->s + i, count);
         bank->loops->ahead(&waves, count, n, out);
     }
     return sum;
@@ -638,7 +640,7 @@ static void add_step(himc_bank *bank, himc_readout *readout)
     double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
     bool stretched = readout->film != NULL;
     double sum =
-        add_waves(bank, readout, 0, bank->low, stretched && readout->direct ? -audible(f) : 0,
+        add_waves(bank, readout, 0, bank->low, stretched, readout->direct ? -audible(f) : 0,
                   bank->step < LANES ? LANES : bank->step, out);
     double slope = stretched ? film_slope(bank, readout, sum) : 0;
     for (int n = 0; n < bank->step; n++)
@@ -651,7 +653,7 @@ static void look_ahead(himc_bank *bank, himc_readout *readout)
 {
     if (readout->pass != bank->pass) {
         memset(readout->ahead, 0, sizeof readout->ahead);
-        add_waves(bank, readout, bank->low, bank->live, 0, bank->length, readout->ahead);
+        add_waves(bank, readout, bank->low, bank->live, false, 0, bank->length, readout->ahead);
         readout->pass = bank->pass;
         readout->part = 0;
     }

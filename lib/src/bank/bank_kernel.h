@@ -23,9 +23,13 @@ typedef struct himc_bank_kernel {
     const char *name;
     /// p, s = c p + w s, c s - w p
     void (*rotate)(double *p, double *s, const double *c, const double *w, int length);
-    /// a, b = r p + rs s, r s - rs p with r = rp + more by. Returns sum more p.
-    double (*weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
-                    const double *more, double by, const double *p, const double *s, int length);
+    /// a, b = rp p + rs s, rp s - rs p
+    void (*weigh)(const himc_bank_waves *waves, const double *rp, const double *rs, const double *p,
+                  const double *s, int length);
+    /// The same with rp + more by in place of rp. Returns sum more p.
+    double (*weigh_more)(const himc_bank_waves *waves, const double *rp, const double *rs,
+                         const double *more, double by, const double *p, const double *s,
+                         int length);
     /// kick = per_mass g with g = on_p p; sum[0], sum[1] = sum g (s - damp p), sum g kick
     void (*stretch)(double *kick, const double *on_p, const double *per_mass, const double *damp,
                     const double *p, const double *s, int length, double *sum);

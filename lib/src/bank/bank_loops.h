@@ -28,9 +28,20 @@ TARGET static void NAMED(rotate)(double *p, double *s, const double *c, const do
     }
 }
 
-TARGET static double NAMED(weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
-                                  const double *more, double by, const double *p, const double *s,
-                                  int length)
+TARGET static void NAMED(weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
+                                const double *p, const double *s, int length)
+{
+    for (int i = 0; i < length; i += WIDTH) {
+        VEC vp = *(const VEC *)(p + i), vs = *(const VEC *)(s + i);
+        VEC up = *(const VEC *)(rp + i), us = *(const VEC *)(rs + i);
+        *(VEC *)(waves->a + i) = up * vp + us * vs;
+        *(VEC *)(waves->b + i) = up * vs - us * vp;
+    }
+}
+
+TARGET static double NAMED(weigh_more)(const himc_bank_waves *waves, const double *rp,
+                                       const double *rs, const double *more, double by,
+                                       const double *p, const double *s, int length)
 {
     VEC sum[PARTS] = {{0}};
     for (int i = 0; i < length; i += HIMC_BANK_LANES)

@@ -193,8 +193,10 @@ static void find_output(himc_membrane *m, int index)
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
     double unit = index < HIMC_PICKUPS ? 1 : pickup->distance; // rays are as loud as at 1 m
-    himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
-    himc_modes_mix(c->modes, c->scratch);
+    if (pickup->kind == HIMC_PICKUP_POINT) {
+        himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
+        himc_modes_mix(c->modes, c->scratch);
+    }
     for (int i = 0; i < himc_membrane_modes(m); i++) {
         const himc_oscillator *o = &c->oscillators[i];
         himc_mode mode = himc_modes_get(c->modes, &m->head, i);
