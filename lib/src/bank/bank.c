@@ -613,6 +613,12 @@ void himc_bank_rest(himc_bank *bank)
     bank->forced = true;
 }
 
+static himc_bank_waves waves_at(himc_bank *bank, int i)
+{
+    return (himc_bank_waves){bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
+                             bank->twice + i, bank->fall + i};
+}
+
 // Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`; where `stretched`
 // its weights are enlarged by those of the film times `by`. Returns the sum of these on the state.
 static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, bool stretched,
@@ -621,8 +627,7 @@ static double add_waves(himc_bank *bank, const himc_readout *r, int first, int e
     double sum = 0;
     for (int i = first; i < end; i += BLOCK) {
         int count = end - i < BLOCK ? end - i : BLOCK;
-        himc_bank_waves waves = {bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
-                                 bank->twice + i, bank->fall + i};
+        himc_bank_waves waves = waves_at(bank, i);
         if (stretched)
             sum += bank->loops->weigh_more(&waves, r->p + i, r->s + i, r->film + i, by, bank->p + i,
                                            bank->s + i, count);
@@ -631,6 +636,28 @@ static double add_waves(himc_bank *bank, const himc_readout *r, int first, int e
         bank->loops->ahead(&waves, count, n, out);
     }
     return sum;
+}
+
+// the same of the oscillators from `low` on, of readouts that are alike
+static void add_alike(himc_bank *bank, const himc_alike *alike)
+{
+    const himc_readout *form = &alike->form;
+    double *out[HIMC_BANK_ALIKE];
+    const double *gain[HIMC_BANK_ALIKE];
+    for (int k = 0; k < HIMC_BANK_ALIKE; k++) {
+        himc_readout *r = alike->readout[k];
+        out[k] = memset(r->ahead, 0, sizeof r->ahead);
+        r->pass = bank->pass;
+        r->part = 0;
+    }
+    for (int i = bank->low; i < bank->live; i += BLOCK) {
+        int count = bank->live - i < BLOCK ? bank->live - i : BLOCK;
+        himc_bank_waves waves = waves_at(bank, i);
+        for (int k = 0; k < HIMC_BANK_ALIKE; k++)
+            gain[k] = alike->gain[k] + i;
+        bank->loops->weigh(&waves, form->p + i, form->s + i, bank->p + i, bank->s + i, count);
+        bank->loops->ahead_alike(&waves, gain, count, bank->length, out);
+    }
 }
 
 // adds the film's present step to readout->ahead
@@ -651,7 +678,9 @@ static void add_step(himc_bank *bank, himc_readout *readout)
 // fills readout->ahead as far as the present step goes
 static void look_ahead(himc_bank *bank, himc_readout *readout)
 {
-    if (readout->pass != bank->pass) {
+    if (readout->pass != bank->pass && readout->alike) {
+        add_alike(bank, readout->alike);
+    } else if (readout->pass != bank->pass) {
         memset(readout->ahead, 0, sizeof readout->ahead);
         add_waves(bank, readout, bank->low, bank->live, false, 0, bank->length, readout->ahead);
         readout->pass = bank->pass;

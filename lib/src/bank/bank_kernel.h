@@ -9,6 +9,7 @@
 
 #define HIMC_BANK_LANES 8  ///< oscillators at once, samples at once
 #define HIMC_BANK_PASS 64  ///< samples that are computed ahead from one state
+#define HIMC_BANK_ALIKE 3  ///< readouts that share their waves
 #define HIMC_BANK_TABLE 32 ///< numbers of an oscillator's table
 
 /// What turns two weights and the state at the start of a pass into samples.
@@ -49,6 +50,9 @@ typedef struct himc_bank_kernel {
                    int length);
     /// adds samples 1 .. n to `out`, n being 8, 16, 32 or HIMC_BANK_PASS
     void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
+    /// The same to each of several, times its gain of each oscillator.
+    void (*ahead_alike)(const himc_bank_waves *waves, const double *const *gain, int length, int n,
+                        double *const *out);
 } himc_bank_kernel;
 
 /// Version `index` of those this machine can run, the fastest last; NULL past the last.
