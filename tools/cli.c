@@ -141,7 +141,13 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
         if (out->list)
             return true;
     }
-    if (argc > optind && !call->operand[0])
+    // further files of an option that takes several, as a shell's *.c3d gives them
+    for (; out->repeats && strstr(call->operand, "...") && argc > optind; optind++) {
+        if (out->repeats == CLI_REPEATED)
+            return himc_error_set(error, "more than %d files", CLI_REPEATED);
+        out->repeated[out->repeats++] = argv[optind];
+    }
+    if (argc > optind && (!call->operand[0] || strstr(call->operand, "...")))
         return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
                               call->name);
     if (argc - optind > 1)
@@ -224,15 +230,16 @@ double cli_drum_inches(const himc_score_line *line)
     return line && line->command.count > 1 ? line->command.atom[1].number : CLI_INCHES;
 }
 
-bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
-                      himc_error *error)
+bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES],
+                      himc_take_options *out, himc_error *error)
 {
-    static const char *const name[] = {"--left-tip", "--right-tip", "--up"};
+    static const char *const name[] = {"--left-tip", "--right-tip", "--up", "--subject"};
     const char *up = value[2];
     *out = himc_take_default();
     out->left_tip = value[0];
     out->right_tip = value[1];
-    for (int i = 0; i < 3; i++)
+    out->subject = value[3];
+    for (int i = 0; i < CLI_TAKE_VALUES; i++)
         if (value[i] && !cli_is_take(path))
             return himc_error_set(error,
                                   "%s: %s is a score, allowed with a take: " HIMC_TAKE_SUFFIXES,

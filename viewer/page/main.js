@@ -9,7 +9,7 @@ import { Drum } from "./drum.js";
 import { MARK_TIME, Marks } from "./strike.js";
 import { Playback, SPEEDS } from "./playback.js";
 import { readScene } from "./scene.js";
-import { Sound } from "./sound.js";
+import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
 
@@ -20,10 +20,12 @@ const performers = new Map(),
     drums = new Map(),
     marks = new Marks(),
     sound = new Sound(),
+    liveSound = new LiveSound(sound),
     recorder = new Recorder(canvas, sound);
 const PERFORMERS = 16, // as many as himc-viewer keeps
     DRUMS = 32,
     ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
+    LIFT = 0.08, // of the picture over the timeline, of the window's height
     SECOND = 1000; // over which frames are counted (ms)
 const shown = { targets: false, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 0, script: 0, latency: null, render: 0 };
@@ -127,6 +129,9 @@ const live = {
     },
     drum(key, name, time, place, amplitude) {
         if (!playback) drum(key, name)?.receive(virtual || clock(), place, amplitude);
+    },
+    sound(...packet) {
+        if (!playback) liveSound.receive(...packet, virtual || clock());
     },
     event(event, time) {
         const now = virtual || clock();
@@ -263,10 +268,11 @@ function frame(_, now = clock(), draw = true) {
     panel.draw(excursion, now, playback);
     if (now - written > 250) {
         written = now;
-        panel.write([...performers.values()], numbers, now, playback, sound);
+        panel.write([...performers.values()], numbers, now, playback);
+        panel.silent(playback ? !!sound.buffer : now - liveSound.heard < 1000, sound);
         panel.filming(recorder.filming);
     }
-    stage.adapt(dt, view.camera);
+    stage.adapt(dt, view);
 }
 
 function next() {
@@ -289,6 +295,7 @@ function step(ms, draw = true) {
 // forgets the performer and the drums of the playback, or of the stream
 function close() {
     sound.stop();
+    liveSound.close();
     marks.clear();
     for (const table of [performers, drums]) {
         for (const one of table.values()) discard(one.group);
@@ -302,6 +309,8 @@ async function play(bytes, name) {
     playback = new Playback(scene, sound);
     panel.open(playback);
     panel.loading(null);
+    view.lift = LIFT;
+    dispatchEvent(new Event("resize"));
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
@@ -339,7 +348,7 @@ async function fetchScene(name) {
     await play(bytes, name);
 }
 
-addEventListener("resize", () => (stage.resize(view.camera), view.name && view.preset(view.name)));
+addEventListener("resize", () => (stage.resize(view), view.name && view.preset(view.name)));
 addEventListener("dragover", e => e.preventDefault());
 addEventListener("drop", e => {
     e.preventDefault();
@@ -356,7 +365,7 @@ view.points = () => [
         .filter(d => d.group.visible)
         .map(d => d.head.getWorldPosition(new THREE.Vector3())),
 ];
-stage.resize(view.camera);
+stage.resize(view);
 panel.shown(shown);
 actions.camera("stage");
 actions.exaggerate(exaggeration);
@@ -401,6 +410,7 @@ window.viewer = {
     view,
     stage,
     sound,
+    liveSound,
     recorder,
     get playback() {
         return playback;
