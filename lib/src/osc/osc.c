@@ -88,6 +88,7 @@ typedef struct osc_host {
     double published;            // wall clock of the last block (s)
     double busy;                 // computing since the last status (s)
     bool status_sent;
+    uint64_t heard;                    // samples whose sound has been taken
     long strikes;                      // so far
     osc_bucket work;                   // time of commands (s)
     himc_loader *loader;               // borrowed, or NULL
@@ -237,6 +238,42 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
     end(osc);
 }
 
+// the sum of all drums from sample `first` on
+static void mix(himc_performance *performance, uint64_t first, osc_sound *out)
+{
+    double heard[SOUND_FRAMES];
+    himc_drum *drum;
+    memset(out->sample, 0, sizeof out->sample);
+    out->channels = 1;
+    for (int channel = 0; channel < 2; channel++)
+        for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
+            himc_drum_read_channel(drum, channel, first, SOUND_FRAMES, heard);
+            for (int i = 0; i < SOUND_FRAMES; i++) {
+                out->sample[i][channel] += (float)heard[i];
+                out->channels = channel && heard[i] != 0 ? 2 : out->channels;
+            }
+        }
+}
+
+static void put_sound(himc_osc *osc, himc_performance *performance, const himc_performance_stats *s)
+{
+    uint64_t now = himc_performance_time(performance), *heard = &osc->host.heard;
+    bool wanted = atomic_load_explicit(&osc->subscriptions.sounds, memory_order_relaxed) > 0;
+    // a pause, or time that was counted from 0 again
+    if (!wanted || *heard > now || now - *heard > HIMC_DRUM_RING / 2)
+        *heard = now;
+    for (; now - *heard >= SOUND_FRAMES; *heard += SOUND_FRAMES) {
+        osc_state *state =
+            begin(osc, STATE_SOUND, s->seconds - (double)(now - *heard) / s->sample_rate);
+        if (!state)
+            continue;
+        state->sound.first = (uint32_t)*heard;
+        state->sound.rate = (int)s->sample_rate;
+        mix(performance, *heard, &state->sound);
+        end(osc);
+    }
+}
+
 static void put_drum(himc_osc *osc, himc_drum *drum, double time)
 {
     const himc_head_frame *place = himc_drum_head_frame(drum);
@@ -275,6 +312,7 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
     h->busy += busy;
     int hz = atomic_load_explicit(&osc->subscriptions.head_hz, memory_order_relaxed);
     bool heads = due(&h->next_head, hz, t);
+    put_sound(osc, performance, &stats);
     bool status = now >= h->next_status || h->next_status > now + 2 * STATUS_PERIOD;
     himc_drum *drum;
     for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
