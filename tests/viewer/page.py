@@ -593,6 +593,35 @@ def test_sound_is_the_clock_of_a_playback():
     return f"{off:.2f} ms"
 
 
+# Where the audio thread meets the first loud sample of a playback, against the picture's time (ms)
+SOUND_AGAINST_PICTURE = """
+const { sound, playback: p } = viewer, code = `registerProcessor("onset", class extends AudioWorkletProcessor {
+    process([[samples = []]]) {
+        const i = samples.findIndex(x => Math.abs(x) > 0.02);
+        if (i >= 0) this.port.postMessage(currentTime + i / sampleRate);
+        return i < 0;
+    }
+})`;
+sound.wake();
+const opened = new Promise(done => {
+    const look = () => (sound.ready ? done() : setTimeout(look, 20));
+    look();
+});
+return opened.then(async () => {
+    await sound.context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(code));
+    const ear = new AudioWorkletNode(sound.context, "onset"),
+        loud = sound.buffer.getChannelData(0).findIndex(x => Math.abs(x) > 0.02) / sound.buffer.sampleRate;
+    sound.gain.connect(ear);
+    p.setSpeed(1), p.seek(1000 * loud - 500), p.play(true);
+    const met = await new Promise(done => (ear.port.onmessage = e => done(e.data)));
+    p.advance(0);
+    const off = p.at - 1000 * (loud + sound.heard() - met);
+    p.play(false);
+    return off;
+});
+"""
+
+
 def test_a_shared_page_plays_from_the_disk():
     """One file, no server: the same scene, with its sound, and nothing on the console."""
     html = os.path.join(MADE, "shared.html")
@@ -608,11 +637,13 @@ def test_a_shared_page_plays_from_the_disk():
     expect("12.5")
     browser.run("viewer.playback.play(false); viewer.playback.seek(12500)")
     said = settle(1e-5)
+    off = browser.run(SOUND_AGAINST_PICTURE)
+    assert abs(off) < 20, off
     trouble = browser.log()
     assert not trouble, trouble
     seconds, size = browser.run("return viewer.playback.length") / 1000, os.path.getsize(html)
     assert size * 60 / seconds < 6e6, size
-    return f"{said}, {size * 60 / seconds / 1e6:.2f} MB a minute"
+    return f"{said}, sound {off:.1f} ms off, {size * 60 / seconds / 1e6:.2f} MB a minute"
 
 
 if __name__ == "__main__":
