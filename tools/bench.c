@@ -243,6 +243,7 @@ static bool make_body(bench_body *b, himc_error *error)
     himc_controller_config control = himc_controller_config_default();
     himc_controller_init(&b->controller, &control, &b->skeleton, &b->state);
     b->controller.legs = &b->legs;
+    b->legs.known = false;
     b->character = himc_character_new(&b->skeleton, error);
     if (b->character)
         himc_character_place(b->character, &b->state);
