@@ -49,6 +49,10 @@ EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
 ROOMS     := system base body capture track plan midi control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
+# the page in one file, for himc share, where the viewer can be built
+SHARE_O   := $(if $(EXE),,$(if $(wildcard /usr/share/javascript/three/three.module.js),$(patsubst %,$(BUILD)/viewer/%.o,pages recording scene share)))
+# the sound card of himc play, where PortAudio is
+PORTAUDIO := $(if $(EXE)$(findstring aarch64,$(CC)),,$(wildcard /usr/include/portaudio.h /usr/local/include/portaudio.h))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
@@ -253,7 +257,7 @@ FLOATSIZE ?= 32
 test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd FLOATSIZE=32 or 64
 	@$(MAKE) all $(if $(filter 64,$(FLOATSIZE)),externals-64)
 	@HIMC_BUILD=$(BUILD) PD=$(NEWER) $(if $(filter 64,$(FLOATSIZE)),HIMC_EXTERNALS=$(abspath $(BUILD)/externals-64)) HIMC_LONG=1 JOBS=1 \
-	    tests/run.sh tests/pd/test_pd.sh
+	    tests/run.sh tests/pd/test_pd.sh tests/pd/test_patches.sh tests/pd/test_save.sh
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
@@ -267,6 +271,12 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 	@tools/deps.sh tools/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
 	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid
+
+test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
+	@tools/deps.sh tools/deps-python.txt
+	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools matplotlib; }
+	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
+	@build/python/bin/python python/tests/test_himc.py
 
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
 	@tools/deps.sh tools/deps-sound.txt
@@ -335,7 +345,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: windows windows-here test-windows arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: test-python windows windows-here test-windows arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -403,7 +413,7 @@ $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 
 $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
-	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
+	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
 
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )
@@ -444,9 +454,11 @@ $(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
 	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
 $(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
 
-$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
+$(BUILD)/tools/share.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(BUILD)/tools/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
+	$(Q)$(LINK) $^ $(LIBS) $(if $(PORTAUDIO),-lportaudio) -o $@
 
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD; those of OSC listen with liblo
 $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
@@ -461,7 +473,7 @@ $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 
 # what of the viewer needs neither a socket nor a package of its own, for its tests
-VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o web.o),$(VIEWER_O))
+VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o share.o web.o),$(VIEWER_O))
 VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
 $(VIEWER_TESTS): $(VIEWER_PARTS)
 $(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h

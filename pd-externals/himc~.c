@@ -106,7 +106,9 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
         outlet_anything(x->x_messages, gensym("beat"), 1, atom);
         break;
     case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
-    case HIMC_EVENT_NOTE: logpost(x, PD_NORMAL, "himc~: %s", event->text); break;
+    case HIMC_EVENT_NOTE:
+        logpost(x, event->minor ? PD_DEBUG : PD_NORMAL, "himc~: %s", event->text);
+        break;
     }
 }
 

@@ -89,6 +89,17 @@ refuses test_a_csv_without_markers_has_a_way_out "NAME_x_m" info a.csv
 "$himc" render piece.txt -o a.wav --motion tips.csv --columns tips --quiet >/dev/null
 check test_the_motion_of_a_render_is_a_take [ "$("$himc" info tips.csv | grep -c -e '^tip: ' -e '^strikes: 2')" = 3 ]
 
+# the controllers on one's own capture
+stroke=$(cd "$root" && cd "$HIMC_SHARED" 2>/dev/null && pwd)/mocap/drumstroke_pearl_240hz/stroke.trc
+if [ -f "$stroke" ]; then
+    "$himc" evaluate --take "$stroke" --csv own.csv --quiet
+    check test_own_captures_get_a_row_for_each_controller_and_law [ "$?$(cut -d, -f 2-3 own.csv | tr '\n' ' ')" = \
+        "0controller,law ik,none id,printed id,feedforward id,computed-torque himc,printed himc,feedforward himc,computed-torque " ]
+    check test_computed_torque_follows_the_capture_best [ "$(awk -F, '$2 == "himc" { percent[$3] = $9 }
+        END { print (percent["computed-torque"] < 1 && percent["printed"] > 2) }' own.csv)" = 1 ]
+fi
+refuses test_own_captures_must_be_takes "score.txt: not a take by its suffix" evaluate --take score.txt
+
 echo
 echo "-----------------------"
 echo "$tests Tests $failures Failures 0 Ignored"

@@ -141,7 +141,13 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
         if (out->list)
             return true;
     }
-    if (argc > optind && !call->operand[0])
+    // further files of an option that takes several, as a shell's *.c3d gives them
+    for (; out->repeats && strstr(call->operand, "...") && argc > optind; optind++) {
+        if (out->repeats == CLI_REPEATED)
+            return himc_error_set(error, "more than %d files", CLI_REPEATED);
+        out->repeated[out->repeats++] = argv[optind];
+    }
+    if (argc > optind && (!call->operand[0] || strstr(call->operand, "...")))
         return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
                               call->name);
     if (argc - optind > 1)

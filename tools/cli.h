@@ -42,7 +42,7 @@ typedef struct cli_call {
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
-extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_serve,
+extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share, cli_play, cli_serve,
     cli_bench;
 
 /// Reads the arguments after the call's name; false with one line: the fault and the allowed
@@ -105,6 +105,21 @@ bool cli_add_drum(himc_performance *performance, double rate, himc_error *error)
 /// Gives the performance a command: the text, or, if `word` is not NULL, the name `text` with that
 /// one word, which may contain spaces.
 bool cli_tell(himc_performance *performance, const char *text, const char *word, himc_error *error);
+/// A performance at `rate` (Hz) with the score or take `source` (NULL for none) and, if that makes
+/// none, the drum. `listener` is a command before it, or NULL. NULL with the reason.
+himc_performance *cli_load(const char *source, double rate, const char *listener,
+                           himc_error *error);
+
+/// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the
+/// left, 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
+/// and its noise strong.
+#define CLI_LISTENER "listener 2.2 0.4 1.3"
+#define CLI_BLOCK 8192 ///< most samples at a time; chosen: the longest block of Pd
+
+/// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).
+/// Returns the largest magnitude.
+double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out);
+
 /// Time on the monotonic clock (s).
 double cli_now(void);
 

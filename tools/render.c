@@ -23,16 +23,12 @@
 // chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
+#define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest
 #define SILENCE 1e-4   // of the peak: 80 dB
 #define HEARD_BY_TWO 2 // channels, one for each ear
-#define BLOCK_MAX 8192 // samples; chosen: the longest block of Pd
+#define BLOCK_MAX CLI_BLOCK
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
-
-/// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the left,
-/// 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
-/// its noise strong.
-#define LISTENER "listener 2.2 0.4 1.3"
 
 enum {
     OUT,
@@ -183,7 +179,7 @@ static bool prepare(himc_performance *performance, const job *wanted, himc_error
         return false;
     if (!makes_drums && !cli_add_drum(performance, wanted->rate, error))
         return false;
-    if (wanted->channels == HEARD_BY_TWO && !cli_tell(performance, LISTENER, NULL, error))
+    if (wanted->channels == HEARD_BY_TWO && !cli_tell(performance, CLI_LISTENER, NULL, error))
         return false;
     if (take && !apply_settings(performance, wanted->arguments, error))
         return false;
@@ -246,23 +242,6 @@ static void take_events(rendering *r)
     }
 }
 
-/// The samples of one channel, interleaved with the others.
-static void sum_drums(rendering *r, int channel, int n, float *out)
-{
-    double heard[BLOCK_MAX], sum[BLOCK_MAX];
-    himc_drum *drum;
-    memset(sum, 0, (size_t)n * sizeof *sum);
-    for (int d = 0; (drum = himc_performance_drum(r->performance, d)); d++) {
-        himc_drum_read_channel(drum, channel, r->samples, n, heard);
-        for (int i = 0; i < n; i++)
-            sum[i] += heard[i];
-    }
-    for (int i = 0; i < n; i++) {
-        out[i * r->channels + channel] = (float)sum[i];
-        r->cell_peak = fmax(r->cell_peak, fabs(sum[i]));
-    }
-}
-
 static void take_row(void *user, const himc_motion_row *row)
 {
     rendering *r = user;
@@ -276,8 +255,7 @@ static void play_block(rendering *r, int n)
 {
     float out[HEARD_BY_TWO * BLOCK_MAX];
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
-    for (int channel = 0; channel < r->channels; channel++)
-        sum_drums(r, channel, n, out);
+    r->cell_peak = fmax(r->cell_peak, cli_mix(r->performance, r->samples, n, r->channels, out));
     errno = 0;
     if (sf_writef_float(r->sound, out, n) != n)
         r->failed = errno ? errno : EIO;
@@ -297,8 +275,8 @@ static bool is_over(rendering *r, int rate)
         return false;
     if (!r->done_at)
         r->done_at = r->samples;
-    return (silent && r->samples > r->done_at) ||
-           (double)(r->samples - r->done_at) >= TAIL_SECONDS * rate;
+    double since = (double)(r->samples - r->done_at) / rate;
+    return (silent && since >= REST_SECONDS) || since >= TAIL_SECONDS;
 }
 
 /// Plays to the end; returns how long it took (s).

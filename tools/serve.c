@@ -45,27 +45,6 @@ static void sleep_until(double t)
         nanosleep(&(struct timespec){(time_t)rest, (long)((rest - floor(rest)) * 1e9)}, NULL);
 }
 
-static himc_performance *prepare(const char *source, himc_error *error)
-{
-    himc_performance_config config = himc_performance_default();
-    config.sample_rate = RATE;
-    himc_performance *performance = himc_performance_new(&config, error);
-    if (!performance)
-        return NULL;
-    himc_performance_make_drums(performance, true);
-    himc_score *score = source && !cli_is_take(source) ? himc_score_load(source, error) : NULL;
-    bool good = score || !source || cli_is_take(source);
-    if (good && !(score && cli_first_drum(score)))
-        good = cli_add_drum(performance, RATE, error);
-    himc_score_free(score);
-    if (good && source)
-        good = cli_tell(performance, cli_is_take(source) ? "take" : "score", source, error);
-    if (good)
-        return performance;
-    himc_performance_free(performance);
-    return NULL;
-}
-
 static void play_block(himc_performance *performance, himc_osc *osc, himc_loader *loader)
 {
     char line[HIMC_OSC_LINE];
@@ -119,7 +98,7 @@ static int run(const cli_arguments *arguments)
     config.allow = arguments->value[ALLOW];
     if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, &error))
         return cli_fail(&cli_serve, "%s", error.text);
-    himc_performance *performance = prepare(arguments->operand, &error);
+    himc_performance *performance = cli_load(arguments->operand, RATE, NULL, &error);
     config.loader = performance ? himc_loader_new(&error) : NULL;
     himc_osc *osc = config.loader ? himc_osc_new(&config, &error) : NULL;
     if (!osc) {

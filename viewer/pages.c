@@ -20,6 +20,7 @@
     FILE(style, "/style.css", "text/css", "viewer/page/style.css")         \
     FILE(icon, "/icon.svg", "image/svg+xml", "viewer/page/icon.svg")       \
     SCRIPT(FILE, main)                                                     \
+    SCRIPT(FILE, boot)                                                     \
     SCRIPT(FILE, stream)                                                   \
     SCRIPT(FILE, performer)                                                \
     SCRIPT(FILE, body)                                                     \
@@ -49,6 +50,11 @@ FILES(EMBED)
 
 #define ROW(name, path, type, file) {path, type, page_##name, page_##name##_end},
 static const page pages[] = {FILES(ROW)};
+
+const page *pages_at(int index)
+{
+    return (size_t)index < sizeof pages / sizeof *pages ? &pages[index] : NULL;
+}
 
 const page *pages_find(const char *path)
 {

@@ -94,7 +94,7 @@ bool himc_performance_set_rate(himc_performance *performance, double sample_rate
 typedef enum himc_event_kind {
     HIMC_EVENT_STRIKE, ///< a contact ended
     HIMC_EVENT_BEAT,   ///< a whole beat began
-    HIMC_EVENT_DONE,   ///< everything has been played and has come to rest
+    HIMC_EVENT_DONE,   ///< the score's last contact has ended, or the take; no beat follows
     HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach
 } himc_event_kind;
 
@@ -123,6 +123,7 @@ typedef struct himc_event {
     double beat;                              ///< of HIMC_EVENT_BEAT ...
     double time;                              ///< ... and when it began (s, as of a strike)
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE
+    bool minor; ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
 } himc_event;
 
 /// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and

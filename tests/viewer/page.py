@@ -22,7 +22,9 @@ from bridge import WAIT, osc
 from browser import Browser
 
 BUILD = os.environ["HIMC_BUILD"]
-VIEWER, MADE = os.path.join(BUILD, "bin/himc-viewer"), os.path.join(BUILD, "tests/viewer")
+HIMC, VIEWER, MADE = (
+    os.path.join(BUILD, name) for name in ("bin/himc", "bin/himc-viewer", "tests/viewer")
+)
 MOTION, STROKES, SCENE, FOUR, EXPECTED = (
     os.path.join(MADE, f)
     for f in ("motion.csv", "strokes.csv", "play.himc", "four.himc", "expected.txt")
@@ -546,6 +548,28 @@ def test_sound_is_the_clock_of_a_playback():
         assert abs(off) < 20 and passed >= 0, (off, passed)
     browser.run("viewer.playback.play(false)")
     return f"{off:.2f} ms"
+
+
+def test_a_shared_page_plays_from_the_disk():
+    """One file, no server: the same scene, with its sound, and nothing on the console."""
+    html = os.path.join(MADE, "shared.html")
+    done = subprocess.run([HIMC, "share", SCENE, "-o", html], capture_output=True, text=True)
+    if "without three.js" in done.stderr:
+        raise report.Ignored("himc was built without three.js")
+    assert done.returncode == 0, done.stderr
+    browser.log()
+    browser.open("file://" + os.path.abspath(html))
+    draw_when = "return !!(window.viewer && viewer.playback && viewer.panel.timeline.waves)"
+    assert browser.wait(draw_when), browser.log()
+    draw(False)
+    expect("12.5")
+    browser.run("viewer.playback.play(false); viewer.playback.seek(12500)")
+    said = settle(1e-5)
+    trouble = browser.log()
+    assert not trouble, trouble
+    seconds, size = browser.run("return viewer.playback.length") / 1000, os.path.getsize(html)
+    assert size * 60 / seconds < 6e6, size
+    return f"{said}, {size * 60 / seconds / 1e6:.2f} MB a minute"
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """What `himc render --scene` writes, against the tables of the same rendering."""
 
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -104,6 +105,36 @@ def test_block_size_changes_nothing_but_the_looks_at_the_heads():
 def test_a_file_that_is_named_twice_is_refused():
     done = render("--scene", path("sound.wav"))
     assert done.returncode == 1 and "named twice" in done.stderr, done.stderr
+
+
+def test_what_is_no_scene_is_not_shared():
+    for name, why in (("Makefile", "not a scene"), ("/nowhere.himc", "cannot be read")):
+        command = [HIMC, "share", name, "-o", path("page.html")]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1, done
+        assert why in done.stderr or "without three.js" in done.stderr, done.stderr
+        assert not os.path.exists(path("page.html"))
+
+
+def test_what_is_played_is_what_is_rendered():
+    """A sound card that is a file: the samples are those of the WAV file, bit by bit."""
+    with open(path("asound.conf"), "w") as file:
+        file.write(
+            "</usr/share/alsa/alsa.conf>\n"
+            f'pcm.!default {{ type file file "{path("played")}" format "raw" slave.pcm "null" }}\n'
+        )
+    card = dict(os.environ, ALSA_CONFIG_PATH=path("asound.conf"))
+    command = [HIMC, "play", SCORE]
+    done = subprocess.run(command, capture_output=True, text=True, env=card)
+    if "without PortAudio" in done.stderr or "no sound card" in done.stderr:
+        raise report.Ignored(done.stderr.strip())
+    assert done.returncode == 0, done.stderr
+    scene()
+    with open(path("played"), "rb") as played, open(path("sound.wav"), "rb") as rendered:
+        sound = rendered.read().split(b"data", 1)[1][4:]
+        assert len(sound) > 2000000 and played.read(len(sound)) == sound
+    told = json.loads(done.stdout.splitlines()[-1])
+    assert told["underruns"] == 0 and told["seconds"] > 5, told
 
 
 if __name__ == "__main__":

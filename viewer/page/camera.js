@@ -23,6 +23,7 @@ export class View {
         this.camera.up.set(0, 0, 1);
         this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
+        this.lift = 0; // what is written below takes this share of the height, twice
         this.spread = 0; // half the width of the group of performers (m)
         this.pointers = new Map();
         this.preset("stage");
@@ -59,7 +60,7 @@ export class View {
             Object.assign(this.goal, {
                 azimuth,
                 elevation,
-                distance: distance * narrow + 1.25 * this.spread,
+                distance: (distance * narrow + 1.25 * this.spread) * (1 + 2 * this.lift),
             });
             this.goal.target.set(...target);
             if (this.spread) this.goal.target.x += 0.35 * this.spread;
@@ -69,7 +70,7 @@ export class View {
 
     // a point of the page as the camera has it, -1 .. 1
     screen(e) {
-        return [(2 * e.clientX) / innerWidth - 1, 1 - (2 * e.clientY) / innerHeight];
+        return [(2 * e.clientX) / innerWidth - 1, 1 - 2 * this.lift - (2 * e.clientY) / innerHeight];
     }
 
     // keeps what is under the pointer where it is, at the target's depth
@@ -99,6 +100,13 @@ export class View {
         this.leave();
         this.goal.target.copy(nearest);
         this.goal.distance = Math.min(this.goal.distance, CLOSE_UP);
+    }
+
+    // to the window's size; the middle of the picture is above what is written below
+    resize() {
+        const w = innerWidth,
+            h = innerHeight;
+        this.camera.setViewOffset(w, h, 0, this.lift * h, w, h);
     }
 
     // by an angle (rad)

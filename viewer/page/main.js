@@ -24,6 +24,7 @@ const performers = new Map(),
 const PERFORMERS = 16, // as many as himc-viewer keeps
     DRUMS = 32,
     ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
+    LIFT = 0.08, // of the picture over the timeline, of the window's height
     SECOND = 1000; // over which frames are counted (ms)
 const shown = { targets: false, trails: true, forces: true, marks: true, drums: true };
 const numbers = { fps: 0, script: 0, latency: null, render: 0 };
@@ -266,7 +267,7 @@ function frame(_, now = clock(), draw = true) {
         panel.write([...performers.values()], numbers, now, playback, sound);
         panel.filming(recorder.filming);
     }
-    stage.adapt(dt, view.camera);
+    stage.adapt(dt, view);
 }
 
 function next() {
@@ -302,6 +303,8 @@ async function play(bytes, name) {
     playback = new Playback(scene, sound);
     panel.open(playback);
     panel.loading(null);
+    view.lift = LIFT;
+    dispatchEvent(new Event("resize"));
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
@@ -339,7 +342,7 @@ async function fetchScene(name) {
     await play(bytes, name);
 }
 
-addEventListener("resize", () => (stage.resize(view.camera), view.name && view.preset(view.name)));
+addEventListener("resize", () => (stage.resize(view), view.name && view.preset(view.name)));
 addEventListener("dragover", e => e.preventDefault());
 addEventListener("drop", e => {
     e.preventDefault();
@@ -356,7 +359,7 @@ view.points = () => [
         .filter(d => d.group.visible)
         .map(d => d.head.getWorldPosition(new THREE.Vector3())),
 ];
-stage.resize(view.camera);
+stage.resize(view);
 panel.shown(shown);
 actions.camera("stage");
 actions.exaggerate(exaggeration);

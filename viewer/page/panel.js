@@ -25,7 +25,7 @@ const KEYS = [
     ["h", "hide all writing", () => document.body.classList.toggle("bare")],
     ["d", "numbers for diagnosis", () => document.body.classList.toggle("diagnosis")],
     ["space", "play, pause", a => a.pause()],
-    ["← →", "a frame back, on (while nothing plays: turn the view)", null],
+    ["← →", "a frame back, on (live: turn the view)", null],
     ["shift ← →", "a stroke back, on", null],
     ["- +", "slower, faster", null],
     ["[ ]", "the loop begins, ends here", null],

@@ -209,23 +209,22 @@ export class Stage {
         this.scene.add(floor);
     }
 
-    resize(camera) {
+    resize(view) {
         const w = window.innerWidth,
             h = window.innerHeight;
         this.renderer.setPixelRatio(this.quality);
         this.renderer.setSize(w, h, false);
-        camera.aspect = w / h;
-        camera.updateProjectionMatrix();
+        view.resize();
     }
 
     // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time
     // (ms)
-    adapt(frame, camera) {
+    adapt(frame, view) {
         this.late = frame > LATE_FRAME ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
         if (this.late < LATE_FRAMES || this.step === 4) return;
         this.late = 0;
         this.simplify((this.step || 0) + 1);
-        this.resize(camera);
+        this.resize(view);
     }
 
     // step 0: full quality; 1: no more pixels than the screen's; 2: smaller shadow map; 3: one

@@ -25,6 +25,7 @@ static himc_score *import(const char *bytes, size_t size, const char *path, himc
     himc_score *score = himc_score_parse(made.text, path, error);
     if (score) {
         score->report = made.report;
+        score->left_out = made.left_out;
         made.report = NULL;
     }
     himc_midi_score_free(&made);

@@ -34,6 +34,10 @@
 #define PRESS_ARRIVAL 0.6 // at the head (m/s)
 #define PRESS_BRAKE 20.0  // above it (m/s^2)
 
+// after the predicted end of the last contact, by when the real one has begun; chosen: strokes land
+// within 10 ms of their time, bounces within 30 ms
+#define LATE_CONTACT 0.05 // (s)
+
 // a stroke that does not rebound: at both times after it the tip is wanted so low; chosen: the
 // softest roll of one hand, ppp at 12 Hz, is higher at the first, the fastest at one of them
 static const double rests_at[] = {0.06, 0.09}; // (s)
@@ -652,10 +656,10 @@ long himc_motion_beat(performance_motion *m, double t)
 
 bool himc_motion_done(performance_motion *m, double t)
 {
-    double end = m->track ? take_end(m) : himc_planner_end(m->planner);
+    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
     if (!m->playing || !(t >= end))
         return false;
     m->playing = false;
-    himc_planner_sum_up(m->planner);
+    himc_planner_finish(m->planner, t);
     return true;
 }

@@ -173,7 +173,7 @@ static void fill_no_dynamics(himc_motion_row *row)
     }
 }
 
-static void tell_motion(himc_performance *p, double t, himc_motion_row *row)
+static void fill_row(himc_performance *p, double t, himc_motion_row *row)
 {
     *row = (himc_motion_row){.time = t, .energy = p->energy};
     fill_joints(p, row);
@@ -183,7 +183,6 @@ static void tell_motion(himc_performance *p, double t, himc_motion_row *row)
         fill_no_dynamics(row);
     else
         fill_dynamics(p->body, row);
-    p->events.on_motion(p->events.motion_user, row);
 }
 
 static void tell_body(const himc_performance *p, double t, const himc_motion_row *row)
@@ -214,9 +213,11 @@ void himc_performance_tell_tick(himc_performance *p, double t)
 {
     himc_motion_row row;
     if (p->events.on_motion)
-        tell_motion(p, t, &row);
+        fill_row(p, t, &row);
     if (p->events.on_tick)
         tell_body(p, t, p->events.on_motion ? &row : NULL);
+    if (p->events.on_motion)
+        p->events.on_motion(p->events.motion_user, &row);
     record(p, t);
 }
 

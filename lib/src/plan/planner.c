@@ -14,10 +14,7 @@
 #define MOST_MALLET_RADIUS 0.1 // (m)
 #define MOST_HEAD_RADIUS 10.0  // (m)
 
-// the transport; chosen: a tip is at rest 2.5 s after its last touch at any tempo, and a late score
-// is prepared in a second
-#define RETURN_TIME 2.5      // (s)
-#define PREPARATION_TIME 1.0 // (s)
+#define PREPARATION_TIME 1.0 // of a late score; chosen (s)
 #define LATENESS_NOTED 0.001 // a smaller delay of the first beat is not worth a note (s)
 
 himc_planner_config himc_planner_default(void)
@@ -333,9 +330,9 @@ double himc_planner_end(const himc_planner *planner)
     double last = himc_planner_score_last_beat(score);
     if (!score->playing || (score->loop && last >= 0))
         return HUGE_VAL;
-    double end = himc_planner_last_time(planner) + RETURN_TIME;
+    double end = himc_planner_last_contact(planner);
     if (last >= 0)
-        end = fmax(end, himc_planner_score_time(score, score->rounds, last) + RETURN_TIME);
+        end = fmax(end, himc_planner_score_time(score, score->rounds, last) + HIMC_CONTACT_TIME);
     return fmax(score->origin, end);
 }
 
@@ -344,8 +341,10 @@ int himc_planner_given_up(himc_planner *planner)
     return himc_planner_notes_given_up(&planner->notes);
 }
 
-void himc_planner_sum_up(himc_planner *planner)
+void himc_planner_finish(himc_planner *planner, double t)
 {
+    if (planner->score.playing)
+        himc_planner_score_stop(&planner->score, himc_planner_beat(planner, t));
     himc_planner_notes_sum_up(&planner->notes);
 }
 

@@ -39,6 +39,7 @@ typedef struct himc_hit {
 /// A line for the user.
 typedef struct himc_planner_note {
     char text[160];
+    bool minor; ///< all strokes are played
 } himc_planner_note;
 
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error);
@@ -167,14 +168,13 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
 HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
-/// Time at which all has been played and the tips are at rest again (s). Infinite while stopped or
-/// in a loop.
+/// End of the last stroke's contact, as predicted (s). Infinite while stopped or in a loop.
 HIMC_RT double himc_planner_end(const himc_planner *planner);
 /// Strokes of the score given up since the last call.
 HIMC_RT int himc_planner_given_up(himc_planner *planner);
-/// Adds a note with the count of strokes since the last `play` that were not played as written, if
-/// there is more than one.
-HIMC_RT void himc_planner_sum_up(himc_planner *planner);
+/// The score is over: its beats end, the tips come to rest as planned. Adds a note with the count of
+/// strokes since the last `play` that were not played as written, if there is more than one.
+HIMC_RT void himc_planner_finish(himc_planner *planner, double t);
 /// Takes the oldest note; false if there is none. 32 are kept; the last one counts those that are
 /// lost.
 HIMC_RT bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note);

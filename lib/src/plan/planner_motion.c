@@ -604,15 +604,15 @@ double himc_planner_lateness(himc_planner *planner)
     return late;
 }
 
-double himc_planner_last_time(const himc_planner *planner)
+double himc_planner_last_contact(const himc_planner *planner)
 {
     double last = -HUGE_VAL;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_hand *h = &planner->hand[hand];
         for (int i = 0; i < h->waiting_count; i++)
-            last = fmax(last, h->waiting[i].goal.time);
+            last = fmax(last, himc_goal_end(&h->waiting[i].goal));
         if (h->planned_count > 0)
-            last = fmax(last, h->planned[h->planned_count - 1].goal.time);
+            last = fmax(last, himc_goal_end(&h->planned[h->planned_count - 1].goal));
     }
     return last;
 }
