@@ -230,15 +230,16 @@ double cli_drum_inches(const himc_score_line *line)
     return line && line->command.count > 1 ? line->command.atom[1].number : CLI_INCHES;
 }
 
-bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
-                      himc_error *error)
+bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES],
+                      himc_take_options *out, himc_error *error)
 {
-    static const char *const name[] = {"--left-tip", "--right-tip", "--up"};
+    static const char *const name[] = {"--left-tip", "--right-tip", "--up", "--subject"};
     const char *up = value[2];
     *out = himc_take_default();
     out->left_tip = value[0];
     out->right_tip = value[1];
-    for (int i = 0; i < 3; i++)
+    out->subject = value[3];
+    for (int i = 0; i < CLI_TAKE_VALUES; i++)
         if (value[i] && !cli_is_take(path))
             return himc_error_set(error,
                                   "%s: %s is a score, allowed with a take: " HIMC_TAKE_SUFFIXES,

@@ -111,9 +111,9 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
                            himc_error *error);
 
 /// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the
-/// left, 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
+/// left, 1.7 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
 /// and its noise strong.
-#define CLI_LISTENER "listener 2.2 0.4 1.3"
+#define CLI_LISTENER "listener 2.3 0.5 1.3"
 #define CLI_BLOCK 8192 ///< most samples at a time; chosen: the longest block of Pd
 
 /// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).
@@ -132,13 +132,15 @@ double cli_drum_inches(const himc_score_line *line);
 #define CLI_TAKE_OPTIONS                                                                    \
     {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else found by name)"}, \
         {"right-tip", 0, "NAME", "the same, right"},                                        \
+        {"up", 0, "z|y", "a take's upward axis (else as the file says)"},                   \
     {                                                                                       \
-        "up", 0, "z|y", "a take's upward axis (else as the file says)"                      \
+        "subject", 0, "NAME", "of several players in a take's file"                         \
     }
+#define CLI_TAKE_VALUES 4
 /// How the take at `path` is to be read, from the values of CLI_TAKE_OPTIONS. False if one is
 /// wrong, or given with a score.
-bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
-                      himc_error *error);
+bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES],
+                      himc_take_options *out, himc_error *error);
 /// True if the name ends as a motion capture's does, also as one that himc refuses.
 bool cli_is_take(const char *path);
 

@@ -130,7 +130,7 @@ static bool describe_score(const char *path, himc_error *error)
 
 static const cli_option options[] = {
     CLI_TAKE_OPTIONS, {"json", 0, NULL, "the lines as one JSON array of [name, text]"}, {0}};
-enum { LEFT_TIP, RIGHT_TIP, UP, JSON };
+enum { JSON = CLI_TAKE_VALUES };
 
 static bool describe_player(himc_take *take, const himc_take_options *take_options,
                             himc_error *error)

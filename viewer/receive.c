@@ -99,7 +99,7 @@ static uint64_t drum_versions(const scene *s)
 bool receive_waiting(int fd, scene *s, int most)
 {
     static char packet[BUFFER];
-    uint64_t events = s->events, drums = drum_versions(s);
+    uint64_t events = s->events, sounds = s->sounds, drums = drum_versions(s);
     double now = wall_clock();
     for (int i = 0; i < most; i++) {
         struct sockaddr_storage from;
@@ -112,5 +112,5 @@ bool receive_waiting(int fd, scene *s, int most)
         packets_store(s, key, packet, (size_t)size, now);
     }
     bool complete = scene_complete_poses(s, now);
-    return complete || s->events != events || drum_versions(s) != drums;
+    return complete || s->events != events || s->sounds != sounds || drum_versions(s) != drums;
 }

@@ -24,7 +24,7 @@ __all__ = ["Error", "Performance", "Rendering", "Take", "evaluate", "joint_names
 __version__: str = ffi.string(lib.himc_version()).decode()
 
 HANDS = ("left", "right")
-LISTENER = "listener 2.2 0.4 1.3"  # where `himc render` listens unless the score says
+LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
 CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
 TAIL = 8.0  # s; a drum rings no longer
 SILENCE = 1e-4  # of the peak
@@ -238,9 +238,9 @@ class Take:
     """A motion capture: BVH, C3D, TRC, Nexus CSV, Qualisys TSV, or CSV with NAME_x_m, NAME_y_m, NAME_z_m."""
 
     def __init__(self, path: Union[str, Path], left_tip: Optional[str] = None, right_tip: Optional[str] = None,
-                 up: Optional[str] = None):
+                 up: Optional[str] = None, subject: Optional[str] = None):
         error = ffi.new("himc_error *")
-        made = lib.take_load(_text(path), _text(left_tip), _text(right_tip), _text(up), error)
+        made = lib.take_load(_text(path), _text(left_tip), _text(right_tip), _text(up), _text(subject), error)
         _check(made != ffi.NULL, error)
         self._take = ffi.gc(made, lib.himc_take_free)
         self._tips = _text(left_tip), _text(right_tip)
@@ -251,6 +251,21 @@ class Take:
         #: (frames, points, 3), m, z up, facing along x; NaN in gaps. The library's memory, read only.
         self.points: NDArray[np.float64] = _array(self._take, lib.take_points(made), frames * len(self.names) * 3,
                                                   np.dtype(np.float64)).reshape(frames, len(self.names), 3)
+
+        count, channels, rate = ffi.new("int *"), ffi.new("int *"), ffi.new("double *")
+        analog = lib.take_analog(made, count, channels, rate)
+        self.analog_rate: float = rate[0]  #: (Hz), 0 without analog channels
+        self.analog_names: list[str] = [ffi.string(lib.take_analog_name(made, i)).decode() for i in range(channels[0])]
+        #: (samples, channels) of a C3D, in the file's units. The library's memory, read only.
+        self.analog: NDArray[np.float64] = _array(self._take, analog, count[0] * channels[0],
+                                                  np.dtype(np.float64)).reshape(count[0], channels[0])
+
+    def events(self) -> list[tuple[float, str]]:
+        """Time from the first frame (s) and label of the file's events."""
+        time, label, found = ffi.new("double *"), ffi.new("char **"), []
+        while lib.take_event(self._take, len(found), time, ffi.cast("const char **", label)):
+            found.append((time[0], ffi.string(label[0]).decode()))
+        return found
 
     def strikes(self) -> NDArray:
         """Strikes seen in the tips, a structured array."""

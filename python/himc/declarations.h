@@ -52,13 +52,16 @@ void session_take_options(session *s, const char *left, const char *right, const
 void session_keep_rows(session *s, bool keep);
 void session_process(session *s, size_t n, int channels, float *out);
 
-himc_take *take_load(const char *path, const char *left, const char *right, const char *up, himc_error *error);
+himc_take *take_load(const char *path, const char *left, const char *right, const char *up, const char *subject, himc_error *error);
 void himc_take_free(himc_take *take);
 double himc_take_rate(const himc_take *take);
 int himc_take_frames(const himc_take *take);
 int himc_take_points(const himc_take *take);
 const char *himc_take_point_name(const himc_take *take, int point);
 himc_vec3 *take_points(himc_take *take);
+double *take_analog(himc_take *take, int *samples, int *channels, double *rate);
+const char *take_analog_name(himc_take *take, int channel);
+int take_event(himc_take *take, int index, double *time, const char **label);
 himc_take_strike *take_strikes(himc_take *take, const char *left, const char *right, int *count, himc_error *error);
 void free(void *p);
 

@@ -209,15 +209,39 @@ static void session_process(session *s, size_t n, int channels, float *out)
 }
 
 static himc_take *take_load(const char *path, const char *left, const char *right, const char *up,
-                            himc_error *error)
+                            const char *subject, himc_error *error)
 {
     himc_take_options options = options_of(left, right, up);
+    options.subject = subject[0] ? subject : NULL;
     return himc_take_load(path, &options, error);
 }
 
 static himc_vec3 *take_points(himc_take *take)
 {
     return take->x;
+}
+
+static double *take_analog(himc_take *take, int *samples, int *channels, double *rate)
+{
+    *samples = take->analog_samples;
+    *channels = take->analog_channels;
+    *rate = take->analog_rate;
+    return take->analog;
+}
+
+static const char *take_analog_name(himc_take *take, int channel)
+{
+    return take->analog_names[channel];
+}
+
+// 0 past the last
+static int take_event(himc_take *take, int index, double *time, const char **label)
+{
+    if (index >= take->event_count)
+        return 0;
+    *time = take->events[index].time;
+    *label = take->events[index].label;
+    return 1;
 }
 
 static himc_take_strike *take_strikes(himc_take *take, const char *left, const char *right,

@@ -104,6 +104,17 @@ class Package(unittest.TestCase):
         self.assertEqual(himc.render(CAPTURE).stats["played"], 1)
 
     @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")
+    def test_one_subject_of_a_c3d_and_its_analog_channels(self):
+        path = CAPTURE.parents[1] / "upperlimb_pyomeca_100hz/markers_analogs.c3d"
+        take = himc.Take(path, subject="Daphnee")
+        self.assertTrue(all(name.startswith("Daphnee:") for name in take.names))
+        self.assertEqual(take.analog.shape, (11600, 38))
+        self.assertEqual((take.analog_rate, take.analog_names[6]), (2000, "Delt_ant.EMG1 (V)"))
+        self.assertTrue(0 < np.abs(take.analog[:, 6]).max() < 1)
+        with self.assertRaisesRegex(himc.Error, "no subject bob, allowed boite Daphnee"):
+            himc.Take(path, subject="bob")
+
+    @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")
     def test_evaluate_has_a_row_for_each_controller(self):
         rows = himc.evaluate([CAPTURE])
         self.assertEqual(len(rows), 7)

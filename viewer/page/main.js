@@ -9,7 +9,7 @@ import { Drum } from "./drum.js";
 import { MARK_TIME, Marks } from "./strike.js";
 import { Playback, SPEEDS } from "./playback.js";
 import { readScene } from "./scene.js";
-import { Sound } from "./sound.js";
+import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
 
@@ -20,6 +20,7 @@ const performers = new Map(),
     drums = new Map(),
     marks = new Marks(),
     sound = new Sound(),
+    liveSound = new LiveSound(sound),
     recorder = new Recorder(canvas, sound);
 const PERFORMERS = 16, // as many as himc-viewer keeps
     DRUMS = 32,
@@ -128,6 +129,9 @@ const live = {
     },
     drum(key, name, time, place, amplitude) {
         if (!playback) drum(key, name)?.receive(virtual || clock(), place, amplitude);
+    },
+    sound(...packet) {
+        if (!playback) liveSound.receive(...packet, virtual || clock());
     },
     event(event, time) {
         const now = virtual || clock();
@@ -264,7 +268,8 @@ function frame(_, now = clock(), draw = true) {
     panel.draw(excursion, now, playback);
     if (now - written > 250) {
         written = now;
-        panel.write([...performers.values()], numbers, now, playback, sound);
+        panel.write([...performers.values()], numbers, now, playback);
+        panel.silent(playback ? !!sound.buffer : now - liveSound.heard < 1000, sound);
         panel.filming(recorder.filming);
     }
     stage.adapt(dt, view);
@@ -290,6 +295,7 @@ function step(ms, draw = true) {
 // forgets the performer and the drums of the playback, or of the stream
 function close() {
     sound.stop();
+    liveSound.close();
     marks.clear();
     for (const table of [performers, drums]) {
         for (const one of table.values()) discard(one.group);
@@ -404,6 +410,7 @@ window.viewer = {
     view,
     stage,
     sound,
+    liveSound,
     recorder,
     get playback() {
         return playback;

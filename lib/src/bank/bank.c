@@ -613,22 +613,51 @@ void himc_bank_rest(himc_bank *bank)
     bank->forced = true;
 }
 
-// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`, its weights
-// enlarged by those of the film times `by`. Returns the sum of the film's weights on the state.
-static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, double by,
-                        int n, double *out)
+static himc_bank_waves waves_at(himc_bank *bank, int i)
 {
-    const double *more = r->film ? r->film : r->p;
+    return (himc_bank_waves){bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
+                             bank->twice + i, bank->fall + i};
+}
+
+// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`; where `stretched`
+// its weights are enlarged by those of the film times `by`. Returns the sum of these on the state.
+static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, bool stretched,
+                        double by, int n, double *out)
+{
     double sum = 0;
     for (int i = first; i < end; i += BLOCK) {
         int count = end - i < BLOCK ? end - i : BLOCK;
-        himc_bank_waves waves = {bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
-                                 bank->twice + i, bank->fall + i};
-        sum += bank->loops->weigh(&waves, r->p + i, r->s + i, more + i, by, bank->p + i,
-                                  bank->s + i, count);
+        himc_bank_waves waves = waves_at(bank, i);
+        if (stretched)
+            sum += bank->loops->weigh_more(&waves, r->p + i, r->s + i, r->film + i, by, bank->p + i,
+                                           bank->s + i, count);
+        else
+            bank->loops->weigh(&waves, r->p + i, r->s + i, bank->p + i, bank->s + i, count);
         bank->loops->ahead(&waves, count, n, out);
     }
     return sum;
+}
+
+// the same of the oscillators from `low` on, of readouts that are alike
+static void add_alike(himc_bank *bank, const himc_alike *alike)
+{
+    const himc_readout *form = &alike->form;
+    double *out[HIMC_BANK_ALIKE];
+    const double *gain[HIMC_BANK_ALIKE];
+    for (int k = 0; k < HIMC_BANK_ALIKE; k++) {
+        himc_readout *r = alike->readout[k];
+        out[k] = memset(r->ahead, 0, sizeof r->ahead);
+        r->pass = bank->pass;
+        r->part = 0;
+    }
+    for (int i = bank->low; i < bank->live; i += BLOCK) {
+        int count = bank->live - i < BLOCK ? bank->live - i : BLOCK;
+        himc_bank_waves waves = waves_at(bank, i);
+        for (int k = 0; k < HIMC_BANK_ALIKE; k++)
+            gain[k] = alike->gain[k] + i;
+        bank->loops->weigh(&waves, form->p + i, form->s + i, bank->p + i, bank->s + i, count);
+        bank->loops->ahead_alike(&waves, gain, count, bank->length, out);
+    }
 }
 
 // adds the film's present step to readout->ahead
@@ -638,7 +667,7 @@ static void add_step(himc_bank *bank, himc_readout *readout)
     double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
     bool stretched = readout->film != NULL;
     double sum =
-        add_waves(bank, readout, 0, bank->low, stretched && readout->direct ? -audible(f) : 0,
+        add_waves(bank, readout, 0, bank->low, stretched, readout->direct ? -audible(f) : 0,
                   bank->step < LANES ? LANES : bank->step, out);
     double slope = stretched ? film_slope(bank, readout, sum) : 0;
     for (int n = 0; n < bank->step; n++)
@@ -649,9 +678,11 @@ static void add_step(himc_bank *bank, himc_readout *readout)
 // fills readout->ahead as far as the present step goes
 static void look_ahead(himc_bank *bank, himc_readout *readout)
 {
-    if (readout->pass != bank->pass) {
+    if (readout->pass != bank->pass && readout->alike) {
+        add_alike(bank, readout->alike);
+    } else if (readout->pass != bank->pass) {
         memset(readout->ahead, 0, sizeof readout->ahead);
-        add_waves(bank, readout, bank->low, bank->live, 0, bank->length, readout->ahead);
+        add_waves(bank, readout, bank->low, bank->live, false, 0, bank->length, readout->ahead);
         readout->pass = bank->pass;
         readout->part = 0;
     }

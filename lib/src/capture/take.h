@@ -45,6 +45,10 @@ struct himc_take {
     himc_quat *rotations;     ///< (frames x points), NULL without skeleton
     himc_take_event *events;  ///< (event_count)
     int event_count;
+    char (*analog_names)[TAKE_NAME]; ///< (analog_channels): "EMG1 (V)"
+    double *analog; ///< (analog_samples x analog_channels) in the file's units, NULL without
+    int analog_channels, analog_samples;
+    double analog_rate; ///< (Hz)
 
     double mass, height;         ///< of the player as the file states (kg, m), 0 if it does not
     double file_unit;            ///< length unit that the file states (m), 0 if it does not
@@ -88,6 +92,12 @@ void himc_take_plain_name(const char *name, char plain[TAKE_NAME]);
 /// Returns the hand, HIMC_HANDS if no side is given, or -1 if anything else is in the name. `words`
 /// ends with NULL; `rest` gets the words without the side.
 int himc_take_side(const char *plain, const char *const *words, char rest[TAKE_NAME]);
+
+// Several players: take_subject.c.
+
+/// Keeps the points of the subject `wanted`, before anything is measured; NULL keeps all, and notes
+/// if there are several. False with the names that there are.
+bool himc_take_choose_subject(himc_take *take, const char *wanted, himc_error *error);
 
 // Gaps: take_gaps.c.
 

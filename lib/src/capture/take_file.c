@@ -129,7 +129,9 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
     set_file(take, name);
     if (size == 0)
         himc_error_set(error, "%s: the file is empty", take->file);
-    else if (f->read(take, bytes, size, error) && himc_take_settle(take, options, error))
+    else if (f->read(take, bytes, size, error) &&
+             himc_take_choose_subject(take, options->subject, error) &&
+             himc_take_settle(take, options, error))
         return take;
     himc_take_free(take);
     return NULL;
