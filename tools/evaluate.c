@@ -19,7 +19,7 @@ enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS, OWN, JSON, FIGURE, TAKE };
 static const cli_option options[] = {
     {"trials", 0, "N", "trials for each nuance and controller, 1 .. 10000 (100)"},
     {"range", 0, "A-B", "only these of them, to spread over machines"},
-    {"only", 0, "WORD,...", "only rows of this nuance, this controller, this law"},
+    {"only", 0, "WORD[,WORD]", "only rows of this nuance, this controller, this law"},
     {"csv", 0, "F.csv", "writes the table to this file (standard output)"},
     {"log", 0, "F.csv", "stores each trial when it ends; trials in it are not repeated"},
     {"jobs", 0, "N", "parallel trials, 1 .. 256 (the number of cores)"},
