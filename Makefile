@@ -30,8 +30,8 @@ COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring clang
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
-LIB_LIBS = -lode -llo -lstdc++ -lpthread -lm
-LIBS     = -Wl,--as-needed -lsndfile $(LIB_LIBS)
+LIB_LIBS = -lode -lstdc++ -lpthread -lm
+LIBS     = -Wl,--as-needed -lsndfile -lz $(LIB_LIBS)
 
 # what is built from what is there
 version    = $(shell sed -n 's/.*define HIMC_VERSION_$(1) //p' lib/himc/base.h)
@@ -40,23 +40,27 @@ VERSION   := $(MAJOR).$(call version,MINOR).$(call version,PATCH)
 LIBRARY   := $(BUILD)/libhimc.a
 SHARED    := $(BUILD)/libhimc.so.$(VERSION)
 PKGCONFIG := $(BUILD)/himc.pc
-PROGRAM   := $(BUILD)/bin/himc
+PROGRAM   := $(BUILD)/bin/himc$(EXE)
 VIEWER    := $(BUILD)/bin/himc-viewer
 EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.pd_linux,$(wildcard pd-externals/*~.c))
 # for Pd with samples of 64 bits, and for libpd with several instances
 EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.pd_linux=$(BUILD)/externals-64/%.linux-amd64-64.so)
 EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
-ROOMS     := base body capture track plan midi control bank head drum performance osc
+ROOMS     := system base body capture track plan midi control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
+# the page in one file, for himc share, where the viewer can be built
+SHARE_O   := $(if $(EXE),,$(if $(wildcard /usr/share/javascript/three/three.module.js),$(patsubst %,$(BUILD)/viewer/%.o,pages recording scene share)))
+# the sound card of himc play, where PortAudio is
+PORTAUDIO := $(if $(EXE)$(findstring aarch64,$(CC)),,$(wildcard /usr/include/portaudio.h /usr/local/include/portaudio.h))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
-TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(wildcard tools/*.c))
+TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
 UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh tests/test_arm64.sh,$(wildcard tests/test_*.sh tests/pd/test_*.sh))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh tests/test_arm64.sh tests/test_windows.sh,$(wildcard tests/test_*.sh tests/pd/test_*.sh))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -110,6 +114,22 @@ test-arm64: all ## the same, run by qemu: its strikes and its sound are those of
 	@$(MAKE) arm64
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_arm64.sh
 
+WINDOWS = $(abspath $(BUILD)/windows/parts/root)
+windows: deps ## program and externals for Windows, crossed by mingw-w64, in build/windows
+	@tools/deps.sh tools/deps-windows.txt
+	@tools/windows.sh $(BUILD)/windows/parts
+	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
+	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
+	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate evaluate_log trial pool"
+windows-here: $(PROGRAM)
+	@echo "pd   $(BUILD)/externals"
+	$(call make_externals,$(BUILD)/externals extension=m_amd64 ARCHIVES=$(WINDOWS)/lib PDBINDIR=$(WINDOWS)/lib PDINCLUDEDIR=/usr/include/pd)
+
+test-windows: all ## the same, run by wine: its strikes are those of Linux, in the program and in Pure Data
+	@$(MAKE) windows
+	@tools/windows.sh $(BUILD)/windows/parts pd
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_windows.sh
+
 deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would
 	@tools/deps.sh tools/deps-package.txt
 	@$(MAKE) all externals-64
@@ -139,8 +159,8 @@ view: deps ## build the viewer and show the improvisation in the browser
 	@tools/deps.sh tools/deps-viewer.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
-	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
-	$(VIEWER) --play $(BUILD)/demo/view.csv
+	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
+	$(VIEWER) --play $(BUILD)/demo/view.himc
 
 # the picture of `make still`: the camera (stage front side top eye) and the time (s)
 CAMERA ?= stage
@@ -149,8 +169,8 @@ still: deps ## a picture of it, by a browser without a window, in build/demo/sti
 	@tools/deps.sh tools/deps-viewer.txt tools/deps-browser.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
-	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --motion $(BUILD)/demo/view.csv
-	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.csv $(BUILD)/demo/still.png $(AT) $(CAMERA)
+	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
+	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.himc $(BUILD)/demo/still.png $(AT) $(CAMERA)
 
 viewer: ## the viewer alone, build/bin/himc-viewer
 	@tools/deps.sh tools/deps-viewer.txt
@@ -237,7 +257,7 @@ FLOATSIZE ?= 32
 test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd FLOATSIZE=32 or 64
 	@$(MAKE) all $(if $(filter 64,$(FLOATSIZE)),externals-64)
 	@HIMC_BUILD=$(BUILD) PD=$(NEWER) $(if $(filter 64,$(FLOATSIZE)),HIMC_EXTERNALS=$(abspath $(BUILD)/externals-64)) HIMC_LONG=1 JOBS=1 \
-	    tests/run.sh tests/pd/test_pd.sh
+	    tests/run.sh tests/pd/test_pd.sh tests/pd/test_patches.sh tests/pd/test_save.sh
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
@@ -251,6 +271,12 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 	@tools/deps.sh tools/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
 	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid
+
+test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
+	@tools/deps.sh tools/deps-python.txt
+	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools matplotlib; }
+	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
+	@build/python/bin/python python/tests/test_himc.py
 
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
 	@tools/deps.sh tools/deps-sound.txt
@@ -319,7 +345,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: test-python windows windows-here test-windows arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -368,7 +394,7 @@ $(BUILD)/viewer/%.o: viewer/%.c
 
 # names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
 # room base, the skeleton and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/base/%,$(LIB_O)))
+SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
@@ -385,9 +411,9 @@ $(VIEWER_O): $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
-$(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/base/%,$(LIB_O)))
+$(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
-	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lm -o $@
+	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
 
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )
@@ -423,24 +449,31 @@ $(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
 # needs tools/deps-sound.txt
 $(BUILD)/tools/sound/loudness: private LIBS += -lebur128
 
-$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(LIBRARY)
-	$(call say,link)
-	$(Q)$(LINK) $^ $(LIBS) -o $@
+# names of files are UTF-8
+$(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
+	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
+$(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
 
-# a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD
+$(BUILD)/tools/share.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(BUILD)/tools/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
+$(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
+	$(call say,link)
+	$(Q)$(LINK) $^ $(LIBS) $(if $(PORTAUDIO),-lportaudio) -o $@
+
+# a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD; those of OSC listen with liblo
 $(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
+	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -llo -o $@
 
 # targets for arbitrary bytes: with clang's libFuzzer, or with a driver that mutates in the same way each time
 $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/fuzz/driver.o) $(LIBRARY)
 	$(call say,link)
-	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
+	$(Q)$(LINK) $(LIBFUZZER) $(filter %.o,$^) $(LIBRARY) $(LIBS) -llo -o $@
 
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 
 # what of the viewer needs neither a socket nor a package of its own, for its tests
-VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o web.o),$(VIEWER_O))
+VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o share.o web.o),$(VIEWER_O))
 VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
 $(VIEWER_TESTS): $(VIEWER_PARTS)
 $(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h

@@ -6,6 +6,10 @@ hidden copy of libhimc: they share data through pointers, and no statics. So bot
 build: HIMC_BUILD_ID, made by the Makefile, is a checksum of all sources of the library and of this
 file. Partners of different builds refuse each other.
 
+The first [himc~] plays the drum itself. Each further one gets a guest: a drum of its own with the
+same settings, whose sound [membrane~] adds. So all are heard on one drum, and the sticks of each feel
+the head as they move it.
+
 Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The
 engine, a drum or a performance, counts in the same way; the first object in a tick advances it, the
 other reads its ring. */
@@ -31,13 +35,9 @@ typedef struct t_drum_link {
     char l_build[DRUM_LINK_ID_SIZE]; /* HIMC_BUILD_ID of the binary that made the drum */
     himc_drum *l_drum;
     double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
+    /* The guest of a further performer, borrowed; NULL with the reason. */
+    himc_drum *(*l_guest)(struct t_drum_link *link, const void *performer, himc_error *error);
 } t_drum_link;
-
-static inline t_drum_link drum_link(himc_drum *drum, double rate)
-{
-    t_drum_link link = {DRUM_LINK_MAGIC, HIMC_BUILD_ID, drum, rate};
-    return link;
-}
 
 static inline t_symbol *drum_link_symbol(const char *name)
 {
@@ -196,6 +196,15 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
                 HIMC_ATOM_SYMBOL, 0, a->a_type == A_SYMBOL ? a->a_w.w_symbol->s_name : "(pointer)"};
     }
     return himc_command_parse(command, receiver, s->s_name, atom, count, error);
+}
+
+/* Takes a flag off the front of an object's arguments. */
+static inline bool take_flag(int *argc, t_atom **argv, const char *flag)
+{
+    if (*argc == 0 || (*argv)->a_type != A_SYMBOL || (*argv)->a_w.w_symbol != gensym(flag))
+        return false;
+    (*argc)--, (*argv)++;
+    return true;
 }
 
 /* Sends `selector` and the words of `line` as one message, without commas and semicolons, which

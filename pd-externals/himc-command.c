@@ -1,9 +1,11 @@
 /* himc-command.c: the commands to a [himc~], by message or over OSC.
 
 A message becomes a command of the library (himc/command.h). This file does only what the library
-leaves to its host: it finds files as Pd does, opens the network, answers `info`. */
+leaves to its host: it finds files as Pd does, opens the network, answers `info`, keeps the state in
+the patch. */
 #include "himc-tilde.h"
 #include "himc/osc.h"
+#include "saved-state.h"
 
 #include "g_canvas.h"
 #include <stdlib.h>
@@ -122,6 +124,7 @@ static bool himc_tilde_osc(t_himc *x, const himc_command *command, himc_error *e
 
 void himc_tilde_load(t_himc *x)
 {
+    himc_tilde_restore(x);
     if (!pd_in_real_time())
         himc_loader_finish(x->x_loader);
     else if (himc_loader_run(x->x_loader))
@@ -149,9 +152,59 @@ static bool himc_tilde_perform_command(t_himc *x, const himc_command *command, h
     return himc_performance_command(x->x_performance, command, delay, error);
 }
 
+/* The drums save their own state, and a word that is no command of the performer is a drum's name. */
+static void himc_tilde_save_line(void *saving, const char *line)
+{
+    char word[HIMC_NAME_SIZE];
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " "), line);
+    const himc_command_row *row = himc_command_find(HIMC_PERFORMER, word);
+    if (strcmp(word, "at") == 0 || (row && row->id != HIMC_COMMAND_MAKE_DRUM))
+        saved_line(saving, line);
+}
+
+void himc_tilde_save(t_gobj *object, t_binbuf *to)
+{
+    t_himc *x = (t_himc *)object;
+    t_saving saving = {&x->x_obj, x->x_canvas, to};
+    saved_object(&saving);
+    if (!x->x_saves)
+        return;
+    himc_tilde_restore(x);
+    himc_loader_finish(x->x_loader);
+    binbuf_addv(to, "ss", gensym("#A"), gensym("state"));
+    himc_performance_describe(x->x_performance, HIMC_DESCRIBE_STATE, himc_tilde_save_line, &saving);
+    binbuf_addsemi(to);
+}
+
+void himc_tilde_saved(t_himc *x, t_symbol *s, int argc, t_atom *argv)
+{
+    (void)s;
+    free(x->x_state);
+    x->x_state = saved_text(x->x_canvas, argc, argv);
+    x->x_saves = true;
+    clock_delay(x->x_load, 0);
+}
+
+void himc_tilde_restore(t_himc *x)
+{
+    himc_error error;
+    himc_load_target target = {.performance = x->x_performance};
+    char *state = x->x_state;
+    if (!state)
+        return;
+    x->x_state = NULL;
+    himc_tilde_resolve(x, false);
+    if (!himc_loader_restore(x->x_loader, &target, state, &error))
+        pd_error(x, "himc~: %s", error.text);
+    free(state);
+}
+
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
+    himc_tilde_restore(x);
+    if (s == gensym("save"))
+        return saved_switch(&x->x_saves, argc, argv, error);
     if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
         return false;
     himc_command_when when = himc_command_table((int)command.id)->when;

@@ -48,6 +48,16 @@ static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_err
     return true;
 }
 
+/* A guest of [membrane~ NAME], which another [himc~] plays. */
+static himc_drum *himc_tilde_find_guest(t_himc *x, t_drum_link *link, himc_error *error)
+{
+    if (link->l_rate == x->x_rate)
+        return link->l_guest(link, &x->x_player, error);
+    himc_error_set(error, "[membrane~ %s] is played at %g Hz by another [himc~]",
+                   himc_drum_name(link->l_drum), link->l_rate);
+    return NULL;
+}
+
 /* The drum of [membrane~ NAME] at the performance's rate, or NULL and why not. */
 static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error)
 {
@@ -55,10 +65,8 @@ static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error
     if (!link)
         return NULL;
     void *performer = himc_drum_get_driver(link->l_drum).performer;
-    if (performer && performer != &x->x_player) {
-        himc_error_set(error, "[membrane~ %s] is played by another [himc~]", name);
-        return NULL;
-    }
+    if (performer && performer != &x->x_player)
+        return himc_tilde_find_guest(x, link, error);
     if (link->l_rate != x->x_rate && !himc_drum_set_rate(link->l_drum, x->x_rate, error))
         return NULL;
     link->l_rate = x->x_rate;

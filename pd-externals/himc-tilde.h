@@ -41,6 +41,8 @@ typedef struct t_himc {
     himc_osc *x_osc;    /* NULL until `subscribe` or `listen` */
     t_clock *x_network; /* looks for commands from there */
 
+    bool x_saves;   /* its state in the patch */
+    char *x_state;  /* from there, to be restored when all drums of the patch are made; or NULL */
     bool x_waiting; /* x_event is to be sent */
     himc_event x_event;
 } t_himc;
@@ -58,6 +60,12 @@ void himc_tilde_advance(void *player, uint64_t time);
 
 /* Any message to the inlet. */
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv);
+/* Writes the object into a patch, with its state if it keeps it there. */
+void himc_tilde_save(t_gobj *object, t_binbuf *to);
+/* The message that himc_tilde_save has written. */
+void himc_tilde_saved(t_himc *x, t_symbol *s, int argc, t_atom *argv);
+/* Restores a state that waits. */
+void himc_tilde_restore(t_himc *x);
 /* Installs what has been loaded. */
 void himc_tilde_load(t_himc *x);
 /* Carries out commands from OSC, in Pd's own time, also while DSP is off. */

@@ -1,4 +1,4 @@
-/* [himc~ [-signals] DRUM ...]: the performer, a simulated percussionist who strikes
+/* [himc~ [-signals] [-save] DRUM ...]: the performer, a simulated percussionist who strikes
 [membrane~ DRUM].
 
 inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
@@ -15,6 +15,9 @@ for its sound first and so advances the performance itself (himc_tilde_advance);
 a ring. Nothing is sent from perform: a clock sends it at the start of the next tick. */
 #include "himc-tilde.h"
 #include "himc/vec.h"
+#include "saved-state.h"
+
+#include <stdlib.h>
 
 static t_class *himc_tilde_class;
 
@@ -68,6 +71,7 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             x->x_out[hand] = out[hand]->s_vec;
         stream_restart(&x->x_stream, sp[0]);
+        himc_tilde_restore(x);
         himc_tilde_resolve(x, true);
         x->x_spoilt = x->x_told = false;
         himc_performance_realign(x->x_performance);
@@ -102,7 +106,9 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
         outlet_anything(x->x_messages, gensym("beat"), 1, atom);
         break;
     case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
-    case HIMC_EVENT_NOTE: logpost(x, PD_NORMAL, "himc~: %s", event->text); break;
+    case HIMC_EVENT_NOTE:
+        logpost(x, event->minor ? PD_DEBUG : PD_NORMAL, "himc~: %s", event->text);
+        break;
     }
 }
 
@@ -129,8 +135,8 @@ static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error
         char text[80];
         atom_string(argv + i, text, sizeof text);
         if (argv[i].a_type == A_SYMBOL && text[0] == '-')
-            return himc_error_set(error, "%s: unknown flag, allowed -signals, before the drums",
-                                  text);
+            return himc_error_set(
+                error, "%s: unknown flag, allowed -signals and -save, before the drums", text);
         if (argv[i].a_type != A_SYMBOL || strlen(text) >= HIMC_NAME_SIZE)
             return himc_error_set(error,
                                   "argument %d: %s, allowed: a drum's name of up to %d characters",
@@ -149,8 +155,8 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     himc_performance_config config = himc_performance_default();
     config.sample_rate = sys_getsr();
     himc_performance *performance = NULL;
-    bool signals = argc > 0 && argv->a_type == A_SYMBOL && argv->a_w.w_symbol == gensym("-signals");
-    argc -= signals, argv += signals;
+    bool saves = take_flag(&argc, &argv, "-save"), signals = take_flag(&argc, &argv, "-signals");
+    saves |= take_flag(&argc, &argv, "-save");
     if (himc_tilde_arguments(argc, argv, &error))
         performance = himc_performance_new(&config, &error);
     himc_loader *loader = performance ? himc_loader_new(&error) : NULL;
@@ -172,6 +178,8 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     for (int i = 0; i < argc; i++)
         x->x_drum[i].d_name = argv[i].a_w.w_symbol->s_name;
     x->x_signals = signals;
+    x->x_saves = saves;
+    saved_bind(&x->x_obj.ob_pd);
     for (int i = 0; signals && i < COORDINATES; i++)
         inlet_new(&x->x_obj, &x->x_obj.ob_pd, &s_signal, &s_signal);
     outlet_new(&x->x_obj, &s_signal);
@@ -183,6 +191,8 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
 static void himc_tilde_free(t_himc *x)
 {
     himc_tilde_leave(x);
+    saved_unbind(&x->x_obj.ob_pd);
+    free(x->x_state);
     himc_osc_free(x->x_osc);
     himc_loader_free(x->x_loader);
     himc_performance_free(x->x_performance);
@@ -202,6 +212,8 @@ void himc_tilde_setup(void)
     if (!himc_tilde_class)
         return; /* a Pd of another float size has refused it and said so */
     class_addmethod(himc_tilde_class, (t_method)himc_tilde_dsp, gensym("dsp"), A_CANT, A_NULL);
+    class_addmethod(himc_tilde_class, (t_method)himc_tilde_saved, gensym("state"), A_GIMME, A_NULL);
     class_addanything(himc_tilde_class, (t_method)himc_tilde_anything);
+    class_setsavefn(himc_tilde_class, himc_tilde_save);
     post("himc~ " HIMC_VERSION);
 }

@@ -36,12 +36,6 @@ static inline bool layer_fits(const t_layer *layer, const himc_membrane *drum)
     return himc_membrane_alike(drum, layer_membrane(layer));
 }
 
-/* Makes it equal to the drum's head. May allocate. */
-static inline bool layer_fit(t_layer *layer, const himc_membrane *drum, himc_error *error)
-{
-    return layer_fits(layer, drum) || himc_membrane_follow(layer_membrane(layer), drum, error);
-}
-
 static inline double layer_declick(t_layer *layer)
 {
     double goal = !layer->l_silent, step = 1 / (LAYER_DECLICK * himc_drum_rate(layer->l_drum));

@@ -1,4 +1,4 @@
-/* [membrane~ NAME [INCHES [CHANNELS]]]: a drum: a membrane that [himc~ NAME], a signal or a message
+/* [membrane~ [-save] [NAME [INCHES [CHANNELS]]]]: a drum: a membrane that [himc~ NAME], a signal or a message
 strikes.
 
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
@@ -18,9 +18,13 @@ late in each block, so that what a patch starts on it is exact to the sample ([v
 
 Glue only. Without a performer the object advances its drum itself. With one, the performer steps
 head and sticks together, so the inlet's force plays on a second head beside it (layer.h), and the
-displacement outlet follows x and y from block to block. */
+displacement outlet follows x and y from block to block. Further performers play guests: drums that
+take the same commands and are heard with it. */
 #include "drum-link.h"
 #include "layer.h"
+#include "saved-state.h"
+
+#define GUESTS 3 /* performers beside the first; chosen: more do not find room around a drum */
 
 static t_class *membrane_class;
 
@@ -34,10 +38,13 @@ typedef struct t_membrane {
     t_outlet *x_messages;
     t_canvas *x_canvas; /* presets are beside its patch */
     int x_channels;
+    bool x_saves; /* its state in the patch */
 
     himc_loader *x_loader; /* for heads that take long to compute */
     t_clock *x_load;       /* looks for what it has loaded */
 
+    himc_drum *x_guest[GUESTS]; /* one without a performer is free for the next */
+    int x_guests;
     t_layer x_layer;      /* plays the inlet's force while a performer plays the drum */
     t_clock *x_fit_clock; /* makes it equal to the drum */
     bool x_fits_soon;     /* that clock runs */
@@ -59,6 +66,35 @@ typedef struct t_membrane {
 
 _Static_assert(offsetof(t_membrane, x_link) == sizeof(t_object), "[himc~] looks for it there");
 
+/* Guest `index` if a performer plays it, else NULL. */
+static himc_drum *membrane_guest(const t_membrane *x, int index)
+{
+    return himc_drum_get_driver(x->x_guest[index]).performer ? x->x_guest[index] : NULL;
+}
+
+/* True if the heads beside the drum's equal it. */
+static bool membrane_fits(const t_membrane *x)
+{
+    const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    bool fits = layer_fits(&x->x_layer, drum);
+    for (int i = 0; i < x->x_guests; i++)
+        if (membrane_guest(x, i))
+            fits = fits && himc_membrane_alike(drum, himc_drum_membrane(x->x_guest[i]));
+    return fits;
+}
+
+/* Makes a head equal to the drum's. */
+static void membrane_fit(t_membrane *x, himc_membrane *head)
+{
+    himc_error error;
+    const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
+    bool good = himc_membrane_alike(drum, head) ||
+                (pd_in_real_time() ? himc_loader_follow(x->x_loader, head, drum, &error)
+                                   : himc_membrane_follow(head, drum, &error));
+    if (!good)
+        pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
+}
+
 /* A sample that is not a finite number becomes 0 and is counted. */
 static double membrane_number(t_membrane *x, t_sample value)
 {
@@ -69,26 +105,20 @@ static double membrane_number(t_membrane *x, t_sample value)
 }
 
 /* Setting the layer may allocate and take long: never from perform. */
-static void membrane_fit_layer(t_membrane *x)
+static void membrane_fit_heads(t_membrane *x)
 {
-    himc_error error;
-    const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
     x->x_fits_soon = false;
-    if (layer_fits(&x->x_layer, drum))
-        return;
-    bool good = pd_in_real_time()
-                    ? himc_loader_follow(x->x_loader, layer_membrane(&x->x_layer), drum, &error)
-                    : layer_fit(&x->x_layer, drum, &error);
+    membrane_fit(x, layer_membrane(&x->x_layer));
+    for (int i = 0; i < x->x_guests; i++)
+        membrane_fit(x, himc_drum_membrane(x->x_guest[i]));
     if (himc_loader_busy(x->x_loader))
         clock_delay(x->x_load, LOAD_PERIOD);
-    if (!good)
-        pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
 /* After a change of the drum. A layer that has not felt a force waits until the pedal rests. */
 static void membrane_refit(t_membrane *x, bool again)
 {
-    if (x->x_layer.l_sounds)
+    if (x->x_layer.l_sounds || x->x_guests > 0)
         clock_delay(x->x_fit_clock, 0);
     else if (again || !x->x_fits_soon)
         clock_delay(x->x_fit_clock, LAYER_PATIENCE);
@@ -103,6 +133,29 @@ static void membrane_read(t_membrane *x, int n, double out[LAYER_OUTS][LAYER_CHU
     himc_drum_read(x->x_link.l_drum, x->x_stream.s_count, n, NULL, out[x->x_channels]);
 }
 
+/* Adds what further performers play; a guest whose performer has gone rings on. */
+static void membrane_add_guests(t_membrane *x, int n, double out[LAYER_OUTS][LAYER_CHUNK])
+{
+    uint64_t start = x->x_stream.s_count;
+    double heard[LAYER_CHUNK];
+    for (int g = 0; g < x->x_guests; g++) {
+        himc_drum *guest = x->x_guest[g];
+        himc_drum_driver driver = himc_drum_get_driver(guest);
+        if (driver.performer)
+            driver.advance_to(driver.performer, start + (uint64_t)n);
+        else
+            himc_drum_advance(guest, n, NULL, NULL, NULL);
+        for (int k = 0; k <= x->x_channels; k++) {
+            if (k < x->x_channels)
+                himc_drum_read_channel(guest, k, start, n, heard);
+            else
+                himc_drum_read(guest, start, n, NULL, heard);
+            for (int i = 0; i < n; i++)
+                out[k][i] += heard[i];
+        }
+    }
+}
+
 static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
                           double out[LAYER_OUTS][LAYER_CHUNK])
 {
@@ -115,6 +168,7 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
         himc_membrane_watch(himc_drum_membrane(drum), in[1][0], in[2][0]);
         driver.advance_to(driver.performer, x->x_stream.s_count + (uint64_t)n);
         membrane_read(x, n, out);
+        membrane_add_guests(x, n, out);
         x->x_layer.l_silent = himc_drum_technique(drum) != HIMC_TECHNIQUE_MODAL;
         layer_play(&x->x_layer, drum, x->x_channels, n, in, out);
     } else {
@@ -130,11 +184,20 @@ static bool membrane_troubled(const t_membrane *x)
     return (x->x_refused || x->x_apart) && !x->x_told;
 }
 
+/* The next touch of any performer. */
+static bool membrane_next_touch(t_membrane *x)
+{
+    bool found = himc_drum_contact_next(x->x_link.l_drum, &x->x_touch);
+    for (int i = 0; i < x->x_guests && !found; i++)
+        found = himc_drum_contact_next(x->x_guest[i], &x->x_touch);
+    return found;
+}
+
 /* Has the next touch sent a block after its sample, as any message's time is in the block to come.
 Called when the stream is at the end of a block. */
 static void membrane_await_touch(t_membrane *x)
 {
-    if (x->x_touching || !himc_drum_contact_next(x->x_link.l_drum, &x->x_touch))
+    if (x->x_touching || !membrane_next_touch(x))
         return;
     x->x_touching = true;
     double samples = (double)(x->x_touch.at - (int64_t)x->x_stream.s_count) + x->x_stream.s_length;
@@ -167,7 +230,7 @@ static t_int *membrane_perform(t_int *w)
     if (x->x_waiting || membrane_troubled(x) ||
         himc_drum_technique(x->x_link.l_drum) != x->x_technique)
         clock_delay(x->x_clock, 0);
-    if (!layer_fits(&x->x_layer, himc_drum_membrane(x->x_link.l_drum)))
+    if (!membrane_fits(x))
         membrane_refit(x, false);
     watch_end();
     return w + 2;
@@ -193,8 +256,11 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
             x->x_link.l_rate = sp[0]->s_sr;
             himc_drum_realign(x->x_link.l_drum, 0);
         }
+        for (int i = 0; i < x->x_guests; i++)
+            if (!membrane_guest(x, i))
+                himc_drum_realign(x->x_guest[i], 0);
         x->x_told = false;
-        membrane_fit_layer(x);
+        membrane_fit_heads(x);
         dsp_add(membrane_perform, 1, x);
         return;
     }
@@ -313,6 +379,20 @@ static bool membrane_file(t_membrane *x, himc_command *command, himc_error *erro
     return true;
 }
 
+/* A guest takes the drum's commands, but for those that act once. */
+static void membrane_command_guests(t_membrane *x, const himc_command *command)
+{
+    himc_error error;
+    bool once = command->id == HIMC_COMMAND_STRIKE || command->id == HIMC_COMMAND_DRUM_DUMP;
+    for (int i = 0; i < x->x_guests && !once; i++) {
+        himc_load_target target = {.drum = x->x_guest[i]};
+        bool good = pd_in_real_time() ? himc_loader_command(x->x_loader, &target, command, &error)
+                                      : himc_drum_command(target.drum, command, &error);
+        if (!good)
+            pd_error(x, "membrane~: %s", error.text);
+    }
+}
+
 static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
@@ -330,6 +410,8 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     }
     bool good = pd_in_real_time() ? himc_loader_command(x->x_loader, &target, &command, error)
                                   : himc_drum_command(drum, &command, error);
+    if (good)
+        membrane_command_guests(x, &command);
     if (himc_loader_busy(x->x_loader))
         membrane_load(x);
     else if (good)
@@ -337,11 +419,92 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     return good;
 }
 
+static void membrane_save(t_gobj *object, t_binbuf *to)
+{
+    t_membrane *x = (t_membrane *)object;
+    t_saving saving = {&x->x_obj, x->x_canvas, to};
+    saved_object(&saving);
+    if (!x->x_saves)
+        return;
+    himc_loader_finish(x->x_loader);
+    binbuf_addv(to, "ss", gensym("#A"), gensym("state"));
+    himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, saved_line, &saving);
+    binbuf_addsemi(to);
+}
+
+/* Gives `drum` the state of the object's. */
+static bool membrane_copy_state(t_membrane *x, himc_drum *drum, himc_error *error)
+{
+    t_saving saving = {&x->x_obj, x->x_canvas, binbuf_new()};
+    himc_load_target target = {.drum = drum};
+    himc_loader_finish(x->x_loader);
+    himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, saved_line, &saving);
+    char *state = saved_text(x->x_canvas, binbuf_getnatom(saving.s_to), binbuf_getvec(saving.s_to));
+    binbuf_free(saving.s_to);
+    himc_error_set(error, "state: out of memory");
+    bool good = state && himc_loader_restore(x->x_loader, &target, state, error);
+    free(state);
+    return good;
+}
+
+/* The place for a guest of that performer: its own, or one that is free; -1 if there is none. */
+static int membrane_guest_place(const t_membrane *x, const void *performer)
+{
+    int place = x->x_guests < GUESTS ? x->x_guests : -1;
+    for (int i = x->x_guests - 1; i >= 0; i--)
+        if (!membrane_guest(x, i))
+            place = i;
+    for (int i = 0; i < x->x_guests; i++)
+        if (himc_drum_get_driver(x->x_guest[i]).performer == performer)
+            return i;
+    return place;
+}
+
+static himc_drum *membrane_invite(t_drum_link *link, const void *performer, himc_error *error)
+{
+    t_membrane *x = (t_membrane *)((char *)link - offsetof(t_membrane, x_link));
+    const char *name = himc_drum_name(link->l_drum);
+    int place = membrane_guest_place(x, performer);
+    if (place < 0) {
+        himc_error_set(error, "[membrane~ %s] is played by %d others", name, GUESTS + 1);
+        return NULL;
+    }
+    if (place < x->x_guests && membrane_guest(x, place))
+        return x->x_guest[place];
+    himc_drum *guest = himc_drum_new(name, HIMC_INCHES_USUAL, link->l_rate, error);
+    if (!guest || !membrane_copy_state(x, guest, error)) {
+        himc_drum_release(guest);
+        return NULL;
+    }
+    himc_drum_set_external_sound(guest, true);
+    if (place < x->x_guests)
+        himc_drum_release(x->x_guest[place]);
+    x->x_guests = place < x->x_guests ? x->x_guests : place + 1;
+    return x->x_guest[place] = guest;
+}
+
+/* The message that membrane_save has written. */
+static void membrane_saved(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
+{
+    (void)s;
+    himc_error error = {"state: out of memory"};
+    himc_load_target target = {.drum = x->x_link.l_drum};
+    char *state = saved_text(x->x_canvas, argc, argv);
+    bool good = state && himc_loader_restore(x->x_loader, &target, state, &error);
+    free(state);
+    x->x_saves = true;
+    membrane_changed(x, good ? NULL : error.text);
+}
+
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
 {
     himc_error error;
     if (s == gensym("info") && argc == 0)
         membrane_info(x);
+    else if (s == gensym("save") && saved_switch(&x->x_saves, argc, argv, &error))
+        return;
+    else if (s == gensym("save"))
+        pd_error(x, "membrane~: %s", error.text);
     else if (s == gensym("dump") && argc == 0)
         himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, membrane_state, x);
     else if (!membrane_command(x, s, argc, argv, &error))
@@ -386,7 +549,7 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
     if (wish->w_channels != floor(wish->w_channels))
         return himc_error_set(error, "channels: %g, allowed a whole number", wish->w_channels);
     return argc <= 3 ||
-           himc_error_set(error, "%d arguments, allowed: NAME [INCHES [CHANNELS]]", argc);
+           himc_error_set(error, "%d arguments, allowed: [-save] NAME [INCHES [CHANNELS]]", argc);
 }
 
 /* A drum with as many pickups as the object has outlets, and the head beside it. */
@@ -465,6 +628,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     double rate = sys_getsr();
     t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;
+    bool saves = take_flag(&argc, &argv, "-save");
     himc_loader *loader = himc_loader_new(&error);
     if (loader && membrane_arguments(argc, argv, &wish, &error))
         drum = membrane_make(&wish, rate, &layer, &error);
@@ -474,14 +638,16 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
         return NULL;
     }
     t_membrane *x = (t_membrane *)pd_new(membrane_class);
-    x->x_link = drum_link(drum, rate);
+    x->x_link = (t_drum_link){DRUM_LINK_MAGIC, HIMC_BUILD_ID, drum, rate, membrane_invite};
     x->x_layer = layer;
     x->x_loader = loader;
     x->x_load = clock_new(x, (t_method)membrane_load);
     x->x_canvas = canvas_getcurrent();
     x->x_channels = (int)wish.w_channels;
+    x->x_saves = saves;
+    saved_bind(&x->x_obj.ob_pd);
     x->x_clock = clock_new(x, (t_method)membrane_tick);
-    x->x_fit_clock = clock_new(x, (t_method)membrane_fit_layer);
+    x->x_fit_clock = clock_new(x, (t_method)membrane_fit_heads);
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
     himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
     double spot_x, spot_y;
@@ -499,10 +665,13 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 static void membrane_free(t_membrane *x)
 {
     membrane_unbind(x);
+    saved_unbind(&x->x_obj.ob_pd);
     himc_loader_free(x->x_loader);
     /* a performer that plays it keeps it until the graph is built anew */
     himc_drum_release(x->x_link.l_drum);
     himc_drum_release(x->x_layer.l_drum);
+    for (int i = 0; i < x->x_guests; i++)
+        himc_drum_release(x->x_guest[i]);
     clock_free(x->x_clock);
     clock_free(x->x_fit_clock);
     clock_free(x->x_load);
@@ -522,5 +691,7 @@ void membrane_tilde_setup(void)
     CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);
     class_addmethod(membrane_class, (t_method)membrane_dsp, gensym("dsp"), A_CANT, A_NULL);
     class_addmethod(membrane_class, (t_method)membrane_name_free, gensym("name-free"), A_NULL);
+    class_addmethod(membrane_class, (t_method)membrane_saved, gensym("state"), A_GIMME, A_NULL);
     class_addanything(membrane_class, (t_method)membrane_anything);
+    class_setsavefn(membrane_class, membrane_save);
 }

@@ -451,6 +451,126 @@ static void test_values_of_a_model_are_no_points_and_missing_frames_are_told(voi
                                  error.text);
 }
 
+// what an earlier program has left behind the last parameter: its link, of another processor, leads
+// into the frames
+static void test_remains_behind_the_parameters_are_not_read(void)
+{
+    maker m = maker_default(C3D_MIPS, true);
+    m.analog = 40;
+    m.frames = 30;
+    make(&m);
+    unsigned char *at = m.bytes + 516;
+    while (at[0] || at[1])
+        at += 2 + abs((signed char)at[0]) + (at[2 + at[0]] << 8 | at[3 + at[0]]);
+    at = put_text(&m, at, 1, "LABELS", "no name at all");
+    TEST_ASSERT_EQUAL_HEX8(20, at[-19]); // the link
+    at[-20] = 0x0A;
+    himc_take *take = read_made(&m);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_STRING("LTIP", himc_take_point_name(take, 0));
+    himc_take_free(take);
+    free(m.bytes);
+}
+
+static void test_units_may_be_filled_with_nul(void)
+{
+    maker m = maker_default(C3D_INTEL, true);
+    m.units = "cm??";
+    make(&m);
+    for (size_t i = 0; i + 4 < m.size; i++)
+        if (memcmp(m.bytes + i, "cm??", 4) == 0)
+            memset(m.bytes + i + 2, 0, 2);
+    himc_take *take = read_made(&m);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_DOUBLE(0.01, take->file_unit);
+    himc_take_free(take);
+    free(m.bytes);
+}
+
+// two frames of three points and two channels of two samples: (raw - offset) scale general
+static void test_analog_samples_are_scaled_and_named(void)
+{
+    static const unsigned char scale[] = {0, 0, 0, 0x3F, 0, 0, 0x80, 0x3F}; // 0.5, 1
+    for (int floats = 0; floats < 2; floats++) {
+        maker m = maker_default(C3D_INTEL, floats);
+        m.frames = 2;
+        make(&m);
+        unsigned char *at = m.bytes + 516;
+        while (at[0] || at[1])
+            at += 2 + abs((signed char)at[0]) + (at[2 + at[0]] | at[3 + at[0]] << 8);
+        at = put_group(&m, at, 9, "ANALOG");
+        at = put_integer(&m, at, 9, "USED", 2);
+        at = put_real(&m, at, 9, "GEN_SCALE", 0.1);
+        at = put(&m, at, 9, "SCALE", 4, 2, 0, scale);
+        at = put(&m, at, 9, "OFFSET", 2, 2, 0, (const unsigned char[]){10, 0, 0, 0});
+        at = put(&m, at, 9, "LABELS", -1, 4, 2, (const unsigned char *)"EMG1Fz  ");
+        put(&m, at, 9, "UNITS", -1, 2, 1, (const unsigned char *)"V ");
+        size_t width = floats ? 4 : 2, stride = width * 16;
+        for (int sample = 0; sample < 4; sample++)
+            for (int channel = 0; channel < 2; channel++) {
+                int raw = 100 * sample + channel;
+                unsigned char *to = m.bytes + 512 * 5 + stride * (size_t)(sample / 2) +
+                                    width * (12 + 2 * (size_t)(sample % 2) + (size_t)channel);
+                if (floats)
+                    himc_c3d_put_real(C3D_INTEL, raw, to);
+                else
+                    put_word(&m, to, raw);
+            }
+        himc_take *take = read_made(&m);
+        TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+        TEST_ASSERT_EQUAL_INT(4, take->analog_samples);
+        TEST_ASSERT_EQUAL_DOUBLE(500, take->analog_rate);
+        TEST_ASSERT_EQUAL_STRING("EMG1 (V)", take->analog_names[0]);
+        TEST_ASSERT_EQUAL_STRING("Fz", take->analog_names[1]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, (300 - 10) * 0.05, take->analog[6]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 201 * 0.1, take->analog[5]);
+        himc_take_free(take);
+        free(m.bytes);
+    }
+}
+
+static void test_one_of_several_subjects_is_chosen_by_name(void)
+{
+    static const char text[] =
+        "Trajectories\n100\n,,Ida:A,,,Jon:A,,,Ida:B,,\nFrame,Sub Frame,X\n,,m,m,m\n"
+        "1,0,.1,.2,.3,.4,.5,.6,.7,.8,.9\n2,0,.1,.2,.3,.4,.5,.6,.7,.8,.9\n";
+    himc_take_options options = himc_take_default();
+    options.subject = "ida";
+    himc_take *take = himc_take_read(text, sizeof text - 1, "a.csv", &options, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(2, himc_take_points(take));
+    TEST_ASSERT_EQUAL_STRING("Ida:B", himc_take_point_name(take, 1));
+    TEST_ASSERT_EQUAL_DOUBLE(0.8, himc_take_point(take, 1, 1).y);
+    himc_take_free(take);
+    options.subject = "Max";
+    TEST_ASSERT_NULL(himc_take_read(text, sizeof text - 1, "a.csv", &options, &error));
+    TEST_ASSERT_EQUAL_STRING("a.csv: no subject Max, allowed Ida Jon", error.text);
+}
+
+// a BVH of two roots: the second one's bones keep their parents
+static void test_a_root_of_a_bvh_is_a_subject(void)
+{
+    static const char bones[] = "%s %s\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n"
+                                "JOINT %sArm\n{\nOFFSET 30 0 0\nCHANNELS 0\n"
+                                "End Site\n{\nOFFSET 30 0 0\n}\n}\n}\n";
+    char one[400], two[400], text[1200];
+    snprintf(one, sizeof one, bones, "ROOT", "Ida", "Ida");
+    snprintf(two, sizeof two, bones, "ROOT", "Jon", "Jon");
+    snprintf(text, sizeof text,
+             "HIERARCHY\n%s%sMOTION\nFrames: 2\nFrame Time: 0.01\n0 90 0 50 90 0\n0 90 0 50 91 0\n",
+             one, two);
+    himc_take_options options = himc_take_default();
+    options.subject = "Jon";
+    himc_take *take = himc_take_read(text, strlen(text), "a.bvh", &options, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(3, himc_take_points(take));
+    TEST_ASSERT_EQUAL_STRING("JonArm", himc_take_point_name(take, 1));
+    TEST_ASSERT_EQUAL_INT(-1, himc_take_parent(take, 0));
+    TEST_ASSERT_EQUAL_INT(0, himc_take_parent(take, 1));
+    TEST_ASSERT_EQUAL_INT(1, himc_take_parent(take, 2));
+    himc_take_free(take);
+}
+
 // 65025 labels of one character each
 static unsigned char *put_labels(const maker *m, unsigned char *at, const char *name, int character)
 {
@@ -518,5 +638,10 @@ int main(void)
     RUN_TEST(test_thousands_of_labels_and_of_model_outputs_take_no_time);
     RUN_TEST(test_real_file_has_as_many_gaps_as_its_source_says);
     RUN_TEST(test_real_file_equals_its_export_as_text_to_a_micrometre);
+    RUN_TEST(test_remains_behind_the_parameters_are_not_read);
+    RUN_TEST(test_units_may_be_filled_with_nul);
+    RUN_TEST(test_analog_samples_are_scaled_and_named);
+    RUN_TEST(test_one_of_several_subjects_is_chosen_by_name);
+    RUN_TEST(test_a_root_of_a_bvh_is_a_subject);
     return UNITY_END();
 }

@@ -6,6 +6,7 @@
 #include "random_commands.h"
 
 #include "base/text.h"
+#include "himc/loader.h"
 
 #include <math.h>
 
@@ -249,6 +250,33 @@ static void test_performance_with_four_drums_and_odd_settings_plays_the_same_fro
     himc_performance_free(other);
 }
 
+static void test_a_state_is_restored_from_text_all_or_nothing(void)
+{
+    himc_performance *p = session_new(), *other = session_new();
+    himc_loader *loader = himc_loader_new(&error);
+    session_do(p, "human 0.3 2");
+    session_do(p, "stroke 0 right accent f");
+    char *state = copy_of(state_of(p));
+    himc_load_target performer = {.performance = other};
+    TEST_ASSERT_TRUE_MESSAGE(himc_loader_restore(loader, &performer, state, &error), error.text);
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    TEST_ASSERT_FALSE(himc_loader_restore(loader, &performer, "human 0.7;\nloop 3;\n", &error));
+    TEST_ASSERT_EQUAL_STRING("state:2: loop: SWITCH: 3, allowed 0 .. 1, whole", error.text);
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    free(state);
+    himc_load_target drum = {.drum = himc_performance_drum(other, 0)};
+    state = copy_of(state_of_drum(drum.drum));
+    TEST_ASSERT_FALSE(himc_loader_restore(loader, &drum, "mallet wood;\nnoise 7;\n", &error));
+    TEST_ASSERT_EQUAL_STRING("state:2: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
+    TEST_ASSERT_EQUAL_STRING(state, state_of_drum(drum.drum));
+    TEST_ASSERT_TRUE(himc_loader_restore(loader, &drum, "mallet wood;\nnoise 0.7;\n", &error));
+    TEST_ASSERT_NOT_NULL(strstr(state_of_drum(drum.drum), "mallet wood;\nnoise 0.7;\n"));
+    free(state);
+    himc_loader_free(loader);
+    himc_performance_free(p);
+    himc_performance_free(other);
+}
+
 static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
 {
     himc_command c;
@@ -297,6 +325,7 @@ int main(void)
     RUN_TEST(test_drum_takes_the_dump_of_another_whatever_it_was_before);
     RUN_TEST(test_performance_made_again_from_its_dump_plays_the_same_bit_by_bit);
     RUN_TEST(test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump);
+    RUN_TEST(test_a_state_is_restored_from_text_all_or_nothing);
     RUN_TEST(test_presets_are_what_a_dump_has_written_all_or_nothing);
     free(lines.bytes);
     snprintf(all, sizeof all, "rm -rf %s", folder);

@@ -94,6 +94,24 @@ static void test_a_joint_about_to_leave_its_bounds_is_on_them_a_moment_later(voi
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1, himc_limit_measure(&limits, NECK, soon(NECK)));
 }
 
+// an arm asked for more than 8000 rad/s^2, as one whose limits hold it off its target is
+static void test_a_demand_on_an_arm_is_bounded_and_keeps_its_proportions(void)
+{
+    int shoulder = himc_arm_joint(HIMC_LEFT, 0), elbow = himc_arm_joint(HIMC_LEFT, 1),
+        other = himc_arm_joint(HIMC_RIGHT, 1);
+    himc_vec3 asked[] = {{0, 6e3, 0}, {16e3, 0, 12e3}, {0, 7e3, 0}, {9e3, 0, 0}};
+    wanted[shoulder] = asked[0];
+    wanted[elbow] = asked[1];
+    wanted[other] = asked[2];
+    wanted[NECK] = asked[3];
+    yield();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.4 * 6e3, wanted[shoulder].y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.4 * 16e3, wanted[elbow].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.4 * 12e3, wanted[elbow].z);
+    TEST_ASSERT_EQUAL_MEMORY(&asked[2], &wanted[other], sizeof asked[2]);
+    TEST_ASSERT_EQUAL_MEMORY(&asked[3], &wanted[NECK], sizeof asked[3]);
+}
+
 // a joint at a constant rate along its bounds stays inside; its spin rotates with the parent
 static void test_a_turning_parent_drives_no_joint_out_of_its_bounds(void)
 {
@@ -279,6 +297,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_joint_about_to_leave_its_bounds_is_on_them_a_moment_later);
+    RUN_TEST(test_a_demand_on_an_arm_is_bounded_and_keeps_its_proportions);
     RUN_TEST(test_a_turning_parent_drives_no_joint_out_of_its_bounds);
     RUN_TEST(test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second);
     RUN_TEST(test_limit_damping_beside_servos_never_adds_energy);

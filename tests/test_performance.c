@@ -272,6 +272,33 @@ static void test_strikes_are_reported_as_they_were_asked_for(void)
     himc_performance_free(p);
 }
 
+static void test_done_comes_with_the_last_contact_and_no_beat_after_it(void)
+{
+    static const char *const piece[] = {"tempo 240; drum kettle; stroke 1 left accent f;",
+                                        "tempo 240; drum kettle; roll 1 2 press mf;"};
+    for (int i = 0; i < 2; i++) {
+        himc_performance *p = with_score(piece[i]);
+        double contact = 0, done = 0;
+        himc_event event;
+        command(p, "play");
+        for (int k = 0; k < 500; k++) {
+            himc_performance_process(p, 480, NULL);
+            while (himc_performance_event(p, &event)) {
+                if (event.kind == HIMC_EVENT_STRIKE)
+                    contact = event.strike.time + event.strike.duration;
+                TEST_ASSERT_TRUE(done == 0);
+                if (event.kind == HIMC_EVENT_DONE)
+                    done = 0.01 * (k + 1);
+            }
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(0.04, contact + 0.05, done);
+        int played = himc_performance_measure(p).played;
+        command(p, "play"); // from the beginning
+        TEST_ASSERT_EQUAL_INT(2 * played, play(p, 4).played);
+        himc_performance_free(p);
+    }
+}
+
 static void test_process_never_allocates_after_the_first_stroke(void)
 {
     himc_performance *p = with_score(PIECE);
@@ -588,6 +615,7 @@ int main(void)
     RUN_TEST(test_every_mode_and_law_strikes_the_drum);
     RUN_TEST(test_one_way_coupling_also_sounds);
     RUN_TEST(test_strikes_are_reported_as_they_were_asked_for);
+    RUN_TEST(test_done_comes_with_the_last_contact_and_no_beat_after_it);
     RUN_TEST(test_process_never_allocates_after_the_first_stroke);
     RUN_TEST(test_bad_commands_change_nothing_and_name_the_allowed_values);
     RUN_TEST(test_target_out_of_reach_is_clamped_with_one_line);

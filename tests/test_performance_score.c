@@ -9,6 +9,8 @@
 #define BVH "build/score-take.bvh"
 #define TRC "build/score-take.trc"
 #define SCORE "build/score-of-it.txt"
+#define RECORD "build/score-record.bvh"
+#define STATE 30000 // of the lines that dump tells, as bytes
 
 static void write_text(const char *text)
 {
@@ -85,17 +87,6 @@ static void test_a_take_in_a_score_with_strokes_is_refused_with_its_line(void)
     TEST_ASSERT_FALSE(session_try(p, "score " SCORE));
     TEST_ASSERT_EQUAL_STRING(SCORE ":2: take: a score with strokes cannot play a take", error.text);
     TEST_ASSERT_NULL(himc_performance_drum(p, 0));
-    himc_performance_free(p);
-}
-
-// what only shows when a score is carried out is told with its line, too
-static void test_a_line_that_fails_when_it_is_carried_out_is_named(void)
-{
-    himc_performance *p = session_new();
-    write_text("drum kettle 26;\ngrip french;\nrecord stop;\n");
-    TEST_ASSERT_FALSE(session_try(p, "score " SCORE));
-    TEST_ASSERT_EQUAL_STRING(SCORE ":3: record: stop: nothing is being recorded, allowed FILE",
-                             error.text);
     himc_performance_free(p);
 }
 
@@ -198,6 +189,101 @@ static void test_a_take_with_left_and_right_exchanged_is_refused(void)
     }
 }
 
+static void keep_line(void *user, const char *line)
+{
+    char *all = user;
+    size_t used = strlen(all);
+    snprintf(all + used, STATE - used, "%s\n", line);
+}
+
+static const char *state_of(const himc_performance *p, char *all)
+{
+    all[0] = 0;
+    himc_performance_describe(p, HIMC_DESCRIBE_STATE, keep_line, all);
+    TEST_ASSERT_TRUE(strlen(all) < STATE - 1);
+    return all;
+}
+
+// each is refused for a reason that lies in the state, not in the line
+static void test_a_score_that_is_refused_names_its_line_and_changes_nothing(void)
+{
+    static const struct {
+        const char *first, *bad, *why;
+    } scores[] = {{"", "record stop", "record: stop: nothing is being recorded, allowed FILE"},
+                  {"record " RECORD ";", "record " RECORD, "already recording, allowed stop"},
+                  {"record " RECORD ";", "rate task 100", "rate task: 100: not while recording"},
+                  {"record " RECORD "; record stop;", "record stop", "nothing is being recorded"},
+                  {"record " RECORD "; reset;", "record stop", "nothing is being recorded"},
+                  {"", "push nose 1 0 0 0.1", "push: SEGMENT: nose, allowed"},
+                  {"", "roll 4 755 single f", "roll: LENGTH: 588.3 s at this tempo, allowed 180 s"},
+                  {"", "take " TRC, "are left and right exchanged?"},
+                  {"", "units " BVH " legato", "allowed 256 in all"},
+                  {"", "tom dump " RECORD, "dump: not allowed in a score"},
+                  {"", "tom preset x", "preset: not allowed in a score"}};
+    char text[600], before[STATE], after[STATE];
+    save(made_take(BVH), BVH);
+    himc_take *take = made_take(TRC);
+    exchange_sides(take);
+    save(take, TRC);
+    for (size_t i = 0; i < sizeof scores / sizeof *scores; i++) {
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        for (bool more = strstr(scores[i].bad, "units"); more;)
+            more = session_try(p, "units " BVH " legato");
+        snprintf(text, sizeof text, "drum tom 26; grip french;\n%s\n%s;\ntempo 77;\n",
+                 scores[i].first, scores[i].bad);
+        write_text(text);
+        state_of(p, before);
+        TEST_ASSERT_FALSE_MESSAGE(session_try(p, "score " SCORE), scores[i].bad);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, SCORE ":3: "), error.text);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, scores[i].why), error.text);
+        TEST_ASSERT_EQUAL_STRING(before, state_of(p, after));
+        TEST_ASSERT_FALSE(session_try(p, "record stop"));
+        himc_performance_free(p);
+    }
+}
+
+// what happens once is no reason to refuse a score
+static void test_a_hit_that_a_score_cannot_have_is_left_out_with_a_note(void)
+{
+    himc_performance *p = session_new();
+    save(made_take(BVH), BVH);
+    write_text("drum kettle; take " BVH "; play;\nhit left legato f;\n");
+    const char *notes = notes_of(p, "score " SCORE);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(notes, SCORE ":2: hit: a take moves the hand"), notes);
+    TEST_ASSERT_EQUAL_STRING("", error.text);
+    himc_performance_free(p);
+}
+
+// the stroke before the whole beat, and the first of the next score on it, are of one hand
+static void test_a_score_follows_a_stroke_just_before_its_first_beat(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "tempo 240");
+    session_do(p, "stroke 7.9 left legato f");
+    session_do(p, "play");
+    write_text("tempo 240; drum tom; stroke 0 left legato f;");
+    session_do(p, "score " SCORE);
+    session_play(p, 3, &h);
+    TEST_ASSERT_EQUAL_INT(2, h.strikes);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// 40 ms as the difference of beats far from 0
+static void test_strokes_as_close_as_allowed_may_follow_at_any_beat(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "stroke 999999 left legato f");
+    session_do(p, "seek 999990");
+    session_do(p, "play");
+    write_text("tempo 1; stroke 0.0006666667 left legato f; stroke 0.0013333334 left legato f;");
+    session_do(p, "score " SCORE);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -205,10 +291,13 @@ int main(void)
     RUN_TEST(test_a_score_begins_at_its_seek);
     RUN_TEST(test_a_take_in_a_score_without_strokes_is_played);
     RUN_TEST(test_a_take_in_a_score_with_strokes_is_refused_with_its_line);
-    RUN_TEST(test_a_line_that_fails_when_it_is_carried_out_is_named);
     RUN_TEST(test_repairs_of_a_take_are_told_when_it_is_loaded);
     RUN_TEST(test_a_take_of_three_frames_is_refused);
     RUN_TEST(test_units_of_a_take_without_strokes_and_too_many_units_are_refused);
     RUN_TEST(test_a_take_with_left_and_right_exchanged_is_refused);
+    RUN_TEST(test_a_score_that_is_refused_names_its_line_and_changes_nothing);
+    RUN_TEST(test_a_hit_that_a_score_cannot_have_is_left_out_with_a_note);
+    RUN_TEST(test_a_score_follows_a_stroke_just_before_its_first_beat);
+    RUN_TEST(test_strokes_as_close_as_allowed_may_follow_at_any_beat);
     return UNITY_END();
 }

@@ -24,7 +24,7 @@ static double touch_at(himc_hand hand, double t)
 
 static void expect_note(const char *text)
 {
-    himc_planner_note note = {""};
+    himc_planner_note note = {.text = ""};
     TEST_ASSERT_TRUE_MESSAGE(himc_planner_note_next(planner, &note), text);
     TEST_ASSERT_EQUAL_STRING(text, note.text);
 }

@@ -280,28 +280,38 @@ static void add_row(void *user, const himc_motion_row *row)
     }
 }
 
-// 8 strokes on a drum that nothing else changes
-static passage play_reference(soak *s)
+// so many strokes on a drum that nothing else changes
+static void play_strokes(soak *s, int count, passage *r, int *strikes)
 {
-    strokes counted = {0};
-    passage r = {0};
-    int strikes = 0;
-    s->now = &counted;
     session_do(s->p, "seek 0");
     session_do(s->p, "tempo 100");
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < count; i++)
         session_do(s->p, "stroke %g %s %s %.3f %s kettle", 2 + 0.75 * i, hand_of(i & 1),
                    nuances[i % 5], 0.1 + 0.1 * i, spots[i % 3]);
     session_do(s->p, "play");
-    himc_performance_on_motion(s->p, add_row, &r);
     for (int i = 0; i < REFERENCE * RATE / BLOCK; i++)
-        if (play_block(s, &r.force, &strikes))
+        if (play_block(s, &r->force, strikes))
             break;
+    session_do(s->p, "clear");
+}
+
+// 8 strokes; before them each hand has one, since it rests over the head of its last stroke
+static passage play_reference(soak *s)
+{
+    strokes before = {0}, counted = {0};
+    passage r = {0};
+    int strikes = 0;
+    s->now = &before;
+    play_strokes(s, 2, &r, &strikes);
+    s->now = &counted;
+    strikes = 0;
+    r.force = 0;
+    himc_performance_on_motion(s->p, add_row, &r);
+    play_strokes(s, 8, &r, &strikes);
     himc_performance_on_motion(s->p, NULL, NULL);
     r.tip_rms = sqrt(r.square_sum / (double)r.count);
     r.force /= strikes;
     r.played = (int)counted.played;
-    session_do(s->p, "clear");
     return r;
 }
 

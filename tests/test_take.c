@@ -187,8 +187,8 @@ static void test_files_of_other_formats_are_refused(void)
 {
     himc_take_options options = himc_take_default();
     TEST_ASSERT_NULL(himc_take_load("score.txt", &options, &error));
-    TEST_ASSERT_EQUAL_STRING("score.txt: not a take by its suffix, allowed .bvh .c3d .trc",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "score.txt: not a take by its suffix, allowed .bvh .c3d .trc .csv .tsv", error.text);
     TEST_ASSERT_NULL(himc_take_load("does/not/exist.bvh", &options, &error));
     TEST_ASSERT_EQUAL_STRING("does/not/exist.bvh: cannot be read: No such file or directory",
                              error.text);

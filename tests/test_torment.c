@@ -163,7 +163,8 @@ static void say_one(pair *of, random_seed *seed)
         seen.spoilt[how]++;
         seen.answered[how] += !done;
     }
-    strncat(story(0), done ? " -> done" : " -> refused", sizeof recent[0] - strlen(story(0)) - 1);
+    size_t used = strlen(story(0));
+    snprintf(story(0) + used, sizeof recent[0] - used, " -> %s", done ? "done" : answer.text);
     if (done && must)
         fail("accepted");
     if (done ? answer.text[0] != 0 : !is_one_line(answer.text))

@@ -5,13 +5,13 @@
 set -eu
 mkdir -p "$1/lists/partial" "$1/packages"
 cd "$1"
-[ ! -e root/usr/lib/aarch64-linux-gnu/libode.a ] || exit 0
+[ ! -e root/usr/lib/aarch64-linux-gnu/libz.a ] || exit 0
 options="-q -o APT::Architectures::=$(dpkg --print-architecture) -o APT::Architectures::=arm64 -o Dir::State::lists=$PWD/lists \
     -o APT::Sandbox::User=$(id -un)"
 apt-get $options update >apt.log 2>&1
 cd packages
-for package in ode-dev ode8 ccd2 lo-dev lo7 sndfile1-dev sndfile1 flac12 vorbis0a vorbisenc2 opus0 ogg0 mpg123-0 mp3lame0; do
-    apt-get $options download "lib$package:arm64" >>../apt.log 2>&1 || { cat ../apt.log >&2; exit 1; }
+for package in libode-dev libode8 libccd2 libsndfile1-dev libsndfile1 libflac12 libvorbis0a libvorbisenc2 libopus0 libogg0 libmpg123-0 libmp3lame0 zlib1g-dev zlib1g; do
+    apt-get $options download "$package:arm64" >>../apt.log 2>&1 || { cat ../apt.log >&2; exit 1; }
 done
 for package in *.deb; do
     dpkg-deb -x "$package" ../root

@@ -8,6 +8,7 @@
 #include "cli.h"
 
 #include "base/line.h"
+#include "capture/take.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -17,10 +18,41 @@
 #include <string.h>
 #include <strings.h>
 #include <time.h>
+#include <unistd.h>
 
 /// getopt's return value of option i, out of the way of letters and of its own '?' and ':'.
 #define OPTION_BASE 1000
 #define OPTION_HELP 999
+#define OPTION_QUIET 998
+
+static bool quiet; // of the whole program, as its streams are
+
+void cli_say(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    if (!quiet)
+        vfprintf(stderr, format, args);
+    va_end(args);
+}
+
+bool cli_shows_progress(void)
+{
+    return !quiet && isatty(STDERR_FILENO);
+}
+
+void cli_put_json_text(FILE *stream, const char *text)
+{
+    fputc('"', stream);
+    for (; *text; text++)
+        if (*text == '"' || *text == '\\')
+            fprintf(stream, "\\%c", *text);
+        else if ((unsigned char)*text < ' ')
+            fprintf(stream, "\\u%04x", *text);
+        else
+            fputc(*text, stream);
+    fputc('"', stream);
+}
 
 static void fill_getopt(const cli_option *options, struct option *wide, char *letters)
 {
@@ -37,8 +69,9 @@ static void fill_getopt(const cli_option *options, struct option *wide, char *le
     }
     *letters++ = 'h';
     *letters = '\0';
-    wide[count] = (struct option){"help", no_argument, NULL, OPTION_HELP};
-    wide[count + 1] = (struct option){NULL, 0, NULL, 0};
+    wide[count++] = (struct option){"quiet", no_argument, NULL, OPTION_QUIET};
+    wide[count++] = (struct option){"help", no_argument, NULL, OPTION_HELP};
+    wide[count] = (struct option){NULL, 0, NULL, 0};
 }
 
 /// "-o --rate --block ... --help"
@@ -53,7 +86,7 @@ static void list_options(const cli_option *options, char *text, size_t size)
             used += (size_t)snprintf(text + used, size - used, "--%s ", options->name);
     }
     if (used < size)
-        snprintf(text + used, size - used, "--help");
+        snprintf(text + used, size - used, "--quiet --help");
 }
 
 static int find_letter(const cli_option *options, int letter)
@@ -64,10 +97,24 @@ static int find_letter(const cli_option *options, int letter)
     return -1;
 }
 
+static bool take_value(const cli_option *option, int index, const char *value, cli_arguments *out,
+                       himc_error *error)
+{
+    const char *kind = option->value ? option->value : "";
+    out->list = !strncmp(kind, "LIST", 4) && !strcmp(value, "help");
+    out->value[index] = value;
+    if (strlen(kind) < 3 || strcmp(kind + strlen(kind) - 3, "..."))
+        return true;
+    if (out->repeats == CLI_REPEATED)
+        return himc_error_set(error, "--%s: more than %d", option->name, CLI_REPEATED);
+    out->repeated[out->repeats++] = value;
+    return true;
+}
+
 bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error)
 {
-    struct option wide[CLI_OPTIONS + 2];
-    char letters[2 * CLI_OPTIONS + 3], allowed[256];
+    struct option wide[CLI_OPTIONS + 3];
+    char letters[2 * CLI_OPTIONS + 3], allowed[512];
     fill_getopt(call->options, wide, letters);
     list_options(call->options, allowed, sizeof allowed);
     *out = (cli_arguments){0};
@@ -76,18 +123,31 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
     while ((found = getopt_long(argc, argv, letters, wide, NULL)) != -1) {
         if (found == OPTION_HELP || found == 'h')
             return out->help = true;
+        if (found == OPTION_QUIET) {
+            quiet = true;
+            continue;
+        }
         if (found == ':')
             return himc_error_set(error, "%s needs a value after it (himc %s --help)",
                                   argv[optind - 1], call->name);
         int index = found >= OPTION_BASE ? found - OPTION_BASE : find_letter(call->options, found);
-        if (found == '?' && optopt > 0 && optopt < OPTION_HELP)
+        if (found == '?' && optopt > 0 && optopt < OPTION_QUIET)
             return himc_error_set(error, "unknown option -%c, allowed: %s", optopt, allowed);
         if (found == '?' || index < 0)
             return himc_error_set(error, "unknown option %s, allowed: %s", argv[optind - 1],
                                   allowed);
-        out->value[index] = optarg ? optarg : "";
+        if (!take_value(&call->options[index], index, optarg ? optarg : "", out, error))
+            return false;
+        if (out->list)
+            return true;
     }
-    if (argc > optind && !call->operand[0])
+    // further files of an option that takes several, as a shell's *.c3d gives them
+    for (; out->repeats && strstr(call->operand, "...") && argc > optind; optind++) {
+        if (out->repeats == CLI_REPEATED)
+            return himc_error_set(error, "more than %d files", CLI_REPEATED);
+        out->repeated[out->repeats++] = argv[optind];
+    }
+    if (argc > optind && (!call->operand[0] || strstr(call->operand, "...")))
         return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
                               call->name);
     if (argc - optind > 1)
@@ -101,13 +161,11 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
 
 void cli_help(const cli_call *call)
 {
-    bool any = call->options[0].name;
-    printf("usage: himc %s%s%s%s%s\n\n%s\n", call->name, call->operand[0] ? " " : "", call->operand,
-           call->needs, any ? " [OPTION...]" : "", call->does);
+    printf("usage: himc %s%s%s%s [OPTION...]\n\n%s\n", call->name, call->operand[0] ? " " : "",
+           call->operand, call->needs, call->does);
     if (call->more[0])
         printf("\n%s\n", call->more);
-    if (any)
-        printf("\n");
+    printf("\n");
     for (const cli_option *option = call->options; option->name; option++) {
         char left[64], letter[8] = "    ";
         if (option->letter)
@@ -120,6 +178,7 @@ void cli_help(const cli_call *call)
                                  : "");
         printf("  %-24s %s\n", left, option->does);
     }
+    printf("  %-24s %s\n", "    --quiet", "no prose and no progress on stderr, errors only");
 }
 
 int cli_fail(const cli_call *call, const char *format, ...)
@@ -171,17 +230,19 @@ double cli_drum_inches(const himc_score_line *line)
     return line && line->command.count > 1 ? line->command.atom[1].number : CLI_INCHES;
 }
 
-bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
-                      himc_error *error)
+bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES],
+                      himc_take_options *out, himc_error *error)
 {
-    static const char *const name[] = {"--left-tip", "--right-tip", "--up"};
+    static const char *const name[] = {"--left-tip", "--right-tip", "--up", "--subject"};
     const char *up = value[2];
     *out = himc_take_default();
     out->left_tip = value[0];
     out->right_tip = value[1];
-    for (int i = 0; i < 3; i++)
+    out->subject = value[3];
+    for (int i = 0; i < CLI_TAKE_VALUES; i++)
         if (value[i] && !cli_is_take(path))
-            return himc_error_set(error, "%s: %s is a score, allowed with a take: .bvh .c3d .trc",
+            return himc_error_set(error,
+                                  "%s: %s is a score, allowed with a take: " HIMC_TAKE_SUFFIXES,
                                   name[i], path);
     if (!up)
         return true;
@@ -193,9 +254,7 @@ bool cli_take_options(const char *path, const char *const value[3], himc_take_op
 
 bool cli_is_take(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    return dot &&
-           (!strcasecmp(dot, ".bvh") || !strcasecmp(dot, ".c3d") || !strcasecmp(dot, ".trc"));
+    return himc_take_is_capture(path);
 }
 
 bool cli_tell(himc_performance *performance, const char *text, const char *word, himc_error *error)

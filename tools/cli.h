@@ -12,18 +12,23 @@ typedef struct cli_option {
     const char *name;  ///< "rate" is --rate
     char letter;       ///< 'o' is -o; 0 for none
     const char *value; ///< its argument, "HZ"; NULL for a switch; a command's name stands for the
-                       ///< words of that command
+                       ///< words of that command; "LIST" takes the word help, too; with "..." at
+                       ///< its end the option may be repeated
     const char *does;
 } cli_option;
 
-#define CLI_OPTIONS 16
+#define CLI_OPTIONS 32
+#define CLI_REPEATED 64 ///< of the values of the repeated option; chosen
 
 /// The command line: at most one operand, and the value of each option or NULL, in the order of the
 /// table ("" for a switch).
 typedef struct cli_arguments {
     const char *operand;
     const char *value[CLI_OPTIONS];
+    const char *repeated[CLI_REPEATED]; ///< of the option that may be repeated
+    int repeats;
     bool help;
+    bool list; ///< an option's LIST is "help"
 } cli_arguments;
 
 /// One call of the program: `himc NAME ...`.
@@ -37,12 +42,19 @@ typedef struct cli_call {
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
-extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_serve,
+extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share, cli_play, cli_serve,
     cli_bench;
 
 /// Reads the arguments after the call's name; false with one line: the fault and the allowed
 /// values.
 bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, himc_error *error);
+
+/// A line of prose for the user (printf format), on stderr; nothing with --quiet.
+void cli_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/// True if progress may be shown: stderr is a terminal, and no --quiet.
+bool cli_shows_progress(void);
+/// Prints a text as a JSON string.
+void cli_put_json_text(FILE *stream, const char *text);
 
 /// Prints usage and options.
 void cli_help(const cli_call *call);
@@ -59,11 +71,13 @@ bool cli_count(const char *name, const char *text, int low, int high, const char
                himc_error *error);
 
 /// A file that appears under its name complete or not at all: it is written beside it and renamed
-/// in the end. /dev/null is written directly; anything else but a regular file is refused.
+/// in the end. "-" is the standard output, which gets all of it in the end. /dev/null is written
+/// directly; anything else but a regular file is refused.
 typedef struct cli_file {
     char path[4096]; ///< "" when not wanted
     char temp[4096]; ///< where it is written until kept; "" when written directly
     FILE *stream;    ///< NULL when closed
+    bool standard;   ///< the standard output; `stream` is a nameless file until it is kept
 } cli_file;
 
 /// Opens for writing; does nothing if `path` is NULL.
@@ -74,6 +88,11 @@ bool cli_file_close(cli_file *file, himc_error *error);
 bool cli_file_keep(cli_file *file, himc_error *error);
 /// Closes the file and removes it unless it was kept. Safe in any state, also all zero.
 void cli_file_drop(cli_file *file);
+/// True if the name stands for the standard input or output.
+bool cli_is_standard(const char *path);
+/// The operand, or the name of a file with what came from the standard input, with the suffix of its
+/// contents; it is removed when the program ends. NULL with the reason.
+const char *cli_input(const char *operand, himc_error *error);
 /// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);
 
@@ -86,6 +105,21 @@ bool cli_add_drum(himc_performance *performance, double rate, himc_error *error)
 /// Gives the performance a command: the text, or, if `word` is not NULL, the name `text` with that
 /// one word, which may contain spaces.
 bool cli_tell(himc_performance *performance, const char *text, const char *word, himc_error *error);
+/// A performance at `rate` (Hz) with the score or take `source` (NULL for none) and, if that makes
+/// none, the drum. `listener` is a command before it, or NULL. NULL with the reason.
+himc_performance *cli_load(const char *source, double rate, const char *listener,
+                           himc_error *error);
+
+/// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the
+/// left, 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
+/// and its noise strong.
+#define CLI_LISTENER "listener 2.2 0.4 1.3"
+#define CLI_BLOCK 8192 ///< most samples at a time; chosen: the longest block of Pd
+
+/// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).
+/// Returns the largest magnitude.
+double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out);
+
 /// Time on the monotonic clock (s).
 double cli_now(void);
 
@@ -98,14 +132,16 @@ double cli_drum_inches(const himc_score_line *line);
 #define CLI_TAKE_OPTIONS                                                                    \
     {"left-tip", 0, "NAME", "a take's point at the left stick's tip (else found by name)"}, \
         {"right-tip", 0, "NAME", "the same, right"},                                        \
+        {"up", 0, "z|y", "a take's upward axis (else as the file says)"},                   \
     {                                                                                       \
-        "up", 0, "z|y", "a take's upward axis (else as the file says)"                      \
+        "subject", 0, "NAME", "of several players in a take's file"                         \
     }
+#define CLI_TAKE_VALUES 4
 /// How the take at `path` is to be read, from the values of CLI_TAKE_OPTIONS. False if one is
 /// wrong, or given with a score.
-bool cli_take_options(const char *path, const char *const value[3], himc_take_options *out,
-                      himc_error *error);
-/// True if the name ends as a motion capture's does: .bvh .c3d .trc, in any case.
+bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES],
+                      himc_take_options *out, himc_error *error);
+/// True if the name ends as a motion capture's does, also as one that himc refuses.
 bool cli_is_take(const char *path);
 
 #endif

@@ -7,14 +7,14 @@
 #define _POSIX_C_SOURCE 200809L
 #include "cli.h"
 #include "evaluate_log.h"
+#include "evaluate_take.h"
 #include "pool.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS };
+enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS, OWN, JSON, TAKE };
 
 static const cli_option options[] = {
     {"trials", 0, "N", "trials for each nuance and controller, 1 .. 10000 (100)"},
@@ -23,6 +23,9 @@ static const cli_option options[] = {
     {"csv", 0, "F.csv", "writes the table to this file (standard output)"},
     {"log", 0, "F.csv", "stores each trial when it ends; trials in it are not repeated"},
     {"jobs", 0, "N", "parallel trials, 1 .. 256 (the number of cores)"},
+    {"take", 0, "FILE...", "own captures instead, each under every controller and law"},
+    {"json", 0, NULL, "with --take: the rows as one JSON array of objects"},
+    CLI_TAKE_OPTIONS,
     {0},
 };
 
@@ -121,7 +124,7 @@ static bool list_todo(evaluation *e, himc_error *error)
 static void show_progress(const evaluation *e)
 {
     char bar[31] = "";
-    if (!isatty(STDERR_FILENO))
+    if (!cli_shows_progress())
         return;
     int full = 30 * e->done / e->todo_count;
     for (int i = 0; i < 30; i++)
@@ -167,9 +170,28 @@ static bool write_table(const evaluation *e, cli_file *file, himc_error *error)
     return cli_file_close(file, error) && cli_file_keep(file, error);
 }
 
+static bool run_own(const cli_arguments *arguments, cli_file *csv, himc_error *error)
+{
+    himc_take_options take_options;
+    int jobs = pool_cores();
+    return cli_count("--jobs", arguments->value[JOBS], 1, 256, "", &jobs, error) &&
+           cli_take_options(arguments->repeated[0], arguments->value + TAKE, &take_options,
+                            error) &&
+           cli_file_open(csv, arguments->value[CSV], error) &&
+           evaluate_takes(arguments->repeated, arguments->repeats, &take_options, jobs,
+                          arguments->value[JSON], csv->stream ? csv->stream : stdout, error) &&
+           cli_file_close(csv, error) && cli_file_keep(csv, error);
+}
+
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
+    if (arguments->repeats) {
+        cli_file own = {0};
+        bool played = run_own(arguments, &own, &error);
+        cli_file_drop(&own);
+        return played ? cli_finish(&cli_evaluate) : cli_fail(&cli_evaluate, "%s", error.text);
+    }
     evaluation e = {0};
     cli_file csv = {0};
     bool good = read_arguments(arguments, &e, &error) &&
@@ -184,13 +206,15 @@ static int run(const cli_arguments *arguments)
 
 const cli_call cli_evaluate = {
     "evaluate",
-    "",
+    "[--take FILE...]",
     "",
     "compares ik, id and himc over many trials, as published",
     "Each row plays disturbed takes of the motion database: nuance,controller,law,trials,rms_mm,\n"
     "rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratio. RMS is the distance of captured and\n"
     "simulated tips, impacts included, SD its deviation over the trials. docs/scaling.md: how to\n"
-    "run it on several machines.",
+    "run it on several machines. With --take the captures are one's own: take,controller,law,\n"
+    "strokes,played,rms_mm,max_mm,amplitude_mm,rms_percent,elbow_range_ratio; --left-tip A,B names\n"
+    "alternatives, of which each take has one.",
     options,
     run,
 };

@@ -3,9 +3,10 @@
 /// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
 /// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
 /// that the link stays and its file changes.
-#define _XOPEN_SOURCE 700
+#define _DEFAULT_SOURCE // mkstemps
 #include "base/file.h"
 #include "cli.h"
+#include "system/files.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -13,8 +14,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
+
+#ifndef SIGHUP // Windows has no terminal that hangs up
+#define SIGHUP SIGTERM
+#endif
 
 /// The temporary names an interrupt must remove; written before, cleared after the file exists.
 #define FILES_OPEN 8
@@ -80,11 +84,17 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
         return true;
     if (!path[0])
         return himc_error_set(error, "\"\": no file has an empty name");
+    if (cli_is_standard(path)) {
+        file->standard = true;
+        file->path[0] = '-';
+        file->stream = tmpfile();
+        return file->stream || file_error("/tmp", error);
+    }
     struct stat status;
     bool exists = !stat(path, &status);
     mode_t mask = umask(0);
     umask(mask);
-    char *real = exists ? realpath(path, NULL) : NULL;
+    char *real = exists ? himc_system_real_path(path) : NULL;
     int length = snprintf(file->path, sizeof file->path, "%s", real ? real : path);
     free(real);
     if (length >= (int)sizeof file->path)
@@ -105,7 +115,7 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
 
 bool cli_file_close(cli_file *file, himc_error *error)
 {
-    if (!file->stream)
+    if (!file->stream || file->standard)
         return true;
     errno = 0;
     bool bad = fflush(file->stream) || ferror(file->stream);
@@ -120,11 +130,28 @@ bool cli_file_close(cli_file *file, himc_error *error)
     return false;
 }
 
+// all of a nameless file to the standard output
+static bool copy_out(cli_file *file, himc_error *error)
+{
+    char bytes[65536];
+    size_t size;
+    errno = 0;
+    rewind(file->stream);
+    while ((size = fread(bytes, 1, sizeof bytes, file->stream)) > 0)
+        fwrite(bytes, 1, size, stdout);
+    bool good = !ferror(file->stream) && !fflush(stdout) && !ferror(stdout);
+    int fault = errno ? errno : EIO;
+    cli_file_drop(file);
+    return good || himc_error_set(error, "standard output: %s", strerror(fault));
+}
+
 bool cli_file_keep(cli_file *file, himc_error *error)
 {
+    if (file->standard && file->stream)
+        return copy_out(file, error);
     if (!file->temp[0])
         return true;
-    if (rename(file->temp, file->path)) {
+    if (!himc_system_rename(file->temp, file->path)) {
         file_error(file->path, error);
         cli_file_drop(file);
         return false;
@@ -146,32 +173,82 @@ void cli_file_drop(cli_file *file)
     file->temp[0] = '\0';
 }
 
-static bool same_inode(const struct stat *a, const struct stat *b)
-{
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
-}
-
 // the folder that a file is or will be in; returns the file's own name
-static const char *stat_folder(const char *path, struct stat *folder, bool *there)
+static const char *folder_of(const char *path, char folder[PATH_MAX])
 {
-    char text[PATH_MAX];
     const char *slash = strrchr(path, '/');
     int length = slash ? (int)(slash - path) + 1 : 0;
-    snprintf(text, sizeof text, "%.*s.", length, path);
-    *there = !stat(text, folder);
+    snprintf(folder, PATH_MAX, "%.*s.", length, path);
     return path + length;
 }
 
 bool cli_same_file(const char *a, const char *b)
 {
     struct stat first, second;
+    char folder[2][PATH_MAX];
     if (!a || !b)
         return false;
     if (!strcmp(a, b))
         return true;
     if (!stat(a, &first) && !stat(b, &second))
-        return S_ISREG(first.st_mode) && same_inode(&first, &second);
-    bool there[2];
-    const char *name[2] = {stat_folder(a, &first, &there[0]), stat_folder(b, &second, &there[1])};
-    return there[0] && there[1] && same_inode(&first, &second) && !strcmp(name[0], name[1]);
+        return S_ISREG(first.st_mode) && himc_system_same(a, b);
+    const char *name[2] = {folder_of(a, folder[0]), folder_of(b, folder[1])};
+    return !strcmp(name[0], name[1]) && himc_system_same(folder[0], folder[1]);
+}
+
+bool cli_is_standard(const char *path)
+{
+    return path && !strcmp(path, "-");
+}
+
+// where the standard input is kept, until the program ends
+static char input[64];
+
+static void remove_input(void)
+{
+    unlink(input);
+    forget(input);
+}
+
+// by its first bytes; anything else is a score
+static const char *suffix_of(const char *bytes, size_t size)
+{
+    static const struct {
+        const char *begin, *suffix;
+    } known[] = {{"HIERARCHY", ".bvh"},
+                 {"PathFileType", ".trc"},
+                 {"MThd", ".mid"},
+                 {"Trajectories", ".csv"},
+                 {"NO_OF_FRAMES", ".tsv"}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (size >= strlen(known[i].begin) &&
+            !memcmp(bytes, known[i].begin, strlen(known[i].begin)))
+            return known[i].suffix;
+    return size > 1 && bytes[1] == 0x50 && (unsigned char)bytes[0] < 8 ? ".c3d" : ".txt";
+}
+
+const char *cli_input(const char *operand, himc_error *error)
+{
+    char bytes[65536];
+    if (!cli_is_standard(operand))
+        return operand;
+    size_t size = fread(bytes, 1, sizeof bytes, stdin);
+    const char *suffix = suffix_of(bytes, size);
+    snprintf(input, sizeof input, "/tmp/himc-stdin-XXXXXX%s", suffix);
+    int descriptor = mkstemps(input, (int)strlen(suffix));
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
+    if (!file) {
+        file_error(input, error);
+        return NULL;
+    }
+    remember(input);
+    atexit(remove_input);
+    for (; size > 0; size = fread(bytes, 1, sizeof bytes, stdin))
+        fwrite(bytes, 1, size, file);
+    bool bad = ferror(stdin) || ferror(file);
+    if (fclose(file) || bad) {
+        himc_error_set(error, "standard input: cannot be read to its end");
+        return NULL;
+    }
+    return input;
 }

@@ -7,8 +7,13 @@
 
 #include <string.h>
 
-static const cli_call *const calls[] = {&cli_render, &cli_evaluate, &cli_info, &cli_modes,
-                                        &cli_import, &cli_serve,    &cli_bench};
+static const cli_call *const calls[] = {
+    &cli_render,
+#ifndef _WIN32 // its workers are forks
+    &cli_evaluate,
+#endif
+    &cli_info,     &cli_modes, &cli_import, &cli_share, &cli_play, &cli_serve, &cli_bench,
+};
 #define CALLS (sizeof calls / sizeof *calls)
 
 static void print_help(void)

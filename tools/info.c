@@ -1,13 +1,48 @@
 /// info.c: `himc info`: describes a take or a score in a few lines.
+#include "capture/take.h"
 #include "cli.h"
 
 #include "himc/drum.h"
 #include "himc/mocap.h"
 
+#include <stdarg.h>
+#include <string.h>
+
+static bool json; // with --json lines are pairs of an array, ["name", "text"]
+static int told;
+
+// a line "name: text" or "name   text"; one that goes on begins with blanks
 static void print_line(void *user, const char *line)
 {
     (void)user;
-    puts(line);
+    if (!json) {
+        puts(line);
+        return;
+    }
+    char name[64] = "";
+    const char *text = line;
+    if (*line != ' ') {
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(line, ": "), line);
+        text += strlen(name);
+    }
+    text += strspn(text, ": ");
+    printf("%s  [", told++ ? ",\n" : "[\n");
+    cli_put_json_text(stdout, name);
+    printf(", ");
+    cli_put_json_text(stdout, text);
+    printf("]");
+}
+
+static void tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+static void tell(const char *format, ...)
+{
+    char line[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    print_line(NULL, line);
 }
 
 /// "7 legato, 5 tenuto, 2 accent"
@@ -27,11 +62,11 @@ static void count_nuances(const himc_score *score, int hand, char *text, size_t 
 
 static void print_strokes(const himc_score *score)
 {
-    printf("strokes %d\n", score->stroke_count);
+    tell("strokes %d", score->stroke_count);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         char text[160];
         count_nuances(score, hand, text, sizeof text);
-        printf("%-7s %s\n", himc_hand_name((himc_hand)hand), text[0] ? text : "nothing");
+        tell("%-7s %s", himc_hand_name((himc_hand)hand), text[0] ? text : "nothing");
     }
 }
 
@@ -43,32 +78,39 @@ static void print_length(const himc_score *score)
     double first = score->strokes[0].beat, last = score->strokes[score->stroke_count - 1].beat;
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, last) -
                      himc_score_seconds(score->tempi, score->tempo_count, first);
-    printf("beats   %g to %g\nlength  %.3f s from the first stroke to the last\n", first, last,
-           seconds);
+    tell("beats   %g to %g", first, last);
+    tell("length  %.3f s from the first stroke to the last", seconds);
 }
 
 static void print_tempo(const himc_score *score)
 {
-    printf("tempo   ");
-    for (int i = 0; i < score->tempo_count; i++) {
+    char text[400] = "";
+    for (int i = 0; i < score->tempo_count && strlen(text) < sizeof text - 64; i++) {
         if (i)
-            printf(", from beat %g ", score->tempi[i].beat);
-        printf("%g", score->tempi[i].bpm);
+            sprintf(text + strlen(text), ", from beat %g ", score->tempi[i].beat);
+        sprintf(text + strlen(text), "%g", score->tempi[i].bpm);
     }
-    printf(" BPM\n");
+    tell("tempo   %s BPM", text);
 }
 
 static void print_drums(const himc_score *score)
 {
+    char text[HIMC_DRUMS * (HIMC_NAME_SIZE + 32)] = "";
     int drums = 0;
-    printf("drums   ");
-    for (int i = 0; i < score->line_count; i++)
+    for (int i = 0; i < score->line_count && drums < HIMC_DRUMS; i++)
         if (score->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM)
-            printf("%s%s %g inches", drums++ ? ", " : "", score->lines[i].command.atom[0].symbol,
-                   cli_drum_inches(&score->lines[i]));
+            sprintf(text + strlen(text), "%s%s %g inches", drums++ ? ", " : "",
+                    score->lines[i].command.atom[0].symbol, cli_drum_inches(&score->lines[i]));
     if (!drums)
-        printf("%s %g inches (none named)", CLI_DRUM, CLI_INCHES);
-    printf("\n");
+        sprintf(text, "%s %g inches (none named)", CLI_DRUM, CLI_INCHES);
+    tell("drums   %s", text);
+}
+
+// a text of several lines
+static void tell_lines(const char *text)
+{
+    for (size_t length; (length = strcspn(text, "\n")) > 0; text += length + (text[length] != 0))
+        tell("%.*s", (int)length, text);
 }
 
 static bool describe_score(const char *path, himc_error *error)
@@ -77,7 +119,7 @@ static bool describe_score(const char *path, himc_error *error)
     if (!score)
         return false;
     if (score->report)
-        printf("%s", score->report);
+        tell_lines(score->report);
     print_strokes(score);
     print_length(score);
     print_tempo(score);
@@ -86,7 +128,9 @@ static bool describe_score(const char *path, himc_error *error)
     return true;
 }
 
-static const cli_option options[] = {CLI_TAKE_OPTIONS, {0}};
+static const cli_option options[] = {
+    CLI_TAKE_OPTIONS, {"json", 0, NULL, "the lines as one JSON array of [name, text]"}, {0}};
+enum { JSON = CLI_TAKE_VALUES };
 
 static bool describe_player(himc_take *take, const himc_take_options *take_options,
                             himc_error *error)
@@ -127,11 +171,14 @@ static bool describe_take(const char *path, const himc_take_options *take_option
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
-    const char *path = arguments->operand;
+    const char *path = cli_input(arguments->operand, &error);
     himc_take_options take_options;
-    bool good = cli_take_options(path, arguments->value, &take_options, &error) &&
+    json = arguments->value[JSON] != NULL;
+    bool good = path && cli_take_options(path, arguments->value, &take_options, &error) &&
                 (cli_is_take(path) ? describe_take(path, &take_options, &error)
                                    : describe_score(path, &error));
+    if (json && good)
+        printf("\n]\n");
     return good ? cli_finish(&cli_info) : cli_fail(&cli_info, "%s", error.text);
 }
 
@@ -139,7 +186,7 @@ const cli_call cli_info = {
     "info",
     "FILE",
     "",
-    "describes a score, a MIDI file or a take (.bvh .c3d .trc)",
+    "describes a score, a MIDI file or a take (" HIMC_TAKE_SUFFIXES ")",
     "Of a MIDI file: what of it can be played, and the score made of it. Of a take:\n"
     "rate, length, points, gaps, the strikes found in it, the player, where drumhead and\n"
     "seat are placed.",

@@ -46,29 +46,42 @@ static himc_drum *open_drum(const char *path, himc_error *error)
     return drum;
 }
 
+static const cli_option options[] = {{"json", 0, NULL, "rows as one JSON array of objects"}, {0}};
+enum { JSON };
+
+static const char *const csv_row = "%s%d,%d,%.6f,%.6f,%.6f\n";
+static const char *const json_row = "%s  {\"m\": %d, \"n\": %d, \"frequency_hz\": %.6f, "
+                                    "\"ratio\": %.6f, \"t60_s\": %.6f}";
+
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
-    himc_drum *drum = open_drum(arguments->operand, &error);
+    bool json = arguments->value[JSON];
+    const char *path = arguments->operand ? cli_input(arguments->operand, &error) : NULL;
+    himc_drum *drum = path || !arguments->operand ? open_drum(path, &error) : NULL;
     if (!drum)
         return cli_fail(&cli_modes, "%s", error.text);
     const himc_membrane *membrane = himc_drum_membrane(drum);
     const himc_head *head = himc_membrane_head(membrane);
     double reference = himc_membrane_principal(membrane, head), frequency = 0;
-    printf("m,n,frequency_hz,ratio,t60_s\n");
+    const char *before = json ? "[\n" : "";
+    if (!json)
+        printf("m,n,frequency_hz,ratio,t60_s\n");
     for (int i = 0; himc_membrane_mode(membrane, i).mass > 0; i++) {
         himc_mode mode = himc_membrane_mode(membrane, i);
         bool repeated = mode.sine && mode.frequency == frequency;
         frequency = mode.frequency;
-        if (mode.m >= 0 && !repeated) // not the statistical ones
-            printf("%d,%d,%.6f,%.6f,%.6f\n", mode.m, mode.n, mode.frequency,
-                   mode.frequency / reference, log(1000) / mode.decay);
+        if (mode.m < 0 || repeated) // statistical ones
+            continue;
+        printf(json ? json_row : csv_row, before, mode.m, mode.n, mode.frequency,
+               mode.frequency / reference, log(1000) / mode.decay);
+        before = json ? ",\n" : "";
     }
+    if (json)
+        printf("\n]\n");
     himc_drum_release(drum);
     return cli_finish(&cli_modes);
 }
-
-static const cli_option options[] = {{0}};
 
 const cli_call cli_modes = {
     "modes",

@@ -7,49 +7,73 @@
 /// there too, so that nothing depends on --block. The end: the performer is done and a whole cell
 /// stayed 80 dB below the peak, or 8 s have passed.
 #define _POSIX_C_SOURCE 200809L
+#include "capture/take.h"
 #include "cli.h"
+#include "motion_table.h"
 #include "render_tables.h"
+#include "scene_record.h"
 
 #include <errno.h>
 #include <math.h>
 #include <sndfile.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 // chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
+#define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest
 #define SILENCE 1e-4   // of the peak: 80 dB
 #define HEARD_BY_TWO 2 // channels, one for each ear
-#define BLOCK_MAX 8192 // samples; chosen: the longest block of Pd
+#define BLOCK_MAX CLI_BLOCK
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
-/// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the left,
-/// 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak and
-/// its noise strong.
-#define LISTENER "listener 2.2 0.4 1.3"
-
-enum { OUT, RATE, BLOCK, CHANNELS, STROKES, MOTION, MODE, LIMITS, TAKE };
+enum {
+    OUT,
+    RATE,
+    BLOCK,
+    CHANNELS,
+    STROKES,
+    MOTION,
+    COLUMNS,
+    SCENE,
+    MODE,
+    LAW,
+    SOLVER,
+    LIMITS,
+    PLAYER,
+    SET,
+    TAKE
+};
 
 static const cli_option options[] = {
-    {"output", 'o', "OUT.wav", "the sound of all drums, 32-bit float"},
+    {"output", 'o', "OUT.wav", "the sound of all drums, 32-bit float; -: standard output"},
     {"rate", 0, "HZ", "sample rate, 8000 .. 192000 (48000)"},
     {"block", 0, "N", "samples computed at a time, 1 .. 8192 (64); the result is the same"},
     {"channels", 0, "N",
      "2: two ears in front of the drums, or where the score has them; 1: the "
      "drums' pickups, no ears (2)"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
-    {"motion", 0, "F.csv", "a row every 4 ms: targets, sticks, joint angles, forces, elbows"},
+    {"motion", 0, "F", "a row every 4 ms, as CSV, or for NumPy if F ends with .npz"},
+    {"columns", 0, "LIST",
+     "what is in it: groups like tips,torques,energy, or all; help lists them"},
+    {"scene", 0, "F.himc", "a recording for himc-viewer --play: motion, drums, strikes, sound"},
     {"mode", 0, "mode", "control pipeline (himc)"},
+    {"law", 0, "law", "inverse dynamics (computed-torque)"},
+    {"solver", 0, "solver", "inverse kinematics (dls)"},
     {"limits", 0, "limits", "joint limits (off)"},
+    {"player", 0, "H,M", "height and mass of the player (m, kg); a take keeps its lengths"},
+    {"set", 0, "COMMAND...", "any command of the manual, before playing; may be repeated"},
     CLI_TAKE_OPTIONS,
     {0},
 };
 
 /// The arguments.
 typedef struct job {
-    const char *source, *mode, *limits;
+    const char *source;
+    const cli_arguments *arguments;
     int rate, block, channels;
     himc_take_options take;
 } job;
@@ -57,7 +81,9 @@ typedef struct job {
 /// The state of the rendering.
 typedef struct rendering {
     himc_performance *performance;
-    cli_file wav, strokes, motion;
+    cli_file wav, strokes, motion, scene;
+    motion_table *rows;   ///< NULL without --motion
+    scene_record *record; ///< NULL without --scene
     SNDFILE *sound;
     int channels;
     bool done;     ///< the performer has come to rest
@@ -76,17 +102,21 @@ static double room(int channels)
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
 {
     const char *const *value = arguments->value;
-    *out = (job){.source = arguments->operand,
-                 .mode = value[MODE],
-                 .limits = value[LIMITS],
+    *out = (job){.source = cli_input(arguments->operand, error),
+                 .arguments = arguments,
                  .rate = 48000,
                  .block = 64,
                  .channels = HEARD_BY_TWO};
-    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION]};
+    if (!out->source)
+        return false;
+    const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION], value[SCENE]};
+    enum { FILES = sizeof files / sizeof *files };
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
-    for (int i = 0; i < 4; i++)
-        for (int k = i + 1; k < 4; k++)
+    if (value[COLUMNS] && !value[MOTION])
+        return himc_error_set(error, "--columns: no --motion F given");
+    for (int i = 0; i < FILES; i++)
+        for (int k = i + 1; k < FILES; k++)
             if (cli_same_file(files[i], files[k]))
                 return himc_error_set(error, "%s: named twice, allowed are different files",
                                       files[k]);
@@ -117,27 +147,50 @@ static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, him
     return true;
 }
 
+// the settings of the command line; before a take, which keeps the player's height and mass, and
+// after a score, whose own settings they replace
+static bool apply_settings(himc_performance *p, const cli_arguments *arguments, himc_error *error)
+{
+    const char *player = arguments->value[PLAYER];
+    char text[128];
+    for (int i = MODE; i <= LIMITS; i++)
+        if (arguments->value[i] && !cli_tell(p, options[i].name, arguments->value[i], error))
+            return false;
+    if (player) {
+        snprintf(text, sizeof text, "player %.100s", player);
+        char *comma = strchr(text, ',');
+        if (comma)
+            *comma = ' ';
+        if (!cli_tell(p, text, NULL, error))
+            return himc_error_prefix(error, "--player");
+    }
+    for (int i = 0; i < arguments->repeats; i++)
+        if (!cli_tell(p, arguments->repeated[i], NULL, error))
+            return himc_error_prefix(error, "--set");
+    return true;
+}
+
 static bool prepare(himc_performance *performance, const job *wanted, himc_error *error)
 {
     bool take = cli_is_take(wanted->source), makes_drums = false, loops = false;
     himc_performance_make_drums(performance, true);
     himc_performance_take_options(performance, &wanted->take);
-    if (wanted->mode && !cli_tell(performance, "mode", wanted->mode, error))
-        return false;
     if (!take && !inspect_score(wanted, &makes_drums, &loops, error))
         return false;
     if (!makes_drums && !cli_add_drum(performance, wanted->rate, error))
         return false;
-    if (wanted->channels == HEARD_BY_TWO && !cli_tell(performance, LISTENER, NULL, error))
+    if (wanted->channels == HEARD_BY_TWO && !cli_tell(performance, CLI_LISTENER, NULL, error))
         return false;
-    if (wanted->limits && !cli_tell(performance, "limits", wanted->limits, error))
+    if (take && !apply_settings(performance, wanted->arguments, error))
         return false;
     if (!cli_tell(performance, take ? "take" : "score", wanted->source, error))
+        return false;
+    if (!take && !apply_settings(performance, wanted->arguments, error))
         return false;
     if (loops) {
         himc_error note;
         himc_error_set(&note, "%s: loop: one round is rendered", wanted->source);
-        printf("note: %s\n", note.text);
+        cli_say("note: %s\n", note.text);
     }
     return (wanted->channels == HEARD_BY_TWO ||
             cli_tell(performance, "listener off", NULL, error)) &&
@@ -162,13 +215,13 @@ static bool open_sound(rendering *r, const char *path, const job *wanted, himc_e
 
 static void show_progress(double seconds, double elapsed)
 {
-    if (isatty(STDERR_FILENO))
+    if (cli_shows_progress())
         fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
 }
 
 static void clear_progress(void)
 {
-    if (isatty(STDERR_FILENO))
+    if (cli_shows_progress())
         fputs("\r\033[K", stderr);
 }
 
@@ -177,44 +230,39 @@ static void take_events(rendering *r)
 {
     himc_event event;
     while (himc_performance_event(r->performance, &event)) {
+        if (r->record)
+            scene_record_event(r->record, &event);
         if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
             render_stroke_row(r->strokes.stream, &event.strike);
         else if (event.kind == HIMC_EVENT_NOTE) {
             clear_progress();
-            printf("note: %s\n", event.text);
+            cli_say("note: %s\n", event.text);
         } else if (event.kind == HIMC_EVENT_DONE)
             r->done = true;
     }
 }
 
-/// The samples of one channel, interleaved with the others.
-static void sum_drums(rendering *r, int channel, int n, float *out)
+static void take_row(void *user, const himc_motion_row *row)
 {
-    double heard[BLOCK_MAX], sum[BLOCK_MAX];
-    himc_drum *drum;
-    memset(sum, 0, (size_t)n * sizeof *sum);
-    for (int d = 0; (drum = himc_performance_drum(r->performance, d)); d++) {
-        himc_drum_read_channel(drum, channel, r->samples, n, heard);
-        for (int i = 0; i < n; i++)
-            sum[i] += heard[i];
-    }
-    for (int i = 0; i < n; i++) {
-        out[i * r->channels + channel] = (float)sum[i];
-        r->cell_peak = fmax(r->cell_peak, fabs(sum[i]));
-    }
+    rendering *r = user;
+    if (r->rows)
+        motion_table_row(r->rows, row);
+    if (r->record)
+        scene_record_row(r->record, row);
 }
 
 static void play_block(rendering *r, int n)
 {
     float out[HEARD_BY_TWO * BLOCK_MAX];
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
-    for (int channel = 0; channel < r->channels; channel++)
-        sum_drums(r, channel, n, out);
+    r->cell_peak = fmax(r->cell_peak, cli_mix(r->performance, r->samples, n, r->channels, out));
     errno = 0;
     if (sf_writef_float(r->sound, out, n) != n)
         r->failed = errno ? errno : EIO;
     r->samples += (uint64_t)n;
     take_events(r);
+    if (r->record)
+        scene_record_block(r->record, out, n);
 }
 
 /// Called where a cell ends: true if nothing more can be heard.
@@ -227,8 +275,8 @@ static bool is_over(rendering *r, int rate)
         return false;
     if (!r->done_at)
         r->done_at = r->samples;
-    return (silent && r->samples > r->done_at) ||
-           (double)(r->samples - r->done_at) >= TAIL_SECONDS * rate;
+    double since = (double)(r->samples - r->done_at) / rate;
+    return (silent && since >= REST_SECONDS) || since >= TAIL_SECONDS;
 }
 
 /// Plays to the end; returns how long it took (s).
@@ -250,7 +298,7 @@ static double play(rendering *r, const job *wanted)
     return elapsed;
 }
 
-/// All three files complete, or none of them.
+/// All files complete, or none of them.
 static bool keep_files(rendering *r, himc_error *error)
 {
     const char *path = r->wav.path;
@@ -263,18 +311,26 @@ static bool keep_files(rendering *r, himc_error *error)
     r->sound = NULL;
     if (!closed)
         return himc_error_set(error, "%s: cannot be written to its end", path);
-    return cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
-           cli_file_close(&r->motion, error) && cli_file_keep(&r->wav, error) &&
-           cli_file_keep(&r->strokes, error) && cli_file_keep(&r->motion, error);
+    if (r->rows && !motion_table_end(r->rows, error))
+        return false;
+    bool recorded = scene_record_end(r->record, error);
+    r->record = NULL;
+    return recorded && cli_file_close(&r->wav, error) && cli_file_close(&r->strokes, error) &&
+           cli_file_close(&r->motion, error) && cli_file_close(&r->scene, error) &&
+           cli_file_keep(&r->wav, error) && cli_file_keep(&r->strokes, error) &&
+           cli_file_keep(&r->motion, error) && cli_file_keep(&r->scene, error);
 }
 
 static void close_all(rendering *r)
 {
     if (r->sound)
         sf_close(r->sound);
+    scene_record_end(r->record, NULL);
     cli_file_drop(&r->wav);
     cli_file_drop(&r->strokes);
     cli_file_drop(&r->motion);
+    cli_file_drop(&r->scene);
+    motion_table_free(r->rows);
     himc_performance_free(r->performance);
 }
 
@@ -289,14 +345,24 @@ static bool open_all(rendering *r, const job *wanted, const char *const *value, 
     if (!r->performance || !prepare(r->performance, wanted, error) ||
         !open_sound(r, value[OUT], wanted, error) ||
         !cli_file_open(&r->strokes, value[STROKES], error) ||
-        !cli_file_open(&r->motion, value[MOTION], error))
+        !cli_file_open(&r->motion, value[MOTION], error) ||
+        !cli_file_open(&r->scene, value[SCENE], error))
+        return false;
+    if (r->scene.stream)
+        r->record = scene_record_begin(r->performance, r->scene.stream, wanted->source,
+                                       wanted->rate, wanted->channels, error);
+    if (r->scene.stream && !r->record)
         return false;
     if (r->strokes.stream)
         render_stroke_header(r->strokes.stream);
     if (r->motion.stream) {
-        render_motion_header(r->motion.stream);
-        himc_performance_on_motion(r->performance, render_motion_row, r->motion.stream);
+        r->rows = motion_table_new(r->motion.stream, motion_table_is_numpy(value[MOTION]),
+                                   value[COLUMNS], error);
+        if (!r->rows)
+            return false;
     }
+    if (r->rows || r->record)
+        himc_performance_on_motion(r->performance, take_row, r);
     return true;
 }
 
@@ -305,6 +371,10 @@ static int run(const cli_arguments *arguments)
     himc_error error;
     rendering r = {0};
     job wanted;
+    if (arguments->list) {
+        motion_table_help(stdout, getenv("HIMC_MARKDOWN") != NULL);
+        return cli_finish(&cli_render);
+    }
     if (!read_job(arguments, &wanted, &error))
         return cli_fail(&cli_render, "%s", error.text);
     if (!open_all(&r, &wanted, arguments->value, &error)) {
@@ -313,11 +383,12 @@ static int run(const cli_arguments *arguments)
     }
     double elapsed = play(&r, &wanted), seconds = (double)r.samples / wanted.rate;
     himc_performance_stats stats = himc_performance_measure(r.performance);
-    bool good = keep_files(&r, &error);
+    bool good = keep_files(&r, &error),
+         piped = r.wav.standard || r.strokes.standard || r.motion.standard;
     close_all(&r);
     if (!good)
         return cli_fail(&cli_render, "%s", error.text);
-    render_report(&stats, seconds, seconds / elapsed);
+    render_report(&stats, seconds, seconds / elapsed, piped ? stderr : stdout);
     return cli_finish(&cli_render);
 }
 
@@ -325,9 +396,10 @@ const cli_call cli_render = {
     "render",
     "SOURCE",
     " -o OUT.wav",
-    "plays a score, a MIDI file or a take (.bvh .c3d .trc) into a WAV file",
-    "The last line printed is one JSON object: seconds strokes played missed tip_rms_mm\n"
-    "tip_rms_percent peak_force_n realtime_factor unplanned_contacts longest_contact_s\n"
+    "plays a score, a MIDI file or a take (" HIMC_TAKE_SUFFIXES ") into a WAV file",
+    "SOURCE - is the standard input. Standard output gets one JSON object (standard error, if a\n"
+    "file is -): seconds strokes played missed tip_rms_mm tip_rms_percent\n"
+    " peak_force_n realtime_factor unplanned_contacts longest_contact_s\n"
     "captured_rms_mm captured_rms_percent captured_max_mm captured_max_percent\n"
     "peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint. A score that makes no drum is played on\n"
     "\"kettle\", 26 inches.",

@@ -9,7 +9,7 @@ function fault(text)
 }
 
 BEGIN {
-    rooms = split("base body capture track plan midi control bank head drum performance osc", order, " ")
+    rooms = split("system base body capture track plan midi control bank head drum performance osc", order, " ")
     for (i = 1; i <= rooms; i++)
         rank[order[i]] = i
     # the room of a public header
@@ -18,9 +18,9 @@ BEGIN {
         room_of[header[i]] = header[i + 1]
     # which outside library is known to which files
     only["^d(World|Body|Joint|Mass|Geom|Init|Close|AllocateODE|SetAlloc|SetFree|SetRealloc)"] = "^body/character$"
-    only["^lo_"] = "^osc/"
+    only["^lo_"] = "^$"
     only["^_Z"] = "^base/linear$"
-    only["^(socket|bind|sendto|recvfrom)$"] = "^osc/"
+    only["^(socket|bind|sendto|recvmsg|recvfrom)$"] = "^system/udp$"
     only["^pthread_create$"] = "^(osc/|drum/loader$)"
     # a host's process and its terminal are not the library's
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"

@@ -4,12 +4,12 @@
 /// The blocks after a late one start at once until they have caught up; a delay of more than 0.2 s
 /// is given up and counted. No sound goes out: sound managers on other machines play the
 /// `/himc/strike` messages.
-#define _GNU_SOURCE // sched_setscheduler
+#define _POSIX_C_SOURCE 200809L // nanosleep
 #include "cli.h"
 #include "himc/osc.h"
+#include "system/thread.h"
 
 #include <math.h>
-#include <sched.h>
 #include <signal.h>
 #include <string.h>
 #include <time.h>
@@ -40,29 +40,9 @@ static void stop(int signal)
 
 static void sleep_until(double t)
 {
-    struct timespec at = {(time_t)t, (long)((t - floor(t)) * 1e9)};
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
-}
-
-static himc_performance *prepare(const char *source, himc_error *error)
-{
-    himc_performance_config config = himc_performance_default();
-    config.sample_rate = RATE;
-    himc_performance *performance = himc_performance_new(&config, error);
-    if (!performance)
-        return NULL;
-    himc_performance_make_drums(performance, true);
-    himc_score *score = source && !cli_is_take(source) ? himc_score_load(source, error) : NULL;
-    bool good = score || !source || cli_is_take(source);
-    if (good && !(score && cli_first_drum(score)))
-        good = cli_add_drum(performance, RATE, error);
-    himc_score_free(score);
-    if (good && source)
-        good = cli_tell(performance, cli_is_take(source) ? "take" : "score", source, error);
-    if (good)
-        return performance;
-    himc_performance_free(performance);
-    return NULL;
+    double rest = t - cli_now();
+    if (rest > 0)
+        nanosleep(&(struct timespec){(time_t)rest, (long)((rest - floor(rest)) * 1e9)}, NULL);
 }
 
 static void play_block(himc_performance *performance, himc_osc *osc, himc_loader *loader)
@@ -118,7 +98,7 @@ static int run(const cli_arguments *arguments)
     config.allow = arguments->value[ALLOW];
     if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, &error))
         return cli_fail(&cli_serve, "%s", error.text);
-    himc_performance *performance = prepare(arguments->operand, &error);
+    himc_performance *performance = cli_load(arguments->operand, RATE, NULL, &error);
     config.loader = performance ? himc_loader_new(&error) : NULL;
     himc_osc *osc = config.loader ? himc_osc_new(&config, &error) : NULL;
     if (!osc) {
@@ -126,11 +106,9 @@ static int run(const cli_arguments *arguments)
         himc_performance_free(performance);
         return cli_fail(&cli_serve, "%s", error.text);
     }
-    struct sigaction action = {.sa_handler = stop};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    // if the system allows it, ahead of processes without a deadline
-    sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &(struct sched_param){10});
+    signal(SIGINT, stop);
+    signal(SIGTERM, stop);
+    himc_system_go_first();
     himc_performance_on_tick(performance, himc_osc_tick, osc);
     printf("listening at %s port %d\n", config.bind ? config.bind : "127.0.0.1",
            himc_osc_port(osc));

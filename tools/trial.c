@@ -223,7 +223,7 @@ static void add_length_errors(himc_skeleton_config *body, const trial_config *co
             body->length[i] *= near_one(&random, config->length_error);
 }
 
-static bool set_control(himc_performance *p, const trial_config *config, himc_error *error)
+bool trial_set_control(himc_performance *p, const trial_config *config, himc_error *error)
 {
     const trial_kind *kind = &config->kind;
     char text[64];
@@ -247,7 +247,7 @@ static bool play_as(himc_performance *p, const trial_config *config, himc_take *
     himc_mocap_config sequence = trial_sequence(config);
     add_length_errors(&player->config, config);
     return himc_performance_play_player(p, take, player, "take", error) &&
-           make_plant(p, config, error) && set_control(p, config, error) &&
+           make_plant(p, config, error) && trial_set_control(p, config, error) &&
            (config->kind.controller != HIMC_PIPELINE_HIMC ||
             use_regression(p, player, himc_take_rate(take), &sequence, error)) &&
            do_command(p, error, "play");

@@ -65,6 +65,10 @@ himc_mocap_config trial_sequence(const trial_config *config);
 /// Strokes per second of one hand in that sequence, at its pace; NAN if it cannot be made.
 double trial_own_rate(const trial_config *config);
 
+/// Gives a performance the controller, law and gains of a trial, and its limits.
+bool trial_set_control(himc_performance *performance, const trial_config *config,
+                       himc_error *error);
+
 /// Runs a trial. The disturbance depends on the number only, not on the controller. False with the
 /// reason.
 bool trial_run(const trial_config *config, trial_result *result, himc_error *error);

@@ -14,7 +14,6 @@
 /// Numbers may have any numeric OSC type but must be finite. Types are written n for a number, s
 /// for a word, * for any further atoms.
 #include "addresses.h"
-#include "base/line.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,16 +60,6 @@ static bool is_number(char type)
 static bool is_string(char type)
 {
     return type == LO_STRING || type == LO_SYMBOL;
-}
-
-// copies a word for JSON, cut to `size`; '?' replaces what is not UTF-8, and characters that JSON
-// would have to escape
-static void json_word(char *out, size_t size, const char *from)
-{
-    snprintf(out, size, "%s", from);
-    himc_line_clean(out);
-    for (; (out += strcspn(out, "\"\\"))[0]; out++)
-        *out = '?';
 }
 
 // types as in the table, numbers finite
@@ -149,8 +138,8 @@ static bool on_strike(received *h)
     char drum[SCENE_NAME], nuance[SCENE_NAME];
     if (find_hand(text(h, 1)) < 0 || !in_range(h, 3, 2))
         return false;
-    json_word(drum, sizeof drum, text(h, 2));
-    json_word(nuance, sizeof nuance, text(h, 8));
+    scene_word(drum, sizeof drum, text(h, 2));
+    scene_word(nuance, sizeof nuance, text(h, 8));
     scene_add_event(
         h->s, h->now,
         "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
@@ -176,7 +165,7 @@ static bool json_list(const received *h, char *out, size_t size)
         char atom[64];
         if (is_string(h->types[i])) {
             char clean[48];
-            json_word(clean, sizeof clean, text(h, i));
+            scene_word(clean, sizeof clean, text(h, i));
             snprintf(atom, sizeof atom, "\"%s\"", clean);
         } else if (is_number(h->types[i]) && isfinite(number(h, i)))
             snprintf(atom, sizeof atom, "%.7g", number(h, i));
@@ -205,7 +194,7 @@ static bool on_view(received *h)
     char values[1000] = "", what[SCENE_NAME];
     if (!json_list(h, values, sizeof values))
         return false;
-    json_word(what, sizeof what, h->name);
+    scene_word(what, sizeof what, h->name);
     scene_add_event(h->s, h->now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what,
                     values);
     return true;
@@ -301,7 +290,7 @@ void address_dispatch(scene *s, const char *key, const char *path, lo_message me
         s->count.unknown++;
         return;
     }
-    json_word(h.name, sizeof h.name, w == &view ? what : name);
+    scene_word(h.name, sizeof h.name, w == &view ? what : name);
     bool named = w != &view && strcmp(group, "himc") == 0 && name[0];
     snprintf(h.key, sizeof h.key, "%.46s%s%s", key, named ? "/" : "", named ? h.name : "");
     if (!types_match(&h, w->types) || !w->act(&h))

@@ -1,7 +1,7 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
-#include "motion.h"
 #include "receive.h"
+#include "recording.h"
 #include "web.h"
 
 #include <signal.h>
@@ -19,7 +19,7 @@ static const char help[] =
     "  --osc PORT       receive OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
     "  --http PORT      serve the page on this port (8080)\n"
     "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in\n"
-    "  --play FILE.csv  play a motion that himc render --motion wrote, without OSC\n"
+    "  --play F.himc    play a scene that himc render --scene wrote\n"
     "  --no-browser     only print the address\n"
     "  --help           this text\n";
 
@@ -115,14 +115,15 @@ static int serve(const options *o, himc_error *error)
 {
     static scene s;
     web_config config = {.address = o->address, .port = o->http};
-    char *motion = o->play ? motion_load(o->play, &config.play_size, error) : NULL, url[128];
-    if (o->play && !motion)
+    char *recording = o->play ? recording_load(o->play, &config.play_size, error) : NULL, url[128];
+    if (o->play && !recording)
         return fail(error);
-    config.play = motion;
+    config.play = recording;
+    config.play_name = o->play;
     config.osc = receive_open(o->address, o->osc, error);
     web *w = config.osc < 0 ? NULL : web_new(&config, &s, error);
     if (!w) {
-        free(motion);
+        free(recording);
         return fail(error);
     }
     // before the address is printed, so that a signal sent after it ends the program cleanly
@@ -135,7 +136,7 @@ static int serve(const options *o, himc_error *error)
         open_browser(url);
     web_run(w, &stop);
     web_free(w);
-    free(motion);
+    free(recording);
     return 0;
 }
 

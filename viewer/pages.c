@@ -20,6 +20,7 @@
     FILE(style, "/style.css", "text/css", "viewer/page/style.css")         \
     FILE(icon, "/icon.svg", "image/svg+xml", "viewer/page/icon.svg")       \
     SCRIPT(FILE, main)                                                     \
+    SCRIPT(FILE, boot)                                                     \
     SCRIPT(FILE, stream)                                                   \
     SCRIPT(FILE, performer)                                                \
     SCRIPT(FILE, body)                                                     \
@@ -31,7 +32,10 @@
     SCRIPT(FILE, strike)                                                   \
     SCRIPT(FILE, stage)                                                    \
     SCRIPT(FILE, camera)                                                   \
-    SCRIPT(FILE, motion)                                                   \
+    SCRIPT(FILE, scene)                                                    \
+    SCRIPT(FILE, playback)                                                 \
+    SCRIPT(FILE, sound)                                                    \
+    SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \
     FILE(skeleton, "/skeleton.js", "text/javascript", MADE "/skeleton.js") \
@@ -46,6 +50,11 @@ FILES(EMBED)
 
 #define ROW(name, path, type, file) {path, type, page_##name, page_##name##_end},
 static const page pages[] = {FILES(ROW)};
+
+const page *pages_at(int index)
+{
+    return (size_t)index < sizeof pages / sizeof *pages ? &pages[index] : NULL;
+}
 
 const page *pages_find(const char *path)
 {

@@ -11,5 +11,7 @@ typedef struct page {
 
 /// The page of exactly that path, or NULL.
 const page *pages_find(const char *path);
+/// Page `index` (from 0), or NULL past the last.
+const page *pages_at(int index);
 
 #endif

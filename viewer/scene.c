@@ -5,6 +5,7 @@
 /// gets the place of a silent one; while all send, new senders are refused and counted, so a flood
 /// from random ports changes nothing.
 #include "scene.h"
+#include "base/line.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -108,6 +109,14 @@ bool scene_pose_pending(const scene *s)
         if (s->performer[i].pending)
             return true;
     return false;
+}
+
+void scene_word(char *out, size_t size, const char *from)
+{
+    snprintf(out, size, "%s", from);
+    himc_line_clean(out);
+    for (; (out += strcspn(out, "\"\\"))[0]; out++)
+        *out = '?';
 }
 
 void scene_add_event(scene *s, double now, const char *format, ...)

@@ -51,6 +51,7 @@ struct web {
     int clients, connections;
     struct lws *osc; // the OSC socket in the loop
     uint64_t rejected;
+    char session[1024]; // JSON: where OSC is received, what is played
     lws_sorted_usec_list_t pause, second;
     double cpu, clock; // at the last report (s)
     unsigned char out[LWS_PRE + SCENE_FRAME_MAX];
@@ -94,10 +95,14 @@ static bool find_file(const web *w, const char *path, session *own, const char *
         own->at = found->begin;
         own->end = found->end;
         *type = found->type;
-    } else if (w->config.play && strcmp(path, "/play.csv") == 0) {
+    } else if (w->config.play && strcmp(path, "/play.himc") == 0) {
         own->at = w->config.play;
         own->end = w->config.play + w->config.play_size;
-        *type = "text/csv";
+        *type = "application/octet-stream";
+    } else if (strcmp(path, "/session.json") == 0) {
+        own->at = w->session;
+        own->end = w->session + strlen(w->session);
+        *type = "application/json";
     } else
         return false;
     return true;
@@ -357,6 +362,20 @@ static bool listen_to_all(web *w)
                                                   protocols[0].name, NULL);
 }
 
+// the page tells the user where to send OSC; all addresses are reached at any of them
+static void describe_session(web *w)
+{
+    const char *address = w->config.address, *name = w->config.play_name;
+    char file[256] = "";
+    bool all = !strcmp(address, "0.0.0.0") || !strcmp(address, "::");
+    if (name) {
+        const char *slash = strrchr(name, '/');
+        scene_word(file, sizeof file, slash ? slash + 1 : name);
+    }
+    snprintf(w->session, sizeof w->session, "{\"host\":\"%s\",\"osc\":%d,\"play\":\"%s\"}",
+             all ? "127.0.0.1" : address, receive_port(w->config.osc), file);
+}
+
 web *web_new(const web_config *config, scene *s, himc_error *error)
 {
     lws_set_log_level(0, NULL);
@@ -369,6 +388,7 @@ web *web_new(const web_config *config, scene *s, himc_error *error)
     }
     w->s = s;
     w->config = *config;
+    describe_session(w);
     if (!listen_to_all(w)) {
         himc_error_set(error, "cannot serve the page on %s port %d", config->address, config->port);
         web_free(w);

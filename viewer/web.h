@@ -6,11 +6,12 @@
 #include "scene.h"
 
 typedef struct web_config {
-    const char *address; ///< numeric
-    int port;            ///< 0 takes any free one
-    int osc;             ///< the OSC socket
-    const char *play;    ///< text of a motion, served as /play.csv, or NULL
-    size_t play_size;    ///< (bytes)
+    const char *address;   ///< numeric
+    int port;              ///< 0 takes any free one
+    int osc;               ///< the OSC socket
+    const char *play;      ///< bytes of a scene, served as /play.himc, or NULL
+    size_t play_size;      ///< (bytes)
+    const char *play_name; ///< its file
 } web_config;
 
 typedef struct web web;

@@ -88,6 +88,14 @@ typedef struct himc_vec3 {
     double z; ///< up
 } himc_vec3;
 
+/// A quaternion w + x i + y j + z k.
+typedef struct himc_quat {
+    double w; ///< real part; cos(angle / 2) of a rotation
+    double x; ///< sin(angle / 2) times the axis' x
+    double y; ///< the same of y
+    double z; ///< the same of z
+} himc_quat;
+
 /// Place of a drumhead in the world frame. The head's x axis points away from the performer, its y
 /// axis to the left.
 typedef struct himc_head_frame {

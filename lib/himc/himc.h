@@ -27,6 +27,7 @@
 /// docs/api.md states what each tier promises. The sources in lib/src stand in rooms, a folder each,
 /// in the order of the data flow (docs/overview.md):
 ///
+///     system       what operating systems do differently: sockets, names of files, threads
 ///     base         errors, files, vectors, the table and the parser of commands
 ///     body         skeleton, pose, joint limits, dynamics
 ///     capture      motion captures and the player in them

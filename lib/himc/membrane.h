@@ -62,9 +62,6 @@ typedef struct himc_mode {
 /// HIMC_MODES_AUTO, lugs 1.6 % off (uniformity 0.2).
 himc_head himc_head_default(void);
 
-/// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
-double himc_head_tension_for(const himc_head *head, double frequency);
-
 /// Kind of a head's outline.
 typedef enum himc_outline {
     HIMC_CIRCLE,    ///< modes by Bessel functions; the only one with air

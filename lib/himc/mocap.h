@@ -37,6 +37,7 @@ typedef struct himc_take_options {
     himc_up up;            ///< default HIMC_UP_AUTO
     const char *left_tip;  ///< name of the point at the left stick's tip, or NULL to look for it
     const char *right_tip; ///< the same, right
+    const char *subject;   ///< of several in a file: "Ida" of "Ida:RTIP", a root of a BVH; or NULL
     double longest_gap;    ///< longer gaps of the tips are errors (s) 0 .. 10, default 0.2
     double unit; ///< length unit of the file (m) 1e-6 .. 10; 0 (default): as stated, or guessed
 } himc_take_options;

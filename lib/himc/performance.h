@@ -94,7 +94,7 @@ bool himc_performance_set_rate(himc_performance *performance, double sample_rate
 typedef enum himc_event_kind {
     HIMC_EVENT_STRIKE, ///< a contact ended
     HIMC_EVENT_BEAT,   ///< a whole beat began
-    HIMC_EVENT_DONE,   ///< everything has been played and has come to rest
+    HIMC_EVENT_DONE,   ///< the score's last contact has ended, or the take; no beat follows
     HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach
 } himc_event_kind;
 
@@ -113,21 +113,43 @@ typedef struct himc_strike {
     double planned_time;         ///< of the planned stroke (s), NaN without one
     double planned_x;            ///< of the planned stroke, on the head (m)
     double planned_y;            ///< of the planned stroke, on the head (m)
+    double beat;                 ///< of the planned stroke in the score, NaN without one
 } himc_strike;
 
 /// Something that has happened; the fields of its kind are valid.
 typedef struct himc_event {
     himc_event_kind kind;                     ///< which fields are valid
     himc_strike strike;                       ///< of HIMC_EVENT_STRIKE
-    double beat;                              ///< of HIMC_EVENT_BEAT
+    double beat;                              ///< of HIMC_EVENT_BEAT ...
+    double time;                              ///< ... and when it began (s, as of a strike)
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE
+    bool minor; ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
 } himc_event;
 
 /// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and
 /// counted.
 HIMC_RT bool himc_performance_event(himc_performance *performance, himc_event *event);
 
-/// One row of motion at the task rate.
+/// Energies, and works since the rows began or since a reset (J). Step for step
+///
+///     kinetic + potential = what they were + sum of joint + contact + push + placed + numerical
+///
+/// to rounding. NaN in `ik`, whose body has no forces, but for felt, heads and lost.
+typedef struct himc_energy {
+    double joint[HIMC_JOINTS];  ///< work of each joint's torque
+    double contact[HIMC_HANDS]; ///< work of the heads on the sticks
+    double push;                ///< work of the command `push`
+    double placed;              ///< given to the body when it was put elsewhere: a new player ...
+    double numerical;           ///< given by the integrator (docs/data.md)
+    double kinetic;             ///< of all segments
+    double potential;           ///< of all segments, 0 on the floor
+    double felt[HIMC_HANDS];    ///< stored in the compressed mallet
+    double heads;               ///< of all drumheads that the performer has, vibrating
+    double lost; ///< given to heads by the sticks and no longer in them: felt, air, friction
+} himc_energy;
+
+/// One row of motion at the task rate: the state at `time`, and the forces of the physics step that
+/// begins then. In the world frame unless stated. docs/data.md has the conventions.
 typedef struct himc_motion_row {
     double time;                  ///< (s)
     himc_vec3 target[HIMC_HANDS]; ///< targets of the tips (m)
@@ -136,9 +158,28 @@ typedef struct himc_motion_row {
     himc_vec3 joint[HIMC_JOINTS]; ///< rotation vector from the zero pose, parent's frame (rad)
     himc_vec3 elbow[HIMC_HANDS];  ///< position (m)
     double limit[HIMC_JOINTS];    ///< himc_limit_measure: above 1 beyond the bounds; 0 without any
+
+    himc_vec3 target_velocity[HIMC_HANDS]; ///< (m/s)
+    himc_vec3 tip_velocity[HIMC_HANDS];    ///< (m/s)
+    himc_vec3 tip_error[HIMC_HANDS];       ///< tip minus target (m)
+    double joint_error[HIMC_JOINTS];       ///< angle to the joint's own target (rad)
+    himc_quat rotation[HIMC_JOINTS];       ///< `joint` as unit quaternion
+    himc_vec3 rate[HIMC_JOINTS];           ///< angular velocity, child minus parent (rad/s)
+    himc_vec3 acceleration[HIMC_JOINTS];   ///< its derivative (rad/s^2); NaN in `ik`
+    himc_vec3 torque[HIMC_JOINTS];         ///< on the child (N m); NaN in `ik`
+    double power[HIMC_JOINTS];             ///< torque times rate (W); NaN in `ik`
+    himc_vec3 segment[HIMC_SEGMENTS];      ///< the segment's joint to its parent (m)
+    himc_quat orientation[HIMC_SEGMENTS];  ///< of the segment's frame
+    himc_vec3 center[HIMC_SEGMENTS];       ///< of mass (m)
+    himc_vec3 tip_force[HIMC_HANDS];       ///< of the heads on the sticks (N)
+    double impulse[HIMC_HANDS];            ///< of a head on the stick, since the last row (N s)
+    himc_vec3 push[HIMC_SEGMENTS];         ///< force of the command `push` (N)
+    double null_space[HIMC_HANDS]; ///< share of the arm's squared joint rates that moves no tip
+    himc_energy energy;            ///< (J)
 } himc_motion_row;
 
-/// Calls `row` in himc_performance_process at each task tick; NULL stops it.
+/// Calls `row` in himc_performance_process at each task tick; NULL stops it. Works and energies
+/// are then added up in every physics step, which costs a few percent.
 void himc_performance_on_motion(himc_performance *performance,
                                 void (*row)(void *, const himc_motion_row *), void *user);
 
@@ -150,6 +191,7 @@ typedef struct himc_tick {
     double time;                  ///< (s since the performance was made or reset)
     const himc_body_state *body;  ///< all segments in the world
     himc_vec3 target[HIMC_HANDS]; ///< targets of the tips (m)
+    const himc_motion_row *row;   ///< all else; NULL unless himc_performance_on_motion is in use
 } himc_tick;
 
 /// Calls `tick` in himc_performance_process at each task tick, beside himc_performance_on_motion;

@@ -41,6 +41,7 @@ typedef struct himc_score {
     int change_count;         ///< 0 .. 10000, with the lines
     char *report; ///< of a MIDI file: what is played and what not, lines that end with \n, owned;
                   ///< else NULL
+    int left_out; ///< of a MIDI file: notes of its part that are not played
 } himc_score;
 
 /// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of

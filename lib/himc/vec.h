@@ -12,14 +12,6 @@
 
 HIMC_BEGIN
 
-/// A quaternion w + x i + y j + z k.
-typedef struct himc_quat {
-    double w; ///< real part; cos(angle / 2) of a rotation
-    double x; ///< sin(angle / 2) times the axis' x
-    double y; ///< the same of y
-    double z; ///< the same of z
-} himc_quat;
-
 /// A 3x3 matrix.
 typedef struct himc_mat3 {
     double m[3][3]; ///< [row][column]

@@ -59,7 +59,11 @@ one() {
         test "$folder" = build || ln -sT "$PWD/$folder" "$dir/run/$folder"
     done
     for test in $tests; do
-        if ! $LINK $HIMC_BUILD/tests/$test.o $HIMC_BUILD/tests/unity.o "$dir/source.o" $HIMC_BUILD/libhimc.a $LIBS -o "$dir/$test"; then
+        case $test in
+            test_air | test_air_galerkin) more=$HIMC_BUILD/tools/air/galerkin.o ;;
+            *) more= ;;
+        esac
+        if ! $LINK $HIMC_BUILD/tests/$test.o $HIMC_BUILD/tests/unity.o "$dir/source.o" $more $HIMC_BUILD/libhimc.a $LIBS -o "$dir/$test"; then
             echo "wrong    $1 $name: does not link with $test"
             rm -rf "$dir"
             return

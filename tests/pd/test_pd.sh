@@ -93,7 +93,7 @@ in_csv=$(awk -F, 'NR > 1 { printf "%.3f %s %s\n", $1, $2, $3 }' "$work/strokes.c
 report strike_messages_are_those_of_himc_render \
     "$([ -n "$in_csv" ] && [ "$in_pd" = "$in_csv" ] || echo "$in_pd instead of $in_csv")"
 beats=$(awk '/^himc: beat/ { printf "%s ", $3 }' "$work/pd-64-64.log")
-report beats_are_told_in_order "$(case $beats in "0 1 2 3 4 "*) ;; *) echo "$beats" ;; esac)"
+report beats_are_told_in_order_up_to_the_last_stroke "$([ "$beats" = "0 1 2 3 " ] || echo "$beats")"
 
 for patch in rebuild switch-himc switch-drum; do
     play_pd $patch.pd -send "himc-test $work/$patch.wav"
@@ -202,6 +202,14 @@ report technique_of_patches_is_refused_where_there_are_none \
     "$("$build/bin/himc" render technique.txt -o "$work/none.wav" >"$work/log" 2>&1 && echo "not refused"
     lines "himc render: technique.txt:2: kettle: technique: clip, allowed modal here: signal and clip are patches, [technique~ NAME] in Pure Data")"
 
+# --- two performers on one drum
+
+play_pd share.pd
+report two_performers_on_a_drum_sound_as_the_sum_of_each_alone \
+    "$(awk '/^difference:/ { d = $2 } /^sound:/ { s = $2 } END { if (!(s > 0.05 && d < 1e-6 * s)) print d " of " s }' "$work/log")"
+report a_performer_that_stays_alone_plays_on \
+    "$([ "$(grep -c '^touch: ' "$work/log")" = 5 ] || grep -c '^touch: ' "$work/log"; grep '^error' "$work/log")"
+
 # --- bad input
 
 play_pd objects.pd
@@ -209,7 +217,7 @@ report objects_with_nonsense_arguments_are_refused_with_a_line \
     "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
 membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 26]
 membrane~: argument 2: large, allowed: a diameter in inches
-membrane~: 4 arguments, allowed: NAME [INCHES [CHANNELS]]
+membrane~: 4 arguments, allowed: [-save] NAME [INCHES [CHANNELS]]
 membrane~: argument 3: loud, allowed: a number of channels
 membrane~: channels: 9, allowed 1 .. 8
 membrane~: channels: 1.5, allowed a whole number
@@ -219,8 +227,6 @@ himc~: argument 2: one is named twice
 himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum's name of up to 31 characters")"
 report second_drum_of_a_name_stays_nameless \
     "$(lines "membrane~: twice: there is one of this name already: [himc~] finds this one when that is gone")"
-report second_performer_on_a_drum_plays_a_silent_one \
-    "$(lines "himc~: [membrane~ twice] is played by another [himc~]: its strokes are silent")"
 # a newer Pd repeats the box that it could not make on a line of its own
 report nothing_else_was_said_at_load \
     "$(grep -v -e '^error: ' -e '^verbose([01]): ' -e '^\(himc\|membrane\)~ [a-z0-9]' "$work/log")"
@@ -267,10 +273,13 @@ done
 "$pd_program" -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -path "$externals" \
     -send "himc-test $PWD" -open reopen.pd >"$work/log" 2>&1 </dev/null &
 pd=$!
-memory() { # memory COUNT: the most Pd has held until so many patches have been opened (kB)
+memory() { # memory COUNT: the least Pd holds, patch closed, soon after opening so many (kB)
     for ((wait = 0; wait < 1200; wait++)); do
         if grep -q "^opened: $1\$" "$work/log"; then
-            awk '/VmHWM/ { print $2 }' /proc/$pd/status
+            for ((sample = 0; sample < 20; sample++)); do
+                awk '/VmRSS/ { print $2 }' /proc/$pd/status
+                sleep 0.007
+            done | sort -n | head -n 1
             return
         fi
         sleep 0.05

@@ -33,6 +33,7 @@ class Browser:
             f"--window-size={width},{height}",
             f"--user-data-dir={self.home}",
             "--hide-scrollbars",
+            "--autoplay-policy=no-user-gesture-required",
         ]
         answer = self.call(
             "POST",

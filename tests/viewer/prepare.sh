@@ -11,7 +11,11 @@ for need in python3 chromedriver; do
     fi
 done
 mkdir -p "$dir"
-"$CC" -std=c17 -O2 -Wall -Wextra -Wpedantic -Ilib tests/viewer/sender.c "$HIMC_BUILD/libhimc.a" \
-    -Wl,--as-needed -lode -llo -lsndfile -lstdc++ -lpthread -lm -o "$dir/sender" || exit 1
+for program in sender perform; do
+    "$CC" -std=c17 -O2 -Wall -Wextra -Wpedantic -Ilib tests/viewer/$program.c "$HIMC_BUILD/libhimc.a" \
+        -Wl,--as-needed -lode -llo -lstdc++ -lpthread -lm -o "$dir/$program" || exit 1
+done
 "$HIMC_BUILD/bin/himc" render patches/improvisation.txt -o "$dir/play.wav" \
-    --motion "$dir/motion.csv" --strokes "$dir/strokes.csv" >/dev/null 2>&1 || exit 1
+    --motion "$dir/motion.csv" --strokes "$dir/strokes.csv" --scene "$dir/play.himc" >/dev/null 2>&1 &&
+    "$HIMC_BUILD/bin/himc" render tests/viewer/four.txt -o "$dir/four.wav" --scene "$dir/four.himc" \
+        >/dev/null 2>&1 || exit 1

@@ -1,5 +1,5 @@
-"""A still of a motion as the viewer shows it, by headless Chromium:
-    HIMC_BUILD=build python3 tests/viewer/still.py MOTION.csv OUT.png SECONDS [CAMERA]
+"""A still of a scene as the viewer shows it, by headless Chromium:
+    HIMC_BUILD=build python3 tests/viewer/still.py SCENE.himc OUT.png SECONDS [CAMERA]
         [WIDTH HEIGHT] [bare]
 `bare` leaves out what is written over the stage. Time is stepped, so that a slow renderer gives
 the same picture.
@@ -16,19 +16,19 @@ from bridge import Viewer  # noqa: E402
 LEAD = 2.5  # played before the picture, for the trails and the head's ringing (s)
 
 
-def still(motion, out, seconds, camera="stage", width=1280, height=720, bare=False):
+def still(scene, out, seconds, camera="stage", width=1280, height=720, bare=False):
     browser = Browser(width, height + 143)  # the window's own frame
     try:
-        with Viewer("--play", motion) as viewer:
+        with Viewer("--play", scene) as viewer:
             browser.open(f"http://127.0.0.1:{viewer.http}/")
-            if not browser.wait("return !!(window.viewer && viewer.motion)", 60):
-                raise RuntimeError("the page did not load the motion: " + "; ".join(browser.log()))
+            if not browser.wait("return !!(window.viewer && viewer.playback)", 60):
+                raise RuntimeError("the page did not load the scene: " + "; ".join(browser.log()))
             browser.run("viewer.held = true")
             time.sleep(1)
             browser.run(
                 "viewer.stage.quality = 1; document.body.classList.toggle('bare', arguments[2]);"
                 "viewer.actions.camera(arguments[0]);"
-                "viewer.motion.playing = true; viewer.motion.seek(arguments[1])",
+                "viewer.playback.seek(arguments[1]); viewer.playback.play(true)",
                 camera,
                 1000 * (seconds - LEAD),
                 bare,

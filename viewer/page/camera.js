@@ -1,5 +1,6 @@
-// The camera: mouse (left button rotates, right button or shift moves, wheel zooms), touch (one
-// finger rotates, two move and zoom), and presets. Factors of mouse and touch: chosen by hand.
+// The camera: mouse (left button rotates, right button or shift moves, the wheel zooms to what is
+// under it, a double click looks at it), touch (one finger rotates, two move and zoom), and presets.
+// Factors of mouse and touch: chosen by hand.
 import * as THREE from "./three.js";
 
 const presets = {
@@ -10,12 +11,19 @@ const presets = {
     top: [[0.45, 0, 0.8], -0.001, 1.45, 2.6],
 };
 
+const NEAREST = 0.2, // from the target (m)
+    CLOSE_UP = 0.9, // after a double click (m), or nearer
+    PICK = 80; // a double click this near to a joint, a tip or a head looks at it (pixels)
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+
 export class View {
     constructor(canvas) {
+        this.points = () => []; // what a double click may look at (m)
         this.camera = new THREE.PerspectiveCamera(38, 1, 0.03, 80);
         this.camera.up.set(0, 0, 1);
         this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
+        this.lift = 0; // what is written below takes this share of the height, twice
         this.spread = 0; // half the width of the group of performers (m)
         this.pointers = new Map();
         this.preset("stage");
@@ -31,7 +39,8 @@ export class View {
         on("pointermove", e => this.drag(e));
         for (const name of ["pointerup", "pointercancel"])
             on(name, e => this.pointers.delete(e.pointerId));
-        on("wheel", e => (e.preventDefault(), this.zoom(Math.exp(0.0012 * e.deltaY))));
+        on("wheel", e => (e.preventDefault(), this.zoom(Math.exp(0.0012 * e.deltaY), e)));
+        on("dblclick", e => this.focus(e));
         on("contextmenu", e => e.preventDefault());
     }
 
@@ -51,7 +60,7 @@ export class View {
             Object.assign(this.goal, {
                 azimuth,
                 elevation,
-                distance: distance * narrow + 1.25 * this.spread,
+                distance: (distance * narrow + 1.25 * this.spread) * (1 + 2 * this.lift),
             });
             this.goal.target.set(...target);
             if (this.spread) this.goal.target.x += 0.35 * this.spread;
@@ -59,8 +68,51 @@ export class View {
         return this.name === name;
     }
 
-    zoom(factor) {
-        this.goal.distance = Math.min(30, Math.max(0.35, this.goal.distance * factor));
+    // a point of the page as the camera has it, -1 .. 1
+    screen(e) {
+        return [(2 * e.clientX) / innerWidth - 1, 1 - 2 * this.lift - (2 * e.clientY) / innerHeight];
+    }
+
+    // keeps what is under the pointer where it is, at the target's depth
+    zoom(factor, e) {
+        const before = this.goal.distance;
+        this.goal.distance = Math.min(30, Math.max(NEAREST, before * factor));
+        if (e) {
+            const [x, y] = this.screen(e),
+                half = Math.tan((this.camera.fov * Math.PI) / 360) * (before - this.goal.distance),
+                m = this.camera.matrixWorld.elements;
+            for (const [i, a] of ["x", "y", "z"].entries())
+                this.goal.target[a] += half * (x * this.camera.aspect * m[i] + y * m[4 + i]);
+        }
+        this.leave();
+    }
+
+    focus(e) {
+        const [x, y] = this.screen(e),
+            off = p => {
+                const q = p.clone().project(this.camera);
+                return Math.abs(q.z) > 1
+                    ? Infinity
+                    : Math.hypot(((q.x - x) * innerWidth) / 2, ((q.y - y) * innerHeight) / 2);
+            },
+            nearest = this.points().sort((a, b) => off(a) - off(b))[0];
+        if (!nearest || off(nearest) > PICK) return;
+        this.leave();
+        this.goal.target.copy(nearest);
+        this.goal.distance = Math.min(this.goal.distance, CLOSE_UP);
+    }
+
+    // to the window's size; the middle of the picture is above what is written below
+    resize() {
+        const w = innerWidth,
+            h = innerHeight;
+        this.camera.setViewOffset(w, h, 0, this.lift * h, w, h);
+    }
+
+    // by an angle (rad)
+    orbit(x, y) {
+        this.goal.azimuth += x;
+        this.goal.elevation = Math.min(1.55, Math.max(-0.08, this.goal.elevation + y));
         this.leave();
     }
 
@@ -81,11 +133,7 @@ export class View {
             this.zoom(length(...before) / Math.max(1, length(e.clientX, e.clientY)));
             this.move(dx / 2, dy / 2);
         } else if (e.buttons & 2 || e.shiftKey) this.move(dx, dy);
-        else {
-            this.goal.azimuth -= 0.006 * dx;
-            this.goal.elevation = Math.min(1.55, Math.max(-0.08, this.goal.elevation + 0.005 * dy));
-            this.leave();
-        }
+        else this.orbit(-0.006 * dx, 0.005 * dy);
         this.pointers.set(e.pointerId, [e.clientX, e.clientY]);
     }
 
@@ -107,7 +155,7 @@ export class View {
         if (performer) performer.figure.showHead(!eye);
         if (eye) return this.look(performer);
         if (this.camera.fov !== 38) ((this.camera.fov = 38), this.camera.updateProjectionMatrix());
-        const k = 1 - Math.exp(-dt / 120),
+        const k = calm.matches ? 1 : 1 - Math.exp(-dt / 120),
             n = this.now,
             g = this.goal;
         n.target.lerp(g.target, k);

@@ -248,6 +248,15 @@ export class Drum {
         this.heard = now;
     }
 
+    // shows these amplitudes, of a playback
+    show(now, place, amplitude) {
+        this.setPlace(place);
+        this.to.fill(0);
+        this.to.set(amplitude);
+        this.fromTime = this.toTime = 0;
+        this.heard = now;
+    }
+
     present(now) {
         return now - Math.max(this.heard, this.struck) < ABSENT_AFTER;
     }

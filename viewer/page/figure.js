@@ -1,6 +1,6 @@
-// The figure: clothes, skin, hair and shoes, modelled once round the default skeleton in a seated
-// rest pose, then moved by the segments of a pose. Lengths in metres, in each segment's frame
-// (zero pose: x forward, y left, z up).
+// The figure: a mannequin, a matte shell for each segment and dark balls between them, modelled once
+// round the default skeleton in a seated rest pose, then moved by the segments of a pose. Lengths in
+// metres, in each segment's frame (zero pose: x forward, y left, z up).
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
 import { cone, ellipsoid, sculpt } from "./sculpt.js";
@@ -35,242 +35,255 @@ function restRotation(joint) {
 // f(side, sign of y) for both sides of the body
 const both = f => HANDS.flatMap(side => f(side, side === "left" ? 1 : -1));
 
-// Folds of cloth: a few oblique waves near the surface; `depth` their amplitude (m), u and v their
-// wave numbers (rad/m). All numbers of the clothes and the body below: chosen by eye.
-function cloth(depth, u, v) {
-    return (d, local, x, y, z) =>
-        Math.abs(d) > 0.03
-            ? d
-            : d +
-              depth *
-                  (Math.sin(u * z + 9 * x + 2 * Math.sin(v * y)) +
-                      0.7 * Math.sin(1.7 * u * x + 14 * y - 8 * z));
+// The parts below: solids of one segment each, so that nothing stretches; between them balls, where
+// the body bends. All sizes: chosen by eye.
+const part = (cell, soft, solids, extra = {}) => ({ cell, soft, blend: 0.01, solids, ...extra });
+
+// flattens what `solid` covers: its own width of the joint with what came before (m)
+const joined = (solid, soft) => ({ ...solid, soft });
+
+function chest() {
+    const t = bone("trunk");
+    return part(0.014, 0.07, [
+        ellipsoid(t, [0.012, 0, 0.26], [0.1, 0.142, 0.13]),
+        ellipsoid(t, [0.004, 0, 0.17], [0.088, 0.118, 0.11]),
+        ...both((s, y) => [
+            joined(ellipsoid(t, [0.052, 0.062 * y, 0.272], [0.056, 0.07, 0.062]), 0.05),
+            joined(
+                cone(t, [-0.012, 0.03 * y, 0.338], 0.046, [-0.004, 0.13 * y, 0.335], 0.05),
+                0.06,
+            ),
+            joined(ellipsoid(t, [-0.055, 0.075 * y, 0.27], [0.045, 0.062, 0.085]), 0.05),
+        ]),
+        joined(cone(t, [-0.01, 0, 0.335], 0.062, [-0.008, 0, 0.362], 0.05), 0.04),
+    ]);
 }
 
-function shirt() {
+function belly() {
     const t = bone("trunk"),
         p = bone("pelvis");
-    return {
-        soft: 0.07,
-        blend: 0.07,
-        cell: 0.017,
-        shape: cloth(0.0016, 52, 23),
-        solids: [
-            ellipsoid(t, [0.012, 0, 0.235], [0.105, 0.152, 0.15]),
-            ellipsoid(t, [0.0, 0, 0.05], [0.098, 0.128, 0.15]),
-            ellipsoid(p, [0.0, 0, 0.07], [0.105, 0.14, 0.1]),
-            ...both((s, y) => [
-                cone(t, [0, 0.03 * y, 0.35], 0.05, [-0.004, 0.15 * y, 0.33], 0.057),
-            ]),
-            cone(t, [-0.012, 0, 0.33], 0.062, [-0.012, 0, 0.362], 0.053),
+    return part(
+        0.014,
+        0.05,
+        [
+            ellipsoid(t, [0.002, 0, 0.1], [0.08, 0.107, 0.1]),
+            ellipsoid(t, [0, 0, 0.02], [0.084, 0.112, 0.1]),
+            ellipsoid(p, [0, 0, 0.09], [0.086, 0.115, 0.09]),
         ],
-    };
+        { blend: 0.06 },
+    );
 }
 
-function sleeve(side) {
-    const u = bone(side + "-upper-arm"),
-        f = bone(side + "-forearm");
-    return {
-        soft: 0.035,
-        blend: 0.035,
-        cell: 0.0135,
-        shape: cloth(0.0017, 75, 31),
-        solids: [
-            ellipsoid(u, [-0.002, 0, -0.018], [0.059, 0.054, 0.066]),
-            cone(u, [0, 0, -0.035], 0.054, [0, 0, -0.265], 0.05),
-            cone(f, [0, 0, 0], 0.05, [0, 0, -0.2], 0.037),
-            cone(f, [0, 0, -0.215], 0.038, [0, 0, -0.235], 0.037),
-        ],
-    };
+function hips() {
+    const p = bone("pelvis");
+    return part(0.013, 0.06, [
+        ellipsoid(p, [-0.004, 0, 0.045], [0.1, 0.138, 0.08]),
+        ...both((s, y) => [ellipsoid(p, [-0.035, 0.072 * y, -0.012], [0.088, 0.082, 0.082])]),
+    ]);
 }
+
+function upperArm(side) {
+    const u = bone(side + "-upper-arm");
+    return part(0.0105, 0.05, [
+        cone(u, [0, 0, -0.05], 0.049, [0, 0, -0.235], 0.0385),
+        ellipsoid(u, [0.008, 0, -0.14], [0.046, 0.042, 0.09]),
+    ]);
+}
+
+function forearm(side) {
+    const f = bone(side + "-forearm");
+    return part(0.0095, 0.04, [
+        cone(f, [0, 0, -0.045], 0.0375, [0, 0, -0.225], 0.0245),
+        ellipsoid(f, [0.004, 0, -0.095], [0.041, 0.043, 0.075]),
+    ]);
+}
+
+// The hand holds the stick between thumb and index finger; the other three are closed round it.
+// Each finger: knuckle, two joints and tip, y outwards from the stick.
+const FINGERS = [
+    [
+        [0.018, -0.002, -0.079],
+        [0.007, 0.0165, -0.113],
+        [-0.011, 0.0135, -0.112],
+        [-0.0165, -0.002, -0.1],
+    ],
+    [
+        [0.021, 0.018, -0.081],
+        [0.004, 0.027, -0.115],
+        [-0.019, 0.024, -0.105],
+        [-0.027, 0.011, -0.087],
+    ],
+    [
+        [0.018, 0.037, -0.075],
+        [-0.002, 0.044, -0.105],
+        [-0.024, 0.037, -0.092],
+        [-0.03, 0.02, -0.074],
+    ],
+    [
+        [0.011, 0.053, -0.066],
+        [-0.006, 0.057, -0.09],
+        [-0.024, 0.048, -0.078],
+        [-0.03, 0.031, -0.063],
+    ],
+];
+const THUMB = [
+    [-0.006, -0.014, -0.022],
+    [-0.008, -0.03, -0.05],
+    [-0.002, -0.0225, -0.082],
+    [0.004, -0.0145, -0.107],
+];
+const FINGER_RADII = [0.0115, 0.0098, 0.0088, 0.0078],
+    THUMB_RADII = [0.0165, 0.0135, 0.0112, 0.0094];
+
+// three bones in a row through four points
+const digit = (h, y, points, radii, size, soft) =>
+    [0, 1, 2].map(i => {
+        const at = ([px, py, pz]) => [px, py * y, pz];
+        return joined(
+            cone(h, at(points[i]), size * radii[i], at(points[i + 1]), size * radii[i + 1]),
+            i ? 0.004 : soft,
+        );
+    });
 
 function hand(side) {
-    const f = bone(side + "-forearm"),
-        h = bone(side + "-hand"),
+    const h = bone(side + "-hand"),
         y = side === "left" ? 1 : -1;
-    const solids = [
-        cone(f, [0, 0, -0.21], 0.029, [0, 0, -0.262], 0.026),
-        cone(h, [0.002, 0, 0], 0.026, [0.01, 0.008 * y, -0.03], 0.026),
-    ];
-    const lengths = [1, 1.08, 1.0, 0.82];
-    for (let i = 0; i < 4; i++) {
-        // knuckles beside and above the stick, fingers closed round it
-        const k = [0.021 - 0.004 * Math.abs(i - 1), (-0.006 + 0.0185 * i) * y, -0.083 + 0.006 * i],
-            l = lengths[i];
-        const a = [k[0] - 0.01, k[1], k[2] - 0.036 * l],
-            b = [k[0] - 0.036, k[1] - 0.002 * y, k[2] - 0.03 * l];
-        const c = [k[0] - 0.043, k[1] - 0.003 * y, k[2] - 0.008 * l];
-        solids.push(
-            {
-                ...cone(h, [0.006, (-0.01 + 0.0095 * i) * y, -0.02], 0.0145, k, 0.0135),
-                soft: 0.016,
-            },
-            { ...cone(h, k, 0.0112, a, 0.0098), soft: 0.005 },
-            { ...cone(h, a, 0.0098, b, 0.009), soft: 0.004 },
-            { ...cone(h, b, 0.009, c, 0.0082), soft: 0.004 },
-        );
-    }
-    solids.push(
-        {
-            ...cone(h, [-0.002, -0.016 * y, -0.02], 0.018, [-0.008, -0.03 * y, -0.05], 0.0145),
-            soft: 0.016,
-        },
-        {
-            ...cone(h, [-0.008, -0.03 * y, -0.05], 0.0125, [-0.004, -0.021 * y, -0.084], 0.011),
-            soft: 0.008,
-        },
-        {
-            ...cone(h, [-0.004, -0.021 * y, -0.084], 0.011, [-0.003, -0.016 * y, -0.108], 0.0092),
-            soft: 0.006,
-        },
-    );
-    return { soft: 0.012, blend: 0.016, cell: 0.0056, solids };
+    const size = [1, 1.04, 1, 0.86];
+    return part(0.0042, 0.014, [
+        cone(h, [0.001, 0.002 * y, -0.012], 0.0255, [0.004, 0.012 * y, -0.035], 0.024),
+        ...FINGERS.map(([k], i) =>
+            joined(
+                cone(
+                    h,
+                    [0.004, (-0.006 + 0.011 * i) * y, -0.028],
+                    0.0165,
+                    [k[0] - 0.003, k[1] * y, k[2] + 0.004],
+                    0.0125 * size[i],
+                ),
+                0.018,
+            ),
+        ),
+        joined(ellipsoid(h, [-0.012, 0.036 * y, -0.03], [0.015, 0.017, 0.028]), 0.016),
+        ...FINGERS.flatMap((f, i) => digit(h, y, f, FINGER_RADII, size[i], 0.006)),
+        ...digit(h, y, THUMB, THUMB_RADII, 1, 0.016),
+    ]);
 }
 
+// A head without a face: brow, nose and chin say which way it looks.
 function head() {
+    const h = bone("head");
+    return part(0.0066, 0.03, [
+        ellipsoid(h, [-0.01, 0, 0.122], [0.094, 0.0735, 0.084]),
+        ellipsoid(h, [0.018, 0, 0.07], [0.066, 0.056, 0.088]),
+        joined(ellipsoid(h, [0.048, 0, 0.006], [0.032, 0.03, 0.026]), 0.045),
+        ...both((s, y) => [
+            joined(
+                cone(h, [-0.012, 0.05 * y, 0.045], 0.014, [0.045, 0.02 * y, 0.005], 0.014),
+                0.04,
+            ),
+            joined(ellipsoid(h, [0.05, 0.034 * y, 0.06], [0.024, 0.022, 0.026]), 0.04),
+            joined(ellipsoid(h, [-0.008, 0.0715 * y, 0.08], [0.018, 0.008, 0.026]), 0.008),
+        ]),
+        joined(ellipsoid(h, [0.056, 0, 0.036], [0.032, 0.034, 0.04]), 0.03),
+        joined(cone(h, [0.07, 0, 0.112], 0.01, [0.079, 0, 0.07], 0.011), 0.03),
+    ]);
+}
+
+function neck() {
     const n = bone("neck"),
-        h = bone("head"),
-        t = bone("trunk");
-    return {
-        soft: 0.022,
-        blend: 0.03,
-        cell: 0.0054,
-        cutSoft: 0.005,
-        cut: both((s, y) => [
-            cone(h, [0.0925, 0, 0.0305], 0.0032, [0.083, 0.025 * y, 0.0325], 0.0028),
-        ]),
-        solids: [
-            cone(t, [-0.012, 0, 0.36], 0.05, [-0.008, 0, 0.39], 0.05),
-            cone(n, [-0.006, 0, 0], 0.05, [0, 0, 0.06], 0.047),
-            cone(h, [-0.012, 0, -0.02], 0.047, [-0.012, 0, 0.05], 0.05),
-            ellipsoid(h, [-0.006, 0, 0.122], [0.094, 0.072, 0.084]),
-            ellipsoid(h, [0.028, 0, 0.072], [0.06, 0.054, 0.082]),
-            { ...ellipsoid(h, [0.052, 0, 0.012], [0.034, 0.031, 0.03]), soft: 0.03 },
-            ...both((s, y) => [
-                {
-                    ...cone(h, [-0.002, 0.052 * y, 0.035], 0.014, [0.055, 0.02 * y, 0.004], 0.015),
-                    soft: 0.03,
-                },
-                { ...ellipsoid(h, [0.058, 0.036 * y, 0.07], [0.022, 0.02, 0.018]), soft: 0.02 },
-                {
-                    ...cone(h, [0.08, 0.012 * y, 0.112], 0.009, [0.07, 0.042 * y, 0.11], 0.009),
-                    soft: 0.014,
-                },
-                { ...ellipsoid(h, [-0.006, 0.073 * y, 0.078], [0.017, 0.009, 0.03]), soft: 0.008 },
-            ]),
-            { ...cone(h, [0.086, 0, 0.1], 0.008, [0.105, 0, 0.064], 0.011), soft: 0.014 },
-            { ...ellipsoid(h, [0.098, 0, 0.06], [0.014, 0.017, 0.009]), soft: 0.01 },
-            { ...cone(h, [0.079, -0.016, 0.031], 0.01, [0.079, 0.016, 0.031], 0.01), soft: 0.012 },
+        t = bone("trunk"),
+        h = bone("head");
+    return part(
+        0.009,
+        0.03,
+        [
+            cone(t, [-0.01, 0, 0.35], 0.05, [-0.008, 0, 0.385], 0.046),
+            cone(n, [-0.006, 0, 0], 0.046, [-0.004, 0, 0.06], 0.044),
+            cone(h, [-0.008, 0, -0.015], 0.044, [-0.004, 0, 0.012], 0.042),
         ],
-    };
+        { blend: 0.03 },
+    );
 }
 
-function hair() {
-    const h = bone("head");
-    return {
-        soft: 0.03,
-        blend: 0.03,
-        cell: 0.0085,
-        solids: [
-            ellipsoid(h, [-0.014, 0, 0.132], [0.098, 0.08, 0.087]),
-            ellipsoid(h, [-0.045, 0, 0.075], [0.06, 0.068, 0.075]),
-        ],
-        shape(d, local, x, y, z) {
-            const p = local(h, x, y, z),
-                line = 0.8 * (p[0] - 0.05) - 0.6 * (p[2] - 0.135) - 0.15 * Math.abs(p[1]);
-            const ear = 0.045 - Math.hypot(p[0] - 0.012, 1.1 * (p[2] - 0.07));
-            const wave = 0.0016 * Math.sin(190 * p[1] + 40 * p[0] + 5 * Math.sin(30 * p[2]));
-            return Math.max(d + wave, line, ear, 0.015 - p[2]);
-        },
-    };
+function thigh(side) {
+    const l = bone(side + "-upper-leg");
+    return part(0.013, 0.06, [
+        cone(l, [0, 0, -0.005], 0.081, [0, 0, -0.365], 0.0545),
+        ellipsoid(l, [0.014, 0, -0.19], [0.074, 0.071, 0.13]),
+    ]);
 }
 
-function eyes() {
-    const h = bone("head");
-    return {
-        soft: 0.001,
-        blend: 0.03,
-        cell: 0.0026,
-        solids: both((s, y) => [
-            ellipsoid(h, [0.0755, 0.0305 * y, 0.0925], [0.0095, 0.0125, 0.0058]),
-        ]),
-    };
-}
-
-function brows() {
-    const h = bone("head");
-    return {
-        soft: 0.004,
-        blend: 0.03,
-        cell: 0.003,
-        solids: both((s, y) => [
-            cone(h, [0.0885, 0.016 * y, 0.1165], 0.0042, [0.077, 0.046 * y, 0.1135], 0.003),
-        ]),
-    };
-}
-
-function trousers() {
-    const p = bone("pelvis");
-    return {
-        soft: 0.045,
-        blend: 0.05,
-        cell: 0.018,
-        shape: cloth(0.0018, 46, 19),
-        solids: [
-            ellipsoid(p, [0, 0, 0.03], [0.113, 0.15, 0.085]),
-            ...both((s, y) => [
-                ellipsoid(p, [-0.035, 0.075 * y, -0.03], [0.095, 0.088, 0.075]),
-                cone(bone(s + "-upper-leg"), [0, 0, -0.01], 0.088, [0, 0, -0.395], 0.066),
-                cone(bone(s + "-lower-leg"), [0.008, 0, 0], 0.064, [-0.006, 0, -0.2], 0.06),
-                cone(bone(s + "-lower-leg"), [-0.006, 0, -0.2], 0.06, [-0.008, 0, -0.4], 0.052),
-            ]),
-        ],
-    };
+function shin(side) {
+    const l = bone(side + "-lower-leg");
+    return part(0.012, 0.05, [
+        cone(l, [0.004, 0, -0.07], 0.05, [0, 0, -0.38], 0.035),
+        ellipsoid(l, [-0.014, 0, -0.14], [0.054, 0.053, 0.1]),
+    ]);
 }
 
 function shoe(side) {
     const f = bone(side + "-foot"),
-        t = bone(side + "-toes");
-    return {
-        soft: 0.02,
-        blend: 0.03,
-        cell: 0.011,
-        solids: [
-            cone(f, [-0.005, 0, -0.005], 0.042, [-0.018, 0, -0.045], 0.042),
-            cone(f, [-0.02, 0, -0.045], 0.042, [0.12, 0, -0.05], 0.04),
-            cone(f, [0.02, 0, -0.02], 0.036, [0.13, 0, -0.05], 0.034),
-            cone(t, [0, 0, 0], 0.041, [0.05, 0, -0.004], 0.034),
+        sole = (d, local, x, y, z) => Math.max(d, -(local(f, x, y, z)[2] + 0.075));
+    return part(
+        0.0095,
+        0.03,
+        [
+            cone(f, [-0.012, 0, -0.02], 0.037, [-0.02, 0, -0.047], 0.036),
+            cone(f, [0, 0, -0.03], 0.036, [0.125, 0, -0.052], 0.033),
+            joined(ellipsoid(f, [0.125, 0, -0.055], [0.055, 0.042, 0.028]), 0.03),
         ],
-        shape(d, local, x, y, z) {
-            return Math.max(d, -(local(f, x, y, z)[2] + 0.075));
-        },
-    };
+        { shape: sole },
+    );
 }
 
-const look = (color, roughness, extra = {}) => ({ color, roughness, metalness: 0, ...extra });
-const parts = () => [
-    [shirt(), "shirt"],
-    [sleeve("left"), "shirt"],
-    [sleeve("right"), "shirt"],
-    [trousers(), "trousers"],
-    [hand("left"), "skin"],
-    [hand("right"), "skin"],
-    [head(), "skin", true],
-    [hair(), "hair", true],
-    [eyes(), "eyes", true],
-    [brows(), "hair", true],
-    [shoe("left"), "shoes"],
-    [shoe("right"), "shoes"],
+function toes(side) {
+    const t = bone(side + "-toes"),
+        sole = (d, local, x, y, z) => Math.max(d, -(local(t, x, y, z)[2] + 0.025));
+    return part(0.0085, 0.02, [ellipsoid(t, [0.02, 0, -0.006], [0.056, 0.04, 0.026])], {
+        shape: sole,
+    });
+}
+
+// the balls at the joints of a side: segment, radius
+const BALLS = [
+    ["upper-arm", 0.047],
+    ["forearm", 0.034],
+    ["hand", 0.0235],
+    ["lower-leg", 0.049],
+    ["foot", 0.0335],
 ];
-const shirts = [
-    "#3f5f8c",
-    "#8c3f45",
-    "#3f7d62",
-    "#8a6a34",
-    "#67508c",
-    "#3f7f8a",
-    "#a0563a",
-    "#56606b",
+
+const look = (color, roughness, extra = {}) => ({ color, roughness, metalness: 0, ...extra });
+
+// what is drawn with one material; `ofHead` is hidden from the performer's own eye
+const surfaces = () => [
+    { material: "shirt", parts: [chest(), ...HANDS.map(upperArm)] },
+    { material: "skin", parts: [...HANDS.map(forearm), ...HANDS.map(hand)] },
+    { material: "skin", parts: [head()], ofHead: true },
+    { material: "dark", parts: [neck()], ofHead: true },
+    { material: "trousers", parts: [hips(), ...HANDS.map(thigh), ...HANDS.map(shin)] },
+    { material: "shoes", parts: [...HANDS.map(shoe), ...HANDS.map(toes)] },
+    {
+        material: "dark",
+        parts: [
+            belly(),
+            ...HANDS.flatMap(side =>
+                BALLS.map(([name, r]) =>
+                    part(r / 5, 0.01, [ellipsoid(bone(`${side}-${name}`), [0, 0, 0], [r, r, r])]),
+                ),
+            ),
+        ],
+    },
+];
+export const shirts = [
+    "#35557d",
+    "#83403f",
+    "#3a6b56",
+    "#7d5f35",
+    "#5f4d80",
+    "#386b75",
+    "#8f543c",
+    "#525b66",
 ];
 
 let model; // geometry, the same for all performers
@@ -284,8 +297,8 @@ function sharedModel() {
             new THREE.Vector3(1, 1, 1),
         ),
     );
-    const geometries = parts().map(([part, material, ofHead]) => ({
-        geometry: sculpt(part, matrices),
+    const geometries = surfaces().map(({ parts, material, ofHead }) => ({
+        geometry: sculpt(parts, matrices),
         material,
         ofHead,
     }));
@@ -331,12 +344,11 @@ function materials(index, environment) {
             envMapIntensity: 0.55,
         });
     return {
-        shirt: make(look(rgb(shirts[index % shirts.length]), 0.82)),
-        trousers: make(look(rgb("#20222b"), 0.9)),
-        skin: make(look(rgb("#b77f61"), 0.6)),
-        hair: make(look(rgb("#2b1c14"), 0.62)),
-        eyes: make(look(rgb("#14100e"), 0.15)),
-        shoes: make(look(rgb("#17130f"), 0.32)),
+        shirt: make(look(rgb(shirts[index % shirts.length]), 0.78)),
+        skin: make(look(rgb("#a09488"), 0.72)),
+        trousers: make(look(rgb("#2f343e"), 0.8)),
+        shoes: make(look(rgb("#191b20"), 0.5)),
+        dark: make(look(rgb("#1d2027"), 0.6)),
         wood: make(look(rgb("#d9b27a"), 0.42), false),
         felt: make(look(rgb("#f4efe2"), 0.95), false),
         core: make(look(rgb("#a8452f"), 0.6), false),
@@ -393,9 +405,7 @@ export class Figure {
             pose[knee + 2] - pose[hip + 2],
         );
         this.scale.setScalar(
-            thigh > 0.2 && thigh < 0.8
-                ? thigh / segments[bone("left-upper-leg")].length
-                : 1,
+            thigh > 0.2 && thigh < 0.8 ? thigh / segments[bone("left-upper-leg")].length : 1,
         );
         for (let i = 0; i < segments.length; i++) {
             const o = 7 * i;

@@ -1,13 +1,15 @@
-// The viewer's page: receives the stream of himc-viewer, keeps performers and drums, and draws a
-// frame whenever the browser asks for one.
+// The viewer's page: shows what himc-viewer streams, or plays a scene, and draws a frame whenever
+// the browser asks for one.
 import * as THREE from "./three.js";
 import { Stage, discard } from "./stage.js";
 import { View } from "./camera.js";
 import { Stream } from "./stream.js";
 import { Performer } from "./performer.js";
 import { Drum } from "./drum.js";
-import { Marks } from "./strike.js";
-import { Motion } from "./motion.js";
+import { MARK_TIME, Marks } from "./strike.js";
+import { Playback, SPEEDS } from "./playback.js";
+import { readScene } from "./scene.js";
+import { Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
 
@@ -17,30 +19,55 @@ const canvas = document.getElementById("stage"),
 const performers = new Map(),
     drums = new Map(),
     marks = new Marks(),
-    recorder = new Recorder(canvas);
+    sound = new Sound(),
+    recorder = new Recorder(canvas, sound);
 const PERFORMERS = 16, // as many as himc-viewer keeps
-    DRUMS = 32;
-const shown = { targets: true, trails: true, forces: true, marks: true, drums: true };
-const numbers = { fps: 60, script: 0, latency: null, render: 0 };
+    DRUMS = 32,
+    ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
+    LIFT = 0.08, // of the picture over the timeline, of the window's height
+    SECOND = 1000; // over which frames are counted (ms)
+const shown = { targets: false, trails: true, forces: true, marks: true, drums: true };
+const numbers = { fps: 0, script: 0, latency: null, render: 0 };
 const clock = () => performance.timeOrigin + performance.now(); // himc-viewer's clock too (ms)
 const latencies = [],
-    scripts = [];
-let exaggeration = 25,
-    motion = null,
-    live = false,
+    scripts = [],
+    frames = []; // when they were drawn (ms)
+let exaggeration = 8, // of a head's motion; chosen: seen from the stage, and no wilder than a film's
+    playback = null,
     waiting = [];
 
 const actions = {
     camera: name => view.preset(name) && panel.camera(name),
-    show: (what, yes) => (Object.hasOwn(shown, what) && (shown[what] = yes), panel.shown(shown)),
+    frameAll: () => actions.camera(view.name && view.name !== "eye" ? view.name : "stage"),
+    orbit: (x, y) => view.orbit(x, y),
+    show: (what, yes) => (
+        Object.hasOwn(shown, what) && (shown[what] = yes ?? !shown[what]), panel.shown(shown)
+    ),
     exaggerate: times => (
         (exaggeration = Math.min(1000, Math.max(1, times || 1))),
         panel.exaggeration(exaggeration)
     ),
     picture: () => recorder.picture(),
     film: () => attempt(() => recorder.toggleFilm()),
-    pause: () => motion && (motion.playing = !motion.playing),
-    seek: ms => motion && motion.seek(ms),
+    pause: () => playback && playback.play(!playback.playing),
+    seek: ms => playback && playback.seek(ms),
+    step: (by, strikes) => playback && playback.step(by, strikes),
+    loop: (a, b) => playback && playback.setLoop(a, b),
+    loopEnd: end => {
+        if (!playback) return;
+        const [from, to] = playback.span;
+        if (end) playback.setLoop(from, playback.at);
+        else playback.setLoop(playback.at, to > playback.at ? to : playback.length);
+    },
+    unloop: () => playback && (playback.loop = null),
+    speed: by => {
+        if (!playback) return;
+        const i = SPEEDS.findIndex(s => s >= playback.speed);
+        playback.setSpeed(SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, i + by))]);
+    },
+    setSpeed: speed => playback && playback.setSpeed(speed),
+    mute: () => (sound.setVolume(sound.volume ? 0 : 1), sound.wake() && playback?.resound()),
+    live: () => (playback && close(), (playback = null)),
 };
 const panel = new Panel(actions);
 
@@ -86,35 +113,54 @@ function drum(key, name) {
     return place(drums, DRUMS, id, () => new Drum(key, name, stage));
 }
 
-function strike(event, now) {
+// marks a strike; `time` is that of the marks: the playback's, or now
+function strike(event, time) {
     const d = drum(event.from, event.drum);
-    if (d) {
-        d.struck = now;
-        d.striker = event.from;
-        marks.add(d.tilted, event, now);
-    }
-    event.now = now;
-    panel.strike(event);
-    waiting.push(event);
+    if (!d) return;
+    d.striker = event.from;
+    marks.add(d.tilted, event, time);
 }
 
-const on = {
+const live = {
     pose(key, time, known, targets, body, target) {
-        live = live || !motion;
-        performer(key)?.receive(time, virtual || clock(), known, targets, body, target);
+        if (!playback)
+            performer(key)?.receive(time, virtual || clock(), known, targets, body, target);
     },
     drum(key, name, time, place, amplitude) {
-        drum(key, name)?.receive(virtual || clock(), place, amplitude);
+        if (!playback) drum(key, name)?.receive(virtual || clock(), place, amplitude);
     },
     event(event, time) {
         const now = virtual || clock();
-        if (event.event === "strike") strike({ ...event, sent: time }, now);
-        else if (event.event === "beat") panel.hearBeat(event.beat, now);
-        else if (event.event === "status") panel.hearStatus(event.from, event.values);
-        else if (event.event === "bridge") panel.hearBridge(event, now);
+        if (event.event === "bridge") panel.hearBridge(event, now);
         else if (event.event === "view") control(event.what, event.values);
+        else if (playback) return;
+        else if (event.event === "strike") {
+            strike(event, now);
+            const d = drum(event.from, event.drum);
+            if (d) d.struck = now;
+            Object.assign(event, { now, sent: time });
+            panel.strike(event);
+            waiting.push(event);
+        } else if (event.event === "beat") panel.hearBeat(event.beat, now);
+        else if (event.event === "status") panel.hearStatus(event.from, event.values);
     },
     connected: yes => panel.connected(yes),
+};
+
+// what a playback shows: `now` keeps its performer and its drums present
+const played = {
+    now: 0,
+    pose(pose, target) {
+        performer(playback.scene.name)?.show(this.now, pose, target);
+    },
+    drum(name, place, amplitude) {
+        drum(playback.scene.name, name)?.show(this.now, place, amplitude);
+    },
+    strike: (event, time) => strike(event, time),
+    jump() {
+        marks.clear();
+        for (const p of performers.values()) p.trails.forEach(trail => trail.clear());
+    },
 };
 
 // /viewer/camera front, /viewer/show trails 0, /viewer/exaggeration 80
@@ -137,7 +183,11 @@ function arrange(now) {
         p.group.rotation.z = -angle;
         p.group.position.set(radius - radius * Math.cos(angle), radius * Math.sin(angle), 0);
     });
-    const spread = n > 1 ? radius * Math.sin(Math.min(Math.PI / 2, ((n - 1) / 2) * step)) : 0;
+    const drumsReach = [...drums.values()]
+        .filter(d => d.group.visible)
+        .reduce((most, d) => Math.max(most, Math.abs(d.place[1]) + d.place[4]), 0);
+    const wide = n > 1 ? radius * Math.sin(Math.min(Math.PI / 2, ((n - 1) / 2) * step)) : 0,
+        spread = Math.max(wide, Math.round(20 * Math.max(0, drumsReach - ALONE)) / 20);
     stage.cover(0.35 * spread, spread + 1);
     if (spread !== view.spread) {
         view.spread = spread;
@@ -164,49 +214,60 @@ function updateDrums(now) {
     return excursion;
 }
 
-let before = clock(),
+// frames of the last second
+function countFrames(now) {
+    frames.push(now);
+    while (frames[0] < now - SECOND) frames.shift();
+    numbers.fps = frames.length > 1 ? (1000 * (frames.length - 1)) / (now - frames[0]) : 0;
+}
+
+let previous = clock(),
     written = 0,
     virtual = 0;
 function frame(_, now = clock(), draw = true) {
-    const dt = Math.min(200, now - before),
+    const dt = now - previous,
         begin = performance.now();
-    before = now;
-    if (motion && !live) motion.update(now, dt, on);
-    const first = arrange(now);
-    for (const p of performers.values()) p.update(now, view.camera, shown);
+    previous = now;
+    if (playback) {
+        if (virtual) playback.tick(dt);
+        else playback.advance(dt);
+        played.now = now;
+        playback.show(played, MARK_TIME);
+    }
+    const time = playback ? playback.at : now, // of marks and trails
+        first = arrange(now);
+    for (const p of performers.values()) p.update(now, time, view.camera, shown);
     const excursion = updateDrums(now);
     marks.update(
-        now,
+        time,
         shown,
         view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
     );
-    view.update(dt, first);
+    view.update(Math.min(200, dt), first);
     const drawn = performance.now();
     if (draw) stage.renderer.render(stage.scene, view.camera);
     recorder.drawn();
     const end = performance.now();
-    for (const strike of waiting.splice(0)) {
-        strike.drawn = clock();
-        latencies.push(strike.drawn - strike.sent);
+    for (const event of waiting.splice(0)) {
+        event.drawn = clock();
+        latencies.push(event.drawn - event.sent);
     }
     if (latencies.length > 200) latencies.splice(0, 100);
-    numbers.fps += 0.05 * (1000 / Math.max(1, dt) - numbers.fps);
+    countFrames(now);
     numbers.script += 0.05 * (drawn - begin - numbers.script);
     scripts.push(drawn - begin);
     if (scripts.length > 200) scripts.splice(0, 100);
     numbers.render += 0.05 * (end - drawn - numbers.render);
-    numbers.latency =
-        latencies.length && !motion
-            ? [...latencies].sort((a, b) => a - b)[latencies.length >> 1]
-            : null;
-    panel.draw(excursion, now);
+    numbers.latency = latencies.length
+        ? [...latencies].sort((a, b) => a - b)[latencies.length >> 1]
+        : null;
+    panel.draw(excursion, now, playback);
     if (now - written > 250) {
         written = now;
-        panel.write([...performers.values()], numbers, now);
+        panel.write([...performers.values()], numbers, now, playback, sound);
         panel.filming(recorder.filming);
-        panel.playing(live ? null : motion);
     }
-    stage.adapt(dt, view.camera);
+    stage.adapt(dt, view);
 }
 
 function next() {
@@ -220,51 +281,117 @@ function next() {
 // while frames are held: advances the playback by `ms` and draws if asked to; time is then the
 // playback's, not the clock's
 function step(ms, draw = true) {
-    virtual = (virtual || before) + ms;
+    virtual = (virtual || previous) + ms;
     frame(0, virtual, draw);
 }
 
-function play(text, name) {
-    attempt(() => {
-        motion = new Motion(text, name);
-        live = false;
-        drum(name, "kettle");
-    });
+// --- a scene
+
+// forgets the performer and the drums of the playback, or of the stream
+function close() {
+    sound.stop();
+    marks.clear();
+    for (const table of [performers, drums]) {
+        for (const one of table.values()) discard(one.group);
+        table.clear();
+    }
 }
 
-addEventListener("resize", () => (stage.resize(view.camera), view.name && view.preset(view.name)));
+async function play(bytes, name) {
+    const scene = await readScene(bytes, name);
+    close();
+    playback = new Playback(scene, sound);
+    panel.open(playback);
+    panel.loading(null);
+    view.lift = LIFT;
+    dispatchEvent(new Event("resize"));
+    const buffer = await sound
+        .load(scene.sounds, scene.head.sound)
+        .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
+    panel.timeline.heard(buffer);
+    if (playback?.scene === scene) playback.resound();
+}
+
+const tell = name => error => (panel.loading(null), panel.note(error.message || name));
+
+function drop(file) {
+    const capture = /\.(bvh|c3d|trc|txt|mid)$/i.test(file.name);
+    if (capture)
+        panel.note(
+            `${file.name}: make a scene of it with "himc render ${file.name} -o sound.wav --scene scene.himc", and drop scene.himc`,
+        );
+    else
+        file.arrayBuffer()
+            .then(buffer => play(new Uint8Array(buffer), file.name))
+            .catch(tell(file.name));
+}
+
+// the scene of --play, with progress; its bytes grow by what has come
+async function fetchScene(name) {
+    const answer = await fetch("/play.himc"),
+        size = Number(answer.headers.get("content-length")),
+        reader = answer.body.getReader(),
+        bytes = new Uint8Array(size);
+    for (let got = 0; ;) {
+        panel.loading(`loading ${name} … ${Math.round((100 * got) / size)} %`);
+        const { done, value } = await reader.read();
+        if (done) break;
+        bytes.set(value, got);
+        got += value.length;
+    }
+    await play(bytes, name);
+}
+
+addEventListener("resize", () => (stage.resize(view), view.name && view.preset(view.name)));
 addEventListener("dragover", e => e.preventDefault());
 addEventListener("drop", e => {
     e.preventDefault();
-    const file = e.dataTransfer.files[0];
-    if (file) file.text().then(text => play(text, file.name));
+    if (e.dataTransfer.files[0]) drop(e.dataTransfer.files[0]);
 });
+for (const gesture of ["pointerdown", "keydown"])
+    addEventListener(gesture, () => sound.wake() && playback?.resound(), true);
 
-stage.resize(view.camera);
+view.points = () => [
+    ...[...performers.values()]
+        .filter(p => p.group.visible)
+        .flatMap(p => p.points()),
+    ...[...drums.values()]
+        .filter(d => d.group.visible)
+        .map(d => d.head.getWorldPosition(new THREE.Vector3())),
+];
+stage.resize(view);
 panel.shown(shown);
 actions.camera("stage");
 actions.exaggerate(exaggeration);
-const stream = new Stream(on);
-fetch("/play.csv")
-    .then(answer => (answer.ok ? answer.text().then(text => play(text, "playback")) : null))
-    .catch(error => panel.note(`play.csv: ${error.message}`));
+
+// a page of `himc share` brings its scene; any other asks the program that serves it
+let stream = null;
+if (window.himcScene) play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
+else {
+    stream = new Stream(live);
+    fetch("/session.json")
+        .then(answer => answer.json())
+        .then(session => {
+            panel.session(session);
+            if (session.play) return fetchScene(session.play);
+        })
+        .catch(tell("himc-viewer"));
+}
 next();
 
 // For tests and pictures: joints and tips read back from the scene (m). `held` stops the frames,
 // because a software renderer is too slow to draw between them.
 function joints(key) {
     const p = key ? performers.get(key) : [...performers.values()].find(q => q.group.visible);
-    if (!p || !p.group.visible) return null;
-    return [
-        ...p.figure.bones.map(b => new THREE.Vector3().setFromMatrixPosition(b.matrixWorld)),
-        ...p.figure.sticks.map(s => s.tip.getWorldPosition(new THREE.Vector3())),
-    ].map(position => position.toArray());
+    return p && p.group.visible ? p.points().map(position => position.toArray()) : null;
 }
 window.viewer = {
     held: false,
     step,
     resume: () => ((window.viewer.held = false), (virtual = 0), next()),
     joints,
+    play,
+    readScene,
     numbers,
     latencies,
     scripts,
@@ -276,8 +403,9 @@ window.viewer = {
     actions,
     view,
     stage,
+    sound,
     recorder,
-    get motion() {
-        return motion;
+    get playback() {
+        return playback;
     },
 };

@@ -32,7 +32,7 @@ export class Performer {
         this.group = this.figure.group;
         this.group.visible = false;
         this.poses = [];
-        this.pose = new Float32Array(7 * segments.length);
+        this.pose = new Float64Array(7 * segments.length);
         this.target = new Float32Array(3 * HANDS.length);
         this.interval = 30; // between poses, a running mean (ms)
         this.lag = Infinity; // of the sender's clock behind ours, the least seen (ms)
@@ -70,6 +70,13 @@ export class Performer {
         this.heard = now;
     }
 
+    // shows this pose, of a playback
+    show(now, pose, target) {
+        ((this.heard = now), (this.poses.length = 0), (this.haveTargets = 3));
+        (this.pose.set(pose), this.target.set(target));
+        this.shown = true;
+    }
+
     present(now) {
         return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
     }
@@ -90,10 +97,11 @@ export class Performer {
         this.haveTargets = a.targets;
     }
 
-    update(now, camera, shown) {
-        this.group.visible = this.present(now) && this.poses.length > 0;
+    // `time` is that of the trails: of a playback, or now (ms)
+    update(now, time, camera, shown) {
+        this.group.visible = this.present(now) && (this.shown || this.poses.length > 0);
         if (!this.group.visible) return;
-        this.interpolateAt(now);
+        if (this.poses.length) this.interpolateAt(now);
         this.figure.set(this.pose);
         this.targets.forEach((ball, hand) => {
             ball.visible = shown.targets && !!((this.haveTargets >> hand) & 1);
@@ -112,8 +120,17 @@ export class Performer {
             const p = new THREE.Vector3().setFromMatrixPosition(
                 this.figure.sticks[hand].tip.matrixWorld,
             );
-            if (shown.trails) trail.add(p, now, camera, this.group);
+            if (shown.trails) trail.add(p, time, camera, this.group);
         });
+    }
+
+    // its joints and tips in the scene (m)
+    points() {
+        const { bones, sticks } = this.figure;
+        return [
+            ...bones.map(b => new THREE.Vector3().setFromMatrixPosition(b.matrixWorld)),
+            ...sticks.map(s => s.tip.getWorldPosition(new THREE.Vector3())),
+        ];
     }
 
     eye() {
@@ -150,8 +167,10 @@ function stool(envMap) {
     ];
     const cushion = new THREE.Mesh(
         new THREE.LatheBufferGeometry(
-            profile.map(p => new THREE.Vector2(...p)).reverse(),
-            40,
+            new THREE.SplineCurve(profile.map(p => new THREE.Vector2(...p)).reverse()).getPoints(
+                28,
+            ),
+            64,
         ).rotateX(Math.PI / 2),
         leather,
     );

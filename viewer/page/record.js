@@ -9,8 +9,9 @@ function save(blob, suffix) {
 }
 
 export class Recorder {
-    constructor(canvas) {
-        this.canvas = canvas;
+    // `sound` goes into the film, if it is on
+    constructor(canvas, sound) {
+        ((this.canvas = canvas), (this.sound = sound));
         this.filmed = 0; // of the film so far (bytes)
     }
 
@@ -34,11 +35,13 @@ export class Recorder {
             this.film.stop();
             return;
         }
-        const types = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+        const types = ["video/webm;codecs=vp9,opus", "video/webm;codecs=vp8,opus", "video/webm", "video/mp4"];
         const type = types.find(t => window.MediaRecorder && MediaRecorder.isTypeSupported(t)),
             parts = [];
         if (!type) throw new Error("this browser cannot record films");
-        this.film = new MediaRecorder(this.canvas.captureStream(60), {
+        const stream = this.canvas.captureStream(60);
+        this.sound.tracks().forEach(track => stream.addTrack(track));
+        this.film = new MediaRecorder(stream, {
             mimeType: type,
             videoBitsPerSecond: 12e6,
         });

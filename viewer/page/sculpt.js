@@ -225,16 +225,28 @@ function skinWeights(part, near, x, y, z) {
     };
 }
 
-// A skinned geometry from a part and the rest matrices of the bones. Part: solids; soft, the width
+// One skinned geometry from parts and the rest matrices of the bones. Part: solids; soft, the width
 // of their joints (m); blend, of the change from bone to bone (m); cell, of the mesh (m); cut,
 // solids taken away; shape, a function that changes the distance.
-export function sculpt(part, rest) {
+export function sculpt(parts, rest) {
+    const all = { position: [], index: [], normal: [], bones: [], weights: [] };
+    for (const part of parts) carve(part, rest, all);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(all.index);
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(all.position, 3));
+    geometry.setAttribute("normal", new THREE.Float32BufferAttribute(all.normal, 3));
+    geometry.setAttribute("skinIndex", new THREE.Uint16BufferAttribute(all.bones, 4));
+    geometry.setAttribute("skinWeight", new THREE.Float32BufferAttribute(all.weights, 4));
+    return geometry;
+}
+
+// adds a part's surface to `all`
+function carve(part, rest, all) {
     const { distance, near } = field(part, rest);
     const { position, index } = mesh(distance, bounds(part, rest), part.cell);
-    const normal = [],
-        bones = [],
-        weights = [],
+    const first = all.position.length / 3,
         e = part.cell * 0.5;
+    for (const i of index) all.index.push(first + i);
     for (let i = 0; i < position.length; i += 3) {
         const [x, y, z] = position.slice(i, i + 3);
         const g = [
@@ -243,16 +255,10 @@ export function sculpt(part, rest) {
                 distance(x, y, z + e) - distance(x, y, z - e),
             ],
             l = Math.hypot(...g) || 1;
-        normal.push(g[0] / l, g[1] / l, g[2] / l);
+        all.position.push(x, y, z);
+        all.normal.push(g[0] / l, g[1] / l, g[2] / l);
         const w = skinWeights(part, near, x, y, z);
-        bones.push(...w.bones);
-        weights.push(...w.weights);
+        all.bones.push(...w.bones);
+        all.weights.push(...w.weights);
     }
-    const geometry = new THREE.BufferGeometry();
-    geometry.setIndex(index);
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(position, 3));
-    geometry.setAttribute("normal", new THREE.Float32BufferAttribute(normal, 3));
-    geometry.setAttribute("skinIndex", new THREE.Uint16BufferAttribute(bones, 4));
-    geometry.setAttribute("skinWeight", new THREE.Float32BufferAttribute(weights, 4));
-    return geometry;
 }

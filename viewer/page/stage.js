@@ -121,7 +121,14 @@ function curtain() {
         p.setXYZ(i, 1 + r * Math.cos(t), r * Math.sin(t), z);
         const slope = (fold(t + 0.004) - fold(t - 0.004)) / 0.008 / 110,
             lit = 0.5 + 0.42 * slope - 0.13 * fold(t);
-        const glow = Math.exp(-((z - 0.7) ** 2) / 3.2) * (0.75 + 0.25 * Math.cos(2 * t));
+        // dark at the hem, where the floor ends
+        const hem = Math.min(1, Math.max(0, (z - 0.25) / 1.4)),
+            glow =
+                hem *
+                hem *
+                (3 - 2 * hem) *
+                Math.exp(-((z - 1.1) ** 2) / 3.6) *
+                (0.75 + 0.25 * Math.cos(2 * t));
         color.set(
             [0.105, 0.017, 0.02].map(c => c * lit * glow),
             3 * i,
@@ -156,7 +163,7 @@ export class Stage {
         this.scene = new THREE.Scene();
         this.environment = environment(renderer);
         this.scene.background = rgb("#0a0707");
-        this.scene.fog = new THREE.Fog(rgb("#0a0707"), 7, 20);
+        this.scene.fog = new THREE.Fog(rgb("#0a0707"), 4.5, 10.5);
         this.lights();
         this.floor();
         this.scene.add((this.curtain = curtain()));
@@ -165,7 +172,7 @@ export class Stage {
 
     lights() {
         this.key = spot("#ffe4c4", 50, [3.2, -3.0, 4.6], [0.3, 0, 0.7], 0.5, 2048);
-        const rim = spot("#9fbcff", 20, [-3.2, 2.8, 3.4], [0.3, 0, 0.9], 0.55);
+        const rim = spot("#c3d2ff", 14, [-3.2, 2.8, 3.4], [0.3, 0, 0.9], 0.55);
         const side = spot("#ffb27a", 9, [2.2, 4.0, 2.4], [0.2, 0, 0.8], 0.6);
         this.set = [this.key, rim, side];
         const sky = new THREE.HemisphereLight(rgb("#aab8d8"), rgb("#3a2a20"), 0.32);
@@ -185,7 +192,7 @@ export class Stage {
         this.curtain.scale.set(scale ** 0.6, scale ** 0.6, scale ** 0.3);
         this.key.angle = Math.min(0.75, 0.5 + 0.05 * scale);
         this.key.shadow.camera.far = 12 * scale;
-        ((this.scene.fog.near = 7 * scale), (this.scene.fog.far = 20 * scale));
+        ((this.scene.fog.near = 4.5 * scale), (this.scene.fog.far = 10.5 * scale));
         this.set.slice(1).forEach(l => (l.angle = Math.min(1.2, 0.55 * scale)));
     }
 
@@ -202,24 +209,22 @@ export class Stage {
         this.scene.add(floor);
     }
 
-    resize(camera) {
+    resize(view) {
         const w = window.innerWidth,
             h = window.innerHeight;
         this.renderer.setPixelRatio(this.quality);
         this.renderer.setSize(w, h, false);
-        camera.aspect = w / h;
-        camera.updateProjectionMatrix();
+        view.resize();
     }
 
     // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time
     // (ms)
-    adapt(frame, camera) {
-        this.late =
-            frame > LATE_FRAME ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
+    adapt(frame, view) {
+        this.late = frame > LATE_FRAME ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
         if (this.late < LATE_FRAMES || this.step === 4) return;
         this.late = 0;
         this.simplify((this.step || 0) + 1);
-        this.resize(camera);
+        this.resize(view);
     }
 
     // step 0: full quality; 1: no more pixels than the screen's; 2: smaller shadow map; 3: one

@@ -3,8 +3,8 @@
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 
-const MARK_TIME = 1100, // (ms)
-    ARROW_LENGTH = 0.0035, // (m/N)
+export const MARK_TIME = 1100; // (ms)
+const ARROW_LENGTH = 0.0035, // (m/N)
     STRONGEST = 300; // no arrow grows beyond this force (N)
 
 function glow() {
@@ -143,6 +143,10 @@ export class Marks {
         this.shown++;
     }
 
+    clear() {
+        for (const mark of this.pool) mark.group.visible = false;
+    }
+
     update(now, shown, near) {
         for (const mark of this.pool) mark.update(now, shown, near);
     }
@@ -189,6 +193,11 @@ export class Trail {
             (this.side = new THREE.Vector3()),
             (this.inverse = new THREE.Matrix4()));
         this.eye = new THREE.Vector3();
+    }
+
+    clear() {
+        this.points.length = 0;
+        this.geometry.setDrawRange(0, 0);
     }
 
     add(p, now, camera, group) {

@@ -51,6 +51,7 @@
 /// samples the oscillators at the top that have fallen below 1e-15 m/s are set to rest and skipped
 /// until the next force: high modes die first, and denormal numbers never arise.
 #include "bank/bank.h"
+#include "system/aligned.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -67,7 +68,6 @@
 #define QUIET 1e-15        // (m/s) of p and s; chosen: 300 dB below a stroke
 #define TIDY_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
 #define HIGHEST 0.49       // of the sample rate; chosen: just below half, where aliasing begins
-#define ALIGNMENT 64       // (bytes) a cache line
 #define SWING_TIME 256     // samples between two searches for the swing; chosen: they cost nothing
 #define FILM_SWING 2.0     // growth of a swing by what the film gives back; the comment there
 
@@ -130,10 +130,10 @@ struct himc_bank {
     double swing;   // of himc_bank_swing, found ...
     int swing_left; // ... so that it holds for this number of samples
     film film;
-    double *omega, *decay, *mass, *damped;         // w, d, m, w_d
-    double *q_per_p;                               // 1/w_d
-    double *table, *twice, *fall;                  // of himc_bank_waves
-    _Alignas(ALIGNMENT) double a[BLOCK], b[BLOCK]; // of himc_bank_waves
+    double *omega, *decay, *mass, *damped;              // w, d, m, w_d
+    double *q_per_p;                                    // 1/w_d
+    double *table, *twice, *fall;                       // of himc_bank_waves
+    _Alignas(HIMC_ALIGNMENT) double a[BLOCK], b[BLOCK]; // of himc_bank_waves
 };
 
 #define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + HIMC_BANK_TABLE)
@@ -181,11 +181,11 @@ himc_bank *himc_bank_new(int capacity, himc_error *error)
 {
     capacity = (int)round_up((size_t)capacity, LANES);
     size_t length = (size_t)capacity, bytes = ARRAYS * length * sizeof(double);
-    himc_bank *bank = aligned_alloc(ALIGNMENT, round_up(sizeof *bank, ALIGNMENT));
-    double *memory = aligned_alloc(ALIGNMENT, round_up(bytes, ALIGNMENT));
+    himc_bank *bank = himc_aligned_new(sizeof *bank);
+    double *memory = himc_aligned_new(bytes);
     if (!bank || !memory) {
-        free(bank);
-        free(memory);
+        himc_aligned_free(bank);
+        himc_aligned_free(memory);
         himc_error_set(error, "modes: no memory for %d modes", capacity);
         return NULL;
     }
@@ -205,8 +205,8 @@ void himc_bank_free(himc_bank *bank)
 {
     if (!bank)
         return;
-    free(bank->memory);
-    free(bank);
+    himc_aligned_free(bank->memory);
+    himc_aligned_free(bank);
 }
 
 void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel)

@@ -5,18 +5,14 @@
 /// and the opened descriptor is asked for its kind, not the name. Invariant: a file is cut only
 /// after it is known to be regular.
 ///
-/// A name from the network is resolved with all its links, and the result must lie in a folder.
-/// Then it is opened from the folder down, part by part, and no link is followed any more: if one
-/// has been put there in between, the file is refused. Invariant: the opened file lies inside.
-#define _GNU_SOURCE // O_PATH
+/// A name from the network must stand for a file in a folder (himc_system_open_inside).
+#define _POSIX_C_SOURCE 200809L // descriptors
 #include "base/file.h"
+#include "system/files.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 // what stands under a name instead of a regular file; NULL for a regular one
@@ -41,7 +37,8 @@ static int open_regular(const char *path, int flags, himc_error *error)
 {
     const char *fault = flags & O_CREAT ? "cannot be written" : "cannot be read";
     struct stat status;
-    int file = open(path, flags | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666), why = errno;
+    int file = himc_system_open(path, flags | O_BINARY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    int why = errno;
     bool known = file < 0 ? stat(path, &status) == 0 : fstat(file, &status) == 0;
     const char *kind = known ? other_kind(&status) : NULL;
     if (file >= 0 && known && (!kind || (flags & O_CREAT && is_null_device(&status))))
@@ -70,42 +67,11 @@ FILE *himc_file_read(const char *path, himc_error *error)
     return stream_of(path, open_regular(path, O_RDONLY, error), "rb", error);
 }
 
-// the part of a real path below the folder, with its first slash; NULL if it is not inside
-static const char *below(const char *real, const char *folder)
-{
-    size_t length = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
-    bool inside = strncmp(real, folder, length) == 0 && real[length] == '/';
-    return inside ? real + length : NULL;
-}
-
-// opens "/a/b/c" from the folder down, without following a link
-static int descend(const char *folder, const char *path)
-{
-    char part[NAME_MAX + 1];
-    int at = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
-    while (at >= 0 && *path) {
-        size_t n = strcspn(++path, "/");
-        snprintf(part, sizeof part, "%.*s", (int)n, path);
-        path += n;
-        int how = *path ? O_PATH | O_DIRECTORY : O_RDONLY | O_NONBLOCK | O_NOCTTY;
-        int next = openat(at, part, how | O_NOFOLLOW | O_CLOEXEC);
-        close(at);
-        at = next;
-    }
-    return at;
-}
-
-// opens a regular file inside the folder, links followed as long as they stay inside. -1 with one
-// line, the same whatever stands there, so that it tells nothing about the disk
+// -1 with one line, the same whatever stands there, so that it tells nothing about the disk
 static int open_inside(const char *folder, const char *name, himc_error *error)
 {
-    char wanted[PATH_MAX];
     struct stat status;
-    int length = snprintf(wanted, sizeof wanted, "%s/%s", folder, name);
-    char *real = (size_t)length < sizeof wanted ? realpath(wanted, NULL) : NULL;
-    const char *path = real ? below(real, folder) : NULL;
-    int file = path ? descend(folder, path) : -1;
-    free(real);
+    int file = himc_system_open_inside(folder, name);
     if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode))
         return file;
     if (file >= 0)

@@ -22,38 +22,33 @@ static himc_vec3 outwards(const himc_head_frame *frame)
     return himc_vec3_make(frame->center.x / distance, frame->center.y / distance, 0);
 }
 
-/// The axes of a head's frame.
-typedef struct head_axes {
-    himc_vec3 x, y, normal;
-} head_axes;
-
-static head_axes axes_of(const himc_head_frame *frame)
+himc_head_axes himc_head_axes_of(const himc_head_frame *frame)
 {
     himc_vec3 e = outwards(frame);
     bool level = frame->tilt == 0; // most are
     double c = level ? 1 : cos(frame->tilt), s = level ? 0 : sin(frame->tilt);
-    return (head_axes){{c * e.x, c * e.y, s}, {-e.y, e.x, 0}, {-s * e.x, -s * e.y, c}};
+    return (himc_head_axes){{c * e.x, c * e.y, s}, {-e.y, e.x, 0}, {-s * e.x, -s * e.y, c}};
 }
 
 himc_vec3 himc_head_frame_away(const himc_head_frame *frame)
 {
-    return axes_of(frame).x;
+    return himc_head_axes_of(frame).x;
 }
 
 himc_vec3 himc_head_frame_normal(const himc_head_frame *frame)
 {
-    return axes_of(frame).normal;
+    return himc_head_axes_of(frame).normal;
 }
 
 himc_vec3 himc_head_frame_to_world(const himc_head_frame *frame, double x, double y)
 {
-    head_axes axes = axes_of(frame);
+    himc_head_axes axes = himc_head_axes_of(frame);
     return himc_vec3_madd(himc_vec3_madd(frame->center, x, axes.x), y, axes.y);
 }
 
 himc_vec3 himc_head_frame_from_world(const himc_head_frame *frame, himc_vec3 point)
 {
-    head_axes axes = axes_of(frame);
+    himc_head_axes axes = himc_head_axes_of(frame);
     himc_vec3 d = himc_vec3_sub(point, frame->center);
     return himc_vec3_make(himc_vec3_dot(d, axes.x), himc_vec3_dot(d, axes.y),
                           himc_vec3_dot(d, axes.normal));

@@ -7,6 +7,13 @@
 
 /// True if both are in the same place, of one size.
 HIMC_RT bool himc_head_frame_equal(const himc_head_frame *a, const himc_head_frame *b);
+/// The axes of a head's frame.
+typedef struct himc_head_axes {
+    himc_vec3 x, y, normal;
+} himc_head_axes;
+
+HIMC_RT himc_head_axes himc_head_axes_of(const himc_head_frame *frame);
+
 /// The head's x axis: unit vector in its plane, away from the performer at the world's origin.
 HIMC_RT himc_vec3 himc_head_frame_away(const himc_head_frame *frame);
 /// The head's unit normal, upwards.

@@ -35,6 +35,8 @@ typedef struct himc_runner {
     /// carries it out `delay` samples from now; false with the reason
     bool (*run)(void *receiver, const himc_command *command, int delay, himc_error *error);
     himc_job *(*job)(void *receiver, const himc_command *command, himc_error *error);
+    /// lines that `dump` has told, borrowed, as a job
+    himc_job *(*state_job)(void *receiver, const char *state, himc_error *error);
 } himc_runner;
 
 /// Carries out a job at once and frees it. NULL: false; whoever made none has said why.

@@ -11,8 +11,6 @@
 /// each step.
 #include "body/character.h"
 
-#include "body/tree.h"
-
 #include <ode/ode.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +35,7 @@ struct himc_character {
     himc_engine engine;
     segment_states state;
     himc_vec3 push[HIMC_SEGMENTS]; // in the next step (N)
+    himc_body_work *work;          // borrowed, NULL when nobody asks
     himc_articulation articulation;
     bool articulated;       // the articulation belongs to this state
     bool given;             // ODE's bodies have this state
@@ -163,10 +162,31 @@ static void changed(himc_character *c)
     c->articulated = c->given = false;
 }
 
+double himc_character_kinetic(const himc_character *c)
+{
+    return himc_segments_kinetic(&c->skeleton, &c->state);
+}
+
+double himc_character_potential(const himc_character *c)
+{
+    return himc_segments_potential(&c->skeleton, &c->state);
+}
+
+static double energy(const himc_character *c)
+{
+    return himc_character_kinetic(c) + himc_character_potential(c);
+}
+
+void himc_character_account(himc_character *c, himc_body_work *work)
+{
+    c->work = work;
+}
+
 void himc_character_place(himc_character *c, const himc_body_state *state)
 {
     himc_body_state *s = &c->state.joints;
     himc_vec3 v[HIMC_SEGMENTS];
+    double before = c->work ? energy(c) : 0;
     *s = *state;
     s->orientation[0] = himc_quat_identity();
     s->spin[0] = himc_vec3_make(0, 0, 0);
@@ -179,6 +199,8 @@ void himc_character_place(himc_character *c, const himc_body_state *state)
         c->state.position[i] = himc_vec3_add(s->origin[i], center);
         c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
     }
+    if (c->work)
+        c->work->placed += energy(c) - before;
     memset(c->push, 0, sizeof c->push);
     c->still = 0;
     changed(c);
@@ -317,6 +339,25 @@ static void step_tree(himc_character *c, const segment_forces *f, double h)
         note_legs(c, f);
 }
 
+static void step_engine(himc_character *c, const segment_forces *f, double h)
+{
+    if (c->engine == HIMC_ENGINE_ODE)
+        step_ode(c, f, h);
+    else
+        step_tree(c, f, h);
+}
+
+static void step_accounted(himc_character *c, const himc_step_forces *sources,
+                           const segment_forces *f, double h)
+{
+    segment_states before = c->state;
+    himc_character_articulation(c);
+    if (c->engine == HIMC_ENGINE_ODE)
+        himc_articulate_legs(&c->skeleton, &c->state.joints, &c->articulation);
+    step_engine(c, f, h);
+    himc_body_work_add(c->work, &c->skeleton, &c->articulation, sources, &before, &c->state, h);
+}
+
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
                          const himc_vec3 tip_force[HIMC_HANDS], double h)
 {
@@ -324,10 +365,10 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
     fill_forces(c, torque, tip_force, &forces);
     if (!can_step(&c->state, &forces))
         return false;
-    if (c->engine == HIMC_ENGINE_ODE)
-        step_ode(c, &forces, h);
+    if (c->work)
+        step_accounted(c, &(himc_step_forces){torque, tip_force, c->push}, &forces, h);
     else
-        step_tree(c, &forces, h);
+        step_engine(c, &forces, h);
     memset(c->push, 0, sizeof c->push);
     changed(c);
     c->given = c->engine == HIMC_ENGINE_ODE;

@@ -4,7 +4,7 @@
 #ifndef HIMC_CHARACTER_H
 #define HIMC_CHARACTER_H
 
-#include "himc/body.h"
+#include "body/energy.h"
 
 typedef struct himc_character himc_character;
 
@@ -31,6 +31,12 @@ HIMC_RT void himc_character_place(himc_character *character, const himc_body_sta
 
 /// Reads the body's state: the kinematic layer from the dynamic layer.
 HIMC_RT void himc_character_observe(const himc_character *character, himc_body_state *state);
+
+/// Adds up the work on the body in `work` from now on; NULL: no longer.
+HIMC_RT void himc_character_account(himc_character *character, himc_body_work *work);
+/// Kinetic and potential energy of all segments (J).
+HIMC_RT double himc_character_kinetic(const himc_character *character);
+HIMC_RT double himc_character_potential(const himc_character *character);
 
 /// The articulated inertias at the present state, without the legs: computed at most once a step,
 /// and valid until the next one.

@@ -33,6 +33,27 @@ HIMC_RT void himc_articulation_solve(const himc_skeleton *skeleton,
                                      tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS],
                                      himc_vec3 acceleration[HIMC_SEGMENTS]);
 
+/// Centre of mass of a segment (m).
+static inline himc_vec3 himc_segment_center(const himc_skeleton *skeleton,
+                                            const himc_body_state *state, int segment)
+{
+    return himc_vec3_add(
+        state->origin[segment],
+        himc_mat3_apply(&state->rotation[segment], skeleton->segment[segment].center));
+}
+
+/// Adds a force (N) on a segment at the point `at` to the joints' torques (N m) as the torques that
+/// act as it does: those of its segment and of all up to the pelvis.
+HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state *state,
+                            int segment, himc_vec3 at, himc_vec3 force,
+                            himc_vec3 torque[HIMC_JOINTS]);
+
+/// himc_inverse_dynamics of a moving body, of segments `begin` .. `end` - 1: 1 .. HIMC_LEGS - 1, the
+/// legs, or all. Only their joints' torques are written.
+HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
+                                      const himc_vec3 *relative, int begin, int end,
+                                      himc_vec3 torque[HIMC_JOINTS]);
+
 /// Acceleration of a drumstick tip (m/s^2) under the joints' relative accelerations (rad/s^2)
 /// (HIMC_JOINTS; NULL for zero).
 HIMC_RT himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *state,

@@ -19,11 +19,12 @@ static inline himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_ve
 }
 
 static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
-                     const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
+                     const himc_vec3 *relative, const himc_vec3 *spin, int begin, int end,
+                     motion m[HIMC_SEGMENTS])
 {
     // gravity acts like an upward acceleration of the pelvis
     m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = begin; i < end; i++) {
         int p = skeleton->segment[i].parent;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
         m[i].angular = relative ? himc_vec3_add(m[p].angular, relative[i - 1]) : m[p].angular;
@@ -31,15 +32,14 @@ static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
     }
 }
 
-void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
-                           const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
+static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
+                         const himc_vec3 *relative, const himc_vec3 *spin, int begin, int end,
+                         himc_vec3 torque[HIMC_JOINTS])
 {
-    static const himc_vec3 no_spin[HIMC_SEGMENTS];
-    const himc_vec3 *spin = still ? no_spin : s->spin;
     motion m[HIMC_SEGMENTS];
     himc_vec3 force[HIMC_SEGMENTS] = {{0, 0, 0}}, moment[HIMC_SEGMENTS] = {{0, 0, 0}};
-    outwards(skeleton, s, relative, spin, m);
-    for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
+    outwards(skeleton, s, relative, spin, begin, end, m);
+    for (int i = end - 1; i >= begin; i--) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 c = himc_mat3_apply(&s->rotation[i], segment->center);
         himc_vec3 a = add_centripetal(m[i].linear, m[i].angular, spin[i], c);
@@ -56,6 +56,28 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
         moment[segment->parent] = himc_vec3_add(
             moment[segment->parent], himc_vec3_add(moment[i], himc_vec3_cross(r, force[i])));
     }
+}
+
+void himc_add_force(const himc_skeleton *skeleton, const himc_body_state *s, int segment,
+                    himc_vec3 at, himc_vec3 force, himc_vec3 torque[HIMC_JOINTS])
+{
+    for (int i = segment; i > 0; i = skeleton->segment[i].parent)
+        torque[i - 1] =
+            himc_vec3_add(torque[i - 1], himc_vec3_cross(himc_vec3_sub(at, s->origin[i]), force));
+}
+
+void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
+                           const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
+{
+    static const himc_vec3 no_spin[HIMC_SEGMENTS];
+    find_torques(skeleton, s, relative, still ? no_spin : s->spin, 1, HIMC_SEGMENTS, torque);
+}
+
+void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,
+                              const himc_vec3 *relative, int begin, int end,
+                              himc_vec3 torque[HIMC_JOINTS])
+{
+    find_torques(skeleton, s, relative, s->spin, begin, end, torque);
 }
 
 himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,

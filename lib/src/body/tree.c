@@ -17,8 +17,7 @@
 /// Then v+ = v + h a, x+ = x + h v+, and q+ = q + h / 2 w+ q, made a unit quaternion.
 #include "body/tree.h"
 
-// moment of the gyroscopic term (world frame, N m)
-static himc_vec3 gyroscopic(himc_vec3 i, const himc_mat3 *rotation, himc_vec3 spin, double h)
+himc_vec3 himc_gyroscopic_moment(himc_vec3 i, const himc_mat3 *rotation, himc_vec3 spin, double h)
 {
     himc_vec3 w = himc_mat3_apply_transposed(rotation, spin);
     himc_vec3 l = {i.x * w.x, i.y * w.y, i.z * w.z};
@@ -57,7 +56,7 @@ static void fill_loads(const himc_skeleton *skeleton, const himc_articulation *a
     for (int i = 1; i < art->end; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 torque =
-            gyroscopic(segment->inertia, &s->joints.rotation[i], s->joints.spin[i], h);
+            himc_gyroscopic_moment(segment->inertia, &s->joints.rotation[i], s->joints.spin[i], h);
         torque = himc_vec3_add(torque, f->torque[i]);
         velocity[i] = joint_velocity(art, s, i);
         load[i].force = himc_vec3_scale(f->force[i], -1);

@@ -18,6 +18,11 @@ typedef struct segment_forces {
     himc_vec3 torque[HIMC_SEGMENTS]; ///< about the centre of mass (N m)
 } segment_forces;
 
+/// Moment of the implicit gyroscopic term of a segment (world frame, N m): of its inertia about its
+/// own axes, rotation and spin, in a step of `h` seconds.
+HIMC_RT himc_vec3 himc_gyroscopic_moment(himc_vec3 inertia, const himc_mat3 *rotation,
+                                         himc_vec3 spin, double h);
+
 /// One step of `h` seconds of the segments of the articulation, which belongs to this state. `erp`
 /// is the share of a joint's gap that a step closes.
 HIMC_RT void himc_tree_step(const himc_skeleton *skeleton, const himc_articulation *articulation,

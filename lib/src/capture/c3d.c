@@ -231,7 +231,8 @@ static bool read_unit(const c3d *r)
     char text[44];
     if (!himc_c3d_string(himc_c3d_find(&r->parameters, "POINT", "UNITS"), 0, &at, &length))
         return true;
-    himc_span span = himc_span_trim((himc_span){at, length});
+    const char *nul = memchr(at, 0, length); // some fill with it
+    himc_span span = himc_span_trim((himc_span){at, nul ? (size_t)(nul - at) : length});
     r->take->file_unit = himc_take_unit(himc_span_text(span, text));
     return span.length == 0 || r->take->file_unit > 0 ||
            himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", allowed mm, cm, m, in or ft",
@@ -323,6 +324,75 @@ static bool read_events(c3d *r)
     return true;
 }
 
+// "EMG1 (V)" of ANALOG:LABELS and UNITS
+static void name_channel(const c3d *r, int channel, char name[TAKE_NAME])
+{
+    himc_span label = {"", 0}, unit = {"", 0};
+    char a[44], b[44];
+    himc_c3d_string(himc_c3d_find(&r->parameters, "ANALOG", "LABELS"), channel, &label.at,
+                    &label.length);
+    himc_c3d_string(himc_c3d_find(&r->parameters, "ANALOG", "UNITS"), channel, &unit.at,
+                    &unit.length);
+    label = himc_span_trim(label);
+    unit = himc_span_trim(unit);
+    himc_span_text(label, a);
+    himc_span_text(unit, b);
+    if (label.length == 0)
+        snprintf(a, sizeof a, "channel %d", channel + 1);
+    snprintf(name, TAKE_NAME, "%s%s%.15s%s", a, unit.length ? " (" : "", b, unit.length ? ")" : "");
+}
+
+static double analog_value(const c3d *r, const unsigned char *at, bool is_unsigned)
+{
+    if (r->is_float)
+        return himc_c3d_real(r->parameters.processor, at);
+    return is_unsigned ? (double)himc_c3d_word(r->parameters.processor, at)
+                       : (double)himc_c3d_integer(r->parameters.processor, at);
+}
+
+static bool unsigned_samples(const c3d *r)
+{
+    himc_span format = {"", 0};
+    himc_c3d_string(himc_c3d_find(&r->parameters, "ANALOG", "FORMAT"), 0, &format.at,
+                    &format.length);
+    return himc_span_is(himc_span_trim(format), "unsigned");
+}
+
+// The analog samples behind the points of each frame: (raw - OFFSET) SCALE GEN_SCALE. Their counts
+// were compared with the length of the file.
+static bool read_analog(c3d *r)
+{
+    himc_take *take = r->take;
+    int channels = (int)parameter(r, "ANALOG", "USED", 0, 0);
+    if (r->analog == 0 || channels < 1 || r->analog % channels != 0)
+        return true;
+    int each = r->analog / channels;
+    take->analog_names = calloc((size_t)channels, sizeof *take->analog_names);
+    take->analog = calloc((size_t)take->frames * (size_t)r->analog, sizeof *take->analog);
+    if (!take->analog_names || !take->analog)
+        return himc_error_set(r->error, "%s: no memory for analog channels", take->file);
+    take->analog_channels = channels;
+    take->analog_samples = take->frames * each;
+    take->analog_rate = take->rate * each;
+    size_t width = r->is_float ? 4 : 2;
+    bool is_unsigned = unsigned_samples(r);
+    double general = parameter(r, "ANALOG", "GEN_SCALE", 0, 1);
+    for (int channel = 0; channel < channels; channel++) {
+        double offset = parameter(r, "ANALOG", "OFFSET", channel, 0);
+        double scale = general * parameter(r, "ANALOG", "SCALE", channel, 1);
+        name_channel(r, channel, take->analog_names[channel]);
+        for (int i = 0; i < take->analog_samples; i++) {
+            size_t frame = (size_t)(i / each), sample = (size_t)(i % each);
+            const unsigned char *at =
+                r->bytes + r->data + frame * r->stride +
+                width * (4 * (size_t)r->points + sample * (size_t)channels + (size_t)channel);
+            take->analog[(size_t)i * (size_t)channels + (size_t)channel] =
+                (analog_value(r, at, is_unsigned) - offset) * scale;
+        }
+    }
+    return true;
+}
+
 static bool read_all(c3d *r)
 {
     int frames = 0, points = 0;
@@ -342,7 +412,7 @@ static bool read_all(c3d *r)
     r->take->file_right = read_axis(r, "X_SCREEN");
     name_points(r);
     read_points(r);
-    return read_events(r);
+    return read_events(r) && read_analog(r);
 }
 
 bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *error)

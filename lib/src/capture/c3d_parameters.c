@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define C3D_BLOCK 512 // bytes, by the format
+
 unsigned himc_c3d_word(c3d_processor processor, const unsigned char *at)
 {
     return processor == C3D_MIPS ? (unsigned)(at[0] << 8 | at[1]) : (unsigned)(at[1] << 8 | at[0]);
@@ -123,8 +125,18 @@ static bool read_value(c3d_parameter *q, const unsigned char *at, const unsigned
     return true;
 }
 
+// true if the next record, at `next`, is outside the section and not where this one ends: files of
+// the format's own test suite have such remains of earlier records behind their last
+static bool is_remains(const c3d_parameter *q, const unsigned char *next,
+                       const unsigned char *section_end, const unsigned char *end)
+{
+    const unsigned char *text = q->data + (size_t)q->count * (size_t)abs(q->type);
+    return next > section_end && !(text < end && next == text + 1 + *text);
+}
+
 // reads the record at *at and moves *at to the next, to NULL after the last
-static bool read_record(c3d_parameters *p, const unsigned char **at, const unsigned char *end,
+static bool read_record(c3d_parameters *p, const unsigned char **at,
+                        const unsigned char *section_end, const unsigned char *end,
                         himc_error *error)
 {
     if (end - *at < 2)
@@ -150,7 +162,8 @@ static bool read_record(c3d_parameters *p, const unsigned char **at, const unsig
     if (distance != 0 && (distance < 2 || distance >= (size_t)(end - link)))
         return himc_error_set(
             error, "the record after parameter %.23s is beyond the end of the file", q.name);
-    *at = distance ? link + distance : NULL;
+    bool last = distance == 0 || (group > 0 && is_remains(&q, link + distance, section_end, end));
+    *at = last ? NULL : link + distance;
     return true;
 }
 
@@ -166,9 +179,11 @@ bool himc_c3d_parameters_read(c3d_parameters *p, const unsigned char *bytes, siz
         return himc_error_set(error, "processor is %d, allowed 84 (Intel), 85 (DEC), 86 (MIPS)",
                               processor);
     p->processor = (c3d_processor)processor;
+    size_t section = offset + (size_t)C3D_BLOCK * bytes[offset + 2];
     const unsigned char *at = bytes + offset + 4;
+    const unsigned char *section_end = bytes + (section < size ? section : size);
     while (at)
-        if (!read_record(p, &at, bytes + size, error))
+        if (!read_record(p, &at, section_end, bytes + size, error))
             return false;
     return true;
 }

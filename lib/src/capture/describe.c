@@ -12,19 +12,29 @@
 #define ONE_DRUM 0.45   // radius of a large timpano's head (m)
 
 // names in lines of at most 100 characters
-static void tell_points(const himc_take *take, const himc_line_sink *to)
+static void tell_names(const char *what, char (*names)[TAKE_NAME], int count, const char *between,
+                       const himc_line_sink *to)
 {
-    char text[128];
-    int used = snprintf(text, sizeof text,
-                        "%s %d:", himc_take_has_skeleton(take) ? "joints" : "points", take->points);
-    for (int i = 0; i < take->points; i++) {
-        if (used + (int)strlen(take->names[i]) > 98) {
+    char text[192];
+    int used = snprintf(text, sizeof text, "%s %d:", what, count);
+    for (int i = 0; i < count; i++) {
+        if (used + (int)strlen(names[i]) > 98) {
             himc_tell(to, "%s", text);
             used = snprintf(text, sizeof text, "   ");
         }
-        used += snprintf(text + used, sizeof text - (size_t)used, " %s", take->names[i]);
+        used += snprintf(text + used, sizeof text - (size_t)used, " %s%s", names[i],
+                         i < count - 1 ? between : "");
     }
     himc_tell(to, "%s", text);
+}
+
+static void tell_analog(const himc_take *take, const himc_line_sink *to)
+{
+    if (!take->analog)
+        return;
+    himc_tell(to, "analog: %d channels of %d samples at %g Hz", take->analog_channels,
+              take->analog_samples, take->analog_rate);
+    tell_names("channels", take->analog_names, take->analog_channels, ",", to);
 }
 
 // "gap: NAME is missing in 92 frames: 1-40 77-128", at most GAP_RANGES of them
@@ -132,12 +142,14 @@ void himc_take_describe(himc_take *take, const himc_take_options *options,
     himc_tell(&to, "format: %s", take->format);
     himc_tell(&to, "length: %d frames at %g Hz, %.3f s, from frame %d", take->frames, take->rate,
               take->frames / take->rate, take->first_frame);
-    tell_points(take, &to);
+    tell_names(himc_take_has_skeleton(take) ? "joints" : "points", take->names, take->points, "",
+               &to);
     himc_tell(&to, "units: %s", take->units_text);
     himc_tell(&to, "axes: %s", take->axes_text);
     for (int i = 0; i < take->note_count; i++)
         himc_tell(&to, "note: %s", take->notes[i]);
     tell_gaps(take, &to);
+    tell_analog(take, &to);
     for (int i = 0; i < take->event_count; i++)
         himc_tell(&to, "event: %.3f s %s", take->events[i].time, take->events[i].label);
     tell_tips(take, options, &to);

@@ -56,7 +56,7 @@ static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
 // the contents of an existing file stay until there is something to write
 static bool check_path(const char *path, himc_error *error)
 {
-    if (!himc_take_is_format(path, error))
+    if (!himc_take_can_save(path, error))
         return false;
     bool existed = access(path, F_OK) == 0;
     FILE *file = himc_file_write(path, HIMC_FILE_CONTINUE, error);

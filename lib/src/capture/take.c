@@ -66,6 +66,8 @@ void himc_take_free(himc_take *take)
     free(take->offsets);
     free(take->rotations);
     free(take->events);
+    free(take->analog_names);
+    free(take->analog);
     free(take->tip[HIMC_LEFT]);
     free(take->tip[HIMC_RIGHT]);
     free(take);

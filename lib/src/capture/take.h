@@ -45,6 +45,10 @@ struct himc_take {
     himc_quat *rotations;     ///< (frames x points), NULL without skeleton
     himc_take_event *events;  ///< (event_count)
     int event_count;
+    char (*analog_names)[TAKE_NAME]; ///< (analog_channels): "EMG1 (V)"
+    double *analog; ///< (analog_samples x analog_channels) in the file's units, NULL without
+    int analog_channels, analog_samples;
+    double analog_rate; ///< (Hz)
 
     double mass, height;         ///< of the player as the file states (kg, m), 0 if it does not
     double file_unit;            ///< length unit that the file states (m), 0 if it does not
@@ -88,6 +92,12 @@ void himc_take_plain_name(const char *name, char plain[TAKE_NAME]);
 /// Returns the hand, HIMC_HANDS if no side is given, or -1 if anything else is in the name. `words`
 /// ends with NULL; `rest` gets the words without the side.
 int himc_take_side(const char *plain, const char *const *words, char rest[TAKE_NAME]);
+
+// Several players: take_subject.c.
+
+/// Keeps the points of the subject `wanted`, before anything is measured; NULL keeps all, and notes
+/// if there are several. False with the names that there are.
+bool himc_take_choose_subject(himc_take *take, const char *wanted, himc_error *error);
 
 // Gaps: take_gaps.c.
 
@@ -148,6 +158,8 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
 bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_c3d_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_csv_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_bvh_write(FILE *file, const himc_take *take, himc_error *error);
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error);
 bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error);
@@ -161,8 +173,12 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
 /// As himc_take_load; with a `folder` (not NULL) only a file inside it (himc_file_load_in).
 himc_take *himc_take_load_in(const char *folder, const char *path, const himc_take_options *options,
                              himc_error *error);
-/// True if the suffix is that of a format; else the error line lists the formats.
-bool himc_take_is_format(const char *path, himc_error *error);
+/// Suffixes of the formats that are read.
+#define HIMC_TAKE_SUFFIXES ".bvh .c3d .trc .csv .tsv"
+/// True if the suffix is that of a motion capture, also of one that is refused.
+bool himc_take_is_capture(const char *path);
+/// True if the suffix is that of a format that is written; else the error line lists them.
+bool himc_take_can_save(const char *path, himc_error *error);
 
 // Recordings: recording.c.
 

@@ -22,7 +22,36 @@ typedef struct format {
 
 static const format formats[] = {{".bvh", himc_bvh_read, himc_bvh_write},
                                  {".c3d", himc_c3d_read, himc_c3d_write},
-                                 {".trc", himc_trc_read, himc_trc_write}};
+                                 {".trc", himc_trc_read, himc_trc_write},
+                                 {".csv", himc_csv_read, NULL},
+                                 {".tsv", himc_tsv_read, NULL}};
+#define WRITTEN ".bvh .c3d .trc"
+
+// captures that are not read, and the way out
+static const struct {
+    const char *suffix, *is, *do_this;
+} refused[] = {
+    {".asf", "an Acclaim skeleton", "convert it with its .amc to .bvh (Blender, amc2bvh)"},
+    {".amc", "Acclaim motion", "convert it with its .asf to .bvh (Blender, amc2bvh)"},
+    {".fbx", "Autodesk FBX", "import it into Blender and export .bvh"},
+    {".glb", "a glTF animation", "import it into Blender and export .bvh"},
+    {".gltf", "a glTF animation", "import it into Blender and export .bvh"},
+    {".usd", "a USD stage", "import it into Blender and export .bvh"},
+    {".mot", "OpenSim motion: joint angles without their model", "export markers as .trc"},
+    {".sto", "an OpenSim storage", "export markers as .trc"},
+    {".qtm", "a Qualisys measurement", "File > Export > to C3D or to TSV in QTM"},
+    {".tak", "a Motive take", "File > Export > C3D, BVH or TRC in Motive"},
+    {".mvn", "an Xsens recording", "export .c3d or .bvh in MVN"},
+    {".mvnx", "an Xsens recording", "export .c3d or .bvh in MVN"},
+    {".x1d", "raw Vicon data", "export .c3d or ASCII (.csv) in Nexus"},
+    {".x2d", "raw Vicon data", "export .c3d or ASCII (.csv) in Nexus"},
+    {".vsk", "a Vicon skeleton", "export .c3d or ASCII (.csv) in Nexus"},
+    {".trb", "a binary Motion Analysis file", "export .trc"},
+    {".htr", "Motion Analysis joint angles", "export .trc or .bvh"},
+    {".mat", "a MATLAB file", "write a table to .csv: time,NAME_x_m,NAME_y_m,NAME_z_m,..."},
+    {".xlsx", "a spreadsheet", "save it as .csv: time,NAME_x_m,NAME_y_m,NAME_z_m,..."},
+};
+#define REFUSED (sizeof refused / sizeof refused[0])
 
 static bool check_options(const himc_take_options *options, himc_error *error)
 {
@@ -31,21 +60,49 @@ static bool check_options(const himc_take_options *options, himc_error *error)
     return himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error);
 }
 
-static const format *format_of(const char *path, himc_error *error)
+static bool ends_with(const char *path, const char *suffix)
 {
-    size_t n = strlen(path);
-    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
-        size_t m = strlen(formats[i].suffix);
-        if (n >= m && himc_span_is((himc_span){path + n - m, m}, formats[i].suffix))
+    size_t n = strlen(path), m = strlen(suffix);
+    return n >= m && himc_span_is((himc_span){path + n - m, m}, suffix);
+}
+
+static const format *find_format(const char *path)
+{
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
+        if (ends_with(path, formats[i].suffix))
             return &formats[i];
-    }
-    himc_error_set(error, "%s: not a take by its suffix, allowed .bvh .c3d .trc", path);
     return NULL;
 }
 
-bool himc_take_is_format(const char *path, himc_error *error)
+static const format *format_of(const char *path, himc_error *error)
 {
-    return format_of(path, error) != NULL;
+    const format *found = find_format(path);
+    if (found)
+        return found;
+    for (size_t i = 0; i < REFUSED; i++)
+        if (ends_with(path, refused[i].suffix)) {
+            himc_error_set(error, "%s: %s, which is not read: %s", path, refused[i].is,
+                           refused[i].do_this);
+            return NULL;
+        }
+    himc_error_set(error, "%s: not a take by its suffix, allowed " HIMC_TAKE_SUFFIXES, path);
+    return NULL;
+}
+
+bool himc_take_is_capture(const char *path)
+{
+    bool known = find_format(path);
+    for (size_t i = 0; i < REFUSED; i++)
+        known = known || ends_with(path, refused[i].suffix);
+    return known;
+}
+
+bool himc_take_can_save(const char *path, himc_error *error)
+{
+    const format *f = format_of(path, error);
+    if (!f || f->write)
+        return f != NULL;
+    return himc_error_set(error, "%s: a format that is not written, allowed " WRITTEN, path);
 }
 
 // of a long path the end is kept, which distinguishes files
@@ -72,7 +129,9 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
     set_file(take, name);
     if (size == 0)
         himc_error_set(error, "%s: the file is empty", take->file);
-    else if (f->read(take, bytes, size, error) && himc_take_settle(take, options, error))
+    else if (f->read(take, bytes, size, error) &&
+             himc_take_choose_subject(take, options->subject, error) &&
+             himc_take_settle(take, options, error))
         return take;
     himc_take_free(take);
     return NULL;
@@ -81,7 +140,7 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
 himc_take *himc_take_load_in(const char *folder, const char *path, const himc_take_options *options,
                              himc_error *error)
 {
-    if (!himc_take_is_format(path, error))
+    if (!format_of(path, error))
         return NULL;
     size_t size = 0;
     char *bytes = himc_file_load_in(folder, path, MOST_BYTES, &size, error);
@@ -97,9 +156,9 @@ himc_take *himc_take_load(const char *path, const himc_take_options *options, hi
 
 bool himc_take_save(const himc_take *take, const char *path, himc_error *error)
 {
-    const format *f = format_of(path, error);
-    if (!f)
+    if (!himc_take_can_save(path, error))
         return false;
+    const format *f = find_format(path);
     FILE *file = himc_file_write(path, HIMC_FILE_REPLACE, error);
     if (!file)
         return false;

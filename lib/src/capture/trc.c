@@ -7,8 +7,7 @@
 /// commas, whichever the row of names has. An empty cell, "nan" or 9999999 (Motion Analysis's own
 /// mark) is a gap; a point with only some of its coordinates is refused, because then columns are
 /// shifted. The header's counts must agree with the rows and names of the file.
-#include "capture/take.h"
-#include "capture/take_text.h"
+#include "capture/marker_cells.h"
 
 #include <string.h>
 
@@ -129,43 +128,6 @@ static bool read_names(trc *r)
                           r->take->file, r->markers, given);
 }
 
-static bool refuse_cell(const trc *r, int point, int axis, himc_span cell)
-{
-    char text[44];
-    return himc_error_set(
-        r->error, "%s:%d: %s %c is \"%s\", allowed: a number up to 1e8, or an empty cell for a gap",
-        r->take->file, r->text.line, r->take->names[point], "XYZ"[axis],
-        himc_span_text(cell, text));
-}
-
-static bool is_gap_mark(himc_span cell, double value)
-{
-    return cell.length == 0 || himc_span_is(cell, "nan") || himc_span_is(cell, "-nan") ||
-           value == 9999999;
-}
-
-static bool read_point(trc *r, himc_span *rest, int frame, int point)
-{
-    double v[3] = {0, 0, 0};
-    int seen = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        himc_span cell = rest->at ? himc_span_cell(rest, r->separator) : (himc_span){"", 0};
-        bool number = himc_span_number(cell, &v[axis]);
-        if (is_gap_mark(cell, v[axis]))
-            continue;
-        if (!number || !(fabs(v[axis]) <= TAKE_LARGEST))
-            return refuse_cell(r, point, axis, cell);
-        seen++;
-    }
-    if (seen != 0 && seen != 3)
-        return himc_error_set(r->error,
-                              "%s:%d: %s has %d of its 3 coordinates, allowed all or none",
-                              r->take->file, r->text.line, r->take->names[point], seen);
-    *himc_take_at(r->take, frame, point) =
-        seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
-    return true;
-}
-
 static bool read_row(trc *r, himc_span row, int frame, double *time)
 {
     himc_span number = himc_span_cell(&row, r->separator), second = {"", 0};
@@ -178,8 +140,9 @@ static bool read_row(trc *r, himc_span row, int frame, double *time)
         r->take->first_frame = (int)label;
     if (!himc_span_number(second, time))
         *time = NAN;
+    marker_row cells = {r->take, r->text.line, r->separator, r->error};
     for (int point = 0; point < r->take->points; point++)
-        if (!read_point(r, &row, frame, point))
+        if (!himc_marker_row_point(&cells, &row, frame, point))
             return false;
     while (row.at) {
         himc_span cell = himc_span_cell(&row, r->separator);

@@ -17,6 +17,7 @@
 #include "body/dynamics.h"
 #include "control/ik.h"
 #include "control/limit_torque.h"
+#include "control/still_legs.h"
 #include "control/strength.h"
 #include "control/tracking_error.h"
 
@@ -84,15 +85,6 @@ static void release_forces(const himc_skeleton *skeleton, const himc_body_state 
     }
 }
 
-// a force at the tip as torques down the arm and the trunk
-static void add_tip_force(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
-                          himc_vec3 force, himc_vec3 torque[HIMC_JOINTS])
-{
-    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
-        torque[i - 1] = himc_vec3_add(
-            torque[i - 1], himc_vec3_cross(himc_vec3_sub(s->tip[hand], s->origin[i]), force));
-}
-
 // equation 2, implicit over the step, with or without feedforward of target velocity and gravity
 static void servo_torques(const himc_controller *c, const himc_skeleton *skeleton,
                           const himc_body_state *s, const himc_reference *reference,
@@ -119,7 +111,8 @@ static void servo_torques(const himc_controller *c, const himc_skeleton *skeleto
             torque[j], himc_mat3_scale_along(&s->rotation[j + 1], resistance[j], relative[j]));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (reference->released[hand])
-            add_tip_force(skeleton, s, (himc_hand)hand, force[hand], torque);
+            himc_add_force(skeleton, s, himc_stick_segment((himc_hand)hand), s->tip[hand],
+                           force[hand], torque);
 }
 
 // stiffness and damping over inertia of one axis, as far as an implicit step lets them act
@@ -155,13 +148,32 @@ static void wanted_accelerations(const himc_controller *c, const himc_body_state
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
 }
 
+// of all joints; of legs at rest from the step before
+static void joint_errors(const himc_controller *c, const himc_skeleton *skeleton,
+                         const himc_body_state *s, const himc_posture_motion *target,
+                         tracking_error *e)
+{
+    himc_tracking_error_joints(skeleton, s, target, 0, c->legs ? HIMC_LEGS - 1 : HIMC_JOINTS, e);
+    if (c->legs)
+        himc_still_legs_errors(c->legs, skeleton, s, target, e);
+}
+
+static void wanted_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                           const himc_body_state *s, const himc_vec3 *wanted,
+                           himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_inverse_dynamics_of(skeleton, s, wanted, 1, c->legs ? HIMC_LEGS : HIMC_SEGMENTS, torque);
+    if (c->legs)
+        himc_still_legs_torques(c->legs, skeleton, s, wanted, torque);
+}
+
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_reference *reference,
                              himc_vec3 torque[HIMC_JOINTS])
 {
     tracking_error e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
-    himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
+    joint_errors(c, skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
         if (c->config.mode == HIMC_PIPELINE_HIMC)
@@ -174,7 +186,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         wanted_accelerations(c, s, &e, wanted);
         release_acceleration(skeleton, s, reference, jacobian, wanted);
         himc_limits_compliance(c, skeleton, s, jacobian, wanted);
-        himc_inverse_dynamics(skeleton, s, wanted, false, torque);
+        wanted_torques(c, skeleton, s, wanted, torque);
     } else {
         servo_torques(c, skeleton, s, reference, &e, torque);
     }

@@ -27,9 +27,7 @@
 #include <string.h>
 
 #define REACH 2.0          // (m) between the centres; chosen: a set of four, with room
-#define AZIMUTHS 32        // of the directions; chosen: exact to 1e-4 for k d up to 15
-#define LOWEST 30.0        // (Hz) of the bands; chosen: below the deepest timpano ...
-#define BANDS 10           // ... to 680 Hz, above all shared modes
+#define LOWEST 30.0        // (Hz) of the bands; chosen: below the deepest timpano
 #define BANDS_PER_OCTAVE 2 // chosen: k d hardly changes between two
 #define LEAST 1e-13 // (m/s) a head at rest does not notice less; chosen: 260 dB below a stroke
 #define MODES (HIMC_NEIGHBOURS * HIMC_SHARED)
@@ -62,7 +60,7 @@ static bool is_near(himc_drum *const *drums, int count, int i)
 static double weight_in(int band, double omega)
 {
     double place = BANDS_PER_OCTAVE * log2(omega / (2 * HIMC_PI * LOWEST));
-    double away = fabs(fmin(fmax(place, 0), BANDS - 1) - band);
+    double away = fabs(fmin(fmax(place, 0), HIMC_AIR_BANDS - 1) - band);
     return away < 1 ? cos(HIMC_PI / 2 * away) : 0;
 }
 
@@ -80,7 +78,7 @@ static int find_senders(const himc_air_between *air, int band, sender *senders)
     for (int drum = 0; drum < air->count; drum++) {
         const himc_shared_mode *mode = shared(air, drum, &count);
         for (int i = 0; i < count; i++) {
-            double weight = weight_in(band, mode[i].omega) * sqrt(2 * HIMC_PI / AZIMUTHS);
+            double weight = weight_in(band, mode[i].omega) * sqrt(2 * HIMC_PI / HIMC_AIR_AZIMUTHS);
             if (weight > 0)
                 senders[found++] = (sender){air->first[drum] + i, drum, &mode[i], weight};
         }
@@ -88,34 +86,49 @@ static int find_senders(const himc_air_between *air, int band, sender *senders)
     return found;
 }
 
-// a drum as seen from a direction: cos and sin of m times its azimuth, exp(-i k q.r)
-typedef struct view {
-    double cosine[3], sine[3], re, im;
-} view;
-
-static view view_from(const himc_drum *drum, himc_vec3 to, double k)
+static himc_air_view view_from(const himc_drum *drum, himc_vec3 to)
 {
     himc_head_frame level = *himc_drum_head_frame(drum);
     level.tilt = 0; // a tilt of some degrees turns no low mode's sound
     himc_vec3 x = himc_head_frame_away(&level);
-    double across = hypot(to.x, to.y), way = k * himc_vec3_dot(level.center, to);
+    double across = hypot(to.x, to.y), nearer = himc_vec3_dot(level.center, to);
     double c = (x.x * to.x + x.y * to.y) / across, s = (x.x * to.y - x.y * to.x) / across;
-    return (view){{1, c, c * c - s * s}, {0, s, 2 * s * c}, cos(way), -sin(way)};
+    himc_air_view v = {.cosine = {1, c, c * c - s * s}, .sine = {0, s, 2 * s * c}};
+    for (int band = 0; band < HIMC_AIR_BANDS; band++) {
+        double k = 2 * HIMC_PI * LOWEST * exp2((double)band / BANDS_PER_OCTAVE) / HIMC_AIR_SPEED;
+        v.re[band] = cos(k * nearer);
+        v.im[band] = -sin(k * nearer);
+    }
+    return v;
 }
 
-// adds what all send in a direction of that ring to C
-static void add_direction(const sender *senders, int n, const view *views, int ring,
-                          double c[MODES][MODES])
+// of all drums, from everywhere; they hang on the places alone, and tunings change more often
+static void find_views(himc_air_between *air)
+{
+    for (int i = 0; i < HIMC_AIR_DIRECTIONS; i++) {
+        double up = himc_shared_sine[i / HIMC_AIR_AZIMUTHS], across = sqrt(1 - up * up);
+        double azimuth = 2 * HIMC_PI * (i % HIMC_AIR_AZIMUTHS) / HIMC_AIR_AZIMUTHS;
+        himc_vec3 to = {across * cos(azimuth), across * sin(azimuth), up};
+        for (int drum = 0; drum < air->count; drum++)
+            air->view[drum][i] = view_from(air->drum[drum], to);
+    }
+}
+
+// adds what all send in a direction to C
+static void add_direction(const himc_air_between *air, const sender *senders, int n, int band,
+                          int direction, double c[MODES][MODES])
 {
     double re[MODES], im[MODES];
+    int ring = direction / HIMC_AIR_AZIMUTHS;
     for (int i = 0; i < n; i++) {
         const himc_shared_mode *mode = senders[i].mode;
-        const view *v = &views[senders[i].drum];
+        const himc_air_view *v = &air->view[senders[i].drum][direction];
         int m = mode->order;
         double a = senders[i].weight *
                    (mode->along[ring] * v->cosine[m] + mode->across[ring] * v->sine[m]);
-        re[i] = a * (m == 1 ? v->im : m == 2 ? -v->re : v->re); // times (-i)^m
-        im[i] = a * (m == 1 ? -v->re : m == 2 ? -v->im : v->im);
+        double x = v->re[band], y = v->im[band];
+        re[i] = a * (m == 1 ? y : m == 2 ? -x : x); // times (-i)^m
+        im[i] = a * (m == 1 ? -x : m == 2 ? -y : y);
     }
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
@@ -125,18 +138,9 @@ static void add_direction(const sender *senders, int n, const view *views, int r
 static void add_band(const himc_air_between *air, int band, double c[MODES][MODES])
 {
     sender senders[MODES];
-    view views[HIMC_NEIGHBOURS];
     int n = find_senders(air, band, senders);
-    double k = 2 * HIMC_PI * LOWEST * exp2((double)band / BANDS_PER_OCTAVE) / HIMC_AIR_SPEED;
-    for (int i = 0; n > 0 && i < HIMC_SHARED_RINGS * AZIMUTHS; i++) {
-        int ring = i / AZIMUTHS;
-        double up = himc_shared_sine[ring], across = sqrt(1 - up * up);
-        double azimuth = 2 * HIMC_PI * (i % AZIMUTHS) / AZIMUTHS;
-        himc_vec3 to = {across * cos(azimuth), across * sin(azimuth), up};
-        for (int drum = 0; drum < air->count; drum++)
-            views[drum] = view_from(air->drum[drum], to, k);
-        add_direction(senders, n, views, ring, c);
-    }
+    for (int i = 0; n > 0 && i < HIMC_AIR_DIRECTIONS; i++)
+        add_direction(air, senders, n, band, i, c);
 }
 
 // C
@@ -144,7 +148,7 @@ static void find_losses(const himc_air_between *air, double c[MODES][MODES])
 {
     for (int i = 0; i < air->first[air->count]; i++)
         memset(c[i], 0, sizeof c[i]);
-    for (int band = 0; band < BANDS; band++)
+    for (int band = 0; band < HIMC_AIR_BANDS; band++)
         add_band(air, band, c);
 }
 
@@ -213,6 +217,7 @@ void himc_air_between_join(himc_air_between *air, himc_drum *const *drums, int c
         if (near)
             air->drum[air->count++] = drums[i];
     }
+    find_views(air);
     if (air->count > 0)
         find_change(air);
 }

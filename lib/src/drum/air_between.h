@@ -6,12 +6,23 @@
 
 #define HIMC_NEIGHBOURS 8 ///< most drums that hear each other; chosen: two sets of timpani
 
+#define HIMC_AIR_AZIMUTHS 32 ///< of the directions; chosen: exact to 1e-4 for k d up to 15
+#define HIMC_AIR_BANDS 10    ///< of frequency, from 30 to 680 Hz, above all shared modes
+#define HIMC_AIR_DIRECTIONS (HIMC_SHARED_RINGS * HIMC_AIR_AZIMUTHS)
+
+/// A drum as seen from a direction.
+typedef struct himc_air_view {
+    double cosine[3], sine[3];                     ///< of m times its azimuth
+    double re[HIMC_AIR_BANDS], im[HIMC_AIR_BANDS]; ///< exp(-i k q.r)
+} himc_air_view;
+
 /// The air between some drums. 0: there is none. It costs nothing while no two are near.
 typedef struct himc_air_between {
     int count;                          ///< of drums that hear each other
     himc_drum *drum[HIMC_NEIGHBOURS];   ///< borrowed
     unsigned revision[HIMC_NEIGHBOURS]; ///< of the heads that `change` is for
     int first[HIMC_NEIGHBOURS + 1];     ///< where a drum's shared modes begin in `change`
+    himc_air_view view[HIMC_NEIGHBOURS][HIMC_AIR_DIRECTIONS]; ///< of the drums where they stand
     /// of all velocities in an exchange, per velocity
     double change[HIMC_NEIGHBOURS * HIMC_SHARED][HIMC_NEIGHBOURS * HIMC_SHARED];
 } himc_air_between;

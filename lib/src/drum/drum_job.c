@@ -97,6 +97,7 @@ typedef struct drum_job {
     himc_job job;
     himc_drum *drum; ///< borrowed
     himc_command command;
+    const char *state;      ///< borrowed; a preset's lines that are in no file
     himc_listener listener; ///< of himc_drum_listen_job; then there is no command
     bool listens;
     himc_drum_form form; ///< of the drum when the job was made
@@ -121,26 +122,32 @@ static bool run_line(himc_drum *drum, const himc_text_statement *line, himc_erro
     return himc_drum_command(drum, &c, error);
 }
 
-// a file's lines, on a copy of the drum
-static bool run_preset(himc_drum *drum, const char *name, himc_error *error)
+// the lines of a preset, on a copy of the drum
+static bool run_lines(himc_drum *drum, const char *rest, const char *name, himc_error *error)
 {
-    char path[HIMC_PATH_SIZE + 8], storage[2 * HIMC_PATH_SIZE];
+    char storage[2 * HIMC_PATH_SIZE];
     himc_atom atoms[HIMC_COMMAND_ATOMS + 2];
     himc_text_statement line = {.atom = atoms,
                                 .capacity = HIMC_COMMAND_ATOMS + 2,
                                 .storage = storage,
                                 .size = sizeof storage};
-    size_t size;
     int at = 1;
     bool good = true;
+    while (good && himc_text_next(&rest, &at, &line))
+        good = line.count == 0 || run_line(drum, &line, error) ||
+               himc_error_prefix(error, "%s:%d", name, line.line);
+    return good;
+}
+
+static bool run_preset(himc_drum *drum, const char *name, himc_error *error)
+{
+    char path[HIMC_PATH_SIZE + 8];
+    size_t size;
     snprintf(path, sizeof path, "%s.txt", name);
     char *text = himc_file_load(path, LONGEST_PRESET, &size, error);
-    const char *rest = text;
-    while (good && rest && himc_text_next(&rest, &at, &line))
-        good = line.count == 0 || run_line(drum, &line, error) ||
-               himc_error_prefix(error, "%s:%d", path, line.line);
+    bool good = text && run_lines(drum, text, path, error);
     free(text);
-    return text && good;
+    return good;
 }
 
 static bool prepare(himc_job *job, himc_error *error)
@@ -150,6 +157,8 @@ static bool prepare(himc_job *job, himc_error *error)
     j->made = himc_drum_new_of(&j->form, error);
     if (j->made && j->listens)
         himc_drum_listen(j->made, &j->listener);
+    if (j->made && j->state)
+        return run_lines(j->made, j->state, "state", error);
     if (j->made && !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET)
         return run_preset(j->made, j->command.atom[0].symbol, error);
     return j->made && (j->listens || himc_drum_command(j->made, &j->command, error));
@@ -216,7 +225,8 @@ static drum_job *job_new(himc_drum *drum, const char *what, himc_error *error)
     return j;
 }
 
-himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command, himc_error *error)
+// the state of now into a file
+static himc_job *dump_job(const himc_drum *drum, const himc_command *command, himc_error *error)
 {
     himc_text_lines lines = {0};
     himc_drum_describe(drum, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
@@ -226,12 +236,35 @@ himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command,
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error)
 {
     if (command->id == HIMC_COMMAND_DRUM_DUMP)
-        return himc_drum_dump_job(drum, command, error);
+        return dump_job(drum, command, error);
     drum_job *j = job_new(drum, himc_command_table((int)command->id)->name, error);
     if (!j)
         return NULL;
     himc_command_copy(&j->command, command);
     return &j->job;
+}
+
+himc_job *himc_drum_state_job(himc_drum *drum, const char *state, himc_error *error)
+{
+    drum_job *j = job_new(drum, "state", error);
+    if (!j)
+        return NULL;
+    j->command.id = HIMC_COMMAND_DRUM_PRESET;
+    j->state = state;
+    return &j->job;
+}
+
+// `dump` without a file is answered by the host, with himc_drum_describe
+bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error)
+{
+    himc_command checked; // also one that was put together without the parser
+    if (!himc_command_check(&checked, HIMC_DRUM, command, error))
+        return false;
+    if (checked.id == HIMC_COMMAND_DRUM_DUMP && checked.count == 0)
+        return true;
+    if (checked.id == HIMC_COMMAND_DRUM_DUMP || checked.id == HIMC_COMMAND_DRUM_PRESET)
+        return himc_job_carry_out(himc_drum_job(drum, &checked, error), error);
+    return himc_drum_act(drum, &checked, error);
 }
 
 himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, himc_error *error)

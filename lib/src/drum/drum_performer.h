@@ -118,8 +118,8 @@ HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *com
 /// Such a command as a job; the drum must outlive it. NULL without memory.
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error);
 
-/// The command `dump FILE` as a job. NULL without memory.
-himc_job *himc_drum_dump_job(const himc_drum *drum, const himc_command *command, himc_error *error);
+/// A preset's lines, borrowed, as a job. NULL without memory.
+himc_job *himc_drum_state_job(himc_drum *drum, const char *state, himc_error *error);
 
 /// True if himc_drum_listen would take longer than an audio block can wait.
 HIMC_RT bool himc_drum_listening_takes_long(const himc_drum *drum);

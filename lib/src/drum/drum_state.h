@@ -74,6 +74,9 @@ struct himc_drum {
 himc_drum_manner himc_drum_manner_of(const himc_drum *drum);
 void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner);
 
+/// Carries out a checked command that is no job.
+bool himc_drum_act(himc_drum *drum, const himc_command *checked, himc_error *error);
+
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
 HIMC_RT void himc_drum_find_ways(himc_drum *drum);
 

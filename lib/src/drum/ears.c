@@ -200,10 +200,15 @@ bool himc_ears_at_rest(const himc_ears *e)
 // what a path brings in n samples from `at` on: each is four of its line
 static void arrive(const himc_ears *e, int ray, const himc_ear_tap *tap, int n, double *out)
 {
-    double x[HIMC_ROOM_RUN + 3];
-    int first = e->at - tap->whole - 2;
-    for (int i = 0; i < n + 3; i++)
-        x[i] = e->line[ray][(first + i) & (HIMC_EARS_LINE - 1)];
+    double around[HIMC_ROOM_RUN + 3];
+    int first = (e->at - tap->whole - 2) & (HIMC_EARS_LINE - 1),
+        more = first + n + 3 - HIMC_EARS_LINE;
+    const double *x = e->line[ray] + first;
+    if (more > 0) { // the line ends in between
+        memcpy(around, x, (size_t)(n + 3 - more) * sizeof *x);
+        memcpy(around + n + 3 - more, e->line[ray], (size_t)more * sizeof *x);
+        x = around;
+    }
     for (int i = 0; i < n; i++)
         out[i] = tap->weight[0] * x[i + 3] + tap->weight[1] * x[i + 2] + tap->weight[2] * x[i + 1] +
                  tap->weight[3] * x[i];
@@ -237,27 +242,33 @@ static double smooth(double x)
 // takes n samples of each ray into the lines, from `at` on
 static void take_in(himc_ears *e, int n, double *const *ray)
 {
+    himc_one_pole carpet = e->floor;
+    int quiet = e->silent;
     for (int i = 0; i < n; i++) {
         double left = ray[HIMC_RAY_LEFT][i], right = ray[HIMC_RAY_RIGHT][i];
         double floor = ray[HIMC_RAY_FLOOR][i];
         int at = (e->at + i) & (HIMC_EARS_LINE - 1);
         bool silent = left == 0 && right == 0 && floor == 0;
-        e->silent = !silent ? 0 : e->silent < HIMC_EARS_LINE ? e->silent + 1 : e->silent;
-        if (e->silent == AFTER)
-            forget(&e->floor);
+        quiet = !silent ? 0 : quiet < HIMC_EARS_LINE ? quiet + 1 : quiet;
+        if (quiet == AFTER)
+            forget(&carpet);
         e->line[HIMC_RAY_LEFT][at] = left;
         e->line[HIMC_RAY_RIGHT][at] = right;
-        e->line[HIMC_RAY_FLOOR][at] = low_pass(&e->floor, floor);
+        e->line[HIMC_RAY_FLOOR][at] = low_pass(&carpet, floor);
     }
+    e->floor = carpet;
+    e->silent = quiet;
 }
 
 // n samples of both ears at present
 static void hear(himc_ears *e, int n, double *const *out)
 {
-    ear_sound sound[HIMC_EARS] = {{{0}, {0}}};
+    ear_sound sound[HIMC_EARS];
     double part = smooth(e->faded);
     bool silent = e->silent > e->reach + 2 * AFTER;
     for (int ear = 0; ear < HIMC_EARS; ear++) {
+        memset(sound[ear].passing, 0, (size_t)n * sizeof(double));
+        memset(sound[ear].filtered, 0, (size_t)n * sizeof(double));
         if (silent)
             forget(&e->shadow[ear]);
         if (!silent && e->faded < 1)
@@ -265,9 +276,15 @@ static void hear(himc_ears *e, int n, double *const *out)
         if (!silent)
             gather(e, &e->now, ear, part, n, &sound[ear]);
     }
-    for (int i = 0; i < n; i++) // neither filter waits for the other
-        for (int ear = 0; ear < HIMC_EARS; ear++)
-            out[ear][i] = sound[ear].passing[i] + low_pass(&e->shadow[ear], sound[ear].filtered[i]);
+    himc_one_pole left = e->shadow[HIMC_EAR_LEFT], right = e->shadow[HIMC_EAR_RIGHT];
+    for (int i = 0; i < n; i++) { // neither filter waits for the other
+        out[HIMC_EAR_LEFT][i] =
+            sound[HIMC_EAR_LEFT].passing[i] + low_pass(&left, sound[HIMC_EAR_LEFT].filtered[i]);
+        out[HIMC_EAR_RIGHT][i] =
+            sound[HIMC_EAR_RIGHT].passing[i] + low_pass(&right, sound[HIMC_EAR_RIGHT].filtered[i]);
+    }
+    e->shadow[HIMC_EAR_LEFT] = left;
+    e->shadow[HIMC_EAR_RIGHT] = right;
 }
 
 // of the next n samples those that are heard in one way: nothing fades, and no silence gets so long

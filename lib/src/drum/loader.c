@@ -298,6 +298,15 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
     return true;
 }
 
+bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, const char *state,
+                         himc_error *error)
+{
+    himc_loader_finish(loader);
+    himc_job *job = target->drum ? himc_drum_state_job(target->drum, state, error)
+                                 : runner_of(target)->state_job(target->performance, state, error);
+    return himc_job_carry_out(job, error);
+}
+
 bool himc_loader_follow(himc_loader *loader, himc_membrane *follower, const himc_membrane *leader,
                         himc_error *error)
 {

@@ -19,6 +19,7 @@
 #include "drum/membrane_probe.h"
 #include "head/pickup.h"
 #include "head/statistical.h"
+#include "system/aligned.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ static void core_free(core *c)
     himc_modes_free(c->modes);
     himc_bank_free(c->bank);
     free(c->oscillators);
-    free(c->memory);
+    himc_aligned_free(c->memory);
 }
 
 // takes the next array from the block; its length keeps the alignment that the bank requires
@@ -83,7 +84,7 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     int padded = c->bank ? himc_bank_padded(c->bank) : 0;
     size_t bytes = sizeof(double) * (size_t)padded * ARRAYS;
-    double *memory = c->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    double *memory = c->memory = himc_aligned_new(bytes);
     if (!c->bank || !c->oscillators || !memory) {
         himc_error_set(error, "modes: no memory for %d modes", count);
         core_free(c);

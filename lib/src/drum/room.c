@@ -31,12 +31,9 @@
 #define FORGOTTEN 5.0   // T60s until it is empty; chosen: -300 dB
 #define LEAST_GAIN 0.1  // g that counts for the level; chosen: all do from T60 = 0.21 s on
 
-// of each delay at both ears, and of what enters it: Walsh functions, orthogonal
-static const double AT_EAR[2][HIMC_ROOM_LINES] = {
-    {1, -1, 1, -1, -1, 1, -1, 1, 1, -1, 1, -1, -1, 1, -1, 1},
-    {1, 1, -1, -1, 1, 1, -1, -1, -1, -1, 1, 1, -1, -1, 1, 1}};
-static const double ENTERING[HIMC_ROOM_LINES] = {1, -1, -1, 1, 1, -1, -1, 1,
-                                                 1, -1, -1, 1, 1, -1, -1, 1};
+// of what enters the delay after each: a Walsh function, orthogonal to those at the ears
+static const double ENTERING[HIMC_ROOM_LINES] = {-1, -1, 1, 1, -1, -1, 1, 1,
+                                                 -1, -1, 1, 1, -1, -1, 1, 1};
 
 // the filter of a wall after a delay of d seconds
 static void set_wall(himc_room_form *f, int line, double d, double t60, double rate)
@@ -133,65 +130,88 @@ void himc_room_leave(himc_room *r)
     r->faded = 1;
 }
 
-// sum of 16 numbers, in an order that vectors keep
-static double sum(const double *x)
-{
-    double s[8];
-    for (int l = 0; l < 8; l++)
-        s[l] = x[l] + x[l + 8];
-    return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
-}
-
-// A delay is a ring of its length: what leaves it makes room for what enters it. Here, `y` receives
-// what leaves each in n samples.
-static void read_lines(const himc_room *r, int n, double y[HIMC_ROOM_RUN][HIMC_ROOM_LINES])
-{
-    for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        for (int i = 0, at = r->at[l]; i < n; i++) {
-            y[i][l] = r->line[l][at];
-            at = at + 1 < r->delay[l] ? at + 1 : 0;
-        }
-}
-
-// x enters; asks the memory for what leaves next
-static void write_lines(himc_room *r, int n, double x[HIMC_ROOM_RUN][HIMC_ROOM_LINES])
+// A delay is a ring of its length: what leaves it makes room for what enters it. Here, where both
+// are next in each, and as many samples until one of the rings begins anew, at most n.
+static int find_ways(himc_room *r, int n, double *way[HIMC_ROOM_LINES])
 {
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        int at = r->at[l];
-        for (int i = 0; i < n; i++) {
-            r->line[l][at] = x[i][l];
-            at = at + 1 < r->delay[l] ? at + 1 : 0;
-        }
-        r->at[l] = at;
-        for (int i = 0; i <= HIMC_ROOM_RUN; i += CACHE_LINE)
-            __builtin_prefetch(&r->line[l][at + i], 1);
+        int left = r->delay[l] - r->at[l];
+        way[l] = r->line[l] + r->at[l];
+        n = n < left ? n : left;
+    }
+    return n;
+}
+
+// n samples on; asks the memory for what comes within reach
+static void move_on(himc_room *r, int n)
+{
+    for (int l = 0; l < HIMC_ROOM_LINES; l++) {
+        int at = r->at[l] + n;
+        r->at[l] = at < r->delay[l] ? at : 0;
+        for (int i = HIMC_ROOM_RUN - n; i <= HIMC_ROOM_RUN; i += CACHE_LINE)
+            __builtin_prefetch(&r->line[l][r->at[l] + i], 1);
     }
 }
 
-// n samples of the network, fewer than any delay; their sound at both ears
+// two delays at once, as any x86-64 has it
+typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(8), may_alias));
+#define PAIRS (HIMC_ROOM_LINES / 2)
+
+// The sums of z with all signs +, and with those of both ears: Walsh functions, orthogonal. Left
+// (+-+--+-+), twice; right (++--++--), then the opposite. The order is one that pairs keep.
+static double sums(const pair *z, double ear[2])
+{
+    pair a[PAIRS / 2], b[PAIRS / 2], c[2], d[2], e[2];
+    for (int k = 0; k < PAIRS / 2; k++) {
+        a[k] = z[k] + z[k + PAIRS / 2];
+        b[k] = z[k] - z[k + PAIRS / 2];
+    }
+    for (int k = 0; k < 2; k++) {
+        c[k] = a[k] + a[k + 2];
+        d[k] = a[k] - a[k + 2];
+        e[k] = b[k] + b[k + 2];
+    }
+    ear[0] = (d[0][0] - d[0][1]) + (d[1][0] - d[1][1]);
+    ear[1] = (e[0][0] + e[0][1]) - (e[1][0] + e[1][1]);
+    return (c[0][0] + c[0][1]) + (c[1][0] + c[1][1]);
+}
+
+// n samples of the network from the present ways on; their sound at both ears
+static void mix(himc_room *r, const himc_room_form *f, int n, double *const way[HIMC_ROOM_LINES],
+                const double *left, const double *right, double *const *ears)
+{
+    const pair *keep = (const pair *)f->keep, *take = (const pair *)f->take;
+    const pair *entering = (const pair *)ENTERING;
+    pair z[PAIRS];
+    double ear[2];
+    memcpy(z, r->y, sizeof z);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < PAIRS; k++)
+            z[k] = keep[k] * z[k] + take[k] * (pair){way[2 * k][i], way[2 * k + 1][i]};
+        double all = 2.0 / HIMC_ROOM_LINES * sums(z, ear);
+        pair drum = {right[i], left[i]};
+        ears[0][i] = f->out * ear[0];
+        ears[1][i] = f->out * ear[1];
+        for (int k = 0; k < PAIRS; k++) { // each goes to the next delay
+            pair x = z[k] - all + entering[k] * drum;
+            way[2 * k + 1][i] = x[0];
+            way[(2 * k + 2) % HIMC_ROOM_LINES][i] = x[1];
+        }
+    }
+    memcpy(r->y, z, sizeof z);
+}
+
+// n samples of the network, fewer than any delay
 static void reflect(himc_room *r, const himc_room_form *f, int n, double *const *drum,
                     double *const *ears)
 {
-    double y[HIMC_ROOM_RUN][HIMC_ROOM_LINES], part[HIMC_ROOM_LINES], z[HIMC_ROOM_LINES];
-    read_lines(r, n, y);
-    memcpy(z, r->y, sizeof z);
-    for (int i = 0; i < n; i++) {
-        for (int l = 0; l < HIMC_ROOM_LINES; l++)
-            z[l] = f->keep[l] * z[l] + f->take[l] * y[i][l];
-        for (int ear = 0; ear < 2; ear++) {
-            for (int l = 0; l < HIMC_ROOM_LINES; l++)
-                part[l] = AT_EAR[ear][l] * z[l];
-            ears[ear][i] = f->out * sum(part);
-        }
-        double all = 2.0 / HIMC_ROOM_LINES * sum(z);
-        for (int l = 0; l < HIMC_ROOM_LINES; l++)
-            part[l] = z[l] - all;
-        for (int l = 0; l < HIMC_ROOM_LINES; l++) // each goes to the next delay
-            y[i][l] =
-                part[(l + HIMC_ROOM_LINES - 1) % HIMC_ROOM_LINES] + ENTERING[l] * drum[l % 2][i];
+    double *way[HIMC_ROOM_LINES];
+    for (int done = 0, run; done < n; done += run) {
+        run = find_ways(r, n - done, way);
+        mix(r, f, run, way, drum[0] + done, drum[1] + done,
+            (double *[]){ears[0] + done, ears[1] + done});
+        move_on(r, run);
     }
-    memcpy(r->y, z, sizeof z);
-    write_lines(r, n, y);
 }
 
 int himc_room_steady(const himc_room *r, int n)
@@ -202,8 +222,9 @@ int himc_room_steady(const himc_room *r, int n)
 
 void himc_room_hear(himc_room *r, int n, double *const *drum, double *const *ears)
 {
+    memset(ears[0], 0, (size_t)n * sizeof **ears);
+    memset(ears[1], 0, (size_t)n * sizeof **ears);
     for (int i = 0; i < n; i++) {
-        ears[0][i] = ears[1][i] = 0;
         if (drum[0][i] != 0 || drum[1][i] != 0)
             r->silent = 0;
         else if (r->silent < HIMC_ROOM_EMPTY && ++r->silent >= r->forget)

@@ -11,6 +11,9 @@
 #include "head/lugs.h"
 #include "himc/membrane.h"
 
+/// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
+double himc_head_tension_for(const himc_head *head, double frequency);
+
 typedef struct himc_modes himc_modes;
 
 /// The lowest `count` modes of a head of that outline: 1 .. HIMC_MODES_MAX, of a grid (retained) as

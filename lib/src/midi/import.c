@@ -359,7 +359,8 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     put_tempi(&score, file, lead, part->stroke[part->count - 1].note->beat);
     put_strokes(&score, part, lead);
     score.lost |= !put_changes(&score, file, part, lead);
-    *made = (midi_score){score.bytes, said.bytes};
+    *made = (midi_score){score.bytes, said.bytes,
+                         part->count - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER]};
     if (!score.lost && !said.lost)
         return true;
     himc_midi_score_free(made);

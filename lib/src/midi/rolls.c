@@ -12,7 +12,8 @@
 #define SLOWEST 9.0     // strokes of a roll (1/s)
 #define LEAST_NOTES 4   // of a roll
 #define MOST_NOTES 1000 // of a roll; chosen: a minute of a fast one
-#define LONGEST 60.0    // (s); chosen: half the planner's limit
+// (s); chosen: the score's limit less a last stroke that lasts into the slowest tempo
+#define LONGEST 60.0
 #define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
 #define LEAST_BEATS 0.05   // of a score's LENGTH
 #define MOST_BEATS 1000.0  // of it

@@ -25,10 +25,38 @@ static himc_score *import(const char *bytes, size_t size, const char *path, himc
     himc_score *score = himc_score_parse(made.text, path, error);
     if (score) {
         score->report = made.report;
+        score->left_out = made.left_out;
         made.report = NULL;
     }
     himc_midi_score_free(&made);
     return score;
+}
+
+// what a file is that is neither a score nor MIDI, by its first bytes; NULL if it may be a score
+static const char *other_kind(const char *bytes, size_t size)
+{
+    static const struct {
+        const char *begin, *is;
+    } known[] = {{"HIERARCHY", "a BVH: its name must end with .bvh"},
+                 {"PathFileType", "a TRC: its name must end with .trc"},
+                 {"Trajectories,", "a Nexus CSV: its name must end with .csv"},
+                 {"NO_OF_FRAMES", "a Qualisys TSV: its name must end with .tsv"},
+                 {"Kaydara FBX", "an FBX: import it into Blender and export .bvh"},
+                 {":ASF", "an Acclaim skeleton: convert it with its .amc to .bvh"},
+                 {"RIFF", "a sound or a film"},
+                 {"fLaC", "a sound"},
+                 {"OggS", "a sound"},
+                 {"ID3", "a sound"},
+                 {"PK\3\4", "an archive or a spreadsheet"},
+                 {"%PDF", "a PDF"},
+                 {"<", "XML or a web page"},
+                 {"{", "JSON"},
+                 {"version https://git-lfs", "a pointer to Git's large files: run git lfs pull"}};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        if (size >= strlen(known[i].begin) &&
+            !memcmp(bytes, known[i].begin, strlen(known[i].begin)))
+            return known[i].is;
+    return memchr(bytes, 0, size) ? "not a text file" : NULL;
 }
 
 himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
@@ -38,8 +66,9 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     char *bytes = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
     if (bytes && himc_midi_is_file(bytes, size))
         score = import(bytes, size, path, error);
-    else if (bytes && memchr(bytes, 0, size))
-        himc_error_set(error, "%s: not a text file, and no MIDI file", path);
+    else if (bytes && other_kind(bytes, size))
+        himc_error_set(error, "%s: %s; allowed: a score or a MIDI file", path,
+                       other_kind(bytes, size));
     else if (bytes)
         score = himc_score_parse(bytes, path, error);
     free(bytes);

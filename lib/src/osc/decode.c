@@ -1,15 +1,15 @@
 /// decode.c: OSC packets as commands: bundles taken apart (OSC 1.0: "#bundle", time tag, then size
-/// and element in turn), messages read by liblo, commands checked by the one parser, so that the
-/// audio thread gets only commands that fit the table.
+/// and element in turn), commands checked by the one parser, so that the audio thread gets only
+/// commands that fit the table.
 ///
 /// The time tag of a bundle is ignored: commands act when they arrive, so that nobody can pile up
 /// commands for later. Messages that we send ourselves are not answered, so that two servers never
 /// answer each other forever.
 #include "osc/decode.h"
 
+#include "osc/message.h"
 #include "performance/confine.h"
 
-#include <lo/lo.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,25 +18,6 @@
 #define ATOMS (2 * HIMC_COMMAND_ATOMS) // read; more than any command has, and the parser says so
 
 // --- packets
-
-// false if an atom is neither a number nor a word
-static bool read_atoms(lo_message message, himc_atom atom[ATOMS], int *count)
-{
-    const char *types = lo_message_get_types(message);
-    lo_arg **args = lo_message_get_argv(message);
-    int n = lo_message_get_argc(message);
-    *count = n < ATOMS ? n : ATOMS;
-    for (int i = 0; i < *count; i++) {
-        lo_type type = (lo_type)types[i];
-        if (lo_is_numerical_type(type))
-            atom[i] = (himc_atom){HIMC_ATOM_NUMBER, (double)lo_hires_val(type, args[i]), NULL};
-        else if (lo_is_string_type(type))
-            atom[i] = (himc_atom){HIMC_ATOM_SYMBOL, 0, (const char *)args[i]};
-        else
-            return false;
-    }
-    return true;
-}
 
 // "/himc/NAME" or "/membrane/DRUM/NAME"; false if it is neither
 static bool read_path(const char *path, osc_request *request, const char **name)
@@ -69,15 +50,18 @@ static bool sent_by_us(himc_receiver receiver, const char *name)
     return false;
 }
 
-static osc_verdict read_message(const char *path, lo_message message, osc_request *request,
+static osc_verdict read_message(const char *data, size_t size, osc_request *request,
                                 himc_error *error)
 {
     himc_atom atom[ATOMS];
     const char *name;
     int count;
-    if (!read_path(path, request, &name))
+    bool plain;
+    if (size < 8 || !himc_osc_message_read(data, size, atom, ATOMS, &count, &plain))
+        return OSC_MALFORMED;
+    if (!read_path(data, request, &name))
         return OSC_FOREIGN;
-    if (!read_atoms(message, atom, &count))
+    if (!plain)
         return OSC_MALFORMED;
     if (himc_command_parse(&request->command, request->receiver, name, atom, count, error))
         return OSC_REQUEST;
@@ -88,29 +72,22 @@ static osc_verdict read_message(const char *path, lo_message message, osc_reques
     return OSC_WRONG;
 }
 
-static void decode_message(char *data, size_t size, osc_sink *sink, void *object)
+static void decode_message(const char *data, size_t size, osc_sink *sink, void *object)
 {
-    int result = 0;
     osc_request request = {.drum = ""};
     himc_error error;
-    lo_message message =
-        size >= 8 && data[0] == '/' ? lo_message_deserialise(data, size, &result) : NULL;
-    osc_verdict verdict = message ? read_message(data, message, &request, &error) : OSC_MALFORMED;
+    osc_verdict verdict = read_message(data, size, &request, &error);
     sink(object, verdict, &request, &error);
-    lo_message_free(message);
 }
 
-static void decode_element(char *data, size_t size, int depth, osc_sink *sink, void *object)
+static void decode_element(const char *data, size_t size, int depth, osc_sink *sink, void *object)
 {
     if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
         decode_message(data, size, sink, object);
         return;
     }
     for (size_t at = 16; at < size;) {
-        const unsigned char *b = (const unsigned char *)data + at;
-        uint32_t length = 0;
-        if (size - at >= 4)
-            length = (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+        uint32_t length = size - at >= 4 ? himc_osc_get32(data + at) : 0;
         at += 4;
         if (length == 0 || length % 4 || at > size || length > size - at || depth == BUNDLE_DEPTH) {
             sink(object, OSC_MALFORMED, NULL, NULL);
@@ -121,7 +98,7 @@ static void decode_element(char *data, size_t size, int depth, osc_sink *sink, v
     }
 }
 
-void himc_osc_decode(char *data, size_t size, osc_sink *sink, void *object)
+void himc_osc_decode(const char *data, size_t size, osc_sink *sink, void *object)
 {
     if (size % 4)
         sink(object, OSC_MALFORMED, NULL, NULL);

@@ -23,8 +23,8 @@ typedef enum osc_verdict {
 typedef void osc_sink(void *object, osc_verdict verdict, osc_request *request,
                       const himc_error *error);
 
-/// Gives each message of a packet to `sink`. `data` is aligned to 8 bytes; liblo may swap it.
-void himc_osc_decode(char *data, size_t size, osc_sink *sink, void *object);
+/// Gives each message of a packet to `sink`.
+void himc_osc_decode(const char *data, size_t size, osc_sink *sink, void *object);
 
 void himc_osc_request_copy(osc_request *out, const osc_request *in);
 

@@ -1,5 +1,5 @@
-/// encode.c: the performer's state as OSC 1.0. liblo writes each message; several go into a bundle
-/// with the time of the state. A packet that would grow beyond its limit is closed and another is
+/// encode.c: the performer's state as OSC 1.0. Several messages go into a bundle with the time of
+/// the state. A packet that would grow beyond its limit is closed and another is
 /// begun, with the same time tag, so that no packet is fragmented on the way.
 ///
 /// The second half writes the body as a humanoid avatar (Virtual Motion Capture protocol,
@@ -13,8 +13,8 @@
 /// positions and rotations sent, from the root along the bones, gives our joints, mirrored.
 #include "osc/encode.h"
 #include "himc/body.h"
+#include "osc/message.h"
 
-#include <lo/lo.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -30,12 +30,6 @@ uint64_t himc_osc_time_tag(double wall)
     double whole = floor(wall);
     // 70 years of 365 days and 17 leap days lie between 1900 and 1970 (RFC 868)
     return ((uint64_t)whole + 2208988800u) << 32 | (uint64_t)((wall - whole) * 4294967296.0);
-}
-
-static void put32(unsigned char *at, uint32_t value)
-{
-    for (int i = 0; i < 4; i++)
-        at[i] = (unsigned char)(value >> (24 - 8 * i));
 }
 
 void himc_osc_encode_begin(osc_packets *p, size_t limit, bool bundle, double wall)
@@ -54,48 +48,46 @@ static bool open_packet(osc_packets *p)
     if (p->bundle) {
         unsigned char *at = p->data[p->count];
         memcpy(at, "#bundle", 8);
-        put32(at + 8, (uint32_t)(p->time_tag >> 32));
-        put32(at + 12, (uint32_t)p->time_tag);
+        himc_osc_put32(at + 8, (uint32_t)(p->time_tag >> 32));
+        himc_osc_put32(at + 12, (uint32_t)p->time_tag);
         p->size[p->count] = BUNDLE_HEAD;
     }
     p->count++;
     return true;
 }
 
-static void add_message(osc_packets *p, const char *path, lo_message message)
+static void add_message(osc_packets *p, const osc_message *message)
 {
-    size_t size = lo_message_length(message, path), length = p->bundle ? 4 : 0;
-    if (size + BUNDLE_HEAD + 4 > p->limit)
+    size_t size = himc_osc_message_size(message), length = p->bundle ? 4 : 0;
+    if (size == 0 || size + BUNDLE_HEAD + 4 > p->limit)
         return;
     if (p->count == 0 || !p->bundle || p->size[p->count - 1] + length + size > p->limit)
         if (!open_packet(p))
             return;
     unsigned char *at = p->data[p->count - 1] + p->size[p->count - 1];
     if (p->bundle)
-        put32(at, (uint32_t)size);
-    lo_message_serialise(message, path, at + length, NULL);
+        himc_osc_put32(at, (uint32_t)size);
+    himc_osc_message_write(message, at + length);
     p->size[p->count - 1] += length + size;
 }
 
 // one message; types: s text, i int, f double
 static void add(osc_packets *p, const char *path, const char *types, ...)
 {
-    lo_message message = lo_message_new();
-    if (!message)
-        return;
+    osc_message message;
     va_list args;
+    himc_osc_message_begin(&message, path);
     va_start(args, types);
     for (; *types; types++) {
         if (*types == 's')
-            lo_message_add_string(message, va_arg(args, const char *));
+            himc_osc_message_text(&message, va_arg(args, const char *));
         else if (*types == 'i')
-            lo_message_add_int32(message, va_arg(args, int));
+            himc_osc_message_int(&message, va_arg(args, int));
         else
-            lo_message_add_float(message, (float)va_arg(args, double));
+            himc_osc_message_float(&message, (float)va_arg(args, double));
     }
     va_end(args);
-    add_message(p, path, message);
-    lo_message_free(message);
+    add_message(p, &message);
 }
 
 // --- states
@@ -135,14 +127,12 @@ void himc_osc_encode_beat(osc_packets *p, double beat)
 void himc_osc_encode_head(osc_packets *p, const osc_head *head)
 {
     char path[64];
-    lo_message message = lo_message_new();
-    if (!message)
-        return;
-    for (int i = 0; i < head->count; i++)
-        lo_message_add_float(message, head->amplitude[i]);
+    osc_message message;
     snprintf(path, sizeof path, "/membrane/%s/head", head->name);
-    add_message(p, path, message);
-    lo_message_free(message);
+    himc_osc_message_begin(&message, path);
+    for (int i = 0; i < head->count; i++)
+        himc_osc_message_float(&message, head->amplitude[i]);
+    add_message(p, &message);
 }
 
 void himc_osc_encode_drum(osc_packets *p, const osc_drum *drum)
@@ -179,15 +169,13 @@ void himc_osc_encode_status(osc_packets *p, const osc_status *status, const himc
                 {"sent", (double)c->sent},
                 {"unsent", (double)c->unsent},
                 {"lost", (double)c->lost}};
-    lo_message message = lo_message_new();
-    if (!message)
-        return;
+    osc_message message;
+    himc_osc_message_begin(&message, "/himc/status");
     for (size_t i = 0; i < sizeof pair / sizeof *pair; i++) {
-        lo_message_add_string(message, pair[i].name);
-        lo_message_add_float(message, (float)pair[i].value);
+        himc_osc_message_text(&message, pair[i].name);
+        himc_osc_message_float(&message, (float)pair[i].value);
     }
-    add_message(p, "/himc/status", message);
-    lo_message_free(message);
+    add_message(p, &message);
 }
 
 void himc_osc_encode_line(osc_packets *p, bool error, const char *text)

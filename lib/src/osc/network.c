@@ -1,42 +1,26 @@
-/// network.c: UDP sockets, addresses, names. Our own sockets and not liblo's, because a server of
-/// liblo always binds to every address of the machine.
+/// network.c: sockets, addresses, names.
 ///
 /// Packets to the network that we listen at leave from the listening socket, so that a receiver can
-/// answer; all others leave from sockets that only send. No call waits but the one named so. The
-/// system reports a port where nobody listens on the error queue (IP_RECVERR), with the address
-/// that the packet was meant for.
+/// answer; all others leave from sockets that only send. No call waits but the one named so.
 ///
 /// An IPv4 address mapped into IPv6 (::ffff:a.b.c.d) is compared as the IPv4 address, so that a
 /// host is one host.
-#define _GNU_SOURCE // the error queue and the count of dropped packets are Linux's own
+#define _POSIX_C_SOURCE 200809L // names of hosts, threads
 #include "osc/network.h"
+#include "system/udp.h"
 
-#include <arpa/inet.h>
 #include <errno.h>
-#include <linux/errqueue.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #define RECEIVE_BUFFER (1 << 20) // (bytes) chosen: 0.1 s of the 100,000 packets/s of the storm test
 #define SEND_ATTEMPTS 3 // the first failures may report earlier packets; there are 3 sockets
 
 // --- addresses
 
-typedef union socket_address {
-    struct sockaddr any;
-    struct sockaddr_in v4;
-    struct sockaddr_in6 v6;
-    struct sockaddr_storage storage;
-} socket_address;
-
-static socklen_t to_socket(const osc_address *a, socket_address *out)
+static socklen_t to_socket(const osc_address *a, himc_udp_address *out)
 {
     memset(out, 0, sizeof *out);
     if (a->v6) {
@@ -52,7 +36,7 @@ static socklen_t to_socket(const osc_address *a, socket_address *out)
     return sizeof out->v4;
 }
 
-static osc_address from_socket(const socket_address *in)
+static osc_address from_socket(const himc_udp_address *in)
 {
     osc_address a = {.v6 = in->any.sa_family == AF_INET6};
     if (a.v6) {
@@ -81,7 +65,8 @@ static bool resolve(const char *host, int port, int flags, osc_address *out)
 {
     char service[16];
     struct addrinfo hints = {.ai_socktype = SOCK_DGRAM, .ai_flags = flags}, *found;
-    socket_address at = {0};
+    himc_udp_address at = {0};
+    himc_udp_begin();
     snprintf(service, sizeof service, "%d", port);
     if (getaddrinfo(host, service, &hints, &found) != 0)
         return false;
@@ -129,7 +114,7 @@ bool himc_osc_address_same(const osc_address *x, const osc_address *y)
 void himc_osc_address_print(const osc_address *address, char text[80])
 {
     osc_address a = unmapped(address);
-    socket_address at;
+    himc_udp_address at;
     socklen_t size = to_socket(&a, &at);
     char host[64], port[8];
     if (getnameinfo(&at.any, size, host, sizeof host, port, sizeof port,
@@ -141,27 +126,11 @@ void himc_osc_address_print(const osc_address *address, char text[80])
 
 // --- sockets
 
-static int open_socket(int family)
-{
-    int fd = socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), on = 1,
-        size = RECEIVE_BUFFER;
-    if (fd < 0)
-        return -1;
-    // all of these are useful, none is required
-    if (family == AF_INET6)
-        setsockopt(fd, IPPROTO_IPV6, IPV6_RECVERR, &on, sizeof on);
-    else
-        setsockopt(fd, IPPROTO_IP, IP_RECVERR, &on, sizeof on);
-    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
-    setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    return fd;
-}
-
 bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_counters *counts,
                            himc_error *error)
 {
     osc_address address;
-    socket_address at;
+    himc_udp_address at;
     *n = (osc_network){.in = -1, .out = {-1, -1}, .counts = counts};
     bind_to = bind_to ? bind_to : "127.0.0.1";
     if (port < 0)
@@ -173,9 +142,9 @@ bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_co
                               bind_to);
     n->in_v6 = address.v6;
     n->in_loopback = himc_osc_address_loopback(&address);
-    n->in = open_socket(n->in_v6 ? AF_INET6 : AF_INET);
+    n->in = himc_udp_open(n->in_v6 ? AF_INET6 : AF_INET, RECEIVE_BUFFER);
     socklen_t size = to_socket(&address, &at);
-    if (n->in < 0 || bind(n->in, &at.any, size) != 0) {
+    if (n->in < 0 || !himc_udp_bind(n->in, &at, size)) {
         if (errno == EADDRINUSE)
             return himc_error_set(error, "port %d is taken by another program, allowed a free one",
                                   port);
@@ -192,14 +161,13 @@ void himc_osc_network_close(osc_network *n)
     int fd[] = {n->in, n->out[0], n->out[1]};
     for (int i = 0; i < 3; i++)
         if (fd[i] >= 0)
-            close(fd[i]);
+            himc_udp_close(fd[i]);
     n->in = n->out[0] = n->out[1] = -1;
 }
 
 void himc_osc_network_wait(osc_network *n, int milliseconds)
 {
-    struct pollfd at[] = {{n->in, POLLIN, 0}, {n->out[0], POLLIN, 0}, {n->out[1], POLLIN, 0}};
-    poll(at, 3, milliseconds);
+    himc_udp_wait((int[]){n->in, n->out[0], n->out[1]}, 3, milliseconds);
 }
 
 // the socket that packets to this address leave from, -1 if there is none
@@ -209,82 +177,67 @@ static int socket_to(osc_network *n, const osc_address *to)
         return n->in;
     int *out = &n->out[to->v6];
     if (*out < 0)
-        *out = open_socket(to->v6 ? AF_INET6 : AF_INET);
+        *out = himc_udp_open(to->v6 ? AF_INET6 : AF_INET, RECEIVE_BUFFER);
     return *out;
 }
 
 bool himc_osc_network_send(osc_network *n, const osc_address *to, const void *data, size_t size)
 {
     int fd = socket_to(n, to);
-    socket_address at;
+    himc_udp_address at;
     socklen_t length = to_socket(to, &at);
-    ssize_t sent = -1;
+    long sent = -1;
     for (int i = 0; fd >= 0 && sent < 0 && i < SEND_ATTEMPTS; i++)
-        sent = sendto(fd, data, size, MSG_DONTWAIT, &at.any, length);
-    bool good = sent == (ssize_t)size;
+        sent = himc_udp_send(fd, &at, length, data, size);
+    bool good = sent == (long)size;
     himc_osc_add(n->counts, good ? COUNT_SENT : COUNT_UNSENT, 1);
     return good;
 }
 
-// adds the packets that the system dropped since the last report of this socket
-static void count_overrun(osc_network *n, int socket, struct msghdr *m)
+// socket 0 is the listening one, 1 and 2 are those for sending
+static int socket_of(const osc_network *n, int socket)
 {
-    uint32_t *reported = &n->overrun[socket];
-    for (struct cmsghdr *c = CMSG_FIRSTHDR(m); c; c = CMSG_NXTHDR(m, c))
-        if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
-            uint32_t dropped;
-            memcpy(&dropped, CMSG_DATA(c), sizeof dropped);
-            himc_osc_add(n->counts, COUNT_OVERRUN, (long)(uint32_t)(dropped - *reported));
-            *reported = dropped;
-        }
+    return socket == 0 ? n->in : n->out[socket - 1];
 }
 
-// socket 0 is the listening one, 1 and 2 are those for sending
-static ssize_t read_message(osc_network *n, int socket, int flags, osc_address *from, void *data,
-                            size_t size)
+static long receive(osc_network *n, int socket, osc_address *from, void *data, size_t size)
 {
-    int fd = socket == 0 ? n->in : n->out[socket - 1];
-    _Alignas(struct cmsghdr) char control[512];
-    socket_address at = {0};
-    struct iovec part = {data, size};
-    struct msghdr m = {.msg_name = &at,
-                       .msg_namelen = sizeof at,
-                       .msg_iov = &part,
-                       .msg_iovlen = 1,
-                       .msg_control = control,
-                       .msg_controllen = sizeof control};
-    ssize_t got = fd < 0 ? -1 : recvmsg(fd, &m, flags | MSG_DONTWAIT);
+    int fd = socket_of(n, socket);
+    himc_udp_address at = {0};
+    uint32_t dropped = n->overrun[socket];
+    long got = fd < 0 ? -1 : himc_udp_receive(fd, &at, data, size, &dropped);
     if (got < 0)
         return -1;
     *from = from_socket(&at);
-    if (flags & MSG_ERRQUEUE)
-        return got;
-    count_overrun(n, socket, &m);
+    himc_osc_add(n->counts, COUNT_OVERRUN, (long)(uint32_t)(dropped - n->overrun[socket]));
+    n->overrun[socket] = dropped;
     himc_osc_add(n->counts, COUNT_PACKETS, 1);
     return got;
 }
 
 long himc_osc_network_receive(osc_network *n, osc_address *from, void *data, size_t size)
 {
-    return read_message(n, 0, 0, from, data, size);
+    return receive(n, 0, from, data, size);
 }
 
 bool himc_osc_network_discard(osc_network *n)
 {
     char data[16];
     osc_address from;
-    bool any = read_message(n, 1, 0, &from, data, sizeof data) >= 0 ||
-               read_message(n, 2, 0, &from, data, sizeof data) >= 0;
+    bool any = receive(n, 1, &from, data, sizeof data) >= 0 ||
+               receive(n, 2, &from, data, sizeof data) >= 0;
     himc_osc_add(n->counts, COUNT_FOREIGN, any);
     return any;
 }
 
 bool himc_osc_network_unreachable(osc_network *n, osc_address *to)
 {
-    char data[64];
+    himc_udp_address at = {0};
     for (int i = 0; i < 3; i++)
-        if (read_message(n, i, MSG_ERRQUEUE, to, data, sizeof data) >= 0)
+        if (socket_of(n, i) >= 0 && himc_udp_unreachable(socket_of(n, i), &at)) {
+            *to = from_socket(&at);
             return true;
+        }
     return false;
 }
 

@@ -11,29 +11,29 @@
 /// for from buckets (so much a second, so much at once). When the thread has read its share of
 /// packets it rests a millisecond and leaves the others in the socket, where the system drops and
 /// counts what does not fit; so a flood costs this thread no more than its share.
-#define _GNU_SOURCE // setpriority of one thread is Linux's own
+#define _POSIX_C_SOURCE 200809L // clocks
 #include "drum/drum_performer.h"
 #include "drum/membrane_probe.h"
+#include "head/modes.h"
 #include "himc/osc.h"
 #include "himc/body.h"
 #include "himc/membrane.h"
 #include "osc/decode.h"
 #include "osc/stepped.h"
 #include "osc/subscribe.h"
+#include "system/files.h"
+#include "system/thread.h"
 
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <time.h>
 
 #define RECORDS 1024         // chosen: poses of 4 s at 250 Hz
 #define COMMANDS_WAITING 512 // chosen: half a second of 1000 points
 #define LINES 64             // chosen: the host reads them after each block
-#define NICE 5               // chosen: sound goes first
 #define PACKETS_AT_ONCE 256  // read in one pass; chosen: then states are sent again
 #define PACKET_SIZE 65536    // largest of UDP (bytes)
 #define WAIT_SUBSCRIBED 2    // (ms) chosen: a strike leaves within it
@@ -523,7 +523,7 @@ static void take_message(void *object, osc_verdict verdict, osc_request *request
 // false if none waits
 static bool take_packet(himc_osc *osc)
 {
-    _Alignas(8) char data[PACKET_SIZE];
+    char data[PACKET_SIZE];
     osc_address from;
     long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
     if (size < 0)
@@ -579,7 +579,7 @@ static void *run(void *object)
 {
     himc_osc *osc = object;
     bool flood = false;
-    setpriority(PRIO_PROCESS, 0, NICE);
+    himc_system_give_way();
     while (!atomic_load_explicit(&osc->stop, memory_order_acquire)) {
         if (flood)
             nanosleep(&(struct timespec){0, REST}, NULL);
@@ -622,8 +622,8 @@ static bool set_files(himc_osc *osc, const char *folder, himc_error *error)
     struct stat about;
     if (!folder)
         return true;
-    osc->files = realpath(folder, NULL);
-    if (!osc->files || stat(osc->files, &about) != 0 || !S_ISDIR(about.st_mode))
+    osc->files = himc_system_real_path(folder);
+    if (!osc->files || stat(folder, &about) != 0 || !S_ISDIR(about.st_mode))
         return himc_error_set(error, "files: %.200s is no folder", folder);
     return true;
 }

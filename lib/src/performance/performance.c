@@ -43,8 +43,7 @@ static void measure(himc_performance *p, double t, bool tick)
         if (himc_motion_is_idle(p->motion, (himc_hand)hand, t))
             continue;
         if (p->drums.count > 0) {
-            himc_vec3 over =
-                himc_head_frame_from_world(himc_drums_frame(&p->drums, c->drum), r->tip[hand].x);
+            himc_vec3 over = himc_drums_local(&p->drums, c->drum, r->tip[hand].x);
             double height = over.z - p->body->skeleton.mallet_radius;
             himc_statistics_height(&p->statistics, (himc_hand)hand, height, c->touching);
         }
@@ -69,16 +68,17 @@ static void correct_hits(himc_performance *p, double t)
 static void step_dynamics(himc_performance *p, int n, double t, double h, bool tick)
 {
     contact_scene scene = scene_of(p);
-    himc_vec3 tip_force[HIMC_HANDS];
     if (!himc_body_observe(p->body, tick))
         recover(p);
+    if (tick)
+        himc_performance_take_energy(p);
     himc_contacts_finish(&p->contacts, &scene, t);
     correct_hits(p, t);
     himc_body_control(p->body, &p->motion->reference, h);
-    himc_contacts_advance(&p->contacts, &scene, n, tip_force);
+    himc_contacts_advance(&p->contacts, &scene, n, p->body->tip_force);
     measure(p, t, tick);
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, p->body->torque);
-    if (!himc_body_simulate(p->body, tip_force, t, h))
+    if (!himc_body_simulate(p->body, t, h))
         recover(p);
 }
 
@@ -86,11 +86,12 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
 static void step_kinematics(himc_performance *p, int n, double t, double h, bool tick)
 {
     contact_scene scene = scene_of(p);
-    himc_vec3 unused[HIMC_HANDS];
     if (!himc_body_follow(p->body, &p->motion->reference, h))
         recover(p);
+    if (tick)
+        himc_performance_take_energy(p);
     himc_contacts_finish(&p->contacts, &scene, t);
-    himc_contacts_advance(&p->contacts, &scene, n, unused);
+    himc_contacts_advance(&p->contacts, &scene, n, p->body->tip_force);
     measure(p, t, tick);
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
 }
@@ -99,7 +100,7 @@ static void tell_planner_notes(himc_performance *p)
 {
     himc_planner_note note;
     while (himc_planner_note_next(p->motion->planner, &note))
-        himc_events_note(&p->events, "%s", note.text);
+        himc_events_note_as(&p->events, note.minor, "%s", note.text);
 }
 
 // strokes given up, beats, the end
@@ -109,7 +110,8 @@ static void watch(himc_performance *p, double t)
     tell_planner_notes(p);
     long beat = himc_motion_beat(p->motion, t);
     if (beat >= 0)
-        himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_BEAT, .beat = (double)beat});
+        himc_events_add(&p->events,
+                        &(himc_event){.kind = HIMC_EVENT_BEAT, .beat = (double)beat, .time = t});
     if (!himc_contacts_any(&p->contacts) && himc_motion_done(p->motion, t)) {
         tell_planner_notes(p);
         himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_DONE});

@@ -48,12 +48,22 @@ bool himc_body_make_parts(body_parts *parts, const performance_settings *s, himc
     return parts->character != NULL;
 }
 
+static double energy(const himc_character *c)
+{
+    return himc_character_kinetic(c) + himc_character_potential(c);
+}
+
 void himc_body_adopt(performance_body *b, const body_parts *parts)
 {
+    if (b->accounting) {
+        b->work.placed += energy(parts->character) - energy(b->character);
+        himc_character_account(parts->character, &b->work);
+    }
     himc_character_free(b->character);
     b->character = parts->character;
     b->skeleton = parts->skeleton;
     b->plant = parts->plant;
+    b->legs.known = false;
 }
 
 bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
@@ -93,6 +103,8 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
     himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     b->controller.saturation = &b->saturation;
+    b->controller.legs = &b->legs;
+    b->legs.known = false;
     himc_character_use(b->character, s->engine);
 }
 
@@ -150,13 +162,24 @@ void himc_body_control(performance_body *b, const himc_reference *reference, dou
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
 }
 
-bool himc_body_simulate(performance_body *b, const himc_vec3 tip_force[HIMC_HANDS], double t,
-                        double h)
+himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)
+{
+    return t < b->push[segment].until ? b->push[segment].force : himc_vec3_make(0, 0, 0);
+}
+
+bool himc_body_simulate(performance_body *b, double t, double h)
 {
     for (int i = 0; t < b->push_end && i < HIMC_SEGMENTS; i++)
-        if (t < b->push[i].until)
-            himc_character_push(b->character, i, b->push[i].force);
-    return himc_character_step(b->character, b->torque, tip_force, h);
+        himc_character_push(b->character, i, himc_body_pushed(b, i, t));
+    return himc_character_step(b->character, b->torque, b->tip_force, h);
+}
+
+void himc_body_account(performance_body *b, bool on)
+{
+    if (on != b->accounting)
+        memset(&b->work, 0, sizeof b->work);
+    b->accounting = on;
+    himc_character_account(b->character, on ? &b->work : NULL);
 }
 
 bool himc_body_follow(performance_body *b, const himc_reference *reference, double h)
@@ -207,5 +230,18 @@ bool himc_body_find_joint(const char *name, const char *command, int *joint, him
     for (int j = 0; error && j < HIMC_JOINTS; j++)
         used +=
             himc_format(error->text + used, sizeof error->text - used, " %s", himc_joint_name(j));
+    return false;
+}
+
+bool himc_body_find_segment(const char *name, int *segment, himc_error *error)
+{
+    for (*segment = HIMC_PELVIS + 1; *segment < HIMC_SEGMENTS; ++*segment)
+        if (strcmp(name, himc_segment_name(*segment)) == 0)
+            return true;
+    himc_error_set(error, "push: SEGMENT: %s, allowed", name);
+    size_t used = error ? strlen(error->text) : 0;
+    for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
+        used +=
+            himc_format(error->text + used, sizeof error->text - used, " %s", himc_segment_name(i));
     return false;
 }

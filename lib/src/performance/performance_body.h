@@ -5,6 +5,7 @@
 
 #include "body/character.h"
 #include "control/setpoint.h"
+#include "control/still_legs.h"
 #include "performance/performance_settings.h"
 
 /// A constant force on a segment's centre of mass.
@@ -14,13 +15,17 @@ typedef struct body_push {
 } body_push;
 
 typedef struct performance_body {
-    himc_skeleton skeleton;        ///< assumed by the controller
-    himc_skeleton plant;           ///< simulated: masses may differ
-    himc_character *character;     ///< owned
-    himc_body_state state;         ///< at the beginning of the last step
-    himc_vec3 torque[HIMC_JOINTS]; ///< of the last step (N m)
-    himc_controller controller;    ///< borrows `limits` and `saturation`
-    himc_limits limits;            ///< in force
+    himc_skeleton skeleton;          ///< assumed by the controller
+    himc_skeleton plant;             ///< simulated: masses may differ
+    himc_character *character;       ///< owned
+    himc_body_state state;           ///< at the beginning of the last step
+    himc_vec3 torque[HIMC_JOINTS];   ///< of the last step (N m)
+    himc_vec3 tip_force[HIMC_HANDS]; ///< of the last step (N)
+    bool accounting;                 ///< `work` is added up
+    himc_body_work work;
+    himc_controller controller; ///< borrows `limits`, `saturation` and `legs`
+    himc_still_legs legs;
+    himc_limits limits; ///< in force
     himc_saturation_counts saturation;
     body_push push[HIMC_SEGMENTS];
     double push_end; ///< of all pushes (s)
@@ -64,9 +69,13 @@ HIMC_RT void himc_body_push(performance_body *body, int segment, himc_vec3 force
 HIMC_RT bool himc_body_observe(performance_body *body, bool check);
 /// The torques for this state, in a step of `h` (s).
 HIMC_RT void himc_body_control(performance_body *body, const himc_reference *reference, double h);
-/// Moves the simulated body by `h` (s) from time `t` (s). False if the engine fails.
-HIMC_RT bool himc_body_simulate(performance_body *body, const himc_vec3 tip_force[HIMC_HANDS],
-                                double t, double h);
+/// Moves the simulated body by `h` (s) from time `t` (s), under its torques, tip forces and pushes.
+/// False if the engine fails.
+HIMC_RT bool himc_body_simulate(performance_body *body, double t, double h);
+/// The push on a segment at time `t` (N).
+HIMC_RT himc_vec3 himc_body_pushed(const performance_body *body, int segment, double t);
+/// Adds up the work on the body from 0 on, or no longer.
+HIMC_RT void himc_body_account(performance_body *body, bool on);
 /// Moves the body by inverse kinematics, by `h` (s). False if the state is not finite.
 HIMC_RT bool himc_body_follow(performance_body *body, const himc_reference *reference, double h);
 /// Clamps a kinematic pose to the joint limits and stops the joints that this moves.
@@ -77,5 +86,7 @@ HIMC_RT long himc_body_limit_hits(const performance_body *body);
 
 /// The joint of that name; false if there is none, `command` begins the error.
 bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error);
+/// Finds a segment that can be pushed; false with the names allowed.
+bool himc_body_find_segment(const char *name, int *segment, himc_error *error);
 
 #endif

@@ -301,9 +301,8 @@ static bool do_rate(himc_performance *p, const himc_command *c, himc_error *erro
     enum { PHYSICS, TASK };
     bool physics = c->form == PHYSICS;
     double hz = c->atom[1].number;
-    if (!physics && p->recording.file)
-        return himc_error_set(error,
-                              "rate task: %g: not while recording, allowed after record stop", hz);
+    if (!himc_performance_allows(p->recording.file, c, error))
+        return false;
     const himc_performance_config *usual = &p->host.config;
     *(physics ? &s.physics_rate : &s.task_rate) =
         himc_argument_usual(hz, physics ? usual->physics_rate : usual->task_rate);
@@ -379,29 +378,11 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
     return himc_performance_rebuild(p, &s, error);
 }
 
-static int find_segment(const char *name)
-{
-    for (int i = HIMC_PELVIS + 1; i < HIMC_SEGMENTS; i++)
-        if (strcmp(name, himc_segment_name(i)) == 0)
-            return i;
-    return -1;
-}
-
-static bool unknown_segment(const char *name, himc_error *error)
-{
-    himc_error_set(error, "push: SEGMENT: %s, allowed", name);
-    size_t used = error ? strlen(error->text) : 0;
-    for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
-        used +=
-            himc_format(error->text + used, sizeof error->text - used, " %s", himc_segment_name(i));
-    return false;
-}
-
 static bool do_push(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    int i = find_segment(c->atom[0].symbol);
-    if (i < 0)
-        return unknown_segment(c->atom[0].symbol, error);
+    int i;
+    if (!himc_body_find_segment(c->atom[0].symbol, &i, error))
+        return false;
     himc_vec3 force = {c->atom[1].number, c->atom[2].number, c->atom[3].number};
     himc_body_push(p->body, i, force, step_time(p) + c->atom[4].number);
     return true;
@@ -532,7 +513,12 @@ static bool run(void *receiver, const himc_command *c, int delay, himc_error *er
     return himc_performance_command(receiver, c, delay, error);
 }
 
-const himc_runner himc_performance_runner = {takes_long, run, job_of};
+static himc_job *state_job(void *receiver, const char *state, himc_error *error)
+{
+    return himc_performance_state_job(receiver, state, error);
+}
+
+const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job};
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)

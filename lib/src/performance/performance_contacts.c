@@ -15,6 +15,7 @@
 /// rests on the head: control acts on with a bounded force, and the plan is not changed. A press
 /// ends when the stick has clearly left the head, so a stick that rests has one contact.
 #include "performance/performance_contacts.h"
+#include "drum/contact.h"
 
 #include "body/dynamics.h"
 #include "base/head_frame.h"
@@ -58,11 +59,18 @@ void himc_contacts_clear(performance_contacts *c)
         c->hand[hand] = (stick_contact){.touching = false};
 }
 
-double himc_contacts_take_peak(performance_contacts *c, himc_hand hand)
+void himc_contacts_take_row(performance_contacts *c, himc_hand hand, double *peak, double *impulse)
 {
-    double peak = c->hand[hand].peak_row;
-    c->hand[hand].peak_row = 0;
-    return peak;
+    *peak = c->hand[hand].peak_row;
+    *impulse = c->hand[hand].impulse_row;
+    c->hand[hand].peak_row = c->hand[hand].impulse_row = 0;
+}
+
+double himc_contacts_felt_energy(const performance_contacts *c, himc_hand hand)
+{
+    const himc_stick *stick = &c->hand[hand].stick;
+    double kinetic = 0.5 * stick->mass * stick->velocity * stick->velocity;
+    return stick->touching ? himc_contact_energy(stick) - kinetic : 0;
 }
 
 static bool is_kinematic(const contact_scene *s)
@@ -75,10 +83,15 @@ static const himc_head_frame *frame_of(const contact_scene *s, int drum)
     return himc_drums_frame(s->drums, drum);
 }
 
+static himc_vec3 normal_of(const contact_scene *s, int drum)
+{
+    return himc_drums_axes(s->drums, drum)->normal;
+}
+
 // place of a tip on a head, z the mallet's height over it (m)
 static himc_vec3 over_head(const contact_scene *s, int drum, himc_vec3 tip)
 {
-    himc_vec3 at = himc_head_frame_from_world(frame_of(s, drum), tip);
+    himc_vec3 at = himc_drums_local(s->drums, drum, tip);
     at.z -= s->body->skeleton.mallet_radius;
     return at;
 }
@@ -97,7 +110,7 @@ static double height_of(const stick_contact *c, const contact_scene *s, himc_han
 
 static double velocity_of(const stick_contact *c, const contact_scene *s, himc_hand hand)
 {
-    himc_vec3 n = himc_head_frame_normal(frame_of(s, c->drum));
+    himc_vec3 n = normal_of(s, c->drum);
     return is_kinematic(s) ? c->stick.velocity
                            : himc_vec3_dot(n, s->body->state.tip_velocity[hand]);
 }
@@ -117,10 +130,10 @@ static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc
 }
 
 // true for a stroke of a take after which the tip stays on the head
-static bool rests_after(const contact_scene *s, himc_hand hand, const planned_stroke *stroke)
+static bool rests_after(const contact_scene *s, himc_hand hand, int drum, double time)
 {
-    return stroke->drum < s->drums->count &&
-           himc_motion_rests_after(s->motion, hand, stroke->time, frame_of(s, stroke->drum));
+    return drum < s->drums->count &&
+           himc_motion_rests_after(s->motion, hand, time, frame_of(s, drum));
 }
 
 // the highest head that the hand's tip is above or on, or -1
@@ -145,12 +158,12 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         const stick_contact *c = &contacts->hand[i];
-        planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
+        planned_contact stroke = himc_motion_next(s->motion, s->drums, hand, t);
         // the plan of a stroke that rebounds dips into the head, and nothing follows it there
         bool rebounds = c->bounce.on  ? true
                         : c->touching ? !c->pressed
                                       : stroke.any && stroke.time < next + (next - t) &&
-                                            !rests_after(s, hand, &stroke);
+                                            !rests_after(s, hand, stroke.drum, stroke.time);
         int under = rebounds ? -1 : head_under(c, s, hand);
         himc_motion_set_under(s->motion, hand, under < 0 ? NULL : frame_of(s, under));
     }
@@ -158,7 +171,7 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
 
 // gives up a planned contact that has not come; the plan continues
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
-                    const planned_stroke *next)
+                    const planned_contact *next)
 {
     bool known = next->drum < s->drums->count;
     himc_motion_answer(s->motion, hand, next->time);
@@ -188,24 +201,24 @@ static double hand_acceleration(const stick_contact *c, const contact_scene *s, 
     if (!c->touching || !c->pressed)
         return 0;
     himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
-    return himc_grip_press(&s->motion->reference.tip[hand], &tip,
-                           himc_head_frame_normal(frame_of(s, c->drum)), c->stick.mass);
+    return himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
+                           c->stick.mass);
 }
 
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
+    planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool due = next.any && t >= next.time && !is_free(c);
     if (due && t >= next.time + LATEST_CONTACT) {
         give_up(c, s, hand, t, &next);
         due = false;
     }
     int drum = is_free(c) ? c->drum : next.drum;
-    c->released = is_free(c) || (due && !rests_after(s, hand, &next));
+    c->released = is_free(c) || (due && !rests_after(s, hand, next.drum, next.time));
     c->hand = hand_acceleration(c, s, hand);
     himc_motion_release(s->motion, hand, c->released, c->hand);
     if (drum < s->drums->count)
-        himc_motion_set_normal(s->motion, hand, himc_head_frame_normal(frame_of(s, drum)));
+        himc_motion_set_normal(s->motion, hand, normal_of(s, drum));
     if (is_free(c) && is_kinematic(s))
         follow_stick(c, s, hand, t);
 }
@@ -237,14 +250,21 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
 static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand hand,
                       himc_vec3 *local)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, himc_clock_time(s->clock));
-    int meant = is_free(c) ? c->drum : next.any ? next.drum : -1;
-    if (meant >= 0 && meant < s->drums->count && is_over(c, s, hand, meant, local))
-        return meant;
-    for (int i = 0; i < s->drums->count; i++)
-        if (is_over(c, s, hand, i, local))
-            return i;
-    return -1;
+    int below = -1;
+    for (int i = 0; i < s->drums->count; i++) {
+        himc_vec3 at;
+        if (!is_over(c, s, hand, i, &at))
+            continue;
+        if (below >= 0) { // which one is meant matters here alone
+            planned_contact next =
+                himc_motion_next(s->motion, s->drums, hand, himc_clock_time(s->clock));
+            if (i != (is_free(c) ? c->drum : next.any ? next.drum : -1))
+                continue;
+        }
+        below = i;
+        *local = at;
+    }
+    return below;
 }
 
 static double bounded(double x, double most)
@@ -257,7 +277,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
                        const himc_articulation *art, const himc_vec3 *relative)
 {
     const performance_body *b = s->body;
-    himc_vec3 n = himc_head_frame_normal(frame_of(s, c->drum));
+    himc_vec3 n = normal_of(s, c->drum);
     if (!c->stick.touching) // mallets are changed in the air
         c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum);
     c->stick.mass = himc_effective_mass(&b->plant, &b->state, art, hand, n);
@@ -287,7 +307,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     strcpy(nuance.text, planned ? next.nuance : bounced ? c->strike.nuance : "none");
     c->touching = true;
     c->told = false;
-    c->pressed = !bounced && (!planned || rests_after(s, hand, &next));
+    c->pressed = !bounced && (!planned || rests_after(s, hand, next.drum, next.time));
     c->strike = (himc_strike){.time = time,
                               .hand = hand,
                               .x = c->stick.x,
@@ -295,7 +315,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .velocity = -velocity,
                               .planned_time = planned ? next.time : NAN,
                               .planned_x = next.x,
-                              .planned_y = next.y};
+                              .planned_y = next.y,
+                              .beat = planned ? next.beat : NAN};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, nuance.text);
     if (bounced)
@@ -334,6 +355,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     if (c->touching)
         c->strike.force = fmax(c->strike.force, c->stick.peak);
     c->strike.impulse += impulse;
+    c->impulse_row += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
     himc_statistics_force(s->statistics, c->strike.force);
     himc_statistics_contact(s->statistics, c->strike.duration);
@@ -419,6 +441,14 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
     }
 }
 
+// work of a head on a stick from `a` to `b` (J): it is a free body under this and the hand's
+// acceleration, both constant in a sample
+static double work_on(const himc_stick *a, const himc_stick *b)
+{
+    double kinetic = 0.5 * b->mass * (b->velocity * b->velocity - a->velocity * a->velocity);
+    return kinetic - b->mass * b->acceleration * (b->height - a->height);
+}
+
 void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int n,
                            himc_vec3 tip_force[HIMC_HANDS])
 {
@@ -428,6 +458,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         memset(c->force[hand], 0, (size_t)n * sizeof(double));
     c->force_count = n;
     load_sticks(c, s, &near);
+    himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, &near);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         tip_force[hand] = himc_vec3_make(0, 0, 0);
@@ -435,7 +466,9 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             continue;
         double impulse =
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
-        himc_vec3 normal = himc_head_frame_normal(frame_of(s, near.below[hand]));
+        if (impulse > 0)
+            himc_statistics_given(s->statistics, -work_on(&before[hand], &c->hand[hand].stick));
+        himc_vec3 normal = normal_of(s, near.below[hand]);
         tip_force[hand] = himc_vec3_scale(normal, impulse * s->clock->sample_rate / n);
     }
 }
@@ -467,7 +500,7 @@ static void end_contact(stick_contact *c, const contact_scene *s, himc_hand hand
 // the hand takes up a stick that has bounced, also when the next stroke is near
 static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, t);
+    planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool near = next.any && t > next.time - LEAST_PREPARATION;
     bool presses = c->touching && t < c->strike.time + RESTING_CONTACT;
     if (!near && (presses || !himc_bounce_is_over(&c->bounce, t, velocity_of(c, s, hand))))

@@ -26,6 +26,7 @@ typedef struct stick_contact {
     double offset;      ///< of the stick's height from the body's tip (m); decays after contact
     double last_force;  ///< time of the last force (s)
     double peak_row;    ///< largest force since the last motion row (N)
+    double impulse_row; ///< impulse since then (N s)
     himc_strike strike; ///< in progress
 } stick_contact;
 
@@ -67,7 +68,10 @@ static inline bool himc_contacts_any(const performance_contacts *contacts)
     return contacts->hand[HIMC_LEFT].touching || contacts->hand[HIMC_RIGHT].touching;
 }
 
-/// Largest force of a hand since the last call (N).
-HIMC_RT double himc_contacts_take_peak(performance_contacts *contacts, himc_hand hand);
+/// Largest force (N) and impulse (N s) of a hand since the last call.
+HIMC_RT void himc_contacts_take_row(performance_contacts *contacts, himc_hand hand, double *peak,
+                                    double *impulse);
+/// Energy stored in the felt of a hand's mallet (J).
+HIMC_RT double himc_contacts_felt_energy(const performance_contacts *contacts, himc_hand hand);
 
 #endif

@@ -30,6 +30,25 @@ const himc_head_frame *himc_drums_frame(const performance_drums *d, int index)
     return himc_drum_head_frame(d->slot[index].drum);
 }
 
+const himc_head_axes *himc_drums_axes(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    const himc_head_frame *frame = himc_drums_frame(d, index);
+    if (!himc_head_frame_equal(&slot->seen, frame)) {
+        slot->seen = *frame;
+        slot->axes = himc_head_axes_of(frame);
+    }
+    return &slot->axes;
+}
+
+himc_vec3 himc_drums_local(performance_drums *d, int index, himc_vec3 point)
+{
+    const himc_head_axes *axes = himc_drums_axes(d, index);
+    himc_vec3 away = himc_vec3_sub(point, himc_drums_frame(d, index)->center);
+    return himc_vec3_make(himc_vec3_dot(away, axes->x), himc_vec3_dot(away, axes->y),
+                          himc_vec3_dot(away, axes->normal));
+}
+
 static bool is_clear(const performance_drums *d, int index, himc_vec3 center)
 {
     double radius = himc_drums_frame(d, index)->radius;
@@ -167,18 +186,21 @@ bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_err
 
 void himc_drums_put_back(performance_drums *d)
 {
-    performance_drums old = *d;
+    drum_slot old[HIMC_DRUMS];
+    int count = d->count;
+    memcpy(old, d->slot, sizeof old);
+    for (int i = 0; i < count; i++)
+        himc_air_between_leave(&d->air, old[i].drum);
     himc_drums_begin(d);
-    for (int i = 0; i < old.count; i++) {
-        himc_drum *drum = old.slot[i].drum;
-        himc_drum_heads_free(old.slot[i].heads);
-        if (old.slot[i].source != DRUM_GIVEN) {
-            release(&old, drum);
+    for (int i = 0; i < count; i++) {
+        himc_drum *drum = old[i].drum;
+        himc_drum_heads_free(old[i].heads);
+        if (old[i].source != DRUM_GIVEN) {
+            release(d, drum);
             continue;
         }
-        if (is_where_put(&old.slot[i]))
-            himc_drum_stand(drum, old.slot[i].found);
-        himc_air_between_leave(&old.air, drum);
+        if (is_where_put(&old[i]))
+            himc_drum_stand(drum, old[i].found);
         himc_drum_rest(drum);
         fill_slot(d, d->count++, drum, DRUM_GIVEN);
     }

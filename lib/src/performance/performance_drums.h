@@ -2,6 +2,7 @@
 #ifndef HIMC_PERFORMANCE_DRUMS_H
 #define HIMC_PERFORMANCE_DRUMS_H
 
+#include "base/head_frame.h"
 #include "drum/air_between.h"
 #include "drum/drum_performer.h"
 #include "himc/drum.h"
@@ -26,6 +27,8 @@ typedef struct drum_slot {
     bool placed;            ///< himc_drum_is_placed before that ...
     himc_vec3 found, at;    ///< ... its position then, and its new position (m)
     int behind;             ///< samples that it has not made yet
+    himc_head_frame seen;   ///< where its head was when ...
+    himc_head_axes axes;    ///< ... its axes were found
     himc_drum_heads *heads; ///< owned; its changes in the score, NULL for none
 } drum_slot;
 
@@ -45,6 +48,10 @@ HIMC_RT void himc_drums_begin(performance_drums *drums);
 /// Slot of the drum with that name, -1 if there is none.
 HIMC_RT int himc_drums_find(const performance_drums *drums, const char *name);
 HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, int index);
+/// The axes of that frame, found when it has changed.
+HIMC_RT const himc_head_axes *himc_drums_axes(performance_drums *drums, int index);
+/// Place of a world point on that head, z the height above it (m).
+HIMC_RT himc_vec3 himc_drums_local(performance_drums *drums, int index, himc_vec3 point);
 /// False with the reason if there are HIMC_DRUMS drums; `name` is of one more.
 bool himc_drums_have_room(const performance_drums *d, const char *name, himc_error *error);
 /// Takes a drum and its reference, in the slot of the same name or a new one. A drum without a

@@ -254,7 +254,7 @@ static void dump_tempi(const himc_planner *planner, const himc_line_sink *to)
                         (double[]){tempi[i].bpm, tempi[i].beat});
 }
 
-void himc_performance_dump(const himc_performance *p, const himc_line_sink *to)
+static void dump(const himc_performance *p, const himc_line_sink *to)
 {
     dump_drums(p, to);
     dump_rates(p, to);
@@ -273,10 +273,20 @@ void himc_performance_dump(const himc_performance *p, const himc_line_sink *to)
         dump_written(&p->written.score, to);
 }
 
+void himc_performance_describe(const himc_performance *p, himc_description what,
+                               void (*line)(void *, const char *), void *user)
+{
+    himc_line_sink to = {line, user};
+    if (what == HIMC_DESCRIBE_STATE)
+        dump(p, &to);
+    else
+        himc_performance_inform(p, to);
+}
+
 himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
     himc_text_lines lines = {0};
-    himc_performance_describe(p, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
+    dump(p, &(himc_line_sink){himc_text_add, &lines});
     return himc_file_write_job("dump", command->atom[0].symbol, &lines, error);
 }

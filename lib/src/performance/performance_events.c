@@ -15,14 +15,30 @@ void himc_events_add(performance_events *e, const himc_event *event)
     e->event[(e->first + e->count++) % EVENTS_WAITING] = *event;
 }
 
+static void add_note(performance_events *e, bool minor, const char *format, va_list args)
+    __attribute__((format(printf, 3, 0)));
+
+static void add_note(performance_events *e, bool minor, const char *format, va_list args)
+{
+    himc_event event = {.kind = HIMC_EVENT_NOTE, .minor = minor};
+    himc_line_print(event.text, sizeof event.text, format, args);
+    himc_events_add(e, &event);
+}
+
 void himc_events_note(performance_events *e, const char *format, ...)
 {
-    himc_event event = {.kind = HIMC_EVENT_NOTE};
     va_list args;
     va_start(args, format);
-    himc_line_print(event.text, sizeof event.text, format, args);
+    add_note(e, false, format, args);
     va_end(args);
-    himc_events_add(e, &event);
+}
+
+void himc_events_note_as(performance_events *e, bool minor, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    add_note(e, minor, format, args);
+    va_end(args);
 }
 
 bool himc_events_take(performance_events *e, himc_event *event)

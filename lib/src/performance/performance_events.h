@@ -22,6 +22,9 @@ HIMC_RT void himc_events_add(performance_events *events, const himc_event *event
 /// Adds a line for the user.
 HIMC_RT void himc_events_note(performance_events *events, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/// The same, minor or not.
+HIMC_RT void himc_events_note_as(performance_events *events, bool minor, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /// Takes the oldest event; false if there is none.
 HIMC_RT bool himc_events_take(performance_events *events, himc_event *event);
 

@@ -34,6 +34,10 @@
 #define PRESS_ARRIVAL 0.6 // at the head (m/s)
 #define PRESS_BRAKE 20.0  // above it (m/s^2)
 
+// after the predicted end of the last contact, by when the real one has begun; chosen: strokes land
+// within 10 ms of their time, bounces within 30 ms
+#define LATE_CONTACT 0.05 // (s)
+
 // a stroke that does not rebound: at both times after it the tip is wanted so low; chosen: the
 // softest roll of one hand, ppp at 12 Hz, is higher at the first, the fastest at one of them
 static const double rests_at[] = {0.06, 0.09}; // (s)
@@ -181,6 +185,26 @@ himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, dou
     return himc_planner_target(m->planner, hand, t);
 }
 
+static bool is_coming(const performance_motion *m, himc_hand hand, double time)
+{
+    return time > m->answered[hand] + REPLANNED && isfinite(time);
+}
+
+planned_contact himc_motion_next(const performance_motion *m, const performance_drums *drums,
+                                 himc_hand hand, double t)
+{
+    planned_contact next = {.any = false, .drum = 0};
+    double x, y;
+    if (himc_motion_tracks(m, hand)) {
+        next.any = himc_track_current(m->track, hand, t - m->track_start, &next.time, &x, &y);
+        next.time += m->track_start;
+    } else if (himc_planner_current(m->planner, hand, t, NULL, &next.drum, &next.time)) {
+        next.any = next.drum < drums->count;
+    }
+    next.any = next.any && is_coming(m, hand, next.time);
+    return next;
+}
+
 planned_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
                                   himc_hand hand, double t)
 {
@@ -190,16 +214,18 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         next.any =
             himc_track_current(m->track, hand, t - m->track_start, &next.time, &next.x, &next.y);
         next.time += m->track_start;
+        next.beat = NAN;
         strcpy(next.nuance, "none");
     } else if (himc_planner_current(m->planner, hand, t, &stroke, &next.drum, &next.time)) {
         next.any = next.drum < drums->count;
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.beat = stroke.beat;
         next.bounces = stroke.bounces;
         next.bounce_time = stroke.bounce_time;
     }
-    next.any = next.any && next.time > m->answered[hand] + REPLANNED && isfinite(next.time);
+    next.any = next.any && is_coming(m, hand, next.time);
     return next;
 }
 
@@ -627,10 +653,10 @@ long himc_motion_beat(performance_motion *m, double t)
 
 bool himc_motion_done(performance_motion *m, double t)
 {
-    double end = m->track ? take_end(m) : himc_planner_end(m->planner);
+    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
     if (!m->playing || !(t >= end))
         return false;
     m->playing = false;
-    himc_planner_sum_up(m->planner);
+    himc_planner_finish(m->planner, t);
     return true;
 }

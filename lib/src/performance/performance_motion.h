@@ -25,12 +25,20 @@ typedef struct trunk_course {
     double time; ///< of `from` (s)
 } trunk_course;
 
-/// The present or next stroke of a hand.
+/// The present or next contact of a hand.
+typedef struct planned_contact {
+    bool any;
+    double time; ///< (s)
+    int drum;    ///< slot
+} planned_contact;
+
+/// The stroke of that contact.
 typedef struct planned_stroke {
     bool any;
     double time; ///< of contact (s)
     int drum;    ///< slot
     double x, y; ///< on the head (m)
+    double beat; ///< in the score, NaN of a take
     char nuance[HIMC_NAME_SIZE];
     int bounces;        ///< of a stroke that bounces (himc_stroke)
     double bounce_time; ///< (s)
@@ -98,6 +106,8 @@ HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
 
 /// Planned state of a tip.
 HIMC_RT himc_target himc_motion_planned(const performance_motion *motion, himc_hand hand, double t);
+HIMC_RT planned_contact himc_motion_next(const performance_motion *motion,
+                                         const performance_drums *drums, himc_hand hand, double t);
 HIMC_RT planned_stroke himc_motion_stroke(const performance_motion *motion,
                                           const performance_drums *drums, himc_hand hand, double t);
 /// Ends the stroke planned for that time: struck or given up.

@@ -4,6 +4,7 @@
 #include "base/head_frame.h"
 #include "capture/take.h"
 #include "plan/ornament.h"
+#include "plan/score.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,14 +53,13 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
 {
     wanted_drum drum;
     if (!check_stroke(stroke, false, error) ||
-        !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_want_drum(p, stroke->drum, &drum, error))
         return false;
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
-    const himc_drum *struck = drum.fresh ? drum.fresh : p->drums.slot[drum.index].drum;
-    if (rolls
-            ? !himc_planner_accepts_roll(p->motion->planner, stroke, himc_drum_pitch(struck), error)
-            : !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
+    int tempo_count;
+    const himc_tempo_change *tempi = himc_planner_tempi(p->motion->planner, &tempo_count);
+    if (rolls ? !himc_score_accepts_roll(tempi, tempo_count, stroke, error)
+              : !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
         himc_drum_release(drum.fresh);
         return false;
     }
@@ -67,31 +67,32 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
     plain.ornament = HIMC_PLAIN;
-    return (rolls || himc_planner_add(p->motion->planner, &plain, drum.index, error)) &&
-           himc_performance_add_ornament(p, stroke, drum.index, error);
+    if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum.index, error))
+        return false;
+    himc_performance_add_ornament(p, stroke, drum.index);
+    return true;
 }
 
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     if (!himc_written_room(&p->written.score, "stroke", error) ||
+        !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_put_stroke(p, stroke, error))
         return false;
     himc_written_stroke(&p->written.score, stroke);
     return true;
 }
 
-bool himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum,
-                                   himc_error *error)
+void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum)
 {
     if (stroke->ornament == HIMC_PLAIN)
-        return true;
+        return;
     int left_out = himc_planner_add_ornament(p->motion->planner, stroke, drum,
-                                             himc_drum_pitch(p->drums.slot[drum].drum), error);
+                                             himc_drum_pitch(p->drums.slot[drum].drum));
     if (left_out > 0)
         himc_events_note(&p->events,
                          "ornament at beat %g: %d of its strokes left out, too near to others",
                          stroke->beat, left_out);
-    return left_out >= 0;
 }
 
 /// The time for which a command was meant that acts in this step (s): its sample's, up to a step
@@ -287,18 +288,36 @@ static void free_units(himc_job *job)
     free(job);
 }
 
-himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
-                                     himc_error *error)
+static units_job *units_job_new(const himc_command *command, const himc_take_options *options,
+                                himc_error *error)
 {
     units_job *j = calloc(1, sizeof *j);
     if (!j) {
         himc_error_set(error, "units: out of memory");
         return NULL;
     }
+    himc_command_copy(&j->command, command);
+    j->options = *options;
+    return j;
+}
+
+himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
+                                     himc_error *error)
+{
+    units_job *j = units_job_new(command, &p->host.take_options, error);
+    if (!j)
+        return NULL;
     j->job = (himc_job){cut_units, add_units, free_units};
     j->performance = p;
-    himc_command_copy(&j->command, command);
-    j->options = p->host.take_options;
     j->grip = p->settings.grip;
     return &j->job;
+}
+
+int himc_performance_count_units(const himc_command *command, const himc_take_options *options,
+                                 himc_error *error)
+{
+    units_job *j = units_job_new(command, options, error);
+    int count = j && cut_units(&j->job, error) ? j->count : -1;
+    free(j);
+    return count;
 }

@@ -2,8 +2,12 @@
 /// recording of its motion.
 #include "performance/performance_state.h"
 
+#include "body/dynamics.h"
+#include "control/tracking_error.h"
+
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define LONGEST_RECORDING 1200.0 // chosen: 20 minutes, 0.5 GB of poses at 250 Hz (s)
 
@@ -16,6 +20,10 @@ void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const h
                                 void *user)
 {
     himc_events_on_motion(&p->events, row, user);
+    himc_body_account(p->body, row != NULL);
+    double unused[2];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        himc_contacts_take_row(&p->contacts, (himc_hand)hand, &unused[0], &unused[1]);
 }
 
 void himc_performance_on_tick(himc_performance *p, void (*tick)(void *, const himc_tick *),
@@ -37,32 +45,152 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
     return s;
 }
 
-static void tell_body(himc_performance *p, double t)
-{
-    himc_tick tick = {.time = t, .body = &p->body->state};
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        tick.target[hand] = p->motion->reference.tip[hand].x;
-    if (p->events.on_tick)
-        p->events.on_tick(p->events.tick_user, &tick);
-}
-
-static void tell_motion(himc_performance *p, double t)
+void himc_performance_take_energy(himc_performance *p)
 {
     const performance_body *b = p->body;
-    himc_motion_row row = {.time = t};
-    himc_pose pose = himc_pose_from_state(&b->skeleton, &b->state);
+    const himc_body_work *w = &b->work;
+    himc_energy *e = &p->energy;
+    if (!b->accounting)
+        return;
+    *e = (himc_energy){.push = w->push, .placed = w->placed, .numerical = w->numerical};
+    memcpy(e->joint, w->joint, sizeof e->joint);
+    memcpy(e->contact, w->contact, sizeof e->contact);
+    e->kinetic = himc_character_kinetic(b->character);
+    e->potential = himc_character_potential(b->character);
+    himc_drums_catch_up(&p->drums);
+    for (int i = 0; i < p->drums.count; i++)
+        e->heads += himc_membrane_energy(himc_drum_membrane(p->drums.slot[i].drum));
+    e->lost = p->statistics.given - e->heads;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        row.target[hand] = p->motion->reference.tip[hand].x;
-        row.tip[hand] = b->state.tip[hand];
-        row.force[hand] = himc_contacts_take_peak(&p->contacts, (himc_hand)hand);
-        row.elbow[hand] = b->state.origin[HIMC_LEFT_FOREARM + hand];
+        e->felt[hand] = himc_contacts_felt_energy(&p->contacts, (himc_hand)hand);
+        e->lost -= e->felt[hand];
     }
+}
+
+// of the arm's squared joint rates, the share within the null space of the tip
+static double null_share(const himc_body_state *state, himc_hand hand, const himc_vec3 *rate)
+{
+    himc_arm_jacobian jacobian;
+    himc_vec3 arm[HIMC_ARM_JOINTS], within[HIMC_ARM_JOINTS] = {{0, 0, 0}};
+    double all = 0, share = 0;
+    himc_arm_gather(rate, hand, arm);
+    himc_arm_jacobian_at(state, hand, &jacobian);
+    himc_ik_add_null(&jacobian, arm, within);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        all += himc_vec3_dot(arm[k], arm[k]);
+        share += himc_vec3_dot(within[k], within[k]);
+    }
+    return all > 0 ? share / all : 0;
+}
+
+static void fill_hands(himc_performance *p, himc_motion_row *row)
+{
+    const performance_body *b = p->body;
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        const himc_target *target = &p->motion->reference.tip[i];
+        row->target[i] = target->x;
+        row->target_velocity[i] = target->v;
+        row->tip[i] = b->state.tip[i];
+        row->tip_velocity[i] = b->state.tip_velocity[i];
+        row->tip_error[i] = himc_vec3_sub(row->tip[i], row->target[i]);
+        himc_contacts_take_row(&p->contacts, hand, &row->force[i], &row->impulse[i]);
+        row->elbow[i] = b->state.origin[HIMC_LEFT_FOREARM + i];
+        row->tip_force[i] = b->tip_force[i];
+        row->null_space[i] = null_share(&b->state, hand, row->rate);
+    }
+}
+
+static void fill_joints(const himc_performance *p, himc_motion_row *row)
+{
+    const performance_body *b = p->body;
+    himc_pose pose = himc_pose_from_state(&b->skeleton, &b->state);
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        row.joint[j] = himc_quat_log(pose.joint[j]);
-        row.limit[j] = b->controller.limits ? b->saturation.measure[j] : 0;
+        himc_quat target = p->motion->reference.posture.joint[j];
+        row->rotation[j] = pose.joint[j];
+        row->joint[j] = himc_quat_log(pose.joint[j]);
+        row->joint_error[j] =
+            himc_vec3_length(himc_quat_log(himc_quat_mul(himc_quat_conj(target), pose.joint[j])));
+        row->limit[j] = b->controller.limits ? b->saturation.measure[j] : 0;
+        row->rate[j] = himc_relative_spin(&b->skeleton, &b->state, j);
     }
-    if (p->events.on_motion)
-        p->events.on_motion(p->events.motion_user, &row);
+}
+
+static void fill_segments(const performance_body *b, double t, himc_motion_row *row)
+{
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        row->segment[i] = b->state.origin[i];
+        row->orientation[i] = b->state.orientation[i];
+        row->center[i] = himc_segment_center(&b->plant, &b->state, i);
+        row->push[i] = himc_body_pushed(b, i, t);
+    }
+}
+
+// the state of the row's pose and rates: without the joints' gaps, which are the engine's
+static void state_of(const performance_body *b, const himc_motion_row *row, himc_body_state *out)
+{
+    himc_pose pose;
+    himc_vec3 rate[HIMC_JOINTS];
+    memcpy(pose.joint, row->rotation, sizeof pose.joint);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        int parent = b->plant.segment[j + 1].parent;
+        rate[j] = himc_mat3_apply_transposed(&b->state.rotation[parent], row->rate[j]);
+    }
+    himc_pose_to_state(&b->plant, &pose, rate, out);
+}
+
+// torques, and the accelerations that they, the tips' forces and the pushes make
+static void fill_dynamics(const performance_body *b, himc_motion_row *row)
+{
+    himc_articulation art;
+    himc_body_state state;
+    himc_vec3 load[HIMC_JOINTS];
+    memcpy(load, b->torque, sizeof load);
+    state_of(b, row, &state);
+    for (int i = 1; i < HIMC_SEGMENTS; i++)
+        himc_add_force(&b->plant, &state, i, himc_segment_center(&b->plant, &state, i),
+                       row->push[i], load);
+    himc_articulate(&b->plant, &state, &art);
+    himc_articulate_legs(&b->plant, &state, &art);
+    himc_forward_dynamics(&b->plant, &state, &art, load, row->tip_force, row->acceleration);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        row->torque[j] = b->torque[j];
+        row->power[j] = himc_vec3_dot(row->torque[j], row->rate[j]);
+    }
+}
+
+// a body that is moved by inverse kinematics has no forces
+static void fill_no_dynamics(himc_motion_row *row)
+{
+    himc_vec3 none = {NAN, NAN, NAN};
+    himc_energy *e = &row->energy;
+    e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        e->contact[hand] = NAN;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        row->acceleration[j] = row->torque[j] = none;
+        row->power[j] = e->joint[j] = NAN;
+    }
+}
+
+static void fill_row(himc_performance *p, double t, himc_motion_row *row)
+{
+    *row = (himc_motion_row){.time = t, .energy = p->energy};
+    fill_joints(p, row);
+    fill_hands(p, row);
+    fill_segments(p->body, t, row);
+    if (p->settings.control.mode == HIMC_PIPELINE_IK)
+        fill_no_dynamics(row);
+    else
+        fill_dynamics(p->body, row);
+}
+
+static void tell_body(const himc_performance *p, double t, const himc_motion_row *row)
+{
+    himc_tick tick = {.time = t, .body = &p->body->state, .row = row};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        tick.target[hand] = p->motion->reference.tip[hand].x;
+    p->events.on_tick(p->events.tick_user, &tick);
 }
 
 static void record(himc_performance *p, double t)
@@ -83,8 +211,13 @@ static void note_written(himc_performance *p, const himc_recording *file)
 
 void himc_performance_tell_tick(himc_performance *p, double t)
 {
-    tell_body(p, t);
-    tell_motion(p, t);
+    himc_motion_row row;
+    if (p->events.on_motion)
+        fill_row(p, t, &row);
+    if (p->events.on_tick)
+        tell_body(p, t, p->events.on_motion ? &row : NULL);
+    if (p->events.on_motion)
+        p->events.on_motion(p->events.motion_user, &row);
     record(p, t);
 }
 
@@ -154,7 +287,10 @@ static void free_recording(himc_job *job)
 static record_job *record_job_new(himc_performance *p, const himc_command *command,
                                   himc_error *error)
 {
-    record_job *j = calloc(1, sizeof *j);
+    record_job *j = NULL;
+    if (!himc_performance_allows(p->recording.file, command, error))
+        return NULL;
+    j = calloc(1, sizeof *j);
     if (!j) {
         himc_error_set(error, "record: out of memory");
         return NULL;
@@ -164,15 +300,25 @@ static record_job *record_job_new(himc_performance *p, const himc_command *comma
     return j;
 }
 
+bool himc_performance_allows(bool recording, const himc_command *c, himc_error *error)
+{
+    enum { STOP };
+    enum { PHYSICS };
+    if (c->id == HIMC_COMMAND_RATE)
+        return !recording || c->form == PHYSICS ||
+               himc_error_set(error,
+                              "rate task: %g: not while recording, allowed after record stop",
+                              c->atom[1].number);
+    if (recording && c->form != STOP)
+        return himc_error_set(error, "record: %s: already recording, allowed stop",
+                              c->atom[0].symbol);
+    return recording || c->form != STOP ||
+           himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
+}
+
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error)
 {
-    const char *path = command->atom[0].symbol;
-    if (p->recording.file) {
-        himc_error_set(error, "record: %s: already recording %s, allowed stop", path,
-                       himc_recording_path(p->recording.file));
-        return NULL;
-    }
     record_job *j = record_job_new(p, command, error);
     if (!j)
         return NULL;
@@ -185,10 +331,6 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
 himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
                                            himc_error *error)
 {
-    if (!p->recording.file) {
-        himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
-        return NULL;
-    }
     record_job *j = record_job_new(p, command, error);
     if (!j)
         return NULL;
@@ -201,13 +343,7 @@ himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_comma
 
 // info
 
-/// The receiver of the lines of `info`.
-typedef struct reader {
-    void (*line)(void *, const char *);
-    void *user;
-} reader;
-
-static void describe_player(const himc_performance *p, reader to)
+static void describe_player(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     const performance_settings *s = &p->settings;
@@ -222,7 +358,7 @@ static himc_word word(himc_command_id id, int choice)
     return himc_command_word(id, 0, choice);
 }
 
-static void describe_control(const himc_performance *p, reader to)
+static void describe_control(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     const performance_settings *s = &p->settings;
@@ -249,7 +385,7 @@ static const char *strength_word(const himc_controller_config *c)
     return c->human_strength ? "human" : any ? "as set" : "off";
 }
 
-static void describe_limits(const himc_performance *p, reader to)
+static void describe_limits(const himc_performance *p, himc_line_sink to)
 {
     char text[256];
     const himc_saturation_counts *s = &p->body->saturation;
@@ -269,7 +405,7 @@ static void describe_limits(const himc_performance *p, reader to)
     }
 }
 
-static void describe_strength(const himc_performance *p, reader to)
+static void describe_strength(const himc_performance *p, himc_line_sink to)
 {
     char text[256];
     const himc_saturation_counts *s = &p->body->saturation;
@@ -284,11 +420,11 @@ static void describe_strength(const himc_performance *p, reader to)
     }
 }
 
-// of a drum, to `user`, a reader
+// of a drum, to `user`, a sink
 static void describe_drum(void *user, const char *line)
 {
     char text[640];
-    reader *to = user;
+    himc_line_sink *to = user;
     snprintf(text, sizeof text, "drum %s", line);
     to->line(to->user, text);
 }
@@ -300,7 +436,7 @@ static void describe_silent_drum(void *user, const char *line)
     describe_drum(user, text);
 }
 
-static void describe_drums(const himc_performance *p, reader to)
+static void describe_drums(const himc_performance *p, himc_line_sink to)
 {
     for (int i = 0; i < p->drums.count; i++) {
         const drum_slot *slot = &p->drums.slot[i];
@@ -309,7 +445,7 @@ static void describe_drums(const himc_performance *p, reader to)
     }
 }
 
-static void describe_playing(const himc_performance *p, reader to)
+static void describe_playing(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
@@ -331,7 +467,7 @@ static void describe_playing(const himc_performance *p, reader to)
     to.line(to.user, text);
 }
 
-static void describe_peaks(const himc_performance *p, reader to)
+static void describe_peaks(const himc_performance *p, himc_line_sink to)
 {
     char text[512];
     himc_performance_stats s = himc_performance_measure(p);
@@ -352,14 +488,8 @@ static void describe_peaks(const himc_performance *p, reader to)
     to.line(to.user, text);
 }
 
-void himc_performance_describe(const himc_performance *p, himc_description what,
-                               void (*line)(void *, const char *), void *user)
+void himc_performance_inform(const himc_performance *p, himc_line_sink to)
 {
-    reader to = {line, user};
-    if (what == HIMC_DESCRIBE_STATE) {
-        himc_performance_dump(p, &(himc_line_sink){line, user});
-        return;
-    }
     describe_player(p, to);
     describe_control(p, to);
     describe_limits(p, to);

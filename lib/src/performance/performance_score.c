@@ -1,15 +1,17 @@
 /// performance_score.c: `score FILE`: a score is accepted as a whole, or refused.
 ///
 /// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its
-/// lines for drums go to copies of the drums, its lines for the performer are checked, its drums are
-/// counted and those that are missing are made. Only then is it installed: the copies give their
+/// lines for drums go to copies of the drums, its lines for the performer are checked against what the
+/// lines before them leave, its drums are counted and those that are missing are made. Only then is it installed: the copies give their
 /// heads to the drums, lines and strokes follow in portions, a line that takes long is a job of its
 /// own. While a score plays, the beats of the next one follow its own. Invariants: a score that is
-/// refused has changed nothing; a score from the network may do what its sender may do.
+/// refused has changed nothing; a score from the network may do what its sender may do. A hit or a
+/// blow, which happens once, is no reason to refuse a score: a note tells why it is left out.
 #include "performance/performance_state.h"
 
 #include "capture/take.h"
 #include "midi/score_file.h"
+#include "plan/score.h"
 #include "performance/confine.h"
 
 #include <stdio.h>
@@ -30,6 +32,12 @@ typedef struct score_drum {
     bool changed;       ///< since the trial: lines are carried out in place
 } score_drum;
 
+/// What a line for the performer leaves and a later one meets.
+typedef struct score_state {
+    bool recording;
+    int units; ///< of motion, that the planner has
+} score_state;
+
 /// In the order of installing.
 typedef enum score_part { BEGINNING, BEFORE_STROKES, CHANGES, STROKES, AFTER_STROKES } score_part;
 
@@ -38,11 +46,14 @@ typedef struct score_job {
     himc_performance *performance; ///< borrowed
     himc_command command;
     const char *path;
+    const char *text; ///< borrowed; the score, if it is in no file
     // of the performance, when the job was made
     himc_take_options options;
     himc_skeleton skeleton;
     double sample_rate, task_rate; ///< (Hz)
-    bool make_drums, recording;
+    bool make_drums;
+    score_state state;
+    himc_job *take; ///< owned; to try takes
     himc_drum_form form[HIMC_DRUMS];
     int forms;
     // the score, tried
@@ -120,45 +131,74 @@ static himc_drum *trial_drum(score_job *j, const char *name, double inches, drum
     return j->drum[j->drums++].trial;
 }
 
+static bool rehearse_record(const score_job *j, const himc_command *c, score_state *state,
+                            himc_error *error)
+{
+    if (!himc_performance_allows(state->recording, c, error))
+        return false;
+    state->recording = !state->recording;
+    if (!state->recording)
+        return true;
+    himc_recording *trial =
+        himc_recording_new(c->atom[0].symbol, &j->skeleton, j->task_rate, TRIAL_RECORDING, error);
+    himc_recording_free(trial);
+    return trial || himc_error_prefix(error, "record");
+}
+
+static bool rehearse_units(const score_job *j, const himc_command *c, score_state *state,
+                           himc_error *error)
+{
+    int file, more = 0;
+    if (himc_command_file(c, &file) == HIMC_FILE_NONE)
+        state->units = 0; // `units clear`
+    else
+        more = himc_performance_count_units(c, &j->options, error);
+    state->units += more;
+    return more >= 0 && himc_planner_check_units(state->units - more, more, error);
+}
+
+// before the first drum as the lines before have placed it
+static bool rehearse_take(score_job *j, const himc_command *c, himc_error *error)
+{
+    const score_drum *first = find_drum(j, j->forms > 0 ? j->form[0].name : FIRST_DRUM);
+    const himc_head_frame *place = first          ? himc_drum_head_frame(first->trial)
+                                   : j->forms > 0 ? &j->form[0].place
+                                                  : NULL;
+    return himc_performance_try_take(j->take, c, place, error);
+}
+
 /// True if a line for the performer can be carried out; reads the file that it names.
-static bool rehearse_command(score_job *j, const himc_command *c, himc_error *error)
+static bool rehearse_command(score_job *j, const himc_command *c, score_state *state,
+                             himc_error *error)
 {
     const char *word = c->count > 0 ? c->atom[0].symbol : "";
-    himc_take *take;
-    himc_recording *recording;
-    int joint, file;
+    int index;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
         return !j->make_drums ||
                trial_drum(j, word, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL, DRUM_MADE,
                           error);
     case HIMC_COMMAND_GAIN:
-        return c->count < 3 || himc_body_find_joint(word, "gain", &joint, error);
+        return c->count < 3 || himc_body_find_joint(word, "gain", &index, error);
     case HIMC_COMMAND_STRENGTH:
-        return c->count < 2 || himc_body_find_joint(word, "strength", &joint, error);
-    case HIMC_COMMAND_TAKE:
-    case HIMC_COMMAND_UNITS:
-        if (himc_command_file(c, &file) == HIMC_FILE_NONE)
-            return true; // `units clear`
-        take = himc_take_load_in(c->folder, word, &j->options, error);
-        himc_take_free(take);
-        return take;
-    case HIMC_COMMAND_RECORD:
-        if (j->recording || himc_command_file(c, &file) == HIMC_FILE_NONE)
-            return true;
-        recording = himc_recording_new(word, &j->skeleton, j->task_rate, TRIAL_RECORDING, error);
-        himc_recording_free(recording);
-        return recording || himc_error_prefix(error, "record");
+        return c->count < 2 || himc_body_find_joint(word, "strength", &index, error);
+    case HIMC_COMMAND_PUSH: return himc_body_find_segment(word, &index, error);
+    case HIMC_COMMAND_RATE: return himc_performance_allows(state->recording, c, error);
+    case HIMC_COMMAND_RESET: *state = (score_state){.units = 0}; return true;
+    case HIMC_COMMAND_TAKE: return rehearse_take(j, c, error);
+    case HIMC_COMMAND_UNITS: return rehearse_units(j, c, state, error);
+    case HIMC_COMMAND_RECORD: return rehearse_record(j, c, state, error);
     default: // the network's are always refused
         return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
                j->performance->runner.run(j->performance, c, 0, error);
     }
 }
 
-static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error *error)
+static bool rehearse_line(score_job *j, const himc_score_line *line, score_state *state,
+                          himc_error *error)
 {
     if (!line->drum[0])
-        return rehearse_command(j, &line->command, error);
+        return rehearse_command(j, &line->command, state, error);
     himc_drum *drum = trial_drum(j, line->drum, HIMC_INCHES_USUAL, DRUM_SILENT, error);
     return drum && (himc_drum_command(drum, &line->command, error) ||
                     himc_error_prefix(error, "%s", line->drum));
@@ -238,10 +278,11 @@ static bool rehearse(score_job *j, himc_error *error)
 {
     const himc_score *score = j->score;
     const char *folder = j->command.folder;
+    score_state state = j->state;
     bool good = true;
     for (int i = 0; i < score->line_count && good; i++) {
         good = (!folder || himc_confine_command(&score->lines[i].command, folder, error)) &&
-               rehearse_line(j, &score->lines[i], error);
+               rehearse_line(j, &score->lines[i], &state, error);
         if (good && score->lines[i].command.id == HIMC_COMMAND_TAKE && score->stroke_count > 0)
             good = himc_error_set(error, "take: a score with strokes cannot play a take");
         good = good || himc_error_prefix(error, "%s:%d", j->path, score->lines[i].line);
@@ -280,7 +321,8 @@ static bool prepare(himc_job *job, himc_error *error)
         return prepare_changes(j, error);
     free_drums(j);
     himc_score_free(j->score);
-    j->score = himc_score_load_in(j->command.folder, j->path, error);
+    j->score = j->text ? himc_score_parse(j->text, j->path, error)
+                       : himc_score_load_in(j->command.folder, j->path, error);
     return j->score && rehearse(j, error);
 }
 
@@ -315,10 +357,16 @@ static bool run_on_drum(score_job *j, const himc_score_line *line, himc_error *e
     return true;
 }
 
+// of the present line
 static himc_job_state failed(const score_job *j, himc_error *error)
 {
+    himc_command_id id = j->score->lines[j->at].command.id;
     prefix_line(j, error);
-    return HIMC_JOB_FAILED;
+    if (id != HIMC_COMMAND_HIT && id != HIMC_COMMAND_STRIKE)
+        return HIMC_JOB_FAILED;
+    himc_events_note(&j->performance->events, "%s", error->text);
+    error->text[0] = '\0';
+    return HIMC_JOB_DONE;
 }
 
 // a line for the performer, or the next part of one that takes long
@@ -403,7 +451,8 @@ static void copy_performance(score_job *j)
     j->sample_rate = p->clock.sample_rate;
     j->task_rate = p->clock.task_rate;
     j->make_drums = p->host.make_drums;
-    j->recording = p->recording.file != NULL;
+    j->state.recording = p->recording.file != NULL;
+    j->state.units = himc_planner_units(p->motion->planner);
 }
 
 // the heads that the score changes, and the end of those of the score before
@@ -443,8 +492,8 @@ static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_err
     if (!ornament)
         himc_written_stroke(written, &stroke);
     if (ornament)
-        return himc_performance_add_ornament(j->performance, &stroke, drum, error);
-    if (stroke.ornament >= HIMC_ROLL_SINGLE)
+        himc_performance_add_ornament(j->performance, &stroke, drum);
+    if (ornament || stroke.ornament >= HIMC_ROLL_SINGLE)
         return true;
     stroke.ornament = HIMC_PLAIN;
     return himc_performance_put_stroke(j->performance, &stroke, error);
@@ -485,7 +534,7 @@ static bool drums_as_tried(score_job *j)
     return same;
 }
 
-static himc_job_state begin(score_job *j)
+static himc_job_state begin(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
     if (!drums_as_tried(j) && ++j->tries < HIMC_JOB_TRIES) {
@@ -494,6 +543,11 @@ static himc_job_state begin(score_job *j)
     }
     // while a score is played the next one waits for its end
     j->queued = p->motion->playing && !p->motion->track;
+    if (j->queued && !himc_planner_has_room(p->motion->planner, j->score->strokes,
+                                            j->score->stroke_count, error)) {
+        himc_error_prefix(error, "%s", j->path);
+        return HIMC_JOB_FAILED;
+    }
     j->dropped = himc_performance_drop_track(p);
     return HIMC_JOB_DONE;
 }
@@ -503,7 +557,7 @@ static himc_job_state install_part(score_job *j, himc_error *error)
 {
     himc_job_state state;
     switch (j->part) {
-    case BEGINNING: return begin(j);
+    case BEGINNING: return begin(j, error);
     case BEFORE_STROKES:
         state = run_lines(j, false, error);
         return state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
@@ -518,13 +572,15 @@ static void tell_report(score_job *j)
 {
     const char *line = j->score->report ? j->score->report : "", *end;
     for (; (end = strchr(line, '\n')); line = end + 1)
-        himc_events_note(&j->performance->events, "%.*s", (int)(end - line), line);
+        himc_events_note_as(&j->performance->events, j->score->left_out == 0, "%.*s",
+                            (int)(end - line), line);
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     score_job *j = (score_job *)job;
-    himc_job_state state = install_part(j, error);
+    himc_error why = {""};
+    himc_job_state state = install_part(j, error ? error : &why);
     himc_motion_replan(j->performance->motion);
     if (state == HIMC_JOB_DONE && j->part == AFTER_STROKES)
         tell_report(j);
@@ -542,6 +598,8 @@ static void free_job(himc_job *job)
         j->line->free(j->line);
     if (j->done)
         j->done->free(j->done);
+    if (j->take)
+        j->take->free(j->take);
     free_drums(j);
     while (j->forms > 0)
         himc_drum_form_free(&j->form[--j->forms]);
@@ -554,8 +612,7 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     himc_error *error)
+static score_job *job_new(himc_performance *p, himc_error *error)
 {
     score_job *j = calloc(1, sizeof *j);
     if (!j) {
@@ -564,8 +621,32 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
     }
     j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
+    copy_performance(j);
+    j->take = himc_performance_take_trial(p, error);
+    if (!j->take) {
+        free_job(&j->job);
+        return NULL;
+    }
+    return j;
+}
+
+himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
+                                     himc_error *error)
+{
+    score_job *j = job_new(p, error);
+    if (!j)
+        return NULL;
     himc_command_copy(&j->command, command);
     j->path = j->command.atom[0].symbol;
-    copy_performance(j);
+    return &j->job;
+}
+
+himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error)
+{
+    score_job *j = job_new(p, error);
+    if (!j)
+        return NULL;
+    j->path = "state";
+    j->text = state;
     return &j->job;
 }

@@ -128,6 +128,7 @@ static void begin(himc_performance *p, const performance_settings *s, const made
     himc_text_clear(&p->written.units);
     p->motion = parts->motion;
     p->body = parts->body;
+    himc_body_account(p->body, p->events.on_motion != NULL);
     himc_statistics_clear(&p->statistics);
     himc_queue_clear(&p->queue);
     himc_contacts_clear(&p->contacts);

@@ -59,6 +59,7 @@ struct himc_performance {
     performance_body *body;
     performance_contacts contacts;
     performance_statistics statistics;
+    himc_energy energy; ///< at the last task tick, if rows of motion are asked for
     performance_recording recording;
     performance_written written;
     performance_events events;
@@ -74,20 +75,25 @@ static inline double step_time(const himc_performance *p)
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
 // performance_report.c
+/// Notes the energies at a task tick, before the step, if rows of motion are asked for.
+HIMC_RT void himc_performance_take_energy(himc_performance *p);
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 /// Writes the recording, reports it and ends it. If it cannot be written it continues.
 bool himc_performance_write_recording(himc_performance *p, himc_error *error);
 void himc_performance_drop_recording(himc_performance *p);
+/// True if `record FILE`, `record stop` or `rate` is allowed while recording, or while not.
+bool himc_performance_allows(bool recording, const himc_command *command, himc_error *error);
 /// The command `record FILE` and `record stop` as jobs; NULL with the reason.
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error);
 himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
                                            himc_error *error);
 
+/// The lines of `info`.
+void himc_performance_inform(const himc_performance *p, himc_line_sink to);
+
 // performance_dump.c
-/// The state as the lines of a score.
-void himc_performance_dump(const himc_performance *p, const himc_line_sink *to);
 /// The command `dump FILE` as a job; NULL without memory.
 himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
                                     himc_error *error);
@@ -145,20 +151,28 @@ himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *com
 himc_track *himc_performance_drop_track(himc_performance *p);
 
 // performance_play.c
-/// himc_performance_add_stroke, but nothing is written.
+/// himc_performance_add_stroke, but nothing is written, and the beat may be any.
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many are
-/// left out. False if it is too long.
-bool himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum,
-                                   himc_error *error);
+/// left out.
+void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);
 /// The command `units FILE` as a job; NULL without memory.
 himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
+/// How many units it would add; -1 with the reason.
+int himc_performance_count_units(const himc_command *command, const himc_take_options *options,
+                                 himc_error *error);
 
 // performance_take.c
 /// The command `take` as a job; NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
+/// A job to try takes with, as the performance is now; NULL without memory.
+himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error);
+/// True if it could play this command's take, the first drum being at `place`, which may be NULL:
+/// there is none. Touches the job alone.
+bool himc_performance_try_take(himc_job *job, const himc_command *command,
+                               const himc_head_frame *place, himc_error *error);
 /// Joint limits of a player with postures, as captured.
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error);
@@ -167,6 +181,9 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
 /// The command `score` as a job: all of the score, or nothing. NULL without memory.
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
+
+/// The text of a score, borrowed, as a job. NULL without memory.
+himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
 
 // performance_command.c
 /// How a performance takes commands.

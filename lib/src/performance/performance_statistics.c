@@ -70,6 +70,11 @@ void himc_statistics_hit(performance_statistics *s, double latency)
     s->hits++;
 }
 
+void himc_statistics_given(performance_statistics *s, double work)
+{
+    s->given += work;
+}
+
 void himc_statistics_force(performance_statistics *s, double force)
 {
     s->peak_force = fmax(s->peak_force, force);

@@ -489,6 +489,27 @@ himc_job *himc_performance_take_job(himc_performance *p, const himc_command *com
     return &j->job;
 }
 
+himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error)
+{
+    take_job *j = take_job_new(p, "take", error);
+    return j ? &j->job : NULL;
+}
+
+bool himc_performance_try_take(himc_job *job, const himc_command *command,
+                               const himc_head_frame *place, himc_error *error)
+{
+    take_job *j = (take_job *)job;
+    himc_command_copy(&j->command, command);
+    j->name = j->command.atom[0].symbol;
+    himc_take_free(j->take);
+    j->take = NULL;
+    j->own_regression = true; // a fit does not refuse a take
+    j->has_drum = place;
+    if (place)
+        j->place = *place;
+    return prepare(job, error);
+}
+
 bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_player *player,
                                   const char *name, himc_error *error)
 {

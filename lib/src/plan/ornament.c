@@ -10,8 +10,6 @@
 
 #include "plan/planner_motion.h"
 
-#define MOST_STROKES 2000 // of one roll; chosen: two minutes
-
 #define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
 
 // strokes of both arms together (1/s); chosen, see above
@@ -104,37 +102,14 @@ static double rate_of(const himc_stroke *roll, double pitch)
     }
 }
 
-/// When a roll begins and ends (s), and its strokes.
-typedef struct roll_plan {
-    double from, to, strokes;
-} roll_plan;
-
-static roll_plan plan_of(const himc_planner *planner, const himc_stroke *roll, double pitch)
-{
-    const planner_score *score = &planner->score;
-    double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
-    double to = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
-    // an even number: what follows begins with the right hand again
-    double pairs = round(0.5 * rate_of(roll, pitch) * (to - from));
-    return (roll_plan){from, to, fmax(2 * pairs, 1)};
-}
-
-bool himc_planner_accepts_roll(const himc_planner *planner, const himc_stroke *roll, double pitch,
-                               himc_error *error)
-{
-    double strokes = plan_of(planner, roll, pitch).strokes;
-    if (strokes > MOST_STROKES)
-        himc_error_set(error, "roll: LENGTH: %g strokes, allowed %d", strokes, MOST_STROKES);
-    return !(strokes > MOST_STROKES);
-}
-
-static bool add_roll(addition *to, const himc_stroke *roll, double pitch, himc_error *error)
+static void add_roll(addition *to, const himc_stroke *roll, double pitch)
 {
     const planner_score *score = &to->planner->score;
-    roll_plan plan = plan_of(to->planner, roll, pitch);
-    double strokes = plan.strokes, from = plan.from, step = (plan.to - from) / strokes;
-    if (!himc_planner_accepts_roll(to->planner, roll, pitch, error))
-        return false;
+    double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
+    double end = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
+    // an even number: what follows begins with the right hand again
+    double pairs = round(0.5 * rate_of(roll, pitch) * (end - from));
+    double strokes = fmax(2 * pairs, 1), step = (end - from) / strokes;
     himc_stroke s = *roll;
     s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
                 : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
@@ -148,18 +123,15 @@ static bool add_roll(addition *to, const himc_stroke *roll, double pitch, himc_e
             i ? himc_score_beat(score->tempi, score->tempo_count, from + i * step) : roll->beat;
         add(to, &s);
     }
-    return true;
 }
 
 int himc_planner_add_ornament(himc_planner *planner, const himc_stroke *stroke, int drum,
-                              double pitch, himc_error *error)
+                              double pitch)
 {
     addition to = {.planner = planner, .drum = drum};
-    if (stroke->ornament >= HIMC_ROLL_SINGLE) {
-        if (!add_roll(&to, stroke, pitch, error))
-            return -1;
-    } else {
+    if (stroke->ornament >= HIMC_ROLL_SINGLE)
+        add_roll(&to, stroke, pitch);
+    else
         add_graces(&to, stroke);
-    }
     return to.left_out;
 }

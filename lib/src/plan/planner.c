@@ -14,10 +14,7 @@
 #define MOST_MALLET_RADIUS 0.1 // (m)
 #define MOST_HEAD_RADIUS 10.0  // (m)
 
-// the transport; chosen: a tip is at rest 2.5 s after its last touch at any tempo, and a late score
-// is prepared in a second
-#define RETURN_TIME 2.5      // (s)
-#define PREPARATION_TIME 1.0 // (s)
+#define PREPARATION_TIME 1.0 // of a late score; chosen (s)
 #define LATENESS_NOTED 0.001 // a smaller delay of the first beat is not worth a note (s)
 
 himc_planner_config himc_planner_default(void)
@@ -78,11 +75,22 @@ void himc_planner_set_body(himc_planner *planner)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
+bool himc_planner_check_units(int count, int more, himc_error *error)
+{
+    return count + more <= HIMC_UNITS ||
+           himc_error_set(error, "units: %d more, allowed %d in all", more, HIMC_UNITS);
+}
+
+int himc_planner_units(const himc_planner *planner)
+{
+    return planner->unit_count;
+}
+
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
                             himc_error *error)
 {
-    if (planner->unit_count + count > HIMC_UNITS)
-        return himc_error_set(error, "units: %d more, allowed %d in all", count, HIMC_UNITS);
+    if (!himc_planner_check_units(planner->unit_count, count, error))
+        return false;
     memcpy(planner->unit + planner->unit_count, units, (size_t)count * sizeof *units);
     planner->unit_count += count;
     return true;
@@ -139,6 +147,12 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
                           himc_error *error)
 {
     return himc_planner_score_place(&planner->score, stroke, drum, error) >= 0;
+}
+
+bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strokes, int count,
+                           himc_error *error)
+{
+    return himc_planner_score_has_room(&planner->score, strokes, count, error);
 }
 
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum, himc_error *error)
@@ -286,7 +300,7 @@ double himc_planner_length(const himc_planner *planner)
 double himc_planner_next_start(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
-    double length = himc_planner_score_length(score);
+    double length = himc_planner_score_free_from(score);
     return score->playing
                ? fmax(length, ceil(himc_planner_score_beat_at(score, t + PREPARATION_TIME)))
                : length;
@@ -316,9 +330,9 @@ double himc_planner_end(const himc_planner *planner)
     double last = himc_planner_score_last_beat(score);
     if (!score->playing || (score->loop && last >= 0))
         return HUGE_VAL;
-    double end = himc_planner_last_time(planner) + RETURN_TIME;
+    double end = himc_planner_last_contact(planner);
     if (last >= 0)
-        end = fmax(end, himc_planner_score_time(score, score->rounds, last) + RETURN_TIME);
+        end = fmax(end, himc_planner_score_time(score, score->rounds, last) + HIMC_CONTACT_TIME);
     return fmax(score->origin, end);
 }
 
@@ -327,8 +341,10 @@ int himc_planner_given_up(himc_planner *planner)
     return himc_planner_notes_given_up(&planner->notes);
 }
 
-void himc_planner_sum_up(himc_planner *planner)
+void himc_planner_finish(himc_planner *planner, double t)
 {
+    if (planner->score.playing)
+        himc_planner_score_stop(&planner->score, himc_planner_beat(planner, t));
     himc_planner_notes_sum_up(&planner->notes);
 }
 

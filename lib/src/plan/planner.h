@@ -50,6 +50,7 @@ typedef struct himc_hit {
 /// A line for the user.
 typedef struct himc_planner_note {
     char text[160];
+    bool minor; ///< all strokes are played
 } himc_planner_note;
 
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error);
@@ -61,6 +62,10 @@ HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_
 
 #define HIMC_UNITS 256 ///< chosen: five nuances, two hands, and 25 strokes of each
 
+/// True if `more` units can be added to `count`; else the reason.
+bool himc_planner_check_units(int count, int more, himc_error *error);
+/// How many have been added since they were cleared.
+int himc_planner_units(const himc_planner *planner);
 /// Adds motion units (copied), to be played in place of the built-in strokes of their nuance and
 /// hand. False, and nothing added, if there would be more than HIMC_UNITS.
 bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int count,
@@ -86,6 +91,10 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
+/// True if so many strokes can be added behind those of the score, as far as they are no rolls; else
+/// the reason.
+bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strokes, int count,
+                           himc_error *error);
 /// Replaces the tempo map (copied); beats must rise. While playing, the current beat stays where it
 /// is.
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
@@ -109,7 +118,7 @@ HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
 /// The whole beat after the last stroke, at which a loop begins again; 0 without strokes.
 HIMC_RT double himc_planner_length(const himc_planner *planner);
 /// First beat for another score that shall follow this one: its length, or a later beat if that is
-/// past or too near to prepare for at `t`.
+/// past, too near to prepare for at `t`, or so near to the last stroke that it could not be one.
 HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
 /// The tempo map (*count), borrowed.
 HIMC_RT const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count);
@@ -161,7 +170,7 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
 
 /// The current stroke of a hand at `t`, its drum and the planned time of contact: the stroke to be
 /// played next, until 50 ms after its time or half way to the one after it. The spot of a varied
-/// stroke is where it will be played. False if there is none.
+/// stroke is where it will be played; `stroke` may be NULL. False if there is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 
@@ -170,14 +179,13 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
 HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
-/// Time at which all has been played and the tips are at rest again (s). Infinite while stopped or
-/// in a loop.
+/// End of the last stroke's contact, as predicted (s). Infinite while stopped or in a loop.
 HIMC_RT double himc_planner_end(const himc_planner *planner);
 /// Strokes of the score given up since the last call.
 HIMC_RT int himc_planner_given_up(himc_planner *planner);
-/// Adds a note with the count of strokes since the last `play` that were not played as written, if
-/// there is more than one.
-HIMC_RT void himc_planner_sum_up(himc_planner *planner);
+/// The score is over: its beats end, the tips come to rest as planned. Adds a note with the count of
+/// strokes since the last `play` that were not played as written, if there is more than one.
+HIMC_RT void himc_planner_finish(himc_planner *planner, double t);
 /// Takes the oldest note; false if there is none. 32 are kept; the last one counts those that are
 /// lost.
 HIMC_RT bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note);

@@ -666,15 +666,15 @@ double himc_planner_lateness(himc_planner *planner)
     return late;
 }
 
-double himc_planner_last_time(const himc_planner *planner)
+double himc_planner_last_contact(const himc_planner *planner)
 {
     double last = -HUGE_VAL;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_hand *h = &planner->hand[hand];
         for (int i = 0; i < h->waiting_count; i++)
-            last = fmax(last, h->waiting[i].goal.time);
+            last = fmax(last, himc_goal_end(&h->waiting[i].goal));
         if (h->planned_count > 0)
-            last = fmax(last, h->planned[h->planned_count - 1].goal.time);
+            last = fmax(last, himc_goal_end(&h->planned[h->planned_count - 1].goal));
     }
     return last;
 }
@@ -787,6 +787,17 @@ static double current_until(const timed_stroke *s, double next)
     return s->goal.time + fmin(CURRENT_TIME, 0.5 * (next - s->goal.time));
 }
 
+static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
+{
+    *stroke = s->stroke;
+    if (!s->varied)
+        return;
+    himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
+    stroke->spot = HIMC_SPOT_XY;
+    stroke->x = at.x;
+    stroke->y = at.y;
+}
+
 bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                           himc_stroke *stroke, int *drum, double *contact_time)
 {
@@ -796,21 +807,17 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
         double next = i + 1 < h->planned_count ? s[1].goal.time : HUGE_VAL;
         if (t > current_until(s, next))
             continue;
-        *stroke = s->stroke;
+        if (stroke)
+            read_stroke(planner, s, stroke);
         *drum = s->drum;
         *contact_time = s->goal.time;
-        if (s->varied) {
-            himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
-            stroke->spot = HIMC_SPOT_XY;
-            stroke->x = at.x;
-            stroke->y = at.y;
-        }
         return true;
     }
     planner_due due;
     if (!himc_planner_score_next(&planner->score, hand, 0, &due))
         return false;
-    *stroke = due.stroke->stroke;
+    if (stroke)
+        *stroke = due.stroke->stroke;
     *drum = due.stroke->drum;
     *contact_time = due.time;
     return true;

@@ -121,8 +121,8 @@ HIMC_RT void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand);
 HIMC_RT void himc_planner_detach(himc_planner *planner, himc_hand hand);
 /// How much too late the hands would be for their next strokes (s); 0 if they are not.
 HIMC_RT double himc_planner_lateness(himc_planner *planner);
-/// Time of the last stroke that waits or is planned (s); -infinity if there is none.
-HIMC_RT double himc_planner_last_time(const himc_planner *planner);
+/// End of the last contact or bounce that waits or is planned (s); -infinity if there is none.
+HIMC_RT double himc_planner_last_contact(const himc_planner *planner);
 /// The last round of a planned stroke, at least `round`.
 HIMC_RT int himc_planner_last_round(const himc_planner *planner, int round);
 

@@ -13,7 +13,7 @@
 
 #define QUIET_TIME 1.0 // chosen: longer than the pauses in a passage, short for a player (s)
 
-static void put(planner_notes *notes, const char *format, va_list args)
+static void put(planner_notes *notes, bool minor, const char *format, va_list args)
 {
     if (notes->count == PLANNER_NOTES) {
         himc_planner_note *last = &notes->line[(notes->first + PLANNER_NOTES - 1) % PLANNER_NOTES];
@@ -21,6 +21,7 @@ static void put(planner_notes *notes, const char *format, va_list args)
         return;
     }
     himc_planner_note *note = &notes->line[(notes->first + notes->count++) % PLANNER_NOTES];
+    note->minor = minor;
     himc_line_print(note->text, sizeof note->text, format, args);
 }
 
@@ -31,7 +32,8 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
     notes->said[kind] = true;
     va_list args;
     va_start(args, format);
-    put(notes, format, args);
+    put(notes, kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE,
+        format, args);
     va_end(args);
 }
 
@@ -47,14 +49,14 @@ void himc_planner_notes_begin(planner_notes *notes)
     memset(notes->strokes, 0, sizeof notes->strokes);
 }
 
-static void say_always(planner_notes *notes, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+static void say_always(planner_notes *notes, bool minor, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void say_always(planner_notes *notes, const char *format, ...)
+static void say_always(planner_notes *notes, bool minor, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    put(notes, format, args);
+    put(notes, minor, format, args);
     va_end(args);
 }
 
@@ -79,7 +81,7 @@ void himc_planner_notes_tell_hits(planner_notes *notes, double t)
     if (notes->hits_late > 0)
         himc_format(late, sizeof late, " %d late by up to %.0f ms,", notes->hits_late,
                     1e3 * notes->latest);
-    say_always(notes, "hit:%s%s no hand had the time", lost, late);
+    say_always(notes, notes->hits_lost == 0, "hit:%s%s no hand had the time", lost, late);
     notes->hits_lost = notes->hits_late = 0;
     notes->latest = 0;
 }
@@ -89,8 +91,9 @@ void himc_planner_notes_sum_up(planner_notes *notes)
     int smaller = notes->strokes[PLANNER_SMALLER], other = notes->strokes[PLANNER_REASSIGNED],
         given_up = notes->strokes[PLANNER_GIVEN_UP];
     if (smaller + other + given_up > 1)
-        say_always(notes, "in all %d strokes smaller, %d by the other hand, %d given up", smaller,
-                   other, given_up);
+        say_always(notes, given_up == 0,
+                   "in all %d strokes smaller, %d by the other hand, %d given up", smaller, other,
+                   given_up);
 }
 
 bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note)

@@ -12,7 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CLOSEST_STROKES 0.04     // of one hand (s); chosen: faster than any roll of one hand
+#define CLOSEST_STROKES 0.04 // of one hand (s); chosen: faster than any roll of one hand
+// Beats far from 0 are rounded: so much less is no less. Chosen: up to beat 1e10 at 1 beat a minute.
+#define BEAT_ROUNDED 1e-4        // (s)
 #define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
 #define FIRST_ROOM 256           // strokes; then the room doubles
 #define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
@@ -86,6 +88,22 @@ double himc_planner_score_room(const planner_score *score, const himc_stroke *st
     return least;
 }
 
+static bool check_count(int count, himc_error *error)
+{
+    return count < MOST_HAND_STROKES ||
+           himc_error_set(error, "stroke: one too many, allowed %d for a hand", MOST_HAND_STROKES);
+}
+
+bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *strokes, int count,
+                                 himc_error *error)
+{
+    int all[HIMC_HANDS] = {score->part[HIMC_LEFT].count, score->part[HIMC_RIGHT].count};
+    for (int i = 0; i < count; i++)
+        if (strokes[i].ornament < HIMC_ROLL_SINGLE && !check_count(all[strokes[i].hand]++, error))
+            return false;
+    return true;
+}
+
 static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum,
                          himc_error *error)
 {
@@ -93,11 +111,10 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     if (drum < 0 || drum >= HIMC_DRUMS)
         return himc_error_set(error, "stroke: drum number %d, allowed 0 .. %d", drum,
                               HIMC_DRUMS - 1);
-    if (part->count >= MOST_HAND_STROKES)
-        return himc_error_set(error, "stroke: one too many, allowed %d for a hand",
-                              MOST_HAND_STROKES);
+    if (!check_count(part->count, error))
+        return false;
     double least = himc_planner_score_room(score, stroke);
-    if (least < CLOSEST_STROKES)
+    if (least < CLOSEST_STROKES - BEAT_ROUNDED)
         return himc_error_set(
             error,
             "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, allowed %g s or more",
@@ -302,6 +319,12 @@ double himc_planner_score_last_beat(const planner_score *score)
 double himc_planner_score_length(const planner_score *score)
 {
     return floor(himc_planner_score_last_beat(score)) + 1;
+}
+
+double himc_planner_score_free_from(const planner_score *score)
+{
+    double last = himc_planner_score_last_beat(score), next = himc_planner_score_length(score);
+    return next + (last >= 0 && gap(score, last, next) < CLOSEST_STROKES ? 1 : 0);
 }
 
 double himc_planner_score_round_length(const planner_score *score)

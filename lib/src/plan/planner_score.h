@@ -57,6 +57,9 @@ typedef struct planner_walk {
 bool himc_planner_score_init(planner_score *score);
 void himc_planner_score_free(planner_score *score);
 
+/// himc_planner_has_room.
+bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *strokes, int count,
+                                 himc_error *error);
 /// Checks a stroke and makes room for it: its index in its hand's list, or -1 with the reason.
 int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
                              himc_error *error);
@@ -107,6 +110,8 @@ HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
 /// The whole beat after the last stroke.
 HIMC_RT double himc_planner_score_length(const planner_score *score);
+/// The first whole beat where any hand can have a stroke after all others.
+HIMC_RT double himc_planner_score_free_from(const planner_score *score);
 /// Length of a round of the loop (s).
 HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 /// The round of the loop at `t`, 0 before it begins.

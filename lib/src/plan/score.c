@@ -8,6 +8,7 @@
 #include "plan/score.h"
 
 #include "base/argument.h"
+#include "base/format.h"
 #include "base/text.h"
 
 #include <math.h>
@@ -19,6 +20,7 @@
 #define SCORE_STROKES_MAX 200000
 #define SCORE_LINES_MAX 10000
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
+#define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 16 a second
 #define STROKE_INTERVAL_MIN \
     0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
 
@@ -151,13 +153,22 @@ static bool is_known_drum(const himc_score *score, const char *word)
     return false;
 }
 
+static bool may_stand(const himc_command *c, himc_error *error)
+{
+    const himc_command_row *row = himc_command_table((int)c->id);
+    return !(row->marks & HIMC_NOT_IN_SCORE) ||
+           himc_error_set(error, "%s: not allowed in a score", row->name);
+}
+
 /// A line for a drum: "kettle tune 110".
 static bool read_drum_line(reader *r, const himc_atom *atom, int count)
 {
     const himc_argument *name = himc_argument_find("NAME", NULL);
     if (!himc_argument_accepts(name, &atom[0]))
         return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
-    if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2, r->error))
+    if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
+                            r->error) ||
+        !may_stand(&r->command, r->error))
         return himc_error_prefix(r->error, "%s", atom[0].symbol);
     const himc_command_row *row = himc_command_table((int)r->command.id);
     if (r->timed && !(row->marks & HIMC_AT_BEAT))
@@ -186,12 +197,10 @@ static bool read_timed_line(reader *r, const himc_atom *atom, int count)
 static bool read_performer_line(reader *r, const himc_atom *atom, int count)
 {
     if (!himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
-                            r->error))
+                            r->error) ||
+        !may_stand(&r->command, r->error))
         return false;
-    const himc_command_row *row = himc_command_table((int)r->command.id);
-    if (row->marks & HIMC_NOT_IN_SCORE)
-        return himc_error_set(r->error, "%s: not allowed in a score", row->name);
-    switch (row->id) {
+    switch (r->command.id) {
     case HIMC_COMMAND_STROKE:
     case HIMC_COMMAND_ROLL:
     case HIMC_COMMAND_FLAM:
@@ -219,6 +228,28 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     return read_performer_line(r, atom, count);
 }
 
+// If a line inside the refused statement begins with a command's name, says so. Returns false.
+static bool suggest_end(reader *r, const char *begin, const char *end)
+{
+    char word[HIMC_NAME_SIZE];
+    for (const char *at = begin + strspn(begin, " \t\r\n"); at < end;) {
+        at += strcspn(at, "\n");
+        at += strspn(at, " \t\r\n");
+        size_t length = strcspn(at, " \t\r\n;");
+        if (at >= end || length == 0 || length >= sizeof word)
+            continue;
+        memcpy(word, at, length);
+        word[length] = '\0';
+        size_t used = r->error ? strlen(r->error->text) : 0;
+        if (!r->error || !himc_command_find(HIMC_PERFORMER, word))
+            continue;
+        himc_format(r->error->text + used, sizeof r->error->text - used,
+                    " (is a ; missing before \"%s\"?)", word);
+        return false;
+    }
+    return false;
+}
+
 static bool read_all(reader *r, const char *text)
 {
     himc_atom atoms[HIMC_COMMAND_ATOMS + 4];
@@ -230,10 +261,10 @@ static bool read_all(reader *r, const char *text)
     int line = 1;
     if (strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK)) == 0)
         text += strlen(BYTE_ORDER_MARK);
-    while (himc_text_next(&text, &line, &s)) {
+    for (const char *begin = text; himc_text_next(&text, &line, &s); begin = text) {
         r->line = s.line;
         if (!read_statement(r, &s))
-            return false;
+            return suggest_end(r, begin, text);
     }
     return true;
 }
@@ -312,6 +343,16 @@ static bool sort_changes(reader *r)
     return true;
 }
 
+bool himc_score_accepts_roll(const himc_tempo_change *tempi, int count, const himc_stroke *roll,
+                             himc_error *error)
+{
+    double seconds = himc_score_seconds(tempi, count, roll->beat + roll->length) -
+                     himc_score_seconds(tempi, count, roll->beat);
+    return seconds <= LONGEST_ROLL ||
+           himc_error_set(error, "roll: LENGTH: %.4g s at this tempo, allowed %g s", seconds,
+                          LONGEST_ROLL);
+}
+
 /// One hand cannot strike twice at once.
 static bool check_playable(reader *r)
 {
@@ -328,8 +369,12 @@ static bool check_playable(reader *r)
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
         r->line = r->stroke_line[i];
-        if (stroke->ornament >= HIMC_ROLL_SINGLE)
-            continue; // it leaves out what does not fit (ornament.h)
+        if (stroke->ornament >= HIMC_ROLL_SINGLE) {
+            // it leaves out what does not fit (ornament.h)
+            if (!himc_score_accepts_roll(score->tempi, score->tempo_count, stroke, r->error))
+                return false;
+            continue;
+        }
         if (seconds - last[stroke->hand] < STROKE_INTERVAL_MIN)
             return himc_error_set(
                 r->error,

@@ -1,0 +1,118 @@
+/// energy.c: the work of a step in the form that is exact for the integrator of tree.c and of ODE.
+///
+/// A step solves M (v+ - v) = h F with the inertias M and the levers of its beginning, then moves
+/// the segments by v+. With the mean velocity u = (v + v+) / 2
+///     v+' M v+ / 2 - v' M v / 2 = u' M (v+ - v) = h u' F,
+/// and the turn that follows has the axis w+, so it changes the inertia about the world's axes but
+/// not the kinetic energy. So each force has the work h u' F, with u at the point where it acts:
+///     joint torque  h t . (u_child - u_parent),  tip force and push  h f . u.
+/// What remains is the integrator's own, `numerical`:
+///     weight   the fall in the step is h v+, not h u: h m g (v+ - v) / 2 upwards, whose sum over a
+///              motion between two rests is 0;
+///     joints   the levers are those of the step's beginning, so the two ends of a joint part with a
+///              mean velocity of h w (w c) / 2; the force in the joint does work on it;
+///     spin     the gyroscopic moment (tree.h) is implicit and takes energy.
+/// The force in a joint is what accelerates all segments beyond it, less the other forces on them.
+/// The moments' equation is not used, so the balance tests it.
+#include "body/energy.h"
+
+#include <string.h>
+
+typedef struct step {
+    const himc_skeleton *skeleton;
+    const himc_articulation *art;
+    const segment_states *before, *after;
+    himc_vec3 spin[HIMC_SEGMENTS];     // mean over the step (rad/s)
+    himc_vec3 velocity[HIMC_SEGMENTS]; // mean, of the centre of mass (m/s)
+    himc_vec3 force[HIMC_SEGMENTS];    // on the centre of mass, without weight and joints (N)
+    double h;
+} step;
+
+static himc_vec3 mean(himc_vec3 a, himc_vec3 b)
+{
+    return himc_vec3_scale(himc_vec3_add(a, b), 0.5);
+}
+
+// mean velocity of the point of segment i that is `r` from its joint
+static himc_vec3 point_velocity(const step *s, int i, himc_vec3 r)
+{
+    if (i == 0)
+        return himc_vec3_make(0, 0, 0);
+    himc_vec3 from_center = himc_vec3_sub(r, s->art->center[i]);
+    return himc_vec3_add(s->velocity[i], himc_vec3_cross(s->spin[i], from_center));
+}
+
+static void begin(step *s, const himc_step_forces *forces)
+{
+    const himc_vec3 zero = {0, 0, 0};
+    s->spin[0] = s->velocity[0] = s->force[0] = zero;
+    memcpy(s->force, forces->push, sizeof s->force);
+    for (int i = 1; i < s->art->end; i++) {
+        s->spin[i] = mean(s->before->joints.spin[i], s->after->joints.spin[i]);
+        s->velocity[i] = mean(s->before->velocity[i], s->after->velocity[i]);
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 *f = &s->force[himc_stick_segment((himc_hand)hand)];
+        *f = himc_vec3_add(*f, forces->tip_force[hand]);
+    }
+}
+
+// power that the step gives by itself, at segment i; `joint` has the forces in the joints beyond
+static double numerical_power(const step *s, int i, himc_vec3 joint[HIMC_SEGMENTS])
+{
+    const himc_segment *segment = &s->skeleton->segment[i];
+    int p = segment->parent;
+    himc_vec3 gained = himc_vec3_sub(s->after->velocity[i], s->before->velocity[i]);
+    himc_vec3 needed = himc_vec3_scale(gained, segment->mass / s->h);
+    needed.z += segment->mass * HIMC_GRAVITY;
+    joint[i] = himc_vec3_add(joint[i], himc_vec3_sub(needed, s->force[i]));
+    joint[p] = himc_vec3_add(joint[p], joint[i]);
+    himc_vec3 here = point_velocity(s, i, himc_vec3_make(0, 0, 0));
+    himc_vec3 parting = himc_vec3_sub(here, point_velocity(s, p, s->art->lever[i]));
+    himc_vec3 moment = himc_gyroscopic_moment(segment->inertia, &s->before->joints.rotation[i],
+                                              s->before->joints.spin[i], s->h);
+    return himc_vec3_dot(joint[i], parting) + himc_vec3_dot(s->spin[i], moment) +
+           0.5 * segment->mass * HIMC_GRAVITY * gained.z;
+}
+
+void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
+                        const himc_articulation *art, const himc_step_forces *forces,
+                        const segment_states *before, const segment_states *after, double h)
+{
+    step s = {.skeleton = skeleton, .art = art, .before = before, .after = after, .h = h};
+    himc_vec3 joint[HIMC_SEGMENTS] = {{0, 0, 0}};
+    begin(&s, forces);
+    for (int i = art->end - 1; i > 0; i--) {
+        himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
+        work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);
+        work->push += h * himc_vec3_dot(forces->push[i], s.velocity[i]);
+        work->numerical += h * numerical_power(&s, i, joint);
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int i = himc_stick_segment((himc_hand)hand);
+        himc_vec3 tip = himc_mat3_apply(&before->joints.rotation[i], skeleton->tip);
+        work->contact[hand] +=
+            h * himc_vec3_dot(forces->tip_force[hand], point_velocity(&s, i, tip));
+    }
+}
+
+double himc_segments_kinetic(const himc_skeleton *skeleton, const segment_states *s)
+{
+    double twice = 0;
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 w = s->joints.spin[i];
+        himc_vec3 l = himc_mat3_scale_along(&s->joints.rotation[i], segment->inertia, w);
+        twice +=
+            segment->mass * himc_vec3_dot(s->velocity[i], s->velocity[i]) + himc_vec3_dot(w, l);
+    }
+    return 0.5 * twice;
+}
+
+double himc_segments_potential(const himc_skeleton *skeleton, const segment_states *s)
+{
+    double sum = 0;
+    for (int i = 1; i < HIMC_SEGMENTS; i++)
+        sum += skeleton->segment[i].mass * HIMC_GRAVITY * s->position[i].z;
+    return sum;
+}

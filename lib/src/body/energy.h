@@ -1,0 +1,35 @@
+/// energy.h: the energy of the simulated body, and the work on it added up step by step; private.
+#ifndef HIMC_BODY_ENERGY_H
+#define HIMC_BODY_ENERGY_H
+
+#include "body/tree.h"
+
+/// Since the sums began (J).
+typedef struct himc_body_work {
+    double joint[HIMC_JOINTS];  ///< of each joint's torque
+    double contact[HIMC_HANDS]; ///< of the forces on the tips
+    double push;                ///< of the forces on centres of mass
+    double placed;              ///< energy given by putting the body elsewhere
+    double numerical;           ///< given by the integrator
+} himc_body_work;
+
+/// The forces of one step, by their sources (world frame).
+typedef struct himc_step_forces {
+    const himc_vec3 *torque;    ///< of each joint on its child (N m) (HIMC_JOINTS)
+    const himc_vec3 *tip_force; ///< (N) (HIMC_HANDS)
+    const himc_vec3 *push;      ///< on centres of mass (N) (HIMC_SEGMENTS)
+} himc_step_forces;
+
+/// Adds the work of a step of `h` seconds that led from `before` to `after`; `art` is the
+/// articulation of `before`.
+HIMC_RT void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
+                                const himc_articulation *art, const himc_step_forces *forces,
+                                const segment_states *before, const segment_states *after,
+                                double h);
+
+/// Kinetic energy of all segments (J).
+HIMC_RT double himc_segments_kinetic(const himc_skeleton *skeleton, const segment_states *s);
+/// Potential energy of all segments (J), 0 with all centres of mass on the floor.
+HIMC_RT double himc_segments_potential(const himc_skeleton *skeleton, const segment_states *s);
+
+#endif

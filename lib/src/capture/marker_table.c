@@ -1,0 +1,430 @@
+/// marker_table.c: tables of markers as text: Vicon Nexus' ASCII export (.csv), Qualisys' TSV, and any
+/// CSV with columns NAME_x, NAME_y, NAME_z.
+///
+/// All three are a head that says rate, unit and the column where each marker's three cells begin,
+/// then rows of numbers. A head is read into a plan; one loop reads the rows of all.
+///
+///     Nexus     sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is read: the
+///               rate, a line of names each above its first column, "Frame,Sub Frame,X,Y,Z,...", a
+///               line of units, rows up to an empty one
+///     Qualisys  lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then rows,
+///               with Frame and Time first if the line before them says so
+///     any       one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
+///               NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others
+///               are not read. So motion.csv of `himc render` is a take, too
+#include "capture/marker_cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NOT_THERE (-1)
+#define SAME_UNIT 1e-9
+#define RATE_TOLERANCE 0.02 // of the steps of a time column, over their mean; chosen
+
+typedef struct plan {
+    himc_take *take;
+    himc_text text; // its next line is the first row
+    char separator;
+    double rate; // (Hz), 0: by the time column
+    int points;
+    int *begin;           // column of each point's x (points), rising; owned
+    himc_span *names;     // (points); owned
+    int frame, time;      // columns, or NOT_THERE
+    bool ends_with_blank; // an empty line ends the rows
+    himc_error *error;
+} plan;
+
+static bool refuse(const plan *p, const char *what)
+{
+    return himc_error_set(p->error, "%s:%d: %s", p->take->file, p->text.line, what);
+}
+
+static int count_cells(himc_span line, char separator)
+{
+    int count = 1;
+    for (size_t i = 0; i < line.length; i++)
+        count += line.at[i] == separator;
+    return count;
+}
+
+static bool make_room(plan *p, int most)
+{
+    p->begin = calloc((size_t)most + 1, sizeof *p->begin);
+    p->names = calloc((size_t)most + 1, sizeof *p->names);
+    return (p->begin && p->names) ||
+           himc_error_set(p->error, "%s: no memory for %d names", p->take->file, most);
+}
+
+static void add_point(plan *p, himc_span name, int column)
+{
+    p->names[p->points] = name;
+    p->begin[p->points++] = column;
+}
+
+static double unit_of(himc_span word)
+{
+    static const struct {
+        const char *word;
+        double unit;
+    } known[] = {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        if (himc_span_is(word, known[i].word))
+            return known[i].unit;
+    return 0;
+}
+
+// Nexus
+
+static bool nexus_names(plan *p, himc_span line)
+{
+    if (!make_room(p, count_cells(line, ',')))
+        return false;
+    for (int column = 0; line.at; column++) {
+        himc_span cell = himc_span_cell(&line, ',');
+        if (cell.length == 0 || column < 2)
+            continue;
+        if (p->points > 0 && column < p->begin[p->points - 1] + 3)
+            return refuse(p, "two names less than three columns apart");
+        add_point(p, cell, column);
+    }
+    return p->points > 0 || refuse(p, "no names of markers, allowed: one above each first column");
+}
+
+static bool nexus_units(plan *p, himc_span line)
+{
+    for (int column = 0; line.at; column++) {
+        himc_span cell = himc_span_cell(&line, ',');
+        double unit = unit_of(cell);
+        if (unit == 0)
+            continue;
+        if (p->take->file_unit != 0 && fabs(p->take->file_unit - unit) > SAME_UNIT)
+            return refuse(p, "markers in several units, allowed one");
+        p->take->file_unit = unit;
+    }
+    return true;
+}
+
+static bool read_nexus(plan *p)
+{
+    himc_span line, names, heads;
+    memcpy(p->take->format, "CSV (Vicon Nexus)", 18);
+    bool found = false;
+    while (!found && himc_text_line(&p->text, &line))
+        found = himc_span_is(himc_span_cell(&line, ','), "trajectories");
+    if (!found)
+        return himc_error_set(p->error,
+                              "%s: no section Trajectories, allowed: an export with trajectories",
+                              p->take->file);
+    if (!himc_text_line(&p->text, &line) || !himc_span_number(himc_span_cell(&line, ','), &p->rate))
+        return refuse(p, "no rate, allowed: frames per second (Hz)");
+    if (!himc_text_line(&p->text, &names))
+        return refuse(p, "no names of markers");
+    if (!nexus_names(p, names))
+        return false;
+    if (!himc_text_line(&p->text, &heads) || !himc_span_is(himc_span_cell(&heads, ','), "frame"))
+        return refuse(p, "not the line of columns, allowed: Frame,Sub Frame,X,Y,Z,...");
+    p->frame = 0;
+    p->ends_with_blank = true;
+    return himc_text_line(&p->text, &line) ? nexus_units(p, line) : refuse(p, "no line of units");
+}
+
+// Qualisys
+
+static bool qualisys_names(plan *p, himc_span rest)
+{
+    if (!make_room(p, count_cells(rest, '\t')))
+        return false;
+    while (rest.at) {
+        himc_span cell = himc_span_cell(&rest, '\t');
+        if (cell.length > 0)
+            add_point(p, cell, 0);
+    }
+    return p->points > 0 || refuse(p, "MARKER_NAMES has none");
+}
+
+// columns of the points, behind Frame and Time if the table begins with them
+static void qualisys_columns(plan *p, himc_span line)
+{
+    int column = 0;
+    if (himc_span_is(himc_span_cell(&line, '\t'), "frame")) {
+        p->frame = column++;
+        if (line.at && himc_span_is(himc_span_cell(&line, '\t'), "time"))
+            p->time = column++;
+    }
+    for (int i = 0; i < p->points; i++)
+        p->begin[i] = column + 3 * i;
+}
+
+static bool read_qualisys(plan *p)
+{
+    himc_span line, key;
+    double unused;
+    memcpy(p->take->format, "TSV (Qualisys)", 15);
+    p->take->file_unit = 0.001;
+    for (himc_text before = p->text; himc_text_line(&p->text, &line); before = p->text) {
+        himc_span rest = line;
+        key = himc_span_cell(&rest, '\t');
+        if (himc_span_is(key, "frequency")) {
+            if (!rest.at || !himc_span_number(himc_span_cell(&rest, '\t'), &p->rate))
+                return refuse(p, "FREQUENCY is no number (Hz)");
+        } else if (himc_span_is(key, "marker_names") && p->points == 0) {
+            if (!rest.at || !qualisys_names(p, rest))
+                return p->points > 0 || refuse(p, "MARKER_NAMES has none");
+            qualisys_columns(p, (himc_span){"", 0});
+        } else if (himc_span_is(key, "frame")) {
+            qualisys_columns(p, line);
+            return p->points > 0 || refuse(p, "no MARKER_NAMES before the rows");
+        } else if (himc_span_number(key, &unused)) {
+            p->text = before;
+            return p->points > 0 || refuse(p, "no MARKER_NAMES before the rows");
+        }
+    }
+    return refuse(p, "no rows, allowed: a TSV with MARKER_NAMES, then numbers");
+}
+
+// any CSV
+
+// takes the last word off: blanks, brackets, points and underscores are between words
+static himc_span last_word(himc_span *rest)
+{
+    static const char *const between = " _.:()[]{}\"'";
+    size_t end = rest->length, begin;
+    while (end > 0 && strchr(between, rest->at[end - 1]))
+        end--;
+    for (begin = end; begin > 0 && !strchr(between, rest->at[begin - 1]);)
+        begin--;
+    himc_span word = {rest->at + begin, end - begin};
+    rest->length = begin;
+    while (rest->length > 0 && strchr(between, rest->at[rest->length - 1]))
+        rest->length--;
+    return word;
+}
+
+// the coordinate 0 .. 2 of a column "NAME_x_mm", its name and unit (0: none said); else NOT_THERE
+static int coordinate_of(himc_span cell, himc_span *name, double *unit)
+{
+    himc_span word = last_word(&cell);
+    *unit = unit_of(word);
+    if (*unit != 0)
+        word = last_word(&cell);
+    *name = cell;
+    for (int axis = 0; axis < 3; axis++)
+        if (word.length == 1 && cell.length > 0 && (word.at[0] | 32) == 'x' + axis)
+            return axis;
+    return NOT_THERE;
+}
+
+static bool is_time(himc_span cell)
+{
+    himc_span name = cell, word = last_word(&name);
+    return himc_span_is(cell, "time") || (himc_span_is(word, "s") && himc_span_is(name, "time"));
+}
+
+static bool same_name(himc_span a, himc_span b)
+{
+    return a.length == b.length && memcmp(a.at, b.at, a.length) == 0;
+}
+
+static himc_span unquoted(himc_span cell)
+{
+    bool quoted = cell.length > 1 && cell.at[0] == '"' && cell.at[cell.length - 1] == '"';
+    return quoted ? (himc_span){cell.at + 1, cell.length - 2} : cell;
+}
+
+static bool any_columns(plan *p, himc_span line)
+{
+    himc_span name, last = {"", 0};
+    double unit;
+    for (int column = 0, next = 0; line.at; column++) {
+        himc_span cell = unquoted(himc_span_cell(&line, p->separator));
+        int axis = coordinate_of(cell, &name, &unit);
+        if (is_time(cell) && p->time == NOT_THERE)
+            p->time = column;
+        bool goes_on = next > 0 && axis == next && same_name(name, last);
+        if (axis != 0 && !goes_on) {
+            next = 0;
+            continue;
+        }
+        next = (axis + 1) % 3;
+        last = name;
+        if (unit != 0 && p->take->file_unit != 0 && fabs(unit - p->take->file_unit) > SAME_UNIT)
+            return refuse(p, "markers in several units, allowed one");
+        p->take->file_unit = unit != 0 ? unit : p->take->file_unit;
+        if (axis == 2)
+            add_point(p, name, column - 2);
+    }
+    return true;
+}
+
+static bool read_any(plan *p)
+{
+    himc_span line;
+    memcpy(p->take->format, "CSV", 4);
+    if (!himc_text_filled_line(&p->text, &line))
+        return refuse(p, "the file has no line");
+    p->separator = memchr(line.at, ';', line.length)    ? ';'
+                   : memchr(line.at, '\t', line.length) ? '\t'
+                                                        : ',';
+    if (!make_room(p, count_cells(line, p->separator)) || !any_columns(p, line))
+        return false;
+    if (p->points == 0)
+        return refuse(p,
+                      "no markers, allowed: columns time,NAME_x_m,NAME_y_m,NAME_z_m,... (or _mm, "
+                      "_cm); Vicon Nexus' ASCII export; Qualisys' .tsv");
+    return p->time != NOT_THERE || refuse(p, "no column time (s)");
+}
+
+// rows
+
+static bool is_row(const plan *p, himc_span line, bool *over)
+{
+    for (size_t i = 0; i < line.length; i++)
+        if (line.at[i] != p->separator && line.at[i] != ' ' && line.at[i] != '\t')
+            return true;
+    *over = p->ends_with_blank;
+    return false;
+}
+
+static int count_rows(const plan *p)
+{
+    himc_text text = p->text;
+    himc_span line;
+    int rows = 0;
+    for (bool over = false; !over && himc_text_line(&text, &line);)
+        rows += is_row(p, line, &over);
+    return rows;
+}
+
+static bool read_number(const plan *p, himc_span cell, const char *column, double *value)
+{
+    char text[44];
+    return (himc_span_number(cell, value) && fabs(*value) <= TAKE_LARGEST) ||
+           himc_error_set(p->error, "%s:%d: %s is \"%s\", allowed: a number", p->take->file,
+                          p->text.line, column, himc_span_text(cell, text));
+}
+
+static bool read_row(const plan *p, himc_span line, int frame, double *time)
+{
+    marker_row row = {p->take, p->text.line, p->separator, p->error};
+    double number;
+    int point = 0;
+    for (int column = 0; point < p->points || column <= p->time;) {
+        if (point < p->points && column == p->begin[point]) {
+            if (!himc_marker_row_point(&row, &line, frame, point++))
+                return false;
+            column += 3;
+            continue;
+        }
+        himc_span cell = line.at ? himc_span_cell(&line, p->separator) : (himc_span){"", 0};
+        if (column == p->frame && frame == 0) {
+            if (!read_number(p, cell, "the frame", &number))
+                return false;
+            p->take->first_frame = (int)number;
+        }
+        if (column == p->time && !read_number(p, cell, "the time", time))
+            return false;
+        column++;
+    }
+    return true;
+}
+
+static bool read_rows(plan *p)
+{
+    himc_span line;
+    double time = NAN;
+    for (int frame = 0; frame < p->take->frames && himc_text_line(&p->text, &line);) {
+        bool over = false;
+        if (is_row(p, line, &over) && !read_row(p, line, frame++, &time))
+            return false;
+    }
+    return true;
+}
+
+// the rate of a table that has only a time column: from its first to its last row
+static bool find_rate(plan *p, int rows)
+{
+    himc_span line;
+    double first = NAN, last = NAN;
+    bool over = false;
+    plan look = *p;
+    for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
+        if (!is_row(&look, line, &over))
+            continue;
+        himc_span cell = {"", 0};
+        for (int column = 0; column <= look.time && line.at; column++)
+            cell = himc_span_cell(&line, look.separator);
+        if (row != 0 && row != 1 && row != rows - 1) {
+            row++;
+            continue;
+        }
+        if (!read_number(&look, cell, "the time", row++ ? &last : &first))
+            return false;
+        if (row == 2 && rows > 2)
+            p->rate = last - first;
+    }
+    double step = (last - first) / (rows - 1), second = p->rate;
+    if (rows > 2 && !(fabs(second - step) <= RATE_TOLERANCE * fabs(step) + 1e-6))
+        himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
+                       second, step);
+    p->rate = 1 / step;
+    return rows > 1 || refuse(p, "one row: no rate");
+}
+
+static bool read_table(plan *p, size_t size)
+{
+    int rows = count_rows(p);
+    if (rows == 0)
+        return refuse(p, "no rows");
+    if (p->rate == 0 && !find_rate(p, rows))
+        return false;
+    if (size / (size_t)p->points < (size_t)rows)
+        return refuse(p, "more markers than the rows have cells for");
+    if (!himc_take_allocate(p->take, p->rate, rows, p->points, false, p->error))
+        return false;
+    for (int i = 0; i < p->points; i++)
+        himc_take_set_name(p->take, i, p->names[i].at, p->names[i].length);
+    return read_rows(p);
+}
+
+static bool is_nexus(himc_text text)
+{
+    himc_span line;
+    if (!himc_text_line(&text, &line))
+        return false;
+    himc_span cell = himc_span_cell(&line, ',');
+    return himc_span_is(cell, "trajectories") || himc_span_is(cell, "devices") ||
+           himc_span_is(cell, "joints") || himc_span_is(cell, "model outputs") ||
+           himc_span_is(cell, "segments") || himc_span_is(cell, "events");
+}
+
+static bool read_as(himc_take *take, const void *bytes, size_t size, char separator,
+                    bool (*head)(plan *), himc_error *error)
+{
+    plan p = {.take = take,
+              .text = himc_text_open(bytes, size),
+              .separator = separator,
+              .frame = NOT_THERE,
+              .time = NOT_THERE,
+              .error = error};
+    take->format_up = himc_vec3_make(0, 0, 1);
+    bool good = head(&p) && read_table(&p, size);
+    free(p.begin);
+    free(p.names);
+    return good;
+}
+
+bool himc_csv_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
+{
+    bool nexus = is_nexus(himc_text_open(bytes, size));
+    return read_as(take, bytes, size, ',', nexus ? read_nexus : read_any, error);
+}
+
+bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
+{
+    himc_text text = himc_text_open(bytes, size);
+    himc_span line = {"", 0};
+    himc_text_line(&text, &line);
+    bool qualisys = line.length > 6 && himc_span_is((himc_span){line.at, 6}, "NO_OF_");
+    return read_as(take, bytes, size, '\t', qualisys ? read_qualisys : read_any, error);
+}

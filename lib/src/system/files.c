@@ -1,0 +1,166 @@
+/// files.c: names of files on Linux, macOS and other systems of POSIX, and on Windows.
+///
+/// A folder that nothing leads out of: on POSIX a name is resolved with all its links, and the
+/// result must lie in the folder. Then it is opened from the folder down, part by part, and no link
+/// is followed any more: if one has been put there in between, the file is refused. Windows tells
+/// the final path of what has been opened, which must lie in the folder. Invariant: the opened file
+/// lies inside.
+#define _GNU_SOURCE // O_PATH
+#include "system/files.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// the part of a real path below the folder, with its first separator; NULL if it is not inside
+static const char *below(const char *real, const char *folder, char separator)
+{
+    size_t length = strlen(folder);
+    length -= length > 0 && folder[length - 1] == separator; // the root
+    bool inside = strncmp(real, folder, length) == 0 && real[length] == separator;
+    return inside ? real + length : NULL;
+}
+
+#ifdef _WIN32
+#include <io.h>
+#include <windows.h>
+
+// false with errno if it is no UTF-8 or too long
+static bool widen(const char *path, wchar_t wide[PATH_MAX])
+{
+    if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, PATH_MAX) > 0)
+        return true;
+    errno = ENOENT;
+    return false;
+}
+
+int himc_system_open(const char *path, int flags)
+{
+    wchar_t wide[PATH_MAX];
+    return widen(path, wide) ? _wopen(wide, flags, _S_IREAD | _S_IWRITE) : -1;
+}
+
+static HANDLE open_handle(const char *path)
+{
+    wchar_t wide[PATH_MAX];
+    if (!widen(path, wide))
+        return INVALID_HANDLE_VALUE;
+    return CreateFileW(wide, GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+                       NULL, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, NULL); // folders, too
+}
+
+static bool final_path(HANDLE file, char path[3 * PATH_MAX])
+{
+    wchar_t wide[PATH_MAX];
+    DWORD length = GetFinalPathNameByHandleW(file, wide, PATH_MAX, FILE_NAME_NORMALIZED);
+    return length > 0 && length < PATH_MAX &&
+           WideCharToMultiByte(CP_UTF8, 0, wide, -1, path, 3 * PATH_MAX, NULL, NULL) > 0;
+}
+
+char *himc_system_real_path(const char *path)
+{
+    char real[3 * PATH_MAX];
+    HANDLE file = open_handle(path);
+    bool good = file != INVALID_HANDLE_VALUE && final_path(file, real);
+    if (file != INVALID_HANDLE_VALUE)
+        CloseHandle(file);
+    if (good)
+        return strdup(real);
+    errno = ENOENT;
+    return NULL;
+}
+
+bool himc_system_rename(const char *from, const char *to)
+{
+    wchar_t wide[2][PATH_MAX];
+    if (widen(from, wide[0]) && widen(to, wide[1]) &&
+        MoveFileExW(wide[0], wide[1], MOVEFILE_REPLACE_EXISTING))
+        return true;
+    errno = EACCES;
+    return false;
+}
+
+bool himc_system_same(const char *a, const char *b)
+{
+    char *first = himc_system_real_path(a), *second = himc_system_real_path(b);
+    bool same = first && second && strcmp(first, second) == 0;
+    free(first);
+    free(second);
+    return same;
+}
+
+int himc_system_open_inside(const char *folder, const char *name)
+{
+    char wanted[PATH_MAX], real[3 * PATH_MAX];
+    if (snprintf(wanted, sizeof wanted, "%s\\%s", folder, name) >= (int)sizeof wanted)
+        return -1;
+    for (char *c = wanted; *c; c++) // the folder's real path takes no other separator
+        *c = *c == '/' ? '\\' : *c;
+    HANDLE file = open_handle(wanted);
+    if (file == INVALID_HANDLE_VALUE)
+        return -1;
+    if (final_path(file, real) && below(real, folder, '\\'))
+        return _open_osfhandle((intptr_t)file, O_RDONLY | O_BINARY);
+    CloseHandle(file);
+    return -1;
+}
+
+#else
+#include <unistd.h>
+
+#ifndef O_PATH // Linux's own: a folder on the way needs not be readable
+#define O_PATH O_RDONLY
+#endif
+
+int himc_system_open(const char *path, int flags)
+{
+    return open(path, flags, 0666);
+}
+
+char *himc_system_real_path(const char *path)
+{
+    return realpath(path, NULL);
+}
+
+bool himc_system_rename(const char *from, const char *to)
+{
+    return rename(from, to) == 0;
+}
+
+bool himc_system_same(const char *a, const char *b)
+{
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+// opens "/a/b/c" from the folder down, without following a link
+static int descend(const char *folder, const char *path)
+{
+    char part[NAME_MAX + 1];
+    int at = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    while (at >= 0 && *path) {
+        size_t n = strcspn(++path, "/");
+        snprintf(part, sizeof part, "%.*s", (int)n, path);
+        path += n;
+        int how = *path ? O_PATH | O_DIRECTORY : O_RDONLY | O_NONBLOCK | O_NOCTTY;
+        int next = openat(at, part, how | O_NOFOLLOW | O_CLOEXEC);
+        close(at);
+        at = next;
+    }
+    return at;
+}
+
+int himc_system_open_inside(const char *folder, const char *name)
+{
+    char wanted[PATH_MAX];
+    int length = snprintf(wanted, sizeof wanted, "%s/%s", folder, name);
+    char *real = (size_t)length < sizeof wanted ? realpath(wanted, NULL) : NULL;
+    const char *path = real ? below(real, folder, '/') : NULL;
+    int file = path ? descend(folder, path) : -1;
+    free(real);
+    return file;
+}
+#endif

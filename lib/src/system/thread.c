@@ -1,0 +1,51 @@
+/// thread.c: the priority of a thread: on Linux its own nice value, on macOS its quality of
+/// service, on Windows its priority.
+#define _GNU_SOURCE // SCHED_RESET_ON_FORK
+#include "system/thread.h"
+
+#ifdef _WIN32
+#include <windows.h>
+
+void himc_system_give_way(void)
+{
+    SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_BELOW_NORMAL);
+}
+
+void himc_system_go_first(void)
+{
+    SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_TIME_CRITICAL);
+}
+
+#elif defined __APPLE__
+#include <pthread.h>
+
+void himc_system_give_way(void)
+{
+    pthread_set_qos_class_self_np(QOS_CLASS_UTILITY, 0);
+}
+
+void himc_system_go_first(void)
+{
+    pthread_set_qos_class_self_np(QOS_CLASS_USER_INTERACTIVE, 0);
+}
+
+#else
+#include <sched.h>
+#include <sys/resource.h>
+
+#ifndef SCHED_RESET_ON_FORK // Linux's own
+#define SCHED_RESET_ON_FORK 0
+#endif
+#define NICE 5      // chosen: sound goes first
+#define REALTIME 10 // chosen: below what a sound server takes
+
+void himc_system_give_way(void)
+{
+    setpriority(PRIO_PROCESS, 0, NICE);
+}
+
+void himc_system_go_first(void)
+{
+    sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &(struct sched_param){REALTIME});
+}
+#endif

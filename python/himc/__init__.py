@@ -1,0 +1,300 @@
+"""A virtual timpanist in Python.
+
+``render`` plays a score or a take offline; ``Performance`` plays step by step, with live targets; ``Take`` is a motion capture as
+arrays; ``modes`` lists a drum's modes; ``evaluate`` compares the controllers on own captures. All units are SI; docs/data.md of the
+repository has frames and conventions.
+
+Arrays of sound, motion and takes are the library's own memory, not copies. They stay valid as long as Python has them.
+"""
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Iterable, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._himc import ffi, lib
+
+__all__ = ["Error", "Performance", "Rendering", "Take", "evaluate", "joint_names", "modes", "render", "segment_names"]
+__version__: str = ffi.string(lib.himc_version()).decode()
+
+HANDS = ("left", "right")
+LISTENER = "listener 2.2 0.4 1.3"  # where `himc render` listens unless the score says
+CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
+TAIL = 8.0  # s; a drum rings no longer
+SILENCE = 1e-4  # of the peak
+
+joint_names: list[str] = [ffi.string(lib.himc_joint_name(j)).decode() for j in range(19)]
+segment_names: list[str] = [ffi.string(lib.himc_segment_name(i)).decode() for i in range(20)]
+
+
+class Error(ValueError):
+    """The library's one line: what was wrong, the value, what is allowed."""
+
+
+def _check(good: bool, error) -> None:
+    if not good:
+        raise Error(ffi.string(error.text).decode(errors="replace"))
+
+
+def _text(value: Union[None, str, Path]) -> bytes:
+    return b"" if value is None else str(value).encode()
+
+
+def _dtype(ctype: str) -> np.dtype:
+    """The NumPy type of a C struct of numbers, vectors, names and arrays of these."""
+    def of(kind):
+        if kind.kind == "array":
+            if kind.item.cname == "char":
+                return np.dtype(f"S{kind.length}")
+            inner = of(kind.item)
+            base, shape = inner.subdtype or (inner, ())
+            return np.dtype((base, (kind.length,) + shape))
+        if kind.cname in ("himc_vec3", "himc_quat"):
+            return np.dtype((np.float64, (len(kind.fields),)))
+        if kind.kind == "struct":
+            return np.dtype({"names": [n for n, _ in kind.fields], "formats": [of(f.type) for _, f in kind.fields],
+                             "offsets": [f.offset for _, f in kind.fields], "itemsize": ffi.sizeof(kind)})
+        return np.dtype({"double": np.float64, "int": np.int32, "long": np.int64}[kind.cname])
+    return of(ffi.typeof(ctype))
+
+
+_ROW, _STRIKE, _MODE = _dtype("himc_motion_row"), _dtype("himc_strike"), _dtype("mode_row")
+_TAKE_STRIKE = _dtype("himc_take_strike")
+
+
+class _Memory:
+    """Memory of the library for NumPy, with what owns it."""
+    def __init__(self, owner, pointer, size: int):
+        self.owner = owner
+        self.__array_interface__ = {"data": (int(ffi.cast("uintptr_t", pointer)), True), "shape": (size,), "typestr": "|u1",
+                                    "version": 3}
+
+
+def _array(owner, pointer, count: int, dtype: np.dtype) -> NDArray:
+    """The library's memory as a read-only array, which keeps `owner` alive."""
+    if count == 0:
+        return np.empty(0, dtype)
+    return np.asarray(_Memory(owner, pointer, count * dtype.itemsize)).view(dtype)
+
+
+class Performance:
+    """A performer with drums, played as far as one asks.
+
+    >>> p = Performance()
+    >>> p.add_drum("kettle")
+    >>> p.command("stroke 0 right accent f")
+    >>> p.command("play")
+    >>> sound = p.process(1.0)
+    """
+
+    def __init__(self, rate: float = 48000, physics: float = 0, task: float = 0, channels: int = 2, motion: bool = True):
+        """`rate` of the sound, `physics` and `task` rates (Hz, 0: 10000 and 250); `motion`: keep rows."""
+        error = ffi.new("himc_error *")
+        made = lib.session_new(rate, physics, task, error)
+        _check(made != ffi.NULL, error)
+        self._session = ffi.gc(made, lib.session_free)
+        self.rate, self.channels = rate, channels
+        lib.session_keep_rows(self._session, motion)
+        if channels == 2:
+            self.command(LISTENER)
+
+    def command(self, text: str, word: Union[None, str, Path] = None) -> None:
+        """Carries out a command of the manual: ``"tempo 90"``, or a name and one word that may have spaces: ``("take", path)``."""
+        error = ffi.new("himc_error *")
+        name = ffi.NULL if word is None else ffi.new("char[]", _text(word))
+        _check(lib.session_command(self._session, text.encode(), name, error), error)
+
+    def add_drum(self, name: str = "kettle", inches: float = 0) -> None:
+        """Adds a drum of that diameter (0: 26 inches)."""
+        error = ffi.new("himc_error *")
+        _check(lib.session_add_drum(self._session, name.encode(), inches, error), error)
+
+    def drum_command(self, drum: str, text: str) -> None:
+        """Carries out a command to a drum: ``drum_command("kettle", "tune A2")``."""
+        error = ffi.new("himc_error *")
+        _check(lib.session_drum_command(self._session, drum.encode(), text.encode(), error), error)
+
+    def take_options(self, left_tip: Optional[str] = None, right_tip: Optional[str] = None, up: Optional[str] = None) -> None:
+        """Names of the tips and the upward axis ("y", "z") of takes to come."""
+        lib.session_take_options(self._session, _text(left_tip), _text(right_tip), _text(up))
+
+    def target(self, hand: Union[str, int], xyz: Sequence[float]) -> None:
+        """A live target of a drumstick's tip (m, world frame), for now."""
+        x, y, z = map(float, xyz)
+        lib.himc_performance_target(self._session.performance, HANDS.index(hand) if isinstance(hand, str) else hand, [x, y, z])
+
+    def process(self, seconds: float, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
+        """Plays on; the sound, (samples, channels) float32. `out` is filled instead, as long as it is (no copy)."""
+        if out is None:
+            out = np.empty((round(seconds * self.rate), self.channels), np.float32)
+        elif out.dtype != np.float32 or out.ndim != 2 or out.shape[1] != self.channels or not out.flags.c_contiguous:
+            raise Error(f"out: allowed float32, C order, shape (samples, {self.channels})")
+        lib.session_process(self._session, len(out), self.channels, ffi.cast("float *", out.ctypes.data))
+        if self._session.failed:
+            raise MemoryError("no memory for rows or strikes")
+        return out
+
+    @property
+    def time(self) -> float:
+        """Seconds played."""
+        return self._session.samples / self.rate
+
+    @property
+    def done(self) -> bool:
+        """All is played and at rest."""
+        return self._session.done
+
+    @property
+    def motion(self) -> NDArray:
+        """Rows of motion so far, a structured array: ``motion["torque"]`` is (rows, 19, 3). A copy, since more may come."""
+        return _array(self._session, self._session.rows, self._session.row_count, _ROW).copy()
+
+    @property
+    def strikes(self) -> NDArray:
+        """Contacts so far, a structured array; ``hand`` 0 is left."""
+        return _array(self._session, self._session.strikes, self._session.strike_count, _STRIKE).copy()
+
+    @property
+    def notes(self) -> list[str]:
+        """Lines for the user so far."""
+        return ffi.string(self._session.notes).decode().splitlines() if self._session.notes_size else []
+
+    @property
+    def stats(self) -> dict[str, float]:
+        """The figures of ``himc render``, in SI units."""
+        s = lib.himc_performance_measure(self._session.performance)
+        return {name: getattr(s, name) for name, _ in ffi.typeof("himc_performance_stats").fields}
+
+
+@dataclass(frozen=True)
+class Rendering:
+    """What a piece sounds and looks like."""
+    sound: NDArray[np.float32]  #: (samples, channels), 1.0 is full scale
+    rate: float  #: (Hz)
+    motion: NDArray  #: structured (rows,), as in docs/data.md; empty unless asked for
+    strikes: NDArray  #: structured (strikes,)
+    stats: Mapping[str, float]
+    notes: Sequence[str]
+
+
+def _is_take(path: str) -> bool:
+    return Path(path).suffix.lower() in (".bvh", ".c3d", ".trc", ".csv", ".tsv")
+
+
+def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, motion: bool = True, settings: Iterable[str] = (),
+           left_tip: Optional[str] = None, right_tip: Optional[str] = None, up: Optional[str] = None) -> Rendering:
+    """Plays a score, a MIDI file or a take to its end, as ``himc render`` does, to the same bits.
+
+    `score` is a path, or the text of a score (it has a ``;``). `settings` are commands: before a take, after a score.
+    """
+    if ";" in str(score):
+        with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
+            file.write(str(score))
+            file.flush()
+            return render(file.name, rate, channels, motion, settings)
+    path, take, error = str(score), _is_take(str(score)), ffi.new("himc_error *")
+    makes = 0 if take else lib.session_makes_drums(path.encode(), error)
+    _check(makes >= 0, error)
+    p = Performance(rate, channels=0, motion=motion)
+    p.channels = channels
+    p.take_options(left_tip, right_tip, up)
+    if not makes:
+        p.add_drum()
+    if channels == 2:
+        p.command(LISTENER)
+    commands = [(text, None) for text in settings]
+    whole = [("take" if take else "score", path)]
+    for text, word in commands + whole if take else whole + commands:
+        p.command(text, word)
+    if channels == 1:
+        p.command("listener off")
+    p.command("play")
+    return _play_to_the_end(p)
+
+
+def _play_to_the_end(p: Performance) -> Rendering:
+    cells, peak, done_at = [], 0.0, None
+    while True:
+        cells.append(p.process(CELL))
+        quiet = p._session.peak
+        peak = max(peak, quiet)
+        if p.done:
+            if done_at is None:
+                done_at = p.time
+            if (quiet <= SILENCE * peak and p.time > done_at) or p.time - done_at >= TAIL:
+                break
+    s = p._session
+    return Rendering(np.concatenate(cells), p.rate, _array(s, s.rows, s.row_count, _ROW),
+                     _array(s, s.strikes, s.strike_count, _STRIKE), p.stats, p.notes)
+
+
+class Take:
+    """A motion capture: BVH, C3D, TRC, Nexus CSV, Qualisys TSV, or CSV with NAME_x_m, NAME_y_m, NAME_z_m."""
+
+    def __init__(self, path: Union[str, Path], left_tip: Optional[str] = None, right_tip: Optional[str] = None,
+                 up: Optional[str] = None, subject: Optional[str] = None):
+        error = ffi.new("himc_error *")
+        made = lib.take_load(_text(path), _text(left_tip), _text(right_tip), _text(up), _text(subject), error)
+        _check(made != ffi.NULL, error)
+        self._take = ffi.gc(made, lib.himc_take_free)
+        self._tips = _text(left_tip), _text(right_tip)
+        self.rate: float = lib.himc_take_rate(made)  #: (Hz)
+        self.names: list[str] = [ffi.string(lib.himc_take_point_name(made, i)).decode()
+                                 for i in range(lib.himc_take_points(made))]
+        frames = lib.himc_take_frames(made)
+        #: (frames, points, 3), m, z up, facing along x; NaN in gaps. The library's memory, read only.
+        self.points: NDArray[np.float64] = _array(self._take, lib.take_points(made), frames * len(self.names) * 3,
+                                                  np.dtype(np.float64)).reshape(frames, len(self.names), 3)
+
+        count, channels, rate = ffi.new("int *"), ffi.new("int *"), ffi.new("double *")
+        analog = lib.take_analog(made, count, channels, rate)
+        self.analog_rate: float = rate[0]  #: (Hz), 0 without analog channels
+        self.analog_names: list[str] = [ffi.string(lib.take_analog_name(made, i)).decode() for i in range(channels[0])]
+        #: (samples, channels) of a C3D, in the file's units. The library's memory, read only.
+        self.analog: NDArray[np.float64] = _array(self._take, analog, count[0] * channels[0],
+                                                  np.dtype(np.float64)).reshape(count[0], channels[0])
+
+    def events(self) -> list[tuple[float, str]]:
+        """Time from the first frame (s) and label of the file's events."""
+        time, label, found = ffi.new("double *"), ffi.new("char **"), []
+        while lib.take_event(self._take, len(found), time, ffi.cast("const char **", label)):
+            found.append((time[0], ffi.string(label[0]).decode()))
+        return found
+
+    def strikes(self) -> NDArray:
+        """Strikes seen in the tips, a structured array."""
+        error, count = ffi.new("himc_error *"), ffi.new("int *")
+        found = lib.take_strikes(self._take, *self._tips, count, error)
+        _check(count[0] >= 0, error)
+        owner = ffi.gc(found, lib.free)
+        return _array(owner, owner, count[0], _TAKE_STRIKE)
+
+
+def modes(score: Union[None, str, Path] = None) -> NDArray:
+    """The modes of the first drum of a score, or of the default one: fields m, n, frequency (Hz), ratio, t60 (s)."""
+    error, rows = ffi.new("himc_error *"), np.zeros(8192, _MODE)
+    count = lib.modes_of(ffi.NULL if score is None else ffi.new("char[]", _text(score)),
+                         ffi.cast("mode_row *", rows.ctypes.data), len(rows), error)
+    _check(count >= 0, error)
+    return rows[:count]
+
+
+def evaluate(takes: Iterable[Union[str, Path]], left_tip: Optional[str] = None, right_tip: Optional[str] = None,
+             up: Optional[str] = None, jobs: Optional[int] = None) -> list[dict]:
+    """Plays each capture under each controller and law (``himc evaluate --take``, the program that the package brings)."""
+    program = Path(__file__).parent / "bin" / "himc"
+    call = [str(program), "evaluate", "--quiet", "--json"]
+    for name, value in (("left-tip", left_tip), ("right-tip", right_tip), ("up", up), ("jobs", jobs)):
+        call += [f"--{name}", str(value)] if value is not None else []
+    for take in takes:
+        call += ["--take", str(take)]
+    done = subprocess.run(call, capture_output=True, text=True)
+    if done.returncode:
+        raise Error(done.stderr.strip())
+    return json.loads(done.stdout)

@@ -1,0 +1,163 @@
+"""The package against the program, and the examples of the documentation. Run from the repository's root by `make test-python`."""
+import json
+import re
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import himc
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(himc.__file__).parent / "bin" / "himc"
+CAPTURE = ROOT.parent / "shared/mocap/drumstroke_pearl_240hz/stroke.trc"
+PIECE = "stroke 1 right accent f; stroke 2 left tenuto mf;"
+
+
+def samples(path, channels=2):
+    """The floats behind the header of a WAV file."""
+    data = Path(path).read_bytes()
+    at = data.index(b"data")
+    return np.frombuffer(data[at + 8:], np.float32).reshape(-1, channels)
+
+
+class Package(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.at = Path(self.folder.name)
+        (self.at / "piece.txt").write_text(PIECE)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def program(self, *arguments):
+        return subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, check=True, cwd=self.at)
+
+    def test_a_rendering_has_the_bits_of_the_program(self):
+        self.program("render", "piece.txt", "-o", "a.wav", "--motion", "a.npz", "--columns", "all", "--quiet")
+        r, file = himc.render(self.at / "piece.txt"), np.load(self.at / "a.npz")
+        np.testing.assert_array_equal(r.sound, samples(self.at / "a.wav"))
+        np.testing.assert_array_equal(r.motion["torque"], file["torques_n_m"])
+        np.testing.assert_array_equal(r.motion["energy"]["joint"], file["work_j"])
+        np.testing.assert_array_equal(r.motion["orientation"], file["orientations"])
+        self.assertEqual(r.stats["played"], 2)
+        self.assertEqual([s.decode() for s in r.strikes["nuance"]], ["accent", "tenuto"])
+
+    def test_settings_and_channels_are_those_of_the_program(self):
+        self.program("render", "piece.txt", "-o", "a.wav", "--law", "printed", "--channels", "1", "--quiet")
+        r = himc.render(PIECE, channels=1, motion=False, settings=["law printed"])
+        np.testing.assert_array_equal(r.sound, samples(self.at / "a.wav", 1))
+        self.assertEqual(len(r.motion), 0)
+
+    def test_motion_is_the_librarys_memory(self):
+        r = himc.render(PIECE)
+        self.assertFalse(r.motion.flags.owndata)
+        self.assertFalse(r.motion.flags.writeable)
+        tips = r.motion["tip"]
+        del r  # the arrays keep their memory
+        self.assertTrue(np.isfinite(tips).all())
+
+    def test_the_energy_balance_closes(self):
+        e = himc.render(PIECE).motion["energy"]
+        held = e["kinetic"] + e["potential"]
+        given = e["joint"].sum(1) + e["contact"].sum(1) + e["push"] + e["placed"] + e["numerical"]
+        done = np.abs(np.diff(e["joint"], axis=0)).sum()
+        self.assertLess(np.max(np.abs(held - held[0] - given + given[0])), 1e-9 * done)
+
+    def test_live_targets_move_a_tip_step_by_step(self):
+        p = himc.Performance()
+        p.add_drum()
+        out = np.empty((48, 2), np.float32)
+        for i in range(1500):  # 1 ms each
+            p.target("right", (0.45, -0.1 + 1e-4 * min(i, 1000), 1.1))
+            self.assertIs(p.process(0, out), out)
+        tip = p.motion["tip"][-1, 1]
+        np.testing.assert_allclose(tip, (0.45, 0.0, 1.1), atol=1e-3)
+        self.assertAlmostEqual(p.time, 1.5)
+
+    def test_modes_are_those_of_the_program(self):
+        rows = json.loads(self.program("modes", "--json").stdout)
+        mine = himc.modes()
+        self.assertEqual(len(mine), len(rows))
+        np.testing.assert_allclose(mine["frequency"], [row["frequency_hz"] for row in rows], atol=1e-5)
+        np.testing.assert_allclose(mine["t60"], [row["t60_s"] for row in rows], atol=1e-5)
+
+    def test_refusals_are_the_librarys_lines(self):
+        with self.assertRaisesRegex(himc.Error, "a command for a drum, not for the performer"):
+            himc.render("strike 1;")
+        with self.assertRaisesRegex(himc.Error, "cannot be read"):
+            himc.render("none.txt")
+        with self.assertRaisesRegex(himc.Error, "which is not read: import it into Blender"):
+            himc.Take("a.fbx")
+        with self.assertRaisesRegex(himc.Error, "BPM"):
+            himc.Performance().command("tempo 0")
+
+    @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")
+    def test_a_take_is_arrays_and_plays(self):
+        take = himc.Take(CAPTURE)
+        self.assertEqual(take.points.shape, (160, 5, 3))
+        self.assertFalse(take.points.flags.owndata)
+        self.assertEqual(len(take.strikes()), 1)
+        self.assertEqual(himc.render(CAPTURE).stats["played"], 1)
+
+    @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")
+    def test_one_subject_of_a_c3d_and_its_analog_channels(self):
+        path = CAPTURE.parents[1] / "upperlimb_pyomeca_100hz/markers_analogs.c3d"
+        take = himc.Take(path, subject="Daphnee")
+        self.assertTrue(all(name.startswith("Daphnee:") for name in take.names))
+        self.assertEqual(take.analog.shape, (11600, 38))
+        self.assertEqual((take.analog_rate, take.analog_names[6]), (2000, "Delt_ant.EMG1 (V)"))
+        self.assertTrue(0 < np.abs(take.analog[:, 6]).max() < 1)
+        with self.assertRaisesRegex(himc.Error, "no subject bob, allowed boite Daphnee"):
+            himc.Take(path, subject="bob")
+
+    @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")
+    def test_evaluate_has_a_row_for_each_controller(self):
+        rows = himc.evaluate([CAPTURE])
+        self.assertEqual(len(rows), 7)
+        self.assertLess(rows[-1]["rms_percent"], 1)
+
+    def test_the_example_of_the_documentation_runs(self):
+        self.program("render", ROOT / "patches/improvisation.txt", "-o", "improvisation.wav", "--motion", "motion.npz", "--columns",
+                     "all", "--quiet")
+        text = (ROOT / "docs/data.md").read_text()
+        example = re.search(r"```python\n(.*?)```", text, re.S).group(1)
+        exec(compile(example.replace("motion.npz", str(self.at / "motion.npz")), "docs/data.md", "exec"), {})
+
+    def test_the_notebook_remakes_its_figure(self):
+        book = json.loads((ROOT / "python/strokes.ipynb").read_text())
+        names = {}
+        import matplotlib
+        matplotlib.use("Agg")
+        for cell in book["cells"]:
+            if cell["cell_type"] == "code":
+                exec(compile("".join(cell["source"]), "strokes.ipynb", "exec"), names)
+        self.assertEqual(len(names["figure"].axes), 2)
+        # figure 5: an accent is prepared higher than a legato stroke, and strikes harder
+        self.assertGreater(names["height"]["accent"].max(), names["height"]["legato"].max())
+        self.assertGreater(names["force"]["accent"], names["force"]["legato"])
+
+    def test_speed_is_that_of_the_program(self):
+        """10 s of the improvisation; printed, and held only to half, since other work may run beside."""
+        score = "\n".join(line for line in (ROOT / "patches/improvisation.txt").read_text().splitlines()[:30])
+        (self.at / "ten.txt").write_text(score)
+        times = {}
+        for turn in range(2):
+            start = time.process_time()
+            seconds = len(himc.render(self.at / "ten.txt", motion=False).sound) / 48000
+            times["package"] = min(times.get("package", 9e9), time.process_time() - start)
+            import resource
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            self.program("render", "ten.txt", "-o", "ten.wav", "--quiet")
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            times["program"] = min(times.get("program", 9e9), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        share = times["program"] / times["package"]
+        print(f"\n{seconds:.1f} s of piece: program {times['program']:.2f} s, package {times['package']:.2f} s, {100 * share:.0f} %")
+        self.assertGreater(share, 0.5)
+
+
+if __name__ == "__main__":
+    unittest.main()

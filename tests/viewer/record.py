@@ -1,0 +1,146 @@
+"""What `himc render --scene` writes, against the tables of the same rendering."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+import report
+from scene import Scene
+
+HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
+SCORE = "tests/viewer/four.txt"
+folder = tempfile.TemporaryDirectory(prefix="himc-scene-")
+
+
+def path(name):
+    return os.path.join(folder.name, name)
+
+
+def render(*options):
+    command = [HIMC, "render", SCORE, "-o", path("sound.wav"), *options]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def scene(name="one.himc", *options):
+    if not os.path.exists(path(name)):
+        done = render(
+            "--scene", path(name), "--motion", path("m.csv"), "--strokes", path("s.csv"), *options
+        )
+        assert done.returncode == 0, done.stderr
+    with open(path(name), "rb") as file:
+        return Scene(file.read())
+
+
+def table(name):
+    with open(path(name)) as file:
+        return list(csv.DictReader(file))
+
+
+def test_rows_are_those_of_the_motion_table_within_half_a_step():
+    one = scene()
+    columns = one.of("scene")[0]["columns"]
+    worst = 0
+    for row, line in zip(one.rows, table("m.csv"), strict=True):
+        assert abs(row[0] - float(line["time_s"])) < 1e-6
+        for (name, step), value in zip(columns, row[1:], strict=True):
+            worst = max(worst, abs(value - float(line[name])) / step)
+    assert worst < 0.51, worst
+    return f"{len(one.rows)} rows within {worst:.3f} of a step"
+
+
+def test_strikes_are_those_of_the_table_with_their_beats():
+    strikes = scene().of("strike")
+    for strike, line in zip(strikes, table("s.csv"), strict=True):
+        for name in ("hand", "drum", "nuance"):
+            assert strike[name] == line[name]
+        for name, column in (("time", "time_s"), ("x", "x_m"), ("force", "peak_force_n")):
+            assert abs(strike[name] - float(line[column])) < 1e-3, (name, strike, line)
+    assert [s["beat"] for s in strikes] == [1 + i / 2 for i in range(9)]
+
+
+def test_drums_have_places_tunings_and_settings():
+    drums = {d["name"]: d for d in scene().of("drum")}
+    assert list(drums) == ["low", "second", "third", "high"]
+    place = drums["third"]["place"]
+    assert all(abs(a - b) < 1e-6 for a, b in zip(place, (0.763, -0.439, 0.85, 0.1, 0.3302)))
+    assert abs(drums["low"]["hz"] - 73.42) < 0.5 and "mallet hard" in drums["third"]["settings"]
+
+
+def test_the_body_is_that_of_the_player():
+    body = scene().of("body")[0]
+    assert len(body["segments"]) == 20 and body["segments"][0]["parent"] == -1
+    assert abs(body["segments"][0]["origin"][2] - 0.42 * 1.64) < 1e-6
+
+
+def test_heads_move_most_after_their_strikes():
+    one = scene()
+    for drum in one.of("drum"):
+        frames = [(max(map(abs, a)), time) for time, number, a in one.heads if number == drum["drum"]]
+        most, time = max(frames)
+        struck = [s["time"] for s in one.of("strike") if s["drum"] == drum["name"]]
+        assert 1e-5 < most < 0.01 and any(0 < time - t < 0.1 for t in struck), (drum["name"], most, time)
+
+
+def test_it_ends_with_the_sound_and_is_small():
+    one = scene()
+    seconds = one.of("end")[0]["time"]
+    with open(path("sound.wav"), "rb") as file:
+        frames = (len(file.read()) - 80) / 8
+    assert abs(frames / 48000 - seconds) < 1e-3, (frames / 48000, seconds)
+    assert one.sound.startswith(b"OggS")
+    minute = 60 / seconds * sum(one.size.values())
+    assert minute < 4e6, minute
+    return f"{minute / 1e6:.2f} MB a minute"
+
+
+def test_block_size_changes_nothing_but_the_looks_at_the_heads():
+    one, other = scene(), scene("other.himc", "--block", "1000")
+    assert one.rows == other.rows and one.of("strike") == other.of("strike")
+    assert one.of("body") == other.of("body") and one.of("beat") == other.of("beat")
+
+
+def test_a_file_that_is_named_twice_is_refused():
+    done = render("--scene", path("sound.wav"))
+    assert done.returncode == 1 and "named twice" in done.stderr, done.stderr
+
+
+def test_what_is_no_scene_is_not_shared():
+    for name, why in (("Makefile", "not a scene"), ("/nowhere.himc", "cannot be read")):
+        command = [HIMC, "share", name, "-o", path("page.html")]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1, done
+        assert why in done.stderr or "without three.js" in done.stderr, done.stderr
+        assert not os.path.exists(path("page.html"))
+
+
+def test_what_is_played_is_what_is_rendered():
+    """A sound card that is a file: the samples are those of the WAV file, bit by bit."""
+    with open(path("asound.conf"), "w") as file:
+        file.write(
+            "</usr/share/alsa/alsa.conf>\n"
+            f'pcm.!default {{ type file file "{path("played")}" format "raw" slave.pcm "null" }}\n'
+        )
+    card = dict(os.environ, ALSA_CONFIG_PATH=path("asound.conf"))
+    command = [HIMC, "play", SCORE]
+    done = subprocess.run(command, capture_output=True, text=True, env=card)
+    if "without PortAudio" in done.stderr or "no sound card" in done.stderr:
+        raise report.Ignored(done.stderr.strip())
+    assert done.returncode == 0, done.stderr
+    scene()
+    with open(path("played"), "rb") as played, open(path("sound.wav"), "rb") as rendered:
+        sound = rendered.read().split(b"data", 1)[1][4:]
+        assert len(sound) > 2000000 and played.read(len(sound)) == sound
+    told = json.loads(done.stdout.splitlines()[-1])
+    assert told["underruns"] == 0 and told["seconds"] > 5, told
+
+
+if __name__ == "__main__":
+    code = report.run(
+        "tests/viewer/record.py",
+        [f for name, f in list(globals().items()) if name.startswith("test_")],
+    )
+    folder.cleanup()
+    sys.exit(code)

@@ -1,0 +1,51 @@
+/// live.c: a performance from its source, and what is heard of it; for all calls that play.
+#include "cli.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool load(himc_performance *p, const char *source, double rate, const char *listener,
+                 himc_error *error)
+{
+    bool take = source && cli_is_take(source);
+    himc_score *score = source && !take ? himc_score_load(source, error) : NULL;
+    bool good = score || !source || take, drums = score && cli_first_drum(score);
+    himc_score_free(score);
+    return good && (drums || cli_add_drum(p, rate, error)) &&
+           (!listener || cli_tell(p, listener, NULL, error)) &&
+           (!source || cli_tell(p, take ? "take" : "score", source, error));
+}
+
+himc_performance *cli_load(const char *source, double rate, const char *listener, himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = rate;
+    config.physics_rate = fmin(config.physics_rate, rate);
+    himc_performance *performance = himc_performance_new(&config, error);
+    if (!performance)
+        return NULL;
+    himc_performance_make_drums(performance, true);
+    if (load(performance, source, rate, listener, error))
+        return performance;
+    himc_performance_free(performance);
+    return NULL;
+}
+
+double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out)
+{
+    double heard[CLI_BLOCK], sum[CLI_BLOCK], peak = 0;
+    himc_drum *drum;
+    for (int channel = 0; channel < channels; channel++) {
+        memset(sum, 0, (size_t)n * sizeof *sum);
+        for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
+            himc_drum_read_channel(drum, channel, start, n, heard);
+            for (int i = 0; i < n; i++)
+                sum[i] += heard[i];
+        }
+        for (int i = 0; i < n; i++) {
+            out[i * channels + channel] = (float)sum[i];
+            peak = fmax(peak, fabs(sum[i]));
+        }
+    }
+    return peak;
+}

@@ -1,0 +1,341 @@
+/// motion_table.c: a list of arrays, each a field of himc_motion_row with its shape, unit and name.
+///
+/// In a CSV an array is a column for each item (hand, joint, segment) and component, named
+/// item_what_component_unit; in a NumPy file it is one array, rows first, named group_unit.
+#define _POSIX_C_SOURCE 200809L // strtok_r
+#include "motion_table.h"
+#include "npz.h"
+
+#include "himc/body.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef enum per { PER_ROW, PER_HAND, PER_JOINT, PER_SEGMENT } per;
+
+typedef struct array {
+    const char *group; ///< in `--columns`; arrays of a group follow each other
+    const char *name;  ///< in a NumPy file
+    per per;
+    const char *what; ///< in a CSV, after the item's name
+    int components;   ///< 1, 3 (x y z) or 4 (w x y z)
+    const char *unit; ///< "" for none
+    size_t offset;    ///< in himc_motion_row
+    int decimals;     ///< in a CSV; 0: 12 significant digits
+    bool usual;       ///< without --columns
+    const char *is;
+} array;
+
+#define AT(field) offsetof(himc_motion_row, field)
+#define WORK "since the rows began (docs/data.md)"
+
+static const array arrays[] = {
+    {"targets", "targets", PER_HAND, "_target", 3, "m", AT(target), 8, true,
+     "wanted place of the stick's tip"},
+    {"tips", "tips", PER_HAND, "_tip", 3, "m", AT(tip), 8, true,
+     "place of the stick's tip, the mallet's centre"},
+    {"joints", "joints", PER_JOINT, "", 3, "rad", AT(joint), 8, true,
+     "rotation vector of the child in the parent's frame"},
+    {"forces", "forces", PER_HAND, "_force", 1, "n", AT(force), 4, true,
+     "largest contact force since the last row"},
+    {"elbows", "elbows", PER_HAND, "_elbow", 3, "m", AT(elbow), 8, true, "place of the elbow"},
+    {"limits", "limits", PER_JOINT, "_limit", 1, "", AT(limit), 4, true,
+     "joint limits: 0 centre, 1 bound, more beyond; 0 without limits"},
+    {"quaternions", "quaternions", PER_JOINT, "_q", 4, "", AT(rotation), 0, false,
+     "the same rotation as `joints`, as unit quaternion"},
+    {"rates", "rates", PER_JOINT, "_rate", 3, "rad_s", AT(rate), 0, false,
+     "angular velocity of the child less the parent's"},
+    {"accelerations", "accelerations", PER_JOINT, "_acceleration", 3, "rad_s2", AT(acceleration), 0,
+     false, "time derivative of `rates` under this row's forces"},
+    {"torques", "torques", PER_JOINT, "_torque", 3, "n_m", AT(torque), 0, false,
+     "on the child; its opposite acts on the parent"},
+    {"powers", "powers", PER_JOINT, "_power", 1, "w", AT(power), 0, false, "torque times rate"},
+    {"work", "work", PER_JOINT, "_work", 1, "j", AT(energy.joint), 0, false,
+     "work of the torque " WORK},
+    {"segments", "segments", PER_SEGMENT, "_position", 3, "m", AT(segment), 0, false,
+     "the segment's origin, its joint to the parent"},
+    {"segments", "orientations", PER_SEGMENT, "_q", 4, "", AT(orientation), 0, false,
+     "orientation of the segment, unit quaternion"},
+    {"centers", "centers", PER_SEGMENT, "_center", 3, "m", AT(center), 0, false,
+     "centre of mass of the segment"},
+    {"speeds", "target_velocities", PER_HAND, "_target_velocity", 3, "m_s", AT(target_velocity), 0,
+     false, "velocity of the target"},
+    {"speeds", "tip_velocities", PER_HAND, "_tip_velocity", 3, "m_s", AT(tip_velocity), 0, false,
+     "velocity of the tip"},
+    {"contact", "tip_forces", PER_HAND, "_tip_force", 3, "n", AT(tip_force), 0, false,
+     "force of the head on the stick, mean of this row's physics step"},
+    {"contact", "impulses", PER_HAND, "_impulse", 1, "n_s", AT(impulse), 0, false,
+     "impulse of the head on the stick since the last row"},
+    {"contact", "felt", PER_HAND, "_felt", 1, "j", AT(energy.felt), 0, false,
+     "energy stored in the mallet's felt"},
+    {"contact", "heads", PER_ROW, "heads", 1, "j", AT(energy.heads), 0, false,
+     "energy of all heads in vibration"},
+    {"contact", "lost", PER_ROW, "lost", 1, "j", AT(energy.lost), 0, false,
+     "energy that sticks gave to heads and felt and that is gone"},
+    {"pushes", "pushes", PER_SEGMENT, "_push", 3, "n", AT(push), 0, false,
+     "force of the command push on the centre of mass"},
+    {"errors", "tip_errors", PER_HAND, "_error", 3, "m", AT(tip_error), 0, false,
+     "tip less target"},
+    {"errors", "joint_errors", PER_JOINT, "_error", 1, "rad", AT(joint_error), 0, false,
+     "angle to the joint's own target"},
+    {"null-space", "null_space", PER_HAND, "_null_space", 1, "", AT(null_space), 0, false,
+     "share of the arm's squared joint rates that moves no tip, 0 .. 1"},
+    {"energy", "kinetic", PER_ROW, "kinetic", 1, "j", AT(energy.kinetic), 0, false,
+     "kinetic energy of the body"},
+    {"energy", "potential", PER_ROW, "potential", 1, "j", AT(energy.potential), 0, false,
+     "potential energy of the body over the floor"},
+    {"energy", "contact_work", PER_HAND, "_contact_work", 1, "j", AT(energy.contact), 0, false,
+     "work of the head on the stick " WORK},
+    {"energy", "push_work", PER_ROW, "push_work", 1, "j", AT(energy.push), 0, false,
+     "work of the command push " WORK},
+    {"energy", "placed", PER_ROW, "placed", 1, "j", AT(energy.placed), 0, false,
+     "given to the body by putting it elsewhere " WORK},
+    {"energy", "numerical", PER_ROW, "numerical", 1, "j", AT(energy.numerical), 0, false,
+     "given to the body by the integrator " WORK},
+};
+#define ARRAYS (sizeof arrays / sizeof *arrays)
+
+struct motion_table {
+    FILE *stream;
+    bool numpy, failed;
+    bool has[ARRAYS];
+    double *data; ///< of a NumPy file: row after row
+    size_t rows, room, width;
+};
+
+static int items(const array *a)
+{
+    static const int count[] = {1, HIMC_HANDS, HIMC_JOINTS, HIMC_SEGMENTS};
+    return count[a->per];
+}
+
+static const char *item_name(per p, int item)
+{
+    return p == PER_HAND      ? himc_hand_name((himc_hand)item)
+           : p == PER_JOINT   ? himc_joint_name(item)
+           : p == PER_SEGMENT ? himc_segment_name(item)
+                              : "";
+}
+
+static size_t size_of(const array *a)
+{
+    return (size_t)(items(a) * a->components);
+}
+
+static const double *values(const array *a, const himc_motion_row *row)
+{
+    return (const double *)((const char *)row + a->offset);
+}
+
+bool motion_table_is_numpy(const char *path)
+{
+    const char *dot = path ? strrchr(path, '.') : NULL;
+    return dot && !strcasecmp(dot, ".npz");
+}
+
+// the groups of a list; false if one is unknown
+static bool choose(motion_table *t, const char *columns, himc_error *error)
+{
+    char words[1024], *rest = NULL;
+    if (columns && (size_t)snprintf(words, sizeof words, "%s", columns) >= sizeof words)
+        return himc_error_set(error, "--columns: more than %zu characters", sizeof words - 1);
+    for (size_t i = 0; !columns && i < ARRAYS; i++)
+        t->has[i] = arrays[i].usual;
+    bool any = !columns;
+    for (char *word = columns ? strtok_r(words, ",", &rest) : NULL; word;
+         word = strtok_r(NULL, ",", &rest)) {
+        bool known = false, all = !strcmp(word, "all"), usual = !strcmp(word, "usual");
+        for (size_t i = 0; i < ARRAYS; i++)
+            if (all || (usual && arrays[i].usual) || !strcmp(word, arrays[i].group))
+                t->has[i] = known = true;
+        if (!known)
+            return himc_error_set(error,
+                                  "--columns: \"%s\", allowed: all, usual or groups of "
+                                  "`himc render --columns help`",
+                                  word);
+        any = true;
+    }
+    return any || himc_error_set(error, "--columns: no group (himc render --columns help)");
+}
+
+static void write_header(const motion_table *t)
+{
+    fputs("time_s", t->stream);
+    for (size_t i = 0; i < ARRAYS; i++)
+        for (int item = 0; t->has[i] && item < items(&arrays[i]); item++)
+            for (int k = 0; k < arrays[i].components; k++) {
+                const array *a = &arrays[i];
+                fprintf(t->stream, ",%s%s", item_name(a->per, item), a->what);
+                if (a->components > 1)
+                    fprintf(t->stream, a->components == 4 ? "%c" : "_%c",
+                            (a->components == 4 ? "wxyz" : "xyz")[k]);
+                if (a->unit[0])
+                    fprintf(t->stream, "_%s", a->unit);
+            }
+    fputc('\n', t->stream);
+}
+
+motion_table *motion_table_new(FILE *stream, bool numpy, const char *columns, himc_error *error)
+{
+    motion_table *t = calloc(1, sizeof *t);
+    if (!t) {
+        himc_error_set(error, "out of memory");
+        return NULL;
+    }
+    t->stream = stream;
+    t->numpy = numpy;
+    if (!choose(t, columns, error)) {
+        free(t);
+        return NULL;
+    }
+    t->width = 1;
+    for (size_t i = 0; i < ARRAYS; i++)
+        t->width += t->has[i] ? size_of(&arrays[i]) : 0;
+    if (!numpy)
+        write_header(t);
+    return t;
+}
+
+static void print_row(const motion_table *t, const himc_motion_row *row)
+{
+    fprintf(t->stream, "%.6f", row->time);
+    for (size_t i = 0; i < ARRAYS; i++)
+        for (size_t k = 0; t->has[i] && k < size_of(&arrays[i]); k++) {
+            double value = values(&arrays[i], row)[k];
+            if (arrays[i].decimals)
+                fprintf(t->stream, ",%.*f", arrays[i].decimals, value);
+            else
+                fprintf(t->stream, ",%.12g", value);
+        }
+    fputc('\n', t->stream);
+}
+
+static void keep_row(motion_table *t, const himc_motion_row *row)
+{
+    if (t->rows == t->room) {
+        size_t room = t->room ? 2 * t->room : 1024;
+        double *data = t->failed ? NULL : realloc(t->data, room * t->width * sizeof *data);
+        if (!data) {
+            t->failed = true;
+            return;
+        }
+        t->data = data;
+        t->room = room;
+    }
+    double *to = t->data + t->rows++ * t->width;
+    *to++ = row->time;
+    for (size_t i = 0; i < ARRAYS; i++)
+        if (t->has[i]) {
+            memcpy(to, values(&arrays[i], row), size_of(&arrays[i]) * sizeof *to);
+            to += size_of(&arrays[i]);
+        }
+}
+
+void motion_table_row(motion_table *t, const himc_motion_row *row)
+{
+    if (t->numpy)
+        keep_row(t, row);
+    else
+        print_row(t, row);
+}
+
+// `width` columns from `from` on, gathered into `out`, as an array with that shape in each row
+static void add_columns(const motion_table *t, npz *file, const array *a, size_t from, double *out)
+{
+    size_t width = a ? size_of(a) : 1, shape[NPZ_DIMENSIONS] = {t->rows};
+    int dimensions = 1;
+    char name[48] = "time_s";
+    for (size_t row = 0; row < t->rows; row++)
+        memcpy(out + row * width, t->data + row * t->width + from, width * sizeof *out);
+    if (a && a->per != PER_ROW)
+        shape[dimensions++] = (size_t)items(a);
+    if (a && a->components > 1)
+        shape[dimensions++] = (size_t)a->components;
+    if (a)
+        snprintf(name, sizeof name, "%s%s%s", a->name, a->unit[0] ? "_" : "", a->unit);
+    npz_add(file, name, out, 0, shape, dimensions);
+}
+
+#define NAME_WIDTH 24 // of the names of hands, joints and segments in a NumPy file
+
+static void add_names(npz *file, const char *name, per p, size_t count)
+{
+    char texts[HIMC_SEGMENTS][NAME_WIDTH] = {{0}};
+    for (size_t i = 0; i < count; i++)
+        snprintf(texts[i], NAME_WIDTH, "%s", item_name(p, (int)i));
+    npz_add(file, name, texts, NAME_WIDTH, &count, 1);
+}
+
+bool motion_table_end(motion_table *t, himc_error *error)
+{
+    if (!t->numpy)
+        return true;
+    size_t widest = 1, from = 1;
+    for (size_t i = 0; i < ARRAYS; i++)
+        widest = t->has[i] && size_of(&arrays[i]) > widest ? size_of(&arrays[i]) : widest;
+    double *out = t->failed ? NULL : malloc((t->rows + 1) * widest * sizeof *out);
+    if (!out)
+        return himc_error_set(error, "out of memory for the rows of an .npz");
+    npz file = {.stream = t->stream};
+    add_names(&file, "hands", PER_HAND, HIMC_HANDS);
+    add_names(&file, "joint_names", PER_JOINT, HIMC_JOINTS);
+    add_names(&file, "segment_names", PER_SEGMENT, HIMC_SEGMENTS);
+    add_columns(t, &file, NULL, 0, out);
+    for (size_t i = 0; i < ARRAYS; i++)
+        if (t->has[i]) {
+            add_columns(t, &file, &arrays[i], from, out);
+            from += size_of(&arrays[i]);
+        }
+    free(out);
+    return npz_end(&file, error);
+}
+
+void motion_table_free(motion_table *t)
+{
+    if (t)
+        free(t->data);
+    free(t);
+}
+
+// "m/s" for "m_s"
+static void unit_text(const char *unit, char out[24])
+{
+    static const char *const known[][2] = {
+        {"n_m", "N m"}, {"n_s", "N s"}, {"m_s", "m/s"}, {"rad_s", "rad/s"}, {"rad_s2", "rad/s^2"},
+        {"n", "N"},     {"w", "W"},     {"j", "J"},     {"", "1"}};
+    snprintf(out, 24, "%s", unit);
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (!strcmp(unit, known[i][0]))
+            snprintf(out, 24, "%s", known[i][1]);
+}
+
+void motion_table_help(FILE *stream, bool markdown)
+{
+    static const char *const each[] = {"", "each hand's", "each joint's", "each segment's"};
+    static const char *const shape[] = {"", "2, ", "19, ", "20, "};
+    const char *last = "";
+    fputs(
+        markdown
+            ? "| group | in an .npz | shape of a row | in a CSV | unit | |\n|---|---|---|---|---|---|\n"
+            : "groups for --columns; a * is in the usual table\n",
+        stream);
+    for (size_t i = 0; i < ARRAYS; i++) {
+        const array *a = &arrays[i];
+        char unit[24], first[24];
+        unit_text(a->unit, unit);
+        snprintf(first, sizeof first, "%s%s", strcmp(a->group, last) ? a->group : "",
+                 a->usual && strcmp(a->group, last) ? "*" : "");
+        if (markdown)
+            fprintf(stream, "| `%s`%s | `%s%s%s` | (%s%d) | `%s%s%s%s%s` | %s | %s |\n", a->group,
+                    a->usual ? " \\*" : "", a->name, a->unit[0] ? "_" : "", a->unit, shape[a->per],
+                    a->components, a->per == PER_ROW ? "" : "ITEM", a->what,
+                    a->components == 4   ? "w"
+                    : a->components == 3 ? "_x"
+                                         : "",
+                    a->unit[0] ? "_" : "", a->unit, unit, a->is);
+        else
+            fprintf(stream, "  %-15s %s %s (%s)\n", first, each[a->per], a->is, unit);
+        last = a->group;
+    }
+}

@@ -1,0 +1,43 @@
+/// scene.h: writes a scene, the recording of a performance in one file: events, rows of motion,
+/// shapes of drumheads, sound (docs/scene.md).
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "himc/base.h"
+
+#include <stdio.h>
+
+#define SCENE_VERSION 1 ///< a reader refuses a later one
+
+/// A column of the rows: its name ends with its unit, as in motion.csv, and its values are stored
+/// as multiples of `step`.
+typedef struct scene_column {
+    char name[48];
+    double step;
+} scene_column;
+
+/// A scene under way. Opaque.
+typedef struct scene_writer scene_writer;
+
+/// Begins a scene in `stream` (binary, borrowed until scene_close) with sound of `rate` (Hz) and
+/// 1 or 2 `channels`. The columns are borrowed as well. NULL with the reason.
+scene_writer *scene_open(FILE *stream, const scene_column *columns, int count, int rate,
+                         int channels, himc_error *error);
+/// Adds an event: a JSON object without its braces (printf format). Call scene_text for what came
+/// from elsewhere.
+void scene_event(scene_writer *scene, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/// Copies a text as it stands between the quotes of a JSON string; cut to `size` bytes. Returns
+/// `out`.
+char *scene_text(char *out, size_t size, const char *text);
+/// Adds a row: the value of each column at `time` (s), later than the last.
+void scene_row(scene_writer *scene, double time, const double *value);
+/// Adds the amplitudes (m) of a head's first `modes` (1 .. 64) modes at `time` (s); `drum` is the
+/// number that its event "drum" gives.
+void scene_head(scene_writer *scene, int drum, double time, const double *amplitude, int modes);
+/// Adds `n` (1 .. 8192) frames of sound, channels interleaved.
+void scene_sound(scene_writer *scene, const float *frames, int n);
+/// Writes what waits and frees the writer. False with the reason if anything could not be written.
+bool scene_close(scene_writer *scene, himc_error *error);
+
+#endif

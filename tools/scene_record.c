@@ -1,0 +1,282 @@
+/// scene_record.c: from the performance's callbacks to the writer.
+///
+/// Poses are joint rotations at the task rate; where the segments are follows from them and from
+/// the body's measures, which are taken from the first pose and again when they change. Heads are
+/// looked at 33 times a second, as over OSC, while they move.
+#include "scene_record.h"
+#include "drum/drum_performer.h"
+#include "drum/membrane_probe.h"
+#include "himc/body.h"
+#include "himc/membrane.h"
+#include "scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    TARGET = 3 * HIMC_JOINTS, // columns
+    FORCE = TARGET + 3 * HIMC_HANDS,
+    COLUMNS = FORCE + HIMC_HANDS,
+    MODES = 64 // of a head, as many as are sent over OSC
+};
+// chosen: at the mallets, 1 m from the joints, well below 0.01 mm; and as fine as anyone looks
+#define ROTATION_STEP 1e-6 // (rad)
+#define TARGET_STEP 1e-5   // (m)
+#define FORCE_STEP 0.01    // (N)
+#define HEAD_HZ 33.0       // as subscriptions have it
+#define STILL 1e-8         // (m) a head that moves less is at rest; chosen: far below a pixel
+// (m) measures this near are those of the same body; chosen: in hard blows joints give way by some
+// micrometres, and poses are to be exact to 10
+#define SAME 1e-6
+
+struct scene_record {
+    himc_performance *performance;
+    scene_writer *scene;
+    scene_column column[COLUMNS];
+    himc_vec3 origin[HIMC_SEGMENTS], tip[HIMC_HANDS]; // measures of the body that was told
+    unsigned told[HIMC_DRUMS];                        // revision of each drum, plus 1
+    bool moving[HIMC_DRUMS];
+    double next_head;
+    char *lines; // of the score, JSON
+    size_t size;
+};
+
+static void name_column(scene_column *column, const char *owner, const char *what, char axis,
+                        const char *unit, double step)
+{
+    snprintf(column->name, sizeof column->name, "%s%s_%c_%s", owner, what, axis, unit);
+    column->step = step;
+}
+
+static void name_columns(scene_column *column)
+{
+    for (int i = 0; i < TARGET; i++)
+        name_column(&column[i], himc_joint_name(i / 3), "", (char)('x' + i % 3), "rad",
+                    ROTATION_STEP);
+    for (int i = 0; i < FORCE - TARGET; i++)
+        name_column(&column[TARGET + i], himc_hand_name((himc_hand)(i / 3)), "_target",
+                    (char)('x' + i % 3), "m", TARGET_STEP);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        snprintf(column[FORCE + i].name, sizeof column->name, "%s_force_n",
+                 himc_hand_name((himc_hand)i));
+        column[FORCE + i].step = FORCE_STEP;
+    }
+}
+
+// --- the body
+
+static himc_vec3 in_frame(const himc_body_state *body, int segment, himc_vec3 at)
+{
+    return himc_quat_rotate(himc_quat_conj(body->orientation[segment]),
+                            himc_vec3_sub(at, body->origin[segment]));
+}
+
+static bool differs(himc_vec3 *told, himc_vec3 now)
+{
+    bool far = himc_vec3_length(himc_vec3_sub(*told, now)) > SAME;
+    if (far)
+        *told = now;
+    return far;
+}
+
+// the parents of the segments are those of any body
+static const himc_skeleton *usual(void)
+{
+    static himc_skeleton skeleton;
+    himc_skeleton_config config = himc_skeleton_default();
+    if (!skeleton.mass)
+        himc_skeleton_init(&skeleton, &config, NULL);
+    return &skeleton;
+}
+
+static size_t put_point(char *out, size_t size, const char *before, himc_vec3 p)
+{
+    return (size_t)snprintf(out, size, "%s[%.9g,%.9g,%.9g]", before, p.x, p.y, p.z);
+}
+
+static void tell_body(scene_record *r, double time)
+{
+    char text[4096];
+    size_t used = 0;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        used += (size_t)snprintf(
+            text + used, sizeof text - used,
+            "%s{\"name\":\"%s\",\"joint\":\"%s\",\"parent\":%d,\"origin\":", i ? "," : "",
+            himc_segment_name(i), i ? himc_joint_name(i - 1) : "", usual()->segment[i].parent);
+        used += put_point(text + used, sizeof text - used, "", r->origin[i]);
+        used += (size_t)snprintf(text + used, sizeof text - used, "}");
+    }
+    used += (size_t)snprintf(text + used, sizeof text - used, "],\"tips\":[");
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        used += put_point(text + used, sizeof text - used, hand ? "," : "", r->tip[hand]);
+    scene_event(r->scene, "\"event\":\"body\",\"time\":%.6f,\"segments\":[%s]", time, text);
+}
+
+static void on_tick(void *user, const himc_tick *tick)
+{
+    scene_record *r = user;
+    const himc_body_state *b = tick->body;
+    bool changed = differs(&r->origin[0], b->origin[0]);
+    for (int i = 1; i < HIMC_SEGMENTS; i++)
+        changed |= differs(&r->origin[i], in_frame(b, usual()->segment[i].parent, b->origin[i]));
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        changed |=
+            differs(&r->tip[hand], in_frame(b, himc_stick_segment((himc_hand)hand), b->tip[hand]));
+    if (changed)
+        tell_body(r, tick->time);
+}
+
+void scene_record_row(void *record, const himc_motion_row *row)
+{
+    scene_record *r = record;
+    double value[COLUMNS];
+    for (int i = 0; i < FORCE; i++) {
+        const himc_vec3 *v = i < TARGET ? &row->joint[i / 3] : &row->target[(i - TARGET) / 3];
+        value[i] = i % 3 == 0 ? v->x : i % 3 == 1 ? v->y : v->z;
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        value[FORCE + hand] = row->force[hand];
+    scene_row(r->scene, row->time, value);
+}
+
+// --- events
+
+void scene_record_event(scene_record *r, const himc_event *event)
+{
+    char text[6 * sizeof event->text], nuance[6 * HIMC_NAME_SIZE];
+    const himc_strike *s = &event->strike;
+    if (event->kind == HIMC_EVENT_BEAT)
+        scene_event(r->scene, "\"event\":\"beat\",\"time\":%.6f,\"beat\":%.9g", event->time,
+                    event->beat);
+    else if (event->kind == HIMC_EVENT_NOTE)
+        scene_event(r->scene, "\"event\":\"note\",\"time\":%.6f,\"text\":\"%s\"",
+                    himc_performance_measure(r->performance).seconds,
+                    scene_text(text, sizeof text, event->text));
+    else if (event->kind == HIMC_EVENT_STRIKE) {
+        char beat[40] = "null";
+        if (isfinite(s->beat))
+            snprintf(beat, sizeof beat, "%.9g", s->beat);
+        scene_event(r->scene,
+                    "\"event\":\"strike\",\"time\":%.6f,\"hand\":\"%s\",\"drum\":\"%s\","
+                    "\"nuance\":\"%s\",\"beat\":%s,\"x\":%.6f,\"y\":%.6f,\"velocity\":%.5g,"
+                    "\"force\":%.6g,\"impulse\":%.6g,\"duration\":%.6g",
+                    s->time, himc_hand_name(s->hand), scene_text(text, sizeof text, s->drum),
+                    scene_text(nuance, sizeof nuance, s->nuance), beat, s->x, s->y, s->velocity,
+                    s->force, s->impulse, s->duration);
+    }
+}
+
+// --- drums
+
+// a list of JSON strings that grows
+static void add_line(void *user, const char *line)
+{
+    scene_record *r = user;
+    size_t room = 6 * strlen(line) + 16;
+    char *lines = realloc(r->lines, r->size + room);
+    if (!lines)
+        return; // the list is for the reader only
+    r->lines = lines;
+    r->size += (size_t)sprintf(lines + r->size, "%s\"", r->size ? "," : "");
+    scene_text(lines + r->size, room - 4, line);
+    r->size += strlen(lines + r->size);
+    lines[r->size++] = '"';
+    lines[r->size] = 0;
+}
+
+static const char *listed(const scene_record *r)
+{
+    return r->size ? r->lines : "";
+}
+
+static void tell_drum(scene_record *r, int index, const himc_drum *drum, double time)
+{
+    const himc_head_frame *f = himc_drum_head_frame(drum);
+    himc_membrane *membrane = himc_drum_membrane((himc_drum *)drum);
+    char name[6 * HIMC_NAME_SIZE];
+    r->size = 0;
+    himc_drum_describe(drum, HIMC_DESCRIBE_STATE, add_line, r);
+    scene_event(r->scene,
+                "\"event\":\"drum\",\"time\":%.6f,\"drum\":%d,\"name\":\"%s\","
+                "\"place\":[%.9g,%.9g,%.9g,%.9g,%.9g],\"hz\":%.6g,\"settings\":[%s]",
+                time, index, scene_text(name, sizeof name, himc_drum_name(drum)), f->center.x,
+                f->center.y, f->center.z, f->tilt, f->radius,
+                himc_membrane_principal(membrane, himc_membrane_head(membrane)), listed(r));
+}
+
+static void look_at_head(scene_record *r, int index, himc_drum *drum, double time)
+{
+    double amplitude[MODES], most = 0;
+    himc_membrane *membrane = himc_drum_membrane(drum);
+    int modes = himc_membrane_audible(membrane);
+    modes = modes < MODES ? modes : MODES;
+    himc_membrane_upright(membrane, modes, amplitude);
+    for (int i = 0; i < modes; i++)
+        most = fmax(most, fabs(amplitude[i]));
+    bool moves = most > STILL;
+    if (moves || r->moving[index]) // the last one tells that it is still
+        scene_head(r->scene, index, time, amplitude, modes);
+    r->moving[index] = moves;
+}
+
+void scene_record_block(scene_record *r, const float *frames, int n)
+{
+    himc_drum *drum;
+    double time = himc_performance_measure(r->performance).seconds;
+    bool heads = time >= r->next_head;
+    for (int i = 0; (drum = himc_performance_drum(r->performance, i)); i++) {
+        if (r->told[i] != himc_drum_revision(drum) + 1)
+            tell_drum(r, i, drum, time);
+        r->told[i] = himc_drum_revision(drum) + 1;
+        if (heads)
+            look_at_head(r, i, drum, time);
+    }
+    if (heads)
+        r->next_head = time + 1 / HEAD_HZ;
+    scene_sound(r->scene, frames, n);
+}
+
+// --- the whole
+
+static void tell_score(scene_record *r, const char *source)
+{
+    char text[4096];
+    r->size = 0;
+    himc_performance_describe(r->performance, HIMC_DESCRIBE_STATE, add_line, r);
+    scene_event(r->scene, "\"event\":\"score\",\"time\":0,\"source\":\"%s\",\"lines\":[%s]",
+                scene_text(text, sizeof text, source), listed(r));
+}
+
+scene_record *scene_record_begin(himc_performance *performance, FILE *stream, const char *source,
+                                 int rate, int channels, himc_error *error)
+{
+    scene_record *r = calloc(1, sizeof *r);
+    if (!r) {
+        himc_error_set(error, "out of memory");
+        return NULL;
+    }
+    name_columns(r->column);
+    r->performance = performance;
+    r->scene = scene_open(stream, r->column, COLUMNS, rate, channels, error);
+    if (!r->scene) {
+        free(r);
+        return NULL;
+    }
+    tell_score(r, source);
+    himc_performance_on_tick(performance, on_tick, r);
+    return r;
+}
+
+bool scene_record_end(scene_record *r, himc_error *error)
+{
+    if (!r)
+        return true;
+    double time = himc_performance_measure(r->performance).seconds;
+    himc_performance_on_tick(r->performance, NULL, NULL);
+    scene_event(r->scene, "\"event\":\"end\",\"time\":%.6f", time);
+    bool good = scene_close(r->scene, error);
+    free(r->lines);
+    free(r);
+    return good;
+}

@@ -1,0 +1,124 @@
+// The clock of a playback and what it shows: pose, targets, drums and strikes at its time. While
+// there is sound, the sound's clock is the playback's. Times in milliseconds.
+import { before } from "./scene.js";
+import { segments } from "./skeleton.js";
+
+const LONGEST_FRAME = 1000; // (ms) after a longer one, as of a hidden tab, time goes on where it was
+const FRAME = 1000 / 60;
+export const SPEEDS = [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2];
+
+export class Playback {
+    constructor(scene, sound) {
+        ((this.scene = scene), (this.sound = sound));
+        ((this.at = 0), (this.speed = 1), (this.playing = true));
+        ((this.loop = null), (this.jumped = true), (this.shownTo = 0));
+        this.length = 1000 * scene.end;
+        this.pose = new Float64Array(7 * segments.length);
+        this.target = new Float64Array(6);
+        this.amplitude = new Float32Array(64);
+    }
+
+    // [from, to] of what is played: the loop, or all
+    get span() {
+        return this.loop ?? [0, this.length];
+    }
+
+    seek(ms) {
+        this.at = Math.min(this.length, Math.max(0, ms));
+        this.jumped = true;
+        this.resound();
+    }
+
+    // the sound begins anew where the playback is
+    resound() {
+        this.sound.stop();
+        if (this.playing) this.sound.play(this.at / 1000, this.speed);
+    }
+
+    play(yes) {
+        if (yes && this.at >= this.span[1]) this.seek(this.span[0]);
+        this.playing = yes;
+        this.resound();
+    }
+
+    setSpeed(speed) {
+        this.speed = Math.min(SPEEDS[SPEEDS.length - 1], Math.max(SPEEDS[0], speed));
+        this.resound();
+    }
+
+    setLoop(a, b) {
+        const [from, to] = [Math.min(a, b), Math.max(a, b)].map(t =>
+            Math.min(this.length, Math.max(0, t)),
+        );
+        this.loop = to - from >= FRAME ? [from, to] : null;
+        if (this.loop && (this.at < from || this.at > to)) this.seek(from);
+    }
+
+    // a frame, or with `strikes` a stroke, further or back
+    step(by, strikes) {
+        this.play(false);
+        if (!strikes) return this.seek(this.at + by * FRAME);
+        const list = this.scene.strikes,
+            time = s => 1000 * s.time,
+            i = by > 0 ? before(list, this.at + 0.5, time) + 1 : before(list, this.at - 0.5, time);
+        if (list[i]) this.seek(time(list[i]));
+    }
+
+    // `dt` ms have passed while frames are held: silent, by this clock alone
+    tick(dt) {
+        this.sound.stop();
+        if (!this.playing) return;
+        this.at += dt * this.speed;
+        this.turn();
+    }
+
+    // at the end of the loop, or of all
+    turn() {
+        const [from, to] = this.span;
+        if (this.at < to) return false;
+        if (this.loop) this.seek(from);
+        else (this.play(false), (this.at = to));
+        return true;
+    }
+
+    // `dt` ms have passed
+    advance(dt) {
+        if (!this.playing) return;
+        const heard = this.sound.position();
+        if (heard !== null) this.at = 1000 * heard;
+        else if (dt < LONGEST_FRAME) this.at += dt * this.speed;
+        const silent = heard === null && this.sound.ready;
+        if (!this.turn() && silent && this.at < 1000 * this.sound.buffer.duration) this.resound();
+    }
+
+    // shows this time: calls on.pose, on.drum for each drum, and on.strike for each strike since the
+    // last call, or since `memory` ms ago after a jump
+    show(on, memory) {
+        const time = this.at / 1000,
+            scene = this.scene;
+        if (this.jumped || this.at < this.shownTo) on.jump();
+        on.pose(this.scene.pose(time, this.pose), scene.targets(time, this.target));
+        for (const drum of scene.drums.values()) {
+            const change = drum.changes[Math.max(0, before(drum.changes, time, c => c.time))];
+            if (change) on.drum(drum.name, change.place, this.head(drum, time));
+        }
+        const since = this.jumped || this.at < this.shownTo ? this.at - memory : this.shownTo,
+            of = s => 1000 * s.time;
+        for (let i = before(scene.strikes, since, of) + 1; i <= before(scene.strikes, this.at, of); i++)
+            on.strike(scene.strikes[i], 1000 * scene.strikes[i].time);
+        ((this.shownTo = this.at), (this.jumped = false));
+    }
+
+    // amplitudes of a head, between two frames in proportion
+    head(drum, time) {
+        const i = before(drum.frames, time, f => f.time),
+            a = drum.frames[i],
+            b = drum.frames[i + 1],
+            out = this.amplitude.fill(0);
+        if (!a) return out;
+        const t = b && b.time - a.time < 0.1 ? (time - a.time) / (b.time - a.time) : 0;
+        for (let k = 0; k < a.amplitude.length; k++)
+            out[k] = a.scale * a.amplitude[k] + t * ((b ? b.scale * b.amplitude[k] : 0) - a.scale * a.amplitude[k]);
+        return out;
+    }
+}

@@ -1,0 +1,243 @@
+// A scene (docs/scene.md): the recording of a performance. Reads it, and says where everything was
+// at any time. Times are in seconds, as in the file.
+import { HANDS, bone, forward, place, quaternion } from "./body.js";
+import { segments } from "./skeleton.js";
+
+const MAGIC = "himcscn",
+    VERSION = 1;
+
+async function inflate(bytes) {
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// last index of the sorted list whose time is not after `time`, -1 if there is none
+export function before(list, time, of = x => x) {
+    let low = 0,
+        high = list.length;
+    while (low < high) {
+        const middle = (low + high) >> 1;
+        if (of(list[middle]) <= time) low = middle + 1;
+        else high = middle;
+    }
+    return low - 1;
+}
+
+const finite = (...values) => values.every(Number.isFinite);
+const wanted = {
+    scene: e => Array.isArray(e.columns) && e.columns.every(([n, s]) => typeof n === "string" && s > 0),
+    body: e =>
+        e.segments.length === segments.length &&
+        e.segments.every((s, i) => s.name === segments[i].name && finite(...s.origin)) &&
+        e.tips.length === HANDS.length &&
+        finite(...e.tips.flat()),
+    drum: e => finite(e.drum, ...e.place) && typeof e.name === "string" && e.place.length === 5 && e.place[4] > 0.02 && e.place[4] < 2,
+    strike: e => HANDS.includes(e.hand) && finite(e.x, e.y, e.force),
+    beat: e => finite(e.beat),
+};
+
+export class Scene {
+    constructor(name) {
+        this.name = name;
+        ((this.head = null), (this.end = 0), (this.score = []));
+        ((this.bodies = []), (this.drums = new Map()), (this.strikes = []));
+        ((this.beats = []), (this.notes = []), (this.sounds = []));
+        ((this.times = []), (this.blocks = []), (this.column = new Map()));
+        this.local = new Float64Array(4 * segments.length);
+        ((this.ahead = new Float64Array(4)), (this.local[0] = 1));
+    }
+
+    // An event in the order of time; one that is not as it should be is a fault of the file.
+    add(event) {
+        const check = wanted[event.event];
+        if (!finite(event.time) || (check && !check(event)))
+            throw new Error(`${this.name}: a faulty ${event.event}`);
+        if (event.event === "scene") {
+            this.head = event;
+            event.columns.forEach(([name], i) => this.column.set(name, i));
+        } else if (event.event === "body") this.bodies.push(event);
+        else if (event.event === "drum") this.drum(event.drum, event).changes.push(event);
+        else if (event.event === "strike") this.strikes.push({ ...event, from: this.name });
+        else if (event.event === "beat") this.beats.push(event);
+        else if (event.event === "note") this.notes.push(event);
+        else if (event.event === "score") this.score = event.lines;
+        else if (event.event === "end") this.end = event.time;
+    }
+
+    drum(number, event) {
+        if (!this.drums.has(number)) this.drums.set(number, { changes: [], frames: [] });
+        return Object.assign(this.drums.get(number), event && { name: event.name });
+    }
+
+    rows(bytes) {
+        const view = new DataView(bytes.buffer),
+            start = view.getFloat64(0, true),
+            period = view.getFloat64(8, true),
+            count = view.getUint32(16, true),
+            columns = this.head.columns.length;
+        if (!finite(start, period) || bytes.length !== 20 + 4 * columns * count)
+            throw new Error(`${this.name}: faulty rows`);
+        const block = { first: this.times.length, columns: [] };
+        for (let i = 0; i < count; i++) this.times.push(start + i * period);
+        for (let c = 0, at = 20; c < columns; c++, at += 4 * count) {
+            const column = new Int32Array(count);
+            let value = 0,
+                slope = 0;
+            for (let i = 0; i < count; i++) {
+                const folded =
+                    bytes[at + i] |
+                    (bytes[at + count + i] << 8) |
+                    (bytes[at + 2 * count + i] << 16) |
+                    (bytes[at + 3 * count + i] << 24);
+                slope = (slope + ((folded >>> 1) ^ -(folded & 1))) | 0;
+                value = column[i] = (value + slope) | 0;
+            }
+            block.columns.push(column);
+        }
+        this.blocks.push(block);
+    }
+
+    heads(bytes) {
+        const view = new DataView(bytes.buffer);
+        for (let i = view.getUint32(0, true), at = 4; i > 0; i--) {
+            const scale = view.getFloat32(at + 8, true),
+                modes = view.getUint16(at + 14, true);
+            this.drum(view.getUint16(at + 12, true)).frames.push({
+                time: view.getFloat64(at, true),
+                scale,
+                amplitude: new Int8Array(bytes.buffer, at + 16, modes),
+            });
+            at += 16 + modes;
+        }
+    }
+
+    // once all is read
+    finish() {
+        const last = this.times.length ? this.times[this.times.length - 1] : 0;
+        this.end = Math.max(this.end, last);
+        if (!this.head || !this.times.length || !this.bodies.length)
+            throw new Error(`${this.name}: nothing is in it`);
+        for (const body of this.bodies)
+            body.origin = Float64Array.from(body.segments.flatMap(s => s.origin));
+        this.strikes.sort((a, b) => a.time - b.time);
+        this.joints = segments.map(s => this.column.get(`${s.joint}_x_rad`));
+    }
+
+    // the row at or before `time`, and how far it is to the next (0 .. 1)
+    at(time) {
+        const i = Math.max(0, before(this.times, time)),
+            a = this.times[i],
+            b = this.times[i + 1];
+        return [i, b > a ? Math.min(1, Math.max(0, (time - a) / (b - a))) : 0];
+    }
+
+    block(row) {
+        return this.blocks[before(this.blocks, row, b => b.first)];
+    }
+
+    value(row, name) {
+        const c = this.column.get(name),
+            block = this.block(row);
+        return c === undefined ? 0 : block.columns[c][row - block.first] * this.head.columns[c][1];
+    }
+
+    body(time) {
+        return this.bodies[Math.max(0, before(this.bodies, time, b => b.time))];
+    }
+
+    rotation(row, segment, out, o) {
+        const c = this.joints[segment],
+            block = this.block(row),
+            r = row - block.first,
+            get = k => block.columns[c + k][r] * this.head.columns[c + k][1];
+        if (c === undefined) quaternion(0, 0, 0, out, o);
+        else quaternion(get(0), get(1), get(2), out, o);
+    }
+
+    // [x y z qw qx qy qz] of each segment at `time`
+    pose(time, out) {
+        const [row, t] = this.at(time),
+            q = this.local,
+            r = this.ahead;
+        for (let i = 1; i < segments.length; i++) {
+            const o = 4 * i;
+            this.rotation(row, i, q, o);
+            if (!t) continue;
+            this.rotation(row + 1, i, r, 0);
+            // along the chord: rows are so near that the arc differs by less than a rounding
+            const dot = q[o] * r[0] + q[o + 1] * r[1] + q[o + 2] * r[2] + q[o + 3] * r[3],
+                near = dot < 0 ? -t : t;
+            let norm = 0;
+            for (let k = 0; k < 4; k++) {
+                q[o + k] += near * r[k] - t * q[o + k];
+                norm += q[o + k] * q[o + k];
+            }
+            for (let k = 0; k < 4; k++) q[o + k] /= Math.sqrt(norm);
+        }
+        return forward(q, out, this.body(time).origin);
+    }
+
+    targets(time, out) {
+        const [row, t] = this.at(time),
+            name = k => `${HANDS[k < 3 ? 0 : 1]}_target_${"xyz"[k % 3]}_m`;
+        for (let k = 0; k < 6; k++) {
+            const a = this.value(row, name(k));
+            out[k] = t ? a + t * (this.value(row + 1, name(k)) - a) : a;
+        }
+        return out;
+    }
+
+    // the heights of both tips in each row (m), once
+    heights() {
+        if (this.tipHeights) return this.tipHeights;
+        const out = HANDS.map(() => new Float32Array(this.times.length)),
+            pose = new Float64Array(7 * segments.length),
+            at = new Float64Array(3),
+            sticks = HANDS.map(hand => 7 * bone(`${hand}-stick`));
+        this.times.forEach((time, i) => {
+            this.pose(time, pose);
+            const tips = this.body(time).tips;
+            sticks.forEach((s, hand) => {
+                place(pose, s + 3, ...tips[hand], pose, s, at, 0);
+                out[hand][i] = at[2];
+            });
+        });
+        return (this.tipHeights = out);
+    }
+
+    // the beat at `time`, between the whole ones in proportion; null without any
+    beat(time) {
+        const i = before(this.beats, time, b => b.time);
+        if (i < 0) return null;
+        const a = this.beats[i],
+            b = this.beats[i + 1];
+        return b ? a.beat + ((b.beat - a.beat) * (time - a.time)) / (b.time - a.time) : a.beat;
+    }
+}
+
+export async function readScene(bytes, name) {
+    const scene = new Scene(name),
+        view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length),
+        text = new TextDecoder();
+    if (text.decode(bytes.subarray(0, 7)) !== MAGIC)
+        throw new Error(`${name}: not a scene; himc render SOURCE -o SOUND.wav --scene FILE.himc makes one`);
+    if (bytes[7] !== VERSION)
+        throw new Error(`${name}: version ${bytes[7]} of scenes, this page reads ${VERSION}`);
+    try {
+        for (let at = 8; at < bytes.length;) {
+            const kind = text.decode(bytes.subarray(at, at + 4)),
+                size = view.getUint32(at + 4, true),
+                body = bytes.subarray(at + 8, at + 8 + size);
+            at += 8 + size;
+            if (at > bytes.length) break; // a recording that was cut short is good up to here
+            if (kind === "json") JSON.parse(text.decode(await inflate(body))).forEach(e => scene.add(e));
+            else if (kind === "rows") scene.rows(await inflate(body));
+            else if (kind === "head") scene.heads(await inflate(body));
+            else if (kind === "ogg ") scene.sounds.push(body);
+        }
+        scene.finish();
+    } catch (error) {
+        throw error.message.startsWith(name) ? error : new Error(`${name}: faulty (${error.message})`);
+    }
+    return scene;
+}

@@ -1,0 +1,318 @@
+// The timeline of a playback: strokes, heights of the sticks, forces, sound, all over one axis of
+// time. The lanes are drawn once for a view; a frame adds the cursor. Sizes and colours: chosen by
+// eye. Times in milliseconds.
+import { before } from "./scene.js";
+
+export const handColor = ["#7fd6ff", "#ffb066"];
+export const nuanceColor = {
+    legato: "#8fd0ff",
+    tenuto: "#b7e08a",
+    accent: "#ff9a6a",
+    "vertical-accent": "#ff6f8e",
+    staccato: "#ffd76a",
+};
+const STRONGEST = 150, // tallest stroke (N); a forte stroke
+    NEAR = 6, // a click this near to a stroke jumps to it (pixels)
+    SHORTEST = 100, // of a view (ms)
+    BUCKETS = 400; // of the sound's outline, each second
+const LANES = [
+    { name: "beats", share: 0.12 },
+    { name: "strokes", share: 0.3 },
+    { name: "height", share: 0.22 },
+    { name: "force", share: 0.14 },
+    { name: "sound", share: 0.22 },
+];
+
+// least and largest sample of each bucket
+function outline(buffer) {
+    const samples = buffer.getChannelData(0),
+        size = buffer.sampleRate / BUCKETS,
+        count = Math.floor(samples.length / size),
+        out = new Float32Array(2 * count);
+    for (let i = 0; i < count; i++) {
+        let low = 0,
+            high = 0;
+        for (let k = Math.floor(i * size); k < (i + 1) * size; k++) {
+            if (samples[k] < low) low = samples[k];
+            if (samples[k] > high) high = samples[k];
+        }
+        ((out[2 * i] = low), (out[2 * i + 1] = high));
+    }
+    return out;
+}
+
+const digits = ms => (ms < 100 ? 3 : ms < 1000 ? 2 : ms < 10000 ? 1 : 0);
+
+export class Timeline {
+    constructor(canvas, actions) {
+        ((this.canvas = canvas), (this.actions = actions), (this.ink = canvas.getContext("2d")));
+        this.lanes = document.createElement("canvas");
+        ((this.playback = null), (this.view = [0, 1]), (this.stale = true), (this.hover = null));
+        this.pointers = new Map();
+        const on = (name, f) => canvas.addEventListener(name, f, { passive: false });
+        on("pointerdown", e => this.press(e));
+        on("pointermove", e => this.move(e));
+        for (const name of ["pointerup", "pointercancel"]) on(name, e => this.release(e));
+        on("pointerleave", () => (this.hover = null));
+        on("dblclick", () => this.show(0, this.playback?.length));
+        on("wheel", e => {
+            e.preventDefault();
+            const pan = e.shiftKey ? e.deltaY : e.deltaX;
+            if (Math.abs(pan) > Math.abs(e.shiftKey ? 0 : e.deltaY)) this.pan(pan);
+            else this.zoom(Math.exp(0.0015 * e.deltaY), this.time(e));
+        });
+    }
+
+    open(playback) {
+        ((this.playback = playback), (this.waves = null));
+        ((this.range = undefined), (this.loudest = undefined));
+        this.show(0, playback.length);
+    }
+
+    heard(buffer) {
+        this.waves = buffer && outline(buffer);
+        this.stale = true;
+    }
+
+    show(from, to) {
+        const length = this.playback ? this.playback.length : 1,
+            span = Math.min(length, Math.max(SHORTEST, to - from));
+        from = Math.min(length - span, Math.max(0, from));
+        this.view = [from, from + span];
+        this.stale = true;
+    }
+
+    zoom(factor, at = this.playback.at) {
+        const [from, to] = this.view;
+        this.show(at - (at - from) * factor, at + (to - at) * factor);
+    }
+
+    pan(pixels) {
+        const [from, to] = this.view,
+            by = (pixels * (to - from)) / this.canvas.clientWidth;
+        this.show(from + by, to + by);
+    }
+
+    x(time) {
+        const [from, to] = this.view;
+        return ((time - from) / (to - from)) * this.canvas.clientWidth;
+    }
+
+    time(e) {
+        const box = this.canvas.getBoundingClientRect(),
+            [from, to] = this.view;
+        return from + ((e.clientX - box.left) / box.width) * (to - from);
+    }
+
+    // the stroke under the pointer
+    near(e) {
+        if (!this.playback) return null;
+        const at = this.time(e),
+            list = this.playback.scene.strikes,
+            i = before(list, at / 1000, s => s.time);
+        return (
+            [list[i], list[i + 1]]
+                .filter(s => s && Math.abs(this.x(1000 * s.time) - this.x(at)) < NEAR)
+                .sort((a, b) => Math.abs(1000 * a.time - at) - Math.abs(1000 * b.time - at))[0] ?? null
+        );
+    }
+
+    press(e) {
+        if (!this.playback) return;
+        this.canvas.setPointerCapture(e.pointerId);
+        this.pointers.set(e.pointerId, e.clientX);
+        this.begun = this.time(e);
+        if (this.pointers.size === 1 && !e.shiftKey) this.scrub(e);
+    }
+
+    move(e) {
+        this.hover = this.near(e);
+        const was = this.pointers.get(e.pointerId);
+        if (was === undefined) return;
+        if (this.pointers.size === 2) {
+            const other = [...this.pointers].find(([id]) => id !== e.pointerId)[1];
+            this.zoom(Math.abs(was - other) / Math.max(1, Math.abs(e.clientX - other)), this.time(e));
+        } else if (e.shiftKey) this.actions.loop(this.begun, this.time(e));
+        else this.scrub(e);
+        this.pointers.set(e.pointerId, e.clientX);
+    }
+
+    release(e) {
+        this.pointers.delete(e.pointerId);
+    }
+
+    scrub(e) {
+        const strike = this.near(e);
+        this.actions.seek(strike ? 1000 * strike.time : this.time(e));
+    }
+
+    // --- the lanes
+
+    redraw(w, h, ratio) {
+        const { lanes } = this,
+            c = lanes.getContext("2d");
+        ((lanes.width = Math.round(w * ratio)), (lanes.height = Math.round(h * ratio)));
+        c.setTransform(ratio, 0, 0, ratio, 0, 0);
+        c.font = "11px system-ui, sans-serif";
+        let top = 0;
+        for (const { name, share } of LANES) {
+            const tall = share * h;
+            c.save();
+            c.translate(0, top);
+            this[name](c, w, tall);
+            c.restore();
+            top += tall;
+        }
+        this.stale = false;
+    }
+
+    label(c, text, y) {
+        c.fillStyle = "rgba(255,255,255,0.6)";
+        c.fillText(text, 4, y);
+    }
+
+    beats(c, w, h) {
+        const { scene } = this.playback,
+            [from, to] = this.view,
+            span = to - from,
+            step = [1, 2, 5, 10, 20, 50, 100, 200, 500]
+                .flatMap(n => [n, 1000 * n])
+                .sort((a, b) => a - b)
+                .find(s => (s / span) * w > 70);
+        c.fillStyle = "rgba(255,255,255,0.7)";
+        for (let t = Math.ceil(from / step) * step; t <= to; t += step)
+            c.fillText(`${(t / 1000).toFixed(digits(step))} s`, this.x(t) + 3, h - 4);
+        const apart = scene.beats.length > 1 ? (this.playback.length / scene.beats.length / span) * w : w;
+        c.fillStyle = "rgba(255,255,255,0.13)";
+        for (const b of scene.beats)
+            if (apart > 5 || b.beat % 4 === 0) c.fillRect(this.x(1000 * b.time), 0, 1, 999);
+    }
+
+    strokes(c, w, h) {
+        const mid = h / 2;
+        c.fillStyle = "rgba(255,255,255,0.1)";
+        c.fillRect(0, mid - 0.5, w, 1);
+        this.label(c, "L", mid - 4);
+        this.label(c, "R", mid + 12);
+        for (const s of this.playback.scene.strikes) {
+            const x = this.x(1000 * s.time),
+                tall = 3 + (mid - 6) * Math.min(1, Math.sqrt(s.force / STRONGEST)),
+                up = s.hand === "left";
+            if (x < -4 || x > w + 4) continue;
+            c.fillStyle = nuanceColor[s.nuance] || "#d8d8e0";
+            c.fillRect(x - 1, up ? mid - tall : mid, 2, tall);
+            c.beginPath();
+            c.arc(x, up ? mid - tall : mid + tall, 2.6, 0, 7);
+            c.fill();
+        }
+    }
+
+    // the largest value of the rows under each pixel, as a line
+    line(c, w, color, value, y) {
+        const { times } = this.playback.scene,
+            [from, to] = this.view;
+        c.strokeStyle = color;
+        c.beginPath();
+        let row = Math.max(0, before(times, from / 1000) - 1);
+        for (let x = 0; x < w && row < times.length; x++) {
+            const end = (from + ((x + 1) / w) * (to - from)) / 1000;
+            if (times[row] > end) continue;
+            let most = -Infinity;
+            for (; row < times.length && times[row] <= end; row++) most = Math.max(most, value(row));
+            c.lineTo(x, y(most));
+        }
+        c.stroke();
+    }
+
+    height(c, w, h) {
+        const both = this.playback.scene.heights();
+        this.range ??= both.reduce(
+            ([low, high], list) => list.reduce(([l, g], v) => [Math.min(l, v), Math.max(g, v)], [low, high]),
+            [Infinity, -Infinity],
+        );
+        const [low, high] = this.range;
+        this.label(c, "height", 11);
+        both.forEach((list, hand) =>
+            this.line(c, w, handColor[hand], r => list[r], v => h - 3 - ((h - 6) * (v - low)) / (high - low)),
+        );
+    }
+
+    force(c, w, h) {
+        const { scene } = this.playback;
+        this.label(c, "force", 11);
+        ["left", "right"].forEach((hand, i) =>
+            this.line(
+                c,
+                w,
+                handColor[i],
+                r => scene.value(r, `${hand}_force_n`),
+                v => h - 2 - (h - 4) * Math.min(1, Math.sqrt(v / STRONGEST)),
+            ),
+        );
+    }
+
+    sound(c, w, h) {
+        this.label(c, "sound", 11);
+        if (!this.waves) return;
+        const mid = h / 2,
+            [from, to] = this.view,
+            bucket = x => Math.floor(((from + (x / w) * (to - from)) / 1000) * BUCKETS);
+        this.loudest ??= this.waves.reduce((most, v) => Math.max(most, Math.abs(v)), 1e-6);
+        const scale = (mid - 1) / this.loudest;
+        c.fillStyle = "#9fb0c8";
+        for (let x = 0; x < w; x++) {
+            let low = 0,
+                high = 0;
+            for (let i = bucket(x); i <= bucket(x + 1) && 2 * i + 1 < this.waves.length; i++) {
+                low = Math.min(low, this.waves[2 * i]);
+                high = Math.max(high, this.waves[2 * i + 1]);
+            }
+            c.fillRect(x, mid - scale * high, 1, Math.max(1, scale * (high - low)));
+        }
+    }
+
+    // --- a frame
+
+    draw() {
+        const p = this.playback,
+            w = this.canvas.clientWidth,
+            h = this.canvas.clientHeight,
+            ratio = Math.min(devicePixelRatio || 1, 2);
+        if (!p || !w) return;
+        if (p.playing && (p.at > this.view[1] || p.at < this.view[0]) && !this.pointers.size)
+            this.show(p.at, p.at + this.view[1] - this.view[0]);
+        const size = `${w} ${h} ${ratio}`;
+        if (this.stale || size !== this.size) {
+            ((this.size = size), (this.canvas.width = Math.round(w * ratio)));
+            this.canvas.height = Math.round(h * ratio);
+            this.redraw(w, h, ratio);
+        }
+        const c = this.ink;
+        c.setTransform(1, 0, 0, 1, 0, 0);
+        c.clearRect(0, 0, this.canvas.width, this.canvas.height);
+        c.drawImage(this.lanes, 0, 0);
+        c.setTransform(ratio, 0, 0, ratio, 0, 0);
+        if (p.loop) {
+            const [a, b] = p.loop.map(t => this.x(t));
+            c.fillStyle = "rgba(255,210,31,0.14)";
+            c.fillRect(a, 0, b - a, h);
+            c.fillStyle = "#ffd21f";
+            (c.fillRect(a, 0, 1, h), c.fillRect(b, 0, 1, h));
+        }
+        c.fillStyle = "#fff";
+        c.fillRect(this.x(p.at) - 0.75, 0, 1.5, h);
+        if (this.hover) this.tell(c, this.hover, w);
+    }
+
+    tell(c, s, w) {
+        const beat = Number.isFinite(s.beat) ? ` · beat ${+s.beat.toFixed(3)}` : "",
+            text = `${s.hand} ${s.nuance} · ${s.drum} · ${s.force.toFixed(0)} N${beat}`;
+        c.font = "12px system-ui, sans-serif";
+        const wide = c.measureText(text).width + 12,
+            x = Math.min(w - wide, Math.max(0, this.x(1000 * s.time) + 8));
+        c.fillStyle = "#22232bf2";
+        c.fillRect(x, 2, wide, 20);
+        c.fillStyle = "#fff";
+        c.fillText(text, x + 6, 16);
+    }
+}
