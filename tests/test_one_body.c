@@ -92,7 +92,7 @@ static void test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand(v
         session_do(w.p, "stroke %g right legato mf normal a", 1.5 + 1.1 * i);
         session_do(w.p, "stroke %g left legato mf normal b", 2.05 + 1.1 * i);
     }
-    play_score(&w, 7.6, 8);
+    play_score(&w, 8.2, 8);
     TEST_ASSERT_EQUAL_INT(2, w.heard.notes);
 }
 

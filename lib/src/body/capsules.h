@@ -53,7 +53,7 @@ extern const himc_capsule_pair himc_capsule_pairs[HIMC_CAPSULE_PAIRS];
 /// Least gaps of a posture (m); far parts are not counted.
 typedef struct himc_clearance {
     double sticks; ///< between a stick and the other arm or its stick
-    double body;   ///< of all other pairs, and of arms and drums
+    double body;   ///< of all other pairs
     double beyond; ///< distance of a tip out of reach
     double folded; ///< distance of a tip from its shoulder
     int order;     ///< of crossed arms: 1 the left one is above, -1 below, 0 none

@@ -163,7 +163,6 @@ static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
                 away.z > shells->head[i]->radius + half + p->radius + NEAR_BODY)
                 continue;
             himc_capsule_near near = himc_capsule_shell(p, shells->head[i]);
-            f->clear.body = fmin(f->clear.body, near.gap);
             push_apart(f, (himc_capsule_pair){(unsigned char)part, HIMC_PELVIS}, &near, NEAR_BODY);
         }
 }

@@ -17,6 +17,7 @@
 #define CROSSED 0.02       // one tip is so far on the other's side (m)
 #define OVERREACH 0.04     // no lift so far out of reach of the usual posture (m)
 #define FOLDED 0.25        // no way of a tip so near to its shoulder (m): the arm would whip
+#define UNREACHED 0.1      // and no stroke so far (m): the arm would not find back
 #define PLACE_AHEAD 1.2    // the trunk turns to a touch within this time (s)
 #define NEAR_BESIDE 0.2    // a way past is tried so long before and after, too (s)
 #define WAYS 3             // directions of a way past ...
@@ -71,7 +72,8 @@ static near_time find_near(const himc_planner *planner, double begin, double end
         himc_clearance clear = planner->config.rehearse(planner->config.motion, &at);
         if (t > known)
             clear.sticks = HUGE_VAL;
-        double body = fmin(clear.body, OVERREACH - clear.beyond), gap = fmin(body, clear.sticks);
+        double body = fmin(clear.body, OVERREACH - clear.beyond);
+        double gap = fmin(fmin(clear.body, clear.sticks), UNREACHED - clear.beyond);
         double lack = NEAR_GAP - clear.sticks + (is_crossed(at.tip) ? CROSSED_GAP : 0);
         lack = fmax(lack, fmax(-body, FOLDED - clear.folded));
         after = clear.sticks < PASSING_GAP ? PASSING_STEP : NEAR_STEP;

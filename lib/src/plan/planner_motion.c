@@ -52,6 +52,14 @@
 #define OTHER_SPOT 10     // as a difference of log speed
 #define OTHER_GRIP 20     // as a difference of log speed
 
+#define SLIM_RODS 0.008      // (m) gaps are of rods twice as thick as slim ones (HIMC_ROD_RADIUS)
+#define REASSIGNED_LACK 0.02 // (m) of a stroke that no hand is left for; chosen: a pressed sleeve
+
+// spots that are moved, away from the other hand; chosen
+#define ROLL_TIME 0.3   // between strokes of a hand: no time to pass (s)
+#define SAME_PLACE 0.25 // from its tip, at most (m)
+#define LEAST_SIDE 0.01 // with less each hand goes to its own side (m)
+
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
@@ -358,6 +366,33 @@ static double try_stroke(himc_planner *planner, const timed_stroke *s, bool wait
     return himc_planner_keep_clear(planner, s->stroke.hand, before.end);
 }
 
+/// Moves the spot of a stroke on its head, away from the other hand; false if that is far.
+static bool displace(const himc_planner *planner, timed_stroke *s, double by)
+{
+    const himc_head_frame *head = &planner->drum[s->drum];
+    const himc_hand_plan *plan = &planner->hand[other_hand(s->stroke.hand)].plan;
+    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
+    himc_vec3 tip =
+        himc_head_frame_from_world(head, himc_hand_at(plan, fmin(s->goal.time, plan->end)).x);
+    double side = at.y - tip.y;
+    if (hypot(at.x - tip.x, side) > SAME_PLACE)
+        return false;
+    if (fabs(side) < LEAST_SIDE)
+        side = s->stroke.hand == HIMC_LEFT ? 1 : -1;
+    at.y += copysign(by, side);
+    keep_inside(head, &at.x, &at.y);
+    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
+    s->varied = true;
+    return true;
+}
+
+/// What is tried, in this order, before a stroke is refused because the hands would meet.
+static const struct {
+    double aside; // the spot (m)
+    bool waits;   // the hand first waits over its last spot
+} avoidance[] = {{0.03, false}, {0.06, false}, {0, true}};
+#define AVOIDANCES (int)(sizeof avoidance / sizeof avoidance[0])
+
 /// Appends a stroke to its hand's plan, if the hand can play it.
 static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
@@ -372,18 +407,24 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
     bool scored = s->index >= 0 || s->reassigned;
     himc_hand_plan before = h->plan;
-    double gap = try_stroke(planner, s, false);
+    double gap = try_stroke(planner, s, false), plain = gap;
     if (isnan(gap))
         return NO_TIME;
+    for (int i = 0; i < AVOIDANCES && gap < 0 && scored; i++) {
+        timed_stroke other = *s;
+        h->plan = before;
+        h->planned_count = n;
+        if (avoidance[i].aside == 0 || displace(planner, &other, avoidance[i].aside))
+            gap = fmax(try_stroke(planner, &other, avoidance[i].waits), -1);
+    }
     if (gap < 0 && scored) {
         h->plan = before;
         h->planned_count = n;
-        gap = try_stroke(planner, s, true);
-        if (!(gap >= 0)) {
-            h->plan = before;
-            h->planned_count = n;
+        timed_stroke beside = *s;
+        bool same_place = since < ROLL_TIME && displace(planner, &beside, avoidance[0].aside);
+        if (plain < (s->reassigned ? -REASSIGNED_LACK : -SLIM_RODS) && !same_place)
             return MEETS;
-        }
+        try_stroke(planner, same_place ? &beside : s, false);
     }
     if (gap < 0) {
         char name[64];
