@@ -107,7 +107,7 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
         break;
     case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
     case HIMC_EVENT_NOTE:
-        logpost(x, event->minor ? PD_DEBUG : PD_NORMAL, "himc~: %s", event->text);
+        logpost(x, event->minor ? PD_VERBOSE : PD_NORMAL, "himc~: %s", event->text);
         break;
     }
 }

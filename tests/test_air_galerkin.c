@@ -103,6 +103,72 @@ static void test_power_far_away_equals_the_loss_of_the_head(void)
     }
 }
 
+// Mean of u^2 per that of the head's velocity along the outer face of a bare mode: u is the gradient
+// of Phi = int W(k) J_m(k r) dk.
+static double flow_outside(const himc_air_order *order, int n)
+{
+    double alpha = order->alpha[n], next = order->next[n], sum = 0, r_step = 1 / 40.0, step = 0.2;
+    int m = order->m;
+    for (double r = r_step / 2; r < 1; r += r_step) {
+        double phi = 0, slope = 0, j[32];
+        for (double k = step / 2; k < 60; k += step) {
+            himc_bessel_orders(k, m + 1, j);
+            double w = alpha * next * j[m] / (alpha * alpha - k * k) * step;
+            himc_bessel_orders(k * r, m + 1, j);
+            phi += w * j[m];
+            slope += w * k * (m / (k * r) * j[m] - j[m + 1]);
+        }
+        sum += (slope * slope + m * m * phi * phi / (r * r)) * r * r_step;
+    }
+    return sum / (next * next / 2);
+}
+
+// the same along head, wall and bottom of the kettle at frequency x, with 0.475 x^2 Phi^2 for heat
+static double flow_inside(const himc_air_order *order, int n, double x, double depth)
+{
+    double faces = 0, wall = 0, heat = 0.475 * x * x, step = depth / 400;
+    for (int s = 0; s < HIMC_AIR_CAVITY; s++) {
+        double b2 = order->beta[s] * order->beta[s], mu = sqrt(b2 - x * x), d = mu * depth;
+        double c = order->share[s][n] / mu;
+        faces += c * c * (b2 + heat) * (1 / (tanh(d) * tanh(d)) + 1 / (sinh(d) * sinh(d)));
+    }
+    for (double z = step / 2; z < depth; z += step) {
+        double phi = 0, down = 0;
+        for (int s = 0; s < HIMC_AIR_CAVITY; s++) {
+            double b2 = order->beta[s] * order->beta[s], mu = sqrt(b2 - x * x);
+            // share times J_m(beta) over the root of its norm, whose sign alternates
+            double c =
+                (s % 2 ? -1 : 1) * order->share[s][n] * sqrt(2 / (1 - order->m * order->m / b2));
+            double far = exp(-mu * z), near = exp(-mu * (2 * depth - z)),
+                   d = 1 - exp(-2 * mu * depth);
+            phi += c / mu * (far + near) / d;
+            down += c * (far - near) / d;
+        }
+        wall += (down * down + (order->m * order->m + heat) * phi * phi) * step;
+    }
+    return (faces + wall) / (order->next[n] * order->next[n] / 2);
+}
+
+static void test_friction_is_that_of_the_flow_along_head_and_kettle(void)
+{
+    himc_head head = {.radius = 0.406, .tension = 1210, .density = SIGMA}; // C2 on 32 inches
+    double kettle = himc_air_kettle(head.radius), depth = kettle / (HIMC_PI * pow(head.radius, 3));
+    himc_air air = himc_air_around(&head, kettle);
+    for (int m = 1; m < 6; m++)
+        for (int n = 0; n < 2; n++) {
+            const himc_air_order *order = order_of(m);
+            himc_air_load load = himc_air_on(&air, m, n + 1, order->alpha[n]);
+            double bare = order->alpha[n] / head.radius * sqrt(head.tension / head.density);
+            double omega = load.frequency * bare, x = omega * head.radius / HIMC_AIR_SPEED;
+            double resistance = sqrt(omega * HIMC_AIR_DENSITY * 1.81e-5 / 2);
+            double flow = flow_outside(order, n) + flow_inside(order, n, n == 0 ? x : 0, depth);
+            double decay = resistance * flow / (2 * SIGMA * load.mass);
+            printf("(%d,%d) at %.1f Hz: flow %.3f, %.4f 1/s, here %.4f\n", m, n + 1,
+                   omega / (2 * HIMC_PI), flow, decay, load.friction);
+            TEST_ASSERT_DOUBLE_WITHIN(0.025 * decay, decay, load.friction);
+        }
+}
+
 // measured on a 26 inch timpano (Rossing)
 static const double MEASURED[10] = {127, 150, 227, 252, 298, 314, 366, 401, 418, 434};
 
@@ -245,6 +311,7 @@ int main(void)
     RUN_TEST(test_added_mass_grows_with_frequency_as_fitted);
     RUN_TEST(test_radiation_grows_as_of_a_monopole_dipole_quadrupole);
     RUN_TEST(test_power_far_away_equals_the_loss_of_the_head);
+    RUN_TEST(test_friction_is_that_of_the_flow_along_head_and_kettle);
     RUN_TEST(test_26_inch_frequencies_are_within_a_tenth_of_a_hertz_of_the_independent_solution);
     RUN_TEST(test_26_inch_ratios_are_within_18_cents_rms_of_the_measured_ones);
     RUN_TEST(test_ring_times_over_lossy_kettles_agree_with_the_independent_solution);

@@ -227,6 +227,67 @@ static void test_bank_kick_adds_velocity(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, v[0], v[1]);
 }
 
+// three readouts of different gains that share a form, and one of the second's weights alone, by
+// one version of the loops and in blocks of `size`
+static void hear_alike(const himc_bank_kernel *kernel, bool film, int size, double out[4][1000])
+{
+    enum { MANY = 200, LENGTH = 1000 };
+    static _Alignas(64) double p[5][MANY], s[5][MANY], gain[3][MANY], more[4][MANY], weight[MANY];
+    double stretch[MANY];
+    himc_oscillator many[MANY];
+    himc_bank *large = himc_bank_new(MANY, NULL);
+    himc_readout heard[4];
+    himc_alike alike = {.form = {.p = p[4], .s = s[4]}};
+    for (int i = 0; i < MANY; i++) {
+        many[i] = (himc_oscillator){500.0 + 417 * i, 3 + 0.1 * i, 0.01};
+        stretch[i] = 5e3;
+        gain[0][i] = 1;
+        gain[1][i] = cos(i);
+        gain[2][i] = 1.0 / (i + 1);
+    }
+    himc_bank_use(large, kernel);
+    himc_bank_set(large, many, MANY, RATE);
+    himc_bank_set_film(large, film ? stretch : NULL, 0);
+    for (int k = 0; k < 4; k++) {
+        for (int i = 0; i < MANY; i++)
+            weight[i] = sin(1.0 + i) * gain[k < 3 ? k : 1][i];
+        heard[k] = (himc_readout){.p = p[k], .s = s[k], .film = more[k]};
+        himc_bank_readout(large, weight, weight, weight, &heard[k]);
+        heard[k].alike = k < 3 ? &alike : NULL;
+    }
+    for (int i = 0; i < MANY; i++)
+        weight[i] = sin(1.0 + i);
+    himc_bank_readout(large, weight, weight, NULL, &alike.form);
+    for (int k = 0; k < 3; k++) {
+        alike.gain[k] = gain[k];
+        alike.readout[k] = &heard[k];
+    }
+    himc_bank_push(large, weight, 100);
+    himc_readout *const readouts[] = {&heard[0], &heard[1], &heard[2], &heard[3]};
+    for (int at = 0; at < LENGTH; at += size)
+        himc_bank_run(large, size, readouts, 4,
+                      (double *[]){out[0] + at, out[1] + at, out[2] + at, out[3] + at});
+    himc_bank_free(large);
+}
+
+static void test_bank_readouts_that_are_alike_are_as_alone_in_any_blocks_on_every_unit(void)
+{
+    static double expected[4][1000], got[4][1000];
+    for (int film = 0; film < 2; film++) {
+        double most = 0;
+        hear_alike(himc_bank_kernel_version(0), film, 1000, expected);
+        for (int i = 0; i < 1000; i++)
+            most = fmax(most, fabs(expected[3][i]));
+        for (int i = 0; i < 1000; i++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12 * most, expected[3][i], expected[1][i]);
+        for (int version = 0; himc_bank_kernel_version(version); version++)
+            for (int size = 1; size <= 125; size *= 5) {
+                hear_alike(himc_bank_kernel_version(version), film, size, got);
+                TEST_ASSERT_EQUAL_MEMORY(expected, got, sizeof got);
+            }
+    }
+}
+
 static int passes;
 
 static void counted_ahead(const himc_bank_waves *waves, int length, int n, double *out)
@@ -360,6 +421,7 @@ int main(void)
     RUN_TEST(test_bank_gives_the_same_bits_on_every_vector_unit_and_in_any_blocks);
     RUN_TEST(test_bank_computes_64_samples_at_a_time_of_what_is_read_alone);
     RUN_TEST(test_bank_readouts_are_equal_alone_and_together);
+    RUN_TEST(test_bank_readouts_that_are_alike_are_as_alone_in_any_blocks_on_every_unit);
     RUN_TEST(test_bank_film_gives_and_takes_no_energy);
     RUN_TEST(test_bank_silences_oscillators_that_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);

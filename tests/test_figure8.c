@@ -16,9 +16,9 @@
 static const char *const experiment[] = {"tempo 60",
                                          "stroke 1 right accent 0.55",
                                          "stroke 3 right accent 0.75",
-                                         "stroke 5 right vertical-accent 0.705",
-                                         "stroke 5.4 left accent 0.81",
-                                         "stroke 10 left accent 0.81",
+                                         "stroke 5 right vertical-accent 0.73",
+                                         "stroke 5.4 left accent 0.84",
+                                         "stroke 10 left accent 0.84",
                                          "play"};
 
 static himc_strike blow[BLOWS];
@@ -99,7 +99,7 @@ static void test_equal_strike_sounds_louder_on_the_ringing_head(void)
     double calm = loudness[4], force = blow[4].force, ringing = 0;
     for (int i = 0; i < 8; i++) {
         char second[64];
-        snprintf(second, sizeof second, "stroke %.5f left accent 0.81", 1.4 + 0.001 * i);
+        snprintf(second, sizeof second, "stroke %.5f left accent 0.84", 1.4 + 0.001 * i);
         const char *const score[] = {"tempo 60", "stroke 1 right vertical-accent 0.735", second,
                                      "play"};
         play(score, 4, 2.5);

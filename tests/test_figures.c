@@ -71,7 +71,7 @@ static void test_stroke_without_contact_is_given_up_15_ms_after_its_time(void)
     himc_performance_free(p);
 }
 
-// plays alternating loud and soft strokes with wooden mallets on a slack head, whose swing parts
+// plays alternating loud and soft strokes with heavy wooden mallets on a slack head, whose swing parts
 // the mallet from it in the middle of a contact; keeps each sample's force
 static heard play_chattering(double force[][3 * RATE], int samples)
 {
@@ -79,7 +79,7 @@ static heard play_chattering(double force[][3 * RATE], int samples)
     heard h = {0};
     himc_event event;
     session_do(p, "drum kettle 26");
-    session_drum(p, 0, "mallet wood");
+    session_drum(p, 0, "mallet 3e8 1.5 0.03");
     session_drum(p, 0, "tension 1200");
     session_do(p, "tempo 60");
     for (int i = 0; i < 12; i++)

@@ -56,7 +56,7 @@ static double decibels(double x)
 // single strokes are the hardest, a roll adds up; by the drum's own pickup, and by two ears
 static void check_strongest(const struct timpano *t, double place)
 {
-    static const char *const by[] = {"listener off", "listener 2.2 0.4 1.3"};
+    static const char *const by[] = {"listener off", "listener 2.3 0.5 1.3"};
     for (int i = 0; i < 2; i++) {
         double once = peak_of(t, "vertical-accent fff", place, 1, 1, by[i]);
         double roll = peak_of(t, "vertical-accent fff", place, 10, 0.1, by[i]);

@@ -96,6 +96,40 @@ static void test_a_bundle_cut_off_within_an_element_is_malformed(void)
     TEST_ASSERT_EQUAL_INT(1, himc_osc_count(osc).malformed);
 }
 
+// the sound of a drum that rings, as the drum itself has it
+static void test_the_sound_is_that_of_the_drums_without_a_gap(void)
+{
+    himc_drum *drum = himc_performance_drum(performance, 0);
+    subscribe("sound");
+    play(0.1);
+    himc_drum_strike_at(drum, 0, 0.1, 0, 3, NULL);
+    forget();
+    play(0.25);
+    TEST_ASSERT_INT_WITHIN(1, 50, count("/himc/sound"));
+    int32_t next = 0;
+    double loudest = 0;
+    for (int i = 0, packets = 0; i < heard_count; i++) {
+        if (strcmp(heard[i].path, "/himc/sound") != 0)
+            continue;
+        lo_arg **atom = lo_message_get_argv(heard[i].message);
+        const unsigned char *at = lo_blob_dataptr((lo_blob)atom[3]);
+        double sound[240];
+        TEST_ASSERT_TRUE(packets++ == 0 || whole(atom[0]) == next);
+        TEST_ASSERT_EQUAL_INT(48000, whole(atom[1]));
+        TEST_ASSERT_EQUAL_INT(1, whole(atom[2]));
+        TEST_ASSERT_EQUAL_INT(480, lo_blob_datasize((lo_blob)atom[3]));
+        himc_drum_read(drum, (uint64_t)whole(atom[0]), 240, sound, NULL);
+        for (int k = 0; k < 240; k++) {
+            int16_t value = (int16_t)(at[2 * k] << 8 | at[2 * k + 1]);
+            TEST_ASSERT_DOUBLE_WITHIN(0.6 / 32767, fmax(-1, fmin(1, sound[k])), value / 32767.0);
+            loudest = fmax(loudest, fabs(sound[k]));
+        }
+        next = whole(atom[0]) + 240;
+    }
+    TEST_ASSERT_TRUE(loudest > 0.01);
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/body"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -103,6 +137,7 @@ int main(void)
     RUN_TEST(test_poses_continue_after_a_reset);
     RUN_TEST(test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second);
     RUN_TEST(test_each_drum_is_sent_by_its_name);
+    RUN_TEST(test_the_sound_is_that_of_the_drums_without_a_gap);
     RUN_TEST(test_info_over_osc_is_answered_and_listen_refused);
     RUN_TEST(test_an_idle_hour_saves_up_no_answers);
     RUN_TEST(test_an_address_with_one_part_too_many_is_foreign);

@@ -21,18 +21,18 @@ static void noise_of(const char *mallet, double velocity, double x, double *out)
         out[i] = with[i] - out[i];
 }
 
-// power of n samples between two frequencies (Hz), by Butterworth's filters
+// power of n samples between two frequencies (Hz), by Butterworth's filters, each twice
 static double power(const double *x, int n, double low, double high)
 {
-    double sum = 0, a[2] = {0}, b[2] = {0}, edge[2] = {low, high};
+    double sum = 0, a[4] = {0}, b[4] = {0}, edge[4] = {low, high, low, high};
     double y = 0;
     for (int i = 0; i < n; i++) {
         y = x[i];
-        for (int k = 0; k < 2; k++) {
+        for (int k = 0; k < 4; k++) {
             double w = tan(HIMC_PI * edge[k] / RATE), norm = 1 / (1 + w * sqrt(2) + w * w);
-            double g = (k == 0 ? 1 : w * w) * norm, in = y;
+            double g = (k % 2 == 0 ? 1 : w * w) * norm, in = y;
             y = g * in + a[k];
-            a[k] = (k == 0 ? -2 : 2) * g * in - 2 * (w * w - 1) * norm * y + b[k];
+            a[k] = (k % 2 == 0 ? -2 : 2) * g * in - 2 * (w * w - 1) * norm * y + b[k];
             b[k] = g * in - (1 - w * sqrt(2) + w * w) * norm * y;
         }
         sum += y * y;

@@ -111,9 +111,9 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
                            himc_error *error);
 
 /// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the
-/// left, 1.6 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
+/// left, 1.7 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
 /// and its noise strong.
-#define CLI_LISTENER "listener 2.2 0.4 1.3"
+#define CLI_LISTENER "listener 2.3 0.5 1.3"
 #define CLI_BLOCK 8192 ///< most samples at a time; chosen: the longest block of Pd
 
 /// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).

@@ -17,7 +17,10 @@
 
 enum { DEVICE, RATE, LATENCY, LIST };
 enum { BLOCK = 256, EARS = 2 }; // samples; chosen: 5 ms, short against the latency
-#define TAIL_SECONDS 3.0        // of sound after the last stroke; chosen: most of a timpano's
+// the end, as of `himc render`: the performer is done, and what rings is 80 dB below the peak
+#define TAIL_SECONDS 8.0
+#define QUIET_SECONDS 0.2
+#define SILENCE 1e-4
 
 static const cli_option options[] = {
     {"device", 0, "N", "the sound card, a number of --list (the system's usual one)"},
@@ -88,7 +91,8 @@ static bool open_device(PaStream **stream, const char *wanted, int rate, int lat
 
 /// What a playing came to.
 typedef struct outcome {
-    uint64_t samples, done_at;
+    uint64_t samples, done_at, quiet; ///< `quiet`: so many without any sound
+    double peak;
     long underruns;
     double busy; ///< time spent computing (s)
 } outcome;
@@ -99,7 +103,9 @@ static bool play_block(himc_performance *p, PaStream *stream, outcome *o, himc_e
     himc_event event;
     double start = cli_now();
     himc_performance_process(p, BLOCK, NULL);
-    cli_mix(p, o->samples, BLOCK, EARS, out);
+    double loudest = cli_mix(p, o->samples, BLOCK, EARS, out);
+    o->peak = fmax(o->peak, loudest);
+    o->quiet = loudest > SILENCE * o->peak ? 0 : o->quiet + BLOCK;
     o->samples += BLOCK;
     while (himc_performance_event(p, &event)) {
         if (event.kind == HIMC_EVENT_NOTE)
@@ -111,6 +117,12 @@ static bool play_block(himc_performance *p, PaStream *stream, outcome *o, himc_e
     PaError code = Pa_WriteStream(stream, out, BLOCK);
     o->underruns += code == paOutputUnderflowed;
     return code == paOutputUnderflowed || check(code, "the sound card", error);
+}
+
+static bool is_over(const outcome *o, int rate)
+{
+    return o->done_at && ((double)o->quiet > QUIET_SECONDS * rate ||
+                          (double)(o->samples - o->done_at) > TAIL_SECONDS * rate);
 }
 
 static bool play(const cli_arguments *arguments, himc_error *error)
@@ -128,8 +140,7 @@ static bool play(const cli_arguments *arguments, himc_error *error)
                 open_device(&stream, arguments->value[DEVICE], rate, latency, error);
     signal(SIGINT, stop);
     signal(SIGTERM, stop);
-    while (good && !stopped &&
-           (!o.done_at || (double)(o.samples - o.done_at) < TAIL_SECONDS * rate))
+    while (good && !stopped && !is_over(&o, rate))
         good = play_block(p, stream, &o, error);
     if (stream) {
         double seconds = (double)o.samples / rate;

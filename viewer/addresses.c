@@ -4,6 +4,7 @@
 ///     /himc/targets   hand x y z                      (m)
 ///     /himc/strike    time hand drum x y velocity force duration nuance ...
 ///     /himc/beat      beat
+///     /himc/sound     first sample, rate, channels, blob (16 bits, highest byte first)
 ///     /himc/status    name value ...
 ///     /himc/pose      (allowed before the bodies, without effect)
 ///     /membrane/NAME/head    amplitude ...            (m), in the order of Bessel's zeros
@@ -230,11 +231,34 @@ static bool on_place(received *h)
     return true;
 }
 
+static bool on_sound(received *h)
+{
+    if (h->count != 4 || strcmp(h->types, "iiib") != 0)
+        return false;
+    lo_blob blob = (lo_blob)h->args[3];
+    const unsigned char *from = lo_blob_dataptr(blob);
+    uint32_t count = lo_blob_datasize(blob) / 2;
+    double rate = number(h, 1), channels = number(h, 2);
+    if (rate < 8000 || rate > 192000 || (channels != 1 && channels != 2) || count > SCENE_SAMPLES)
+        return false;
+    scene_sound *s = &h->s->sound[h->s->sounds++ % SCENE_SOUNDS];
+    *s = (scene_sound){.time = h->now,
+                       .first = (uint32_t)(int64_t)number(h, 0),
+                       .rate = (uint32_t)rate,
+                       .channels = (uint32_t)channels,
+                       .count = count};
+    snprintf(s->key, sizeof s->key, "%s", h->key);
+    for (uint32_t i = 0; i < count; i++)
+        s->sample[i] = (int16_t)(from[2 * i] << 8 | from[2 * i + 1]);
+    return true;
+}
+
 static const address addresses[] = {
-    {"himc", "body", "snnnnnnn", on_body},   {"himc", "pose", "*", on_pose},
-    {"himc", "targets", "snnn", on_targets}, {"himc", "strike", "nssnnnnns*", on_strike},
-    {"himc", "beat", "n", on_beat},          {"himc", "status", "*", on_status},
-    {"membrane", "head", "*", on_head},      {"membrane", "place", "nnnnn", on_place},
+    {"himc", "body", "snnnnnnn", on_body},    {"himc", "pose", "*", on_pose},
+    {"himc", "targets", "snnn", on_targets},  {"himc", "strike", "nssnnnnns*", on_strike},
+    {"himc", "beat", "n", on_beat},           {"himc", "status", "*", on_status},
+    {"himc", "sound", "*", on_sound},         {"membrane", "head", "*", on_head},
+    {"membrane", "place", "nnnnn", on_place},
 };
 
 // copies the next "/part" of an address and returns the rest; NULL if there is none or it is too

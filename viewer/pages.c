@@ -35,6 +35,7 @@
     SCRIPT(FILE, scene)                                                    \
     SCRIPT(FILE, playback)                                                 \
     SCRIPT(FILE, sound)                                                    \
+    SCRIPT(FILE, worklet)                                                  \
     SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \

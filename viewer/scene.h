@@ -17,11 +17,13 @@ enum {
     SCENE_HANDS = 2,
     SCENE_PERFORMERS = 16,
     SCENE_DRUMS = 32,
-    SCENE_MODES = 64,   ///< modal amplitudes kept of a drum; chosen: as many as the page draws
-    SCENE_EVENTS = 256, ///< kept for slow readers; chosen: 2 s of eight rolls
-    SCENE_TEXT = 1400,  ///< longest event (bytes)
-    SCENE_KEY = 80,     ///< longest sender with its zero: "ADDRESS:PORT" or "ADDRESS:PORT/NAME"
-    SCENE_NAME = 32     ///< longest drum's name with its zero
+    SCENE_MODES = 64,    ///< modal amplitudes kept of a drum; chosen: as many as the page draws
+    SCENE_SOUNDS = 128,  ///< packets kept for slow readers; chosen: 0.6 s of one performer
+    SCENE_SAMPLES = 512, ///< most of a packet, of both channels
+    SCENE_EVENTS = 256,  ///< kept for slow readers; chosen: 2 s of eight rolls
+    SCENE_TEXT = 1400,   ///< longest event (bytes)
+    SCENE_KEY = 80,      ///< longest sender with its zero: "ADDRESS:PORT" or "ADDRESS:PORT/NAME"
+    SCENE_NAME = 32      ///< longest drum's name with its zero
 };
 
 /// A body in the world.
@@ -51,6 +53,14 @@ typedef struct scene_event {
     char text[SCENE_TEXT];
 } scene_event;
 
+/// A packet of sound.
+typedef struct scene_sound {
+    double time; ///< (s, wall clock)
+    char key[SCENE_KEY];
+    uint32_t first, rate, channels, count; ///< sample; (Hz); of samples in all channels
+    int16_t sample[SCENE_SAMPLES];
+} scene_sound;
+
 /// Counters since the start.
 typedef struct scene_counts {
     uint64_t packets, messages, bytes;
@@ -64,6 +74,8 @@ typedef struct scene {
     scene_drum drum[SCENE_DRUMS];
     scene_event event[SCENE_EVENTS];
     uint64_t events; ///< ever; the newest is event[(events - 1) % SCENE_EVENTS]
+    scene_sound sound[SCENE_SOUNDS];
+    uint64_t sounds; ///< ever; the newest is sound[(sounds - 1) % SCENE_SOUNDS]
     scene_counts count;
 } scene;
 
@@ -93,7 +105,7 @@ void scene_add_event(scene *s, double now, const char *format, ...)
 
 /// Everything one reader has seen: versions of performers and drums, number of events.
 typedef struct scene_reader {
-    uint64_t performer[SCENE_PERFORMERS], drum[SCENE_DRUMS], events;
+    uint64_t performer[SCENE_PERFORMERS], drum[SCENE_DRUMS], events, sounds;
 } scene_reader;
 
 /// A reader that gets only the events from now on.

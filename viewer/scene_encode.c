@@ -7,6 +7,7 @@
 ///     1 pose   key[80], u32 segments known, u32 targets known, f32[20][7], f32[2][3]
 ///     2 drum   key[80], name[32], u32 placed, f32[5] place, u32 modes, u32 0, f32[64]
 ///     3 event  JSON, padded with spaces
+///     4 sound  key[80], u32 first sample, u32 rate, u32 channels, u32 samples, i16[512]
 #include "scene.h"
 
 #include <string.h>
@@ -14,11 +15,13 @@
 enum {
     HEAD = 16,
     POSE = SCENE_KEY + 8 + 4 * (SCENE_SEGMENTS * 7 + SCENE_HANDS * 3),
-    DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES)
+    DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES),
+    SOUND = SCENE_KEY + 4 * 4 + 2 * SCENE_SAMPLES
 };
 
 _Static_assert(SCENE_SEGMENTS <= 32, "a bit for each segment");
-_Static_assert(POSE % 8 == 0 && DRUM % 8 == 0, "blocks keep the alignment of doubles");
+_Static_assert(POSE % 8 == 0 && DRUM % 8 == 0 && SOUND % 8 == 0,
+               "blocks keep the alignment of doubles");
 // all events may be left for the next frame, all poses and drums must fit into one
 _Static_assert(SCENE_PERFORMERS *(HEAD + POSE) + SCENE_DRUMS * (HEAD + DRUM) + HEAD + SCENE_TEXT +
                        8 <=
@@ -79,9 +82,20 @@ static void put_event(writer *p, const scene_event *e)
     put(p, spaces, padding);
 }
 
+static void put_sound(writer *p, const scene_sound *s)
+{
+    put_head(p, 4, SOUND, s->time);
+    put(p, s->key, sizeof s->key);
+    put_u32(p, s->first);
+    put_u32(p, s->rate);
+    put_u32(p, s->channels);
+    put_u32(p, s->count);
+    put(p, s->sample, sizeof s->sample);
+}
+
 scene_reader scene_reader_new(const scene *s)
 {
-    return (scene_reader){.events = s->events};
+    return (scene_reader){.events = s->events, .sounds = s->sounds};
 }
 
 size_t scene_encode(const scene *s, scene_reader *reader, double now, uint8_t *frame)
@@ -99,6 +113,11 @@ size_t scene_encode(const scene *s, scene_reader *reader, double now, uint8_t *f
             put_drum(&p, drum);
         reader->drum[i] = drum->version;
     }
+    if (s->sounds - reader->sounds > SCENE_SOUNDS)
+        reader->sounds = s->sounds - SCENE_SOUNDS;
+    while (reader->sounds < s->sounds &&
+           p.at + HEAD + SOUND + HEAD + SCENE_TEXT + 8 <= frame + SCENE_FRAME_MAX)
+        put_sound(&p, &s->sound[reader->sounds++ % SCENE_SOUNDS]);
     // a reader that the ring has overtaken continues with the oldest event
     if (s->events - reader->events > SCENE_EVENTS)
         reader->events = s->events - SCENE_EVENTS;

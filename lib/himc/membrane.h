@@ -185,7 +185,7 @@ typedef struct himc_mallet_head {
     double stiffness;  ///< k (N/m^alpha)
     double exponent;   ///< alpha, without unit
     double loss;       ///< mu (s/m)
-    double mass;       ///< of a free mallet (kg)
+    double mass;       ///< of a free mallet, and at a stick's end in a hand (kg)
     double radius;     ///< (m); 0 touches the head at a point
     double relaxation; ///< tau (s)
     double core;       ///< k_2 (N/m^2.5), 0 for none

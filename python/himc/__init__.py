@@ -24,7 +24,7 @@ __all__ = ["Error", "Performance", "Rendering", "Take", "evaluate", "joint_names
 __version__: str = ffi.string(lib.himc_version()).decode()
 
 HANDS = ("left", "right")
-LISTENER = "listener 2.2 0.4 1.3"  # where `himc render` listens unless the score says
+LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
 CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
 TAIL = 8.0  # s; a drum rings no longer
 SILENCE = 1e-4  # of the peak

@@ -122,17 +122,24 @@ static void put_atom(packet *p, char type)
 static void put_message(packet *p)
 {
     static const char *const known[][2] = {
-        {"/himc/body", ",sfffffff"},          {"/himc/strike", ",fssfffffs"},
-        {"/himc/targets", ",sfff"},           {"/himc/beat", ",f"},
-        {"/himc/status", ",sfsisd"},          {"/membrane/kettle/head", ",ffffffff"},
-        {"/membrane/kettle/place", ",fffff"}, {"/viewer/camera", ",s"},
-        {"/himc/ann/body", ",sddddddd"},      {"/himc/pose", ","},
+        {"/himc/body", ",sfffffff"},
+        {"/himc/strike", ",fssfffffs"},
+        {"/himc/targets", ",sfff"},
+        {"/himc/beat", ",f"},
+        {"/himc/status", ",sfsisd"},
+        {"/membrane/kettle/head", ",ffffffff"},
+        {"/membrane/kettle/place", ",fffff"},
+        {"/viewer/camera", ",s"},
+        {"/himc/ann/body", ",sddddddd"},
+        {"/himc/pose", ","},
+        {"/himc/sound", ",iiib"},
     };
+    enum { KNOWN = sizeof known / sizeof *known };
     char address[80] = "/", types[80] = ",";
     uint8_t choice = byte();
     bool usual = choice < 192;
-    snprintf(address + 1, sizeof address - 1, "%s", usual ? known[choice % 10][0] + 1 : word());
-    snprintf(types, sizeof types, "%s", known[choice % 10][1]);
+    snprintf(address + 1, sizeof address - 1, "%s", usual ? known[choice % KNOWN][0] + 1 : word());
+    snprintf(types, sizeof types, "%s", known[choice % KNOWN][1]);
     if (choice % 16 == 15) // other atoms than usual
         types[1 + take(types + 1, byte() % 72)] = 0;
     put_string(p, address);
@@ -240,7 +247,7 @@ static void check_block(uint32_t kind, const uint8_t *bytes, size_t size)
 {
     static char text[SCENE_TEXT + 8];
     const uint8_t *body = bytes + SCENE_KEY;
-    require(kind >= 1 && kind <= 3, "a block is of a known kind");
+    require(kind >= 1 && kind <= 4, "a block is of a known kind");
     if (kind == 3) {
         require(size < sizeof text, "an event has room");
         memcpy(text, bytes, size);
@@ -252,6 +259,10 @@ static void check_block(uint32_t kind, const uint8_t *bytes, size_t size)
     if (kind == 1) {
         require(u32(body) < 1u << SCENE_SEGMENTS && u32(body + 4) < 4, "segments and hands exist");
         check_floats(body + 8, (size - SCENE_KEY - 8) / 4, 1000);
+    } else if (kind == 4) {
+        require(u32(body + 4) >= 8000 && u32(body + 4) <= 192000, "a sound has a rate");
+        require(u32(body + 8) - 1 < 2, "and one or two channels");
+        require(u32(body + 12) <= SCENE_SAMPLES, "and so many samples");
     } else {
         check_name((const char *)body, SCENE_NAME);
         check_floats(body + SCENE_NAME + 4, 5, 1000);

@@ -67,7 +67,7 @@ EOF
 }
 report objects_are_found_where_the_patch_declares_the_library "$(sounds "" "-path himc")"
 report objects_are_found_by_prefix "$(sounds himc/ "")"
-for patch in "$himc"/*-help.pd "$himc"/patches/0*.pd "$himc"/patches/performance.pd "$himc"/patches/pieces/*.pd; do
+for patch in "$himc"/*-help.pd "$himc"/patches/[01]*.pd "$himc"/patches/performance.pd "$himc"/patches/pieces/*.pd; do
     play "$patch" -send "pd quit"
     report "$(basename "$patch" .pd)_opens_with_nothing_to_say" "$(silent)"
 done

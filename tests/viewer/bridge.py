@@ -571,6 +571,29 @@ def test_strike_beat_status_and_view_become_events():
         assert heard["view"] == {"event": "view", "what": "camera", "values": ["top"]}
 
 
+def test_sound_reaches_the_stream_in_order():
+    def sound(first, samples, rate=48000, channels=1):
+        blob = struct.pack(f">I{len(samples)}h", 2 * len(samples), *samples)
+        return (
+            string("/himc/sound")
+            + string(",iiib")
+            + struct.pack(">iii", first, rate, channels)
+            + blob
+            + b"\0" * (-len(blob) % 4)
+        )
+
+    with Viewer() as v:
+        stream = listen(v)
+        v.send(*(sound(240 * i, [i, -i, 32767] * 80) for i in range(5)))
+        v.send(sound(0, [0] * 600), sound(0, [0], 1), sound(0, [0], 48000, 3))
+        got = [b for kind, b in stream.until_mark(v) if kind == 4]
+        assert [struct.unpack_from("<4I", b, 80) for b in got] == [
+            (240 * i, 48000, 1, 240) for i in range(5)
+        ]
+        assert struct.unpack_from("<3h", got[4], 96) == (4, -4, 32767)
+        assert counts(v)["malformed"] == 3
+
+
 def test_text_from_the_network_stays_text():
     with Viewer() as v:
         stream = listen(v)

@@ -9,7 +9,7 @@ import { Drum } from "./drum.js";
 import { MARK_TIME, Marks } from "./strike.js";
 import { Playback, SPEEDS } from "./playback.js";
 import { readScene } from "./scene.js";
-import { Sound } from "./sound.js";
+import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
 
@@ -20,6 +20,7 @@ const performers = new Map(),
     drums = new Map(),
     marks = new Marks(),
     sound = new Sound(),
+    liveSound = new LiveSound(sound),
     recorder = new Recorder(canvas, sound);
 const PERFORMERS = 16, // as many as himc-viewer keeps
     DRUMS = 32,
@@ -67,7 +68,13 @@ const actions = {
     },
     setSpeed: speed => playback && playback.setSpeed(speed),
     mute: () => (sound.setVolume(sound.volume ? 0 : 1), sound.wake() && playback?.resound()),
-    live: () => (playback && close(), (playback = null)),
+    live() {
+        if (!playback || !stream) return;
+        playback = null;
+        close();
+        setLift(0);
+        panel.open(null);
+    },
 };
 const panel = new Panel(actions);
 
@@ -128,6 +135,9 @@ const live = {
     },
     drum(key, name, time, place, amplitude) {
         if (!playback) drum(key, name)?.receive(virtual || clock(), place, amplitude);
+    },
+    sound(...packet) {
+        if (!playback) liveSound.receive(...packet, virtual || clock());
     },
     event(event, time) {
         const now = virtual || clock();
@@ -244,6 +254,7 @@ function frame(_, now = clock(), draw = true) {
         view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
     );
     view.update(Math.min(200, dt), first);
+    stage.haze(view.now.distance);
     const drawn = performance.now();
     if (draw) stage.renderer.render(stage.scene, view.camera);
     recorder.drawn();
@@ -264,7 +275,8 @@ function frame(_, now = clock(), draw = true) {
     panel.draw(excursion, now, playback);
     if (now - written > 250) {
         written = now;
-        panel.write([...performers.values()], numbers, now, playback, sound);
+        panel.write([...performers.values()], numbers, now, playback);
+        panel.silent(playback ? !!sound.buffer : now - liveSound.heard < 1000, sound);
         panel.filming(recorder.filming);
     }
     stage.adapt(dt, view);
@@ -287,9 +299,15 @@ function step(ms, draw = true) {
 
 // --- a scene
 
+function setLift(lift) {
+    view.lift = lift;
+    dispatchEvent(new Event("resize"));
+}
+
 // forgets the performer and the drums of the playback, or of the stream
 function close() {
     sound.stop();
+    liveSound.close();
     marks.clear();
     for (const table of [performers, drums]) {
         for (const one of table.values()) discard(one.group);
@@ -303,8 +321,7 @@ async function play(bytes, name) {
     playback = new Playback(scene, sound);
     panel.open(playback);
     panel.loading(null);
-    view.lift = LIFT;
-    dispatchEvent(new Event("resize"));
+    setLift(LIFT);
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
@@ -366,8 +383,10 @@ actions.exaggerate(exaggeration);
 
 // a page of `himc share` brings its scene; any other asks the program that serves it
 let stream = null;
-if (window.himcScene) play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
-else {
+if (window.himcScene) {
+    document.body.classList.add("shared");
+    play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
+} else {
     stream = new Stream(live);
     fetch("/session.json")
         .then(answer => answer.json())
@@ -404,6 +423,7 @@ window.viewer = {
     view,
     stage,
     sound,
+    liveSound,
     recorder,
     get playback() {
         return playback;

@@ -74,7 +74,7 @@ export class Panel {
             actions.exaggerate(Math.round(10 ** Number(e.target.value)));
         for (const speed of SPEEDS) $("speed").add(new Option(`× ${speed}`, speed));
         $("speed").onchange = e => actions.setSpeed(Number(e.target.value));
-        for (const id of ["picture", "film", "pause", "mute", "unloop"]) click(id, actions[id]);
+        for (const id of ["picture", "film", "pause", "mute", "unloop", "live"]) click(id, actions[id]);
         click("back", () => actions.step(-1, true));
         click("on", () => actions.step(1, true));
         click("from", () => actions.loopEnd(false));
@@ -113,7 +113,7 @@ export class Panel {
 
     // the program that serves the page: where it listens
     session({ host, osc }) {
-        $("subscribe").textContent = ["pose", "strikes", "head"]
+        $("subscribe").textContent = ["pose", "strikes", "head", "sound"]
             .map(what => `subscribe ${host} ${osc} ${what}`)
             .join(", ");
     }
@@ -140,8 +140,8 @@ export class Panel {
 
     open(playback) {
         this.playback = playback;
-        this.timeline.open(playback);
-        document.body.classList.add("playing");
+        document.body.classList.toggle("playing", !!playback);
+        if (playback) this.timeline.open(playback);
     }
 
     camera(name) {
@@ -195,12 +195,12 @@ export class Panel {
 
     // --- the numbers; called a few times a second
 
-    write(performers, numbers, now, playback, sound) {
+    write(performers, numbers, now, playback) {
         const here = performers.filter(p => p.present(now));
         document.body.classList.toggle("empty", !here.length);
         this.list(here);
         this.diagnosis(numbers);
-        if (playback) this.transport(playback, sound);
+        if (playback) this.transport(playback);
         else this.live();
     }
 
@@ -247,7 +247,13 @@ export class Panel {
         $("status").textContent = [...this.status.values()].slice(-2).join("\n");
     }
 
-    transport(p, sound) {
+    // whether there is a sound, which needs a click to be heard
+    silent(any, sound) {
+        $("mute").setAttribute("aria-pressed", sound.volume > 0);
+        document.body.classList.toggle("silent", any && !sound.ready);
+    }
+
+    transport(p) {
         const { scene } = p,
             time = p.at / 1000,
             beat = scene.beat(time),
@@ -260,8 +266,6 @@ export class Panel {
         $("clock").textContent = `${time.toFixed(2)} / ${scene.end.toFixed(1)} s`;
         if (Number($("speed").value) !== p.speed) $("speed").value = p.speed;
         $("unloop").disabled = !p.loop;
-        $("mute").setAttribute("aria-pressed", sound.volume > 0);
-        document.body.classList.toggle("silent", !!sound.buffer && !sound.ready);
         const slider = $("timeline");
         slider.setAttribute("aria-valuemax", scene.end.toFixed(2));
         slider.setAttribute("aria-valuenow", time.toFixed(2));

@@ -1,5 +1,8 @@
 // The sound of a playback. Browsers start sound only after a click or a key, so the device is opened
 // by wake(); until then the playback is silent and goes by the wall clock.
+const PERFORMERS = 16, // as many as himc-viewer keeps
+    POSE_DELAY = 0.045, // (s) of a live pose at 33 Hz (performer.js): sound and picture go together
+    SHORTEST = 0.02; // (s) of sound that waits; chosen: four packets
 
 export class Sound {
     constructor() {
@@ -78,5 +81,41 @@ export class Sound {
         return stamp && stamp.contextTime > 0 && now <= c.currentTime && now > c.currentTime - 0.5
             ? now
             : c.currentTime - (c.outputLatency || 0);
+    }
+}
+
+// The sound of live performers, each in its order, once the device is open.
+export class LiveSound {
+    constructor(sound) {
+        ((this.sound = sound), (this.nodes = new Map()), (this.module = null));
+        this.heard = -Infinity; // the last packet (ms)
+    }
+
+    receive(key, first, rate, channels, samples, now) {
+        this.heard = now;
+        const { context } = this.sound;
+        if (!context || context.state !== "running") return;
+        this.module ??= context.audioWorklet.addModule("/worklet.js").then(() => (this.loaded = true));
+        if (this.loaded) this.node(key).port.postMessage({ first, rate, channels, samples });
+    }
+
+    node(key) {
+        if (this.nodes.has(key)) return this.nodes.get(key);
+        if (this.nodes.size >= PERFORMERS) this.close();
+        const { context, gain } = this.sound,
+            behind = Math.max(SHORTEST, POSE_DELAY - (context.outputLatency || 0)),
+            node = new AudioWorkletNode(context, "himc-live", {
+                outputChannelCount: [2],
+                processorOptions: { behind },
+            });
+        node.port.onmessage = e => (node.told = e.data);
+        node.connect(gain);
+        this.nodes.set(key, node);
+        return node;
+    }
+
+    close() {
+        for (const node of this.nodes.values()) node.disconnect();
+        this.nodes.clear();
     }
 }

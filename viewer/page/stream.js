@@ -44,6 +44,18 @@ function readDrum(buffer, view, bytes, at, time, on) {
     );
 }
 
+function readSound(buffer, view, bytes, at, on) {
+    const field = i => view.getUint32(at + KEY + 4 * i, true),
+        samples = at + KEY + 16;
+    on.sound(
+        word(bytes, at, KEY),
+        field(0),
+        field(1),
+        field(2),
+        new Int16Array(buffer.slice(samples, samples + 2 * field(3))),
+    );
+}
+
 export function readFrame(buffer, on) {
     const view = new DataView(buffer),
         bytes = new Uint8Array(buffer);
@@ -56,6 +68,7 @@ export function readFrame(buffer, on) {
             readPose(buffer, view, bytes, at, time, on);
         else if (kind === 2)
             readDrum(buffer, view, bytes, at, time, on);
+        else if (kind === 4) readSound(buffer, view, bytes, at, on);
         else if (kind === 3) on.event(JSON.parse(text.decode(bytes.subarray(at, at + size))), time);
         at += size;
     }

@@ -48,7 +48,7 @@
 /// set to that, and all velocities are scaled to take or give the difference of energy.
 ///
 /// The order of all sums is fixed (bank_kernel.h): the same bits on any machine. About every 1024
-/// samples the oscillators at the top that have fallen below 1e-15 m/s are set to rest and skipped
+/// samples the oscillators at the top that have fallen below 1e-12 m/s are set to rest and skipped
 /// until the next force: high modes die first, and denormal numbers never arise.
 #include "bank/bank.h"
 #include "system/aligned.h"
@@ -65,7 +65,7 @@
 #define ACCURACY 1e-3      // rise of stiffness times the square of that; chosen: 0.1 cent
 #define BLOCK 128          // oscillators whose waves are in the cache together; chosen
 #define POWERS 7           // coefficients are kept for 1, 2, 4, .. 64 samples
-#define QUIET 1e-15        // (m/s) of p and s; chosen: 300 dB below a stroke
+#define QUIET 1e-12        // (m/s) of p and s; chosen: 240 dB below a stroke
 #define TIDY_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
 #define HIGHEST 0.49       // of the sample rate; chosen: just below half, where aliasing begins
 #define SWING_TIME 256     // samples between two searches for the swing; chosen: they cost nothing
@@ -613,22 +613,51 @@ void himc_bank_rest(himc_bank *bank)
     bank->forced = true;
 }
 
-// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`, its weights
-// enlarged by those of the film times `by`. Returns the sum of the film's weights on the state.
-static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, double by,
-                        int n, double *out)
+static himc_bank_waves waves_at(himc_bank *bank, int i)
 {
-    const double *more = r->film ? r->film : r->p;
+    return (himc_bank_waves){bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
+                             bank->twice + i, bank->fall + i};
+}
+
+// Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`; where `stretched`
+// its weights are enlarged by those of the film times `by`. Returns the sum of these on the state.
+static double add_waves(himc_bank *bank, const himc_readout *r, int first, int end, bool stretched,
+                        double by, int n, double *out)
+{
     double sum = 0;
     for (int i = first; i < end; i += BLOCK) {
         int count = end - i < BLOCK ? end - i : BLOCK;
-        himc_bank_waves waves = {bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
-                                 bank->twice + i, bank->fall + i};
-        sum += bank->loops->weigh(&waves, r->p + i, r->s + i, more + i, by, bank->p + i,
-                                  bank->s + i, count);
+        himc_bank_waves waves = waves_at(bank, i);
+        if (stretched)
+            sum += bank->loops->weigh_more(&waves, r->p + i, r->s + i, r->film + i, by, bank->p + i,
+                                           bank->s + i, count);
+        else
+            bank->loops->weigh(&waves, r->p + i, r->s + i, bank->p + i, bank->s + i, count);
         bank->loops->ahead(&waves, count, n, out);
     }
     return sum;
+}
+
+// the same of the oscillators from `low` on, of readouts that are alike
+static void add_alike(himc_bank *bank, const himc_alike *alike)
+{
+    const himc_readout *form = &alike->form;
+    double *out[HIMC_BANK_ALIKE];
+    const double *gain[HIMC_BANK_ALIKE];
+    for (int k = 0; k < HIMC_BANK_ALIKE; k++) {
+        himc_readout *r = alike->readout[k];
+        out[k] = memset(r->ahead, 0, sizeof r->ahead);
+        r->pass = bank->pass;
+        r->part = 0;
+    }
+    for (int i = bank->low; i < bank->live; i += BLOCK) {
+        int count = bank->live - i < BLOCK ? bank->live - i : BLOCK;
+        himc_bank_waves waves = waves_at(bank, i);
+        for (int k = 0; k < HIMC_BANK_ALIKE; k++)
+            gain[k] = alike->gain[k] + i;
+        bank->loops->weigh(&waves, form->p + i, form->s + i, bank->p + i, bank->s + i, count);
+        bank->loops->ahead_alike(&waves, gain, count, bank->length, out);
+    }
 }
 
 // adds the film's present step to readout->ahead
@@ -638,7 +667,7 @@ static void add_step(himc_bank *bank, himc_readout *readout)
     double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
     bool stretched = readout->film != NULL;
     double sum =
-        add_waves(bank, readout, 0, bank->low, stretched && readout->direct ? -audible(f) : 0,
+        add_waves(bank, readout, 0, bank->low, stretched, readout->direct ? -audible(f) : 0,
                   bank->step < LANES ? LANES : bank->step, out);
     double slope = stretched ? film_slope(bank, readout, sum) : 0;
     for (int n = 0; n < bank->step; n++)
@@ -649,9 +678,11 @@ static void add_step(himc_bank *bank, himc_readout *readout)
 // fills readout->ahead as far as the present step goes
 static void look_ahead(himc_bank *bank, himc_readout *readout)
 {
-    if (readout->pass != bank->pass) {
+    if (readout->pass != bank->pass && readout->alike) {
+        add_alike(bank, readout->alike);
+    } else if (readout->pass != bank->pass) {
         memset(readout->ahead, 0, sizeof readout->ahead);
-        add_waves(bank, readout, bank->low, bank->live, 0, bank->length, readout->ahead);
+        add_waves(bank, readout, bank->low, bank->live, false, 0, bank->length, readout->ahead);
         readout->pass = bank->pass;
         readout->part = 0;
     }

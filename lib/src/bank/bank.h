@@ -64,7 +64,16 @@ typedef struct himc_readout {
     double ahead[HIMC_BANK_PASS]; ///< its values in the samples of that pass
     uint64_t read_pass;           ///< the pass at whose start it was read last; ...
     double value;                 ///< ... its value then
+    struct himc_alike *alike;     ///< it is one of these, borrowed; or NULL
 } himc_readout;
+
+/// Readouts that see each oscillator in the same phase, louder or softer: the weights of a form, of
+/// each times its gains. What the film does not hold is computed once for all of them.
+typedef struct himc_alike {
+    himc_readout form;                      ///< its `p` and `s` alone
+    double *gain[HIMC_BANK_ALIKE];          ///< owned by the caller (padded)
+    himc_readout *readout[HIMC_BANK_ALIKE]; ///< borrowed
+} himc_alike;
 
 /// Fills `readout` from weights on displacements, on velocities and on the film's forces (each may
 /// be NULL).

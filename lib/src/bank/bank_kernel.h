@@ -9,6 +9,7 @@
 
 #define HIMC_BANK_LANES 8  ///< oscillators at once, samples at once
 #define HIMC_BANK_PASS 64  ///< samples that are computed ahead from one state
+#define HIMC_BANK_ALIKE 3  ///< readouts that share their waves
 #define HIMC_BANK_TABLE 32 ///< numbers of an oscillator's table
 
 /// What turns two weights and the state at the start of a pass into samples.
@@ -23,9 +24,13 @@ typedef struct himc_bank_kernel {
     const char *name;
     /// p, s = c p + w s, c s - w p
     void (*rotate)(double *p, double *s, const double *c, const double *w, int length);
-    /// a, b = r p + rs s, r s - rs p with r = rp + more by. Returns sum more p.
-    double (*weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
-                    const double *more, double by, const double *p, const double *s, int length);
+    /// a, b = rp p + rs s, rp s - rs p
+    void (*weigh)(const himc_bank_waves *waves, const double *rp, const double *rs, const double *p,
+                  const double *s, int length);
+    /// The same with rp + more by in place of rp. Returns sum more p.
+    double (*weigh_more)(const himc_bank_waves *waves, const double *rp, const double *rs,
+                         const double *more, double by, const double *p, const double *s,
+                         int length);
     /// kick = per_mass g with g = on_p p; sum[0], sum[1] = sum g (s - damp p), sum g kick
     void (*stretch)(double *kick, const double *on_p, const double *per_mass, const double *damp,
                     const double *p, const double *s, int length, double *sum);
@@ -45,6 +50,9 @@ typedef struct himc_bank_kernel {
                    int length);
     /// adds samples 1 .. n to `out`, n being 8, 16, 32 or HIMC_BANK_PASS
     void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
+    /// The same to each of several, times its gain of each oscillator.
+    void (*ahead_alike)(const himc_bank_waves *waves, const double *const *gain, int length, int n,
+                        double *const *out);
 } himc_bank_kernel;
 
 /// Version `index` of those this machine can run, the fastest last; NULL past the last.

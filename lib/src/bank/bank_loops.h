@@ -28,9 +28,20 @@ TARGET static void NAMED(rotate)(double *p, double *s, const double *c, const do
     }
 }
 
-TARGET static double NAMED(weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
-                                  const double *more, double by, const double *p, const double *s,
-                                  int length)
+TARGET static void NAMED(weigh)(const himc_bank_waves *waves, const double *rp, const double *rs,
+                                const double *p, const double *s, int length)
+{
+    for (int i = 0; i < length; i += WIDTH) {
+        VEC vp = *(const VEC *)(p + i), vs = *(const VEC *)(s + i);
+        VEC up = *(const VEC *)(rp + i), us = *(const VEC *)(rs + i);
+        *(VEC *)(waves->a + i) = up * vp + us * vs;
+        *(VEC *)(waves->b + i) = up * vs - us * vp;
+    }
+}
+
+TARGET static double NAMED(weigh_more)(const himc_bank_waves *waves, const double *rp,
+                                       const double *rs, const double *more, double by,
+                                       const double *p, const double *s, int length)
 {
     VEC sum[PARTS] = {{0}};
     for (int i = 0; i < length; i += HIMC_BANK_LANES)
@@ -71,8 +82,8 @@ TARGET static void NAMED(turn)(double *p, double *s, const double *rate, const d
     for (int i = 0; i < length; i += WIDTH) {
         VEC vp = *(VEC *)(p + i), d = *(const VEC *)(damp + i);
         VEC x = *(const VEC *)(tight + i) * vp, y = *(VEC *)(s + i) - d * vp;
-        VEC half = *(const VEC *)(rate + i) * (0.5 * by), size = 1 + half * half;
-        VEC c = (1 - half * half) / size, w = 2 * half / size;
+        VEC half = *(const VEC *)(rate + i) * (0.5 * by), size = 1 / (1 + half * half);
+        VEC c = (1 - half * half) * size, w = 2 * half * size;
         vp = (c * x + w * y) * *(const VEC *)(slack + i);
         *(VEC *)(p + i) = vp;
         *(VEC *)(s + i) = c * y - w * x + d * vp;
@@ -171,6 +182,59 @@ TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, int n,
         NAMED(look)(waves, length, 4, out);
     else
         NAMED(look)(waves, length, HIMC_BANK_PASS / HIMC_BANK_LANES, out);
+}
+
+// The same for waves that several readouts share, each with its own gains: the waves themselves
+// are computed once.
+TARGET static inline __attribute__((always_inline)) void
+NAMED(look_alike)(const himc_bank_waves *waves, const double *const *gain, int length, int eights,
+                  double *const *out)
+{
+    for (int k = 0; k < PARTS; k++) {
+        VEC sum[HIMC_BANK_ALIKE][HIMC_BANK_PASS / HIMC_BANK_LANES], before[2], now[2], next[2];
+        const VEC *x = (const VEC *)waves->table + k;
+        for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+            for (int n = 0; n < eights; n++)
+                memcpy(&sum[r][n], out[r] + n * HIMC_BANK_LANES + k * WIDTH, sizeof **sum);
+        for (int i = 0; i < length; i += 2) {
+#pragma GCC unroll 2
+            for (int m = 0; m < 2; m++) {
+                double a = waves->a[i + m], b = waves->b[i + m];
+                before[m] = a * x[0] + b * x[PARTS];
+                now[m] = a * x[2 * PARTS] + b * x[3 * PARTS];
+                x += 4 * PARTS;
+            }
+#pragma GCC unroll 8
+            for (int n = 0; n < eights; n++) {
+#pragma GCC unroll 3
+                for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+                    sum[r][n] += gain[r][i] * before[0] + gain[r][i + 1] * before[1];
+#pragma GCC unroll 2
+                for (int m = 0; m < 2; m++) {
+                    if (n + 2 < eights)
+                        next[m] = waves->twice[i + m] * now[m] - waves->fall[i + m] * before[m];
+                    before[m] = now[m];
+                    now[m] = next[m];
+                }
+            }
+        }
+        for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+            for (int n = 0; n < eights; n++)
+                memcpy(out[r] + n * HIMC_BANK_LANES + k * WIDTH, &sum[r][n], sizeof **sum);
+    }
+}
+
+TARGET static void NAMED(ahead_alike)(const himc_bank_waves *waves, const double *const *gain,
+                                      int length, int n, double *const *out)
+{
+    if (n == HIMC_BANK_LANES)
+        NAMED(look_alike)(waves, gain, length, 1, out);
+    else if (n == 2 * HIMC_BANK_LANES)
+        NAMED(look_alike)(waves, gain, length, 2, out);
+    else if (n == 4 * HIMC_BANK_LANES)
+        NAMED(look_alike)(waves, gain, length, 4, out);
+    else
+        NAMED(look_alike)(waves, gain, length, HIMC_BANK_PASS / HIMC_BANK_LANES, out);
 }
 
 #undef VEC

@@ -22,24 +22,25 @@
 // one's core nearly doubles the centroid of its sound from pp to ff; wood is as light and narrow as
 // makes its contact last the 5 ms of a wooden stick's (3 to 6 ms: Wagner 2006). Medium felt of
 // Rhaouti's 28 g touches so long that the highest notes of a 23 inch drum fall into the first gap of
-// its pulse's spectrum, and (2,1) is louder than (1,1).
+// its pulse's spectrum, (2,1) is louder than (1,1), and so do (3,1) at C2 and (2,1) at G2, which
+// are strong in recordings.
 // In the order of the words of `mallet`.
 static const himc_mallet_head presets[] = {
     [DRUM_MALLET_SOFT] = {.stiffness = 1e7,
                           .exponent = 2.54,
-                          .mass = 0.035,
+                          .mass = 0.030,
                           .radius = 0.017,
                           .relaxation = 0.3e-3,
                           .core = 1e8},
     [DRUM_MALLET_MEDIUM] = {.stiffness = 1.6e8,
                             .exponent = 2.54,
-                            .mass = 0.026,
+                            .mass = 0.0245,
                             .radius = 0.017,
                             .relaxation = 0.2e-3,
                             .core = 1e9},
     [DRUM_MALLET_HARD] = {.stiffness = 1e10,
                           .exponent = 2.54,
-                          .mass = 0.026,
+                          .mass = 0.024,
                           .radius = 0.017,
                           .relaxation = 0.15e-3},
     [DRUM_MALLET_WOOD] =

@@ -25,8 +25,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// arrays of a core: eleven of its own, those of each output, each patch and each strike point
-#define ARRAYS (11 + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+// arrays of a core: its own, what rays have in common, those of each output, patch, strike point
+#define ARRAYS \
+    (9 + 2 + 2 + HIMC_RAYS + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+_Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 // relative; so a point moved to the rim is not outside it in single precision, in which a command
 // can say it
@@ -98,6 +100,9 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
     c->watched = take_readout(&memory, padded);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         c->outputs[i] = take_output(&memory, padded);
+    c->rays.form = take_readout(&memory, padded);
+    for (int i = 0; i < HIMC_RAYS; i++)
+        c->rays.gain[i] = take(&memory, padded);
     for (int i = 0; i < PATCHES; i++)
         c->patches[i].weight = take(&memory, padded);
     for (int i = 0; i < STRIKE_POINTS; i++)
@@ -188,28 +193,52 @@ static void find_watched(himc_membrane *m)
     himc_bank_readout(c->bank, c->scratch, NULL, NULL, &c->watched);
 }
 
+// as its oscillator has it
+static himc_mode sounding_mode(const himc_membrane *m, int i)
+{
+    const himc_oscillator *o = &m->core.oscillators[i];
+    himc_mode mode = himc_modes_get(m->core.modes, &m->head, i);
+    mode.frequency = o->omega / (2 * HIMC_PI);
+    mode.decay = o->decay;
+    mode.mass = o->mass;
+    return mode;
+}
+
 static void find_output(himc_membrane *m, int index)
 {
     core *c = &m->core;
     const himc_pickup *pickup = &m->pickups[index];
     double unit = index < HIMC_PICKUPS ? 1 : pickup->distance; // rays are as loud as at 1 m
-    himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
-    himc_modes_mix(c->modes, c->scratch);
+    if (pickup->kind == HIMC_PICKUP_POINT) {
+        himc_modes_shapes(c->modes, m->head.radius, pickup->x, pickup->y, c->scratch);
+        himc_modes_mix(c->modes, c->scratch);
+    }
     for (int i = 0; i < himc_membrane_modes(m); i++) {
-        const himc_oscillator *o = &c->oscillators[i];
-        himc_mode mode = himc_modes_get(c->modes, &m->head, i);
-        mode.frequency = o->omega / (2 * HIMC_PI);
-        mode.decay = o->decay;
-        mode.mass = o->mass;
+        himc_mode mode = sounding_mode(m, i);
         pickup_weights w = himc_pickup_weights(pickup, &m->head, c->modes, i, &mode, c->scratch[i]);
         c->on_q[i] = unit * w.displacement;
         c->on_v[i] = unit * w.velocity;
         c->on_force[i] = unit * w.force;
+        if (index >= HIMC_PICKUPS)
+            c->rays.gain[index - HIMC_PICKUPS][i] = unit * w.gain;
     }
     himc_bank_readout(c->bank, c->on_q, c->on_v,
                       pickup->kind == HIMC_PICKUP_AIR ? c->on_force : NULL,
                       &c->outputs[index].readout);
     find_responses(m, &c->outputs[index], c->on_force);
+}
+
+// what all rays of a round head have in common
+static void find_form(himc_membrane *m)
+{
+    core *c = &m->core;
+    for (int i = 0; i < himc_membrane_modes(m); i++) {
+        himc_mode mode = sounding_mode(m, i);
+        pickup_weights w = himc_pickup_form(&mode);
+        c->on_q[i] = w.displacement;
+        c->on_v[i] = w.velocity;
+    }
+    himc_bank_readout(c->bank, c->on_q, c->on_v, NULL, &c->rays.form);
 }
 
 // outputs from `first` to `end`; strike points hold responses to them and are computed again when
@@ -221,6 +250,8 @@ static void find_outputs(himc_membrane *m, int first, int end)
     for (int i = first; i < end; i++)
         if (himc_membrane_has(m, i))
             find_output(m, i);
+    if (end > HIMC_PICKUPS && himc_membrane_rays(m))
+        find_form(m);
 }
 
 // The film is off while it could not raise the tension by SLACK of it, 0.001 cent, even with twice

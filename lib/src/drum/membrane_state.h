@@ -40,6 +40,7 @@ typedef struct core {
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     patch patches[PATCHES];
     output outputs[HIMC_OUTPUTS];
+    himc_alike rays; ///< of a round head
     himc_readout watched;
 } core;
 

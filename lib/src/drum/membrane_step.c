@@ -192,6 +192,11 @@ static void run_free(himc_membrane *m, int n, double *const *sound, double *watc
     himc_readout *readouts[HIMC_OUTPUTS + 1];
     double *out[HIMC_OUTPUTS + 1];
     int count = 0;
+    bool alike = himc_modes_shape(c->modes)->kind == HIMC_CIRCLE;
+    for (int k = 0; k < HIMC_RAYS; k++) { // a core may have been moved
+        c->rays.readout[k] = &c->outputs[HIMC_PICKUPS + k].readout;
+        c->rays.readout[k]->alike = alike ? &c->rays : NULL;
+    }
     for (int k = 0; k < HIMC_OUTPUTS; k++)
         if (himc_membrane_has(m, k)) {
             readouts[count] = &c->outputs[k].readout;

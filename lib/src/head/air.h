@@ -44,6 +44,7 @@ HIMC_RT himc_air himc_air_around(const himc_head *head, double kettle);
 typedef struct himc_air_load {
     double frequency; ///< per that of the bare head
     double radiation; ///< decay by sound carried away and the kettle's loss (1/s)
+    double friction;  ///< decay by the air that rubs along head and kettle (1/s)
     double mass;      ///< modal mass per that of the bare head
     double stretch;   ///< stiffness of the film in its shape, per that in the bare shape
     double stiffness; ///< with the kettle's spring, the same: 1 for m > 0
@@ -56,7 +57,7 @@ HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero
 HIMC_RT himc_mixture himc_air_mixture(const himc_air *air);
 
 /// The mode with that load: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new
-/// frequency plus radiation, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic
+/// frequency plus radiation and friction, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic
 /// film's (Rhaouti, Chaigne & Joly 1999), S0 = 0.5 1/s the rest.
 HIMC_RT himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head,
                                   const himc_mode *bare);

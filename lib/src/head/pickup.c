@@ -123,6 +123,24 @@ static pickup_weights of_outline(const himc_pickup *pickup, const himc_head *hea
                             .force = weight * even / mode->mass};
 }
 
+// those of a mode that is so loud
+static pickup_weights of_gain(const himc_mode *mode, double gain)
+{
+    double omega = 2 * HIMC_PI * mode->frequency;
+    double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;
+    if (mode->m % 2 != 0)
+        return (pickup_weights){.velocity = sign * gain * omega, .gain = gain};
+    return (pickup_weights){.displacement = -sign * gain * omega * omega,
+                            .velocity = -sign * gain * 2 * mode->decay,
+                            .force = sign * gain / mode->mass,
+                            .gain = gain};
+}
+
+pickup_weights himc_pickup_form(const himc_mode *mode)
+{
+    return of_gain(mode, 1);
+}
+
 pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *head,
                                    const himc_modes *modes, int index, const himc_mode *mode,
                                    double point_shape)
@@ -135,10 +153,5 @@ pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *h
     double omega = 2 * HIMC_PI * mode->frequency;
     weight *= near_field(mode->m,
                          omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius));
-    double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;
-    if (mode->m % 2 != 0)
-        return (pickup_weights){.velocity = sign * weight * omega};
-    return (pickup_weights){.displacement = -sign * weight * omega * omega,
-                            .velocity = -sign * weight * 2 * mode->decay,
-                            .force = sign * weight / mode->mass};
+    return of_gain(mode, weight);
 }

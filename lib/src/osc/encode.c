@@ -135,6 +135,25 @@ void himc_osc_encode_head(osc_packets *p, const osc_head *head)
     add_message(p, &message);
 }
 
+void himc_osc_encode_sound(osc_packets *p, const osc_sound *sound)
+{
+    unsigned char bytes[2 * 2 * SOUND_FRAMES], *at = bytes;
+    osc_message message;
+    for (int i = 0; i < SOUND_FRAMES; i++)
+        for (int channel = 0; channel < sound->channels; channel++) {
+            double value = fmax(-1, fmin(1, (double)sound->sample[i][channel]));
+            int16_t whole = (int16_t)lrint(32767 * value);
+            *at++ = (unsigned char)((uint16_t)whole >> 8);
+            *at++ = (unsigned char)whole;
+        }
+    himc_osc_message_begin(&message, "/himc/sound");
+    himc_osc_message_int(&message, (int32_t)sound->first);
+    himc_osc_message_int(&message, sound->rate);
+    himc_osc_message_int(&message, sound->channels);
+    himc_osc_message_bytes(&message, bytes, (size_t)(at - bytes));
+    add_message(p, &message);
+}
+
 void himc_osc_encode_drum(osc_packets *p, const osc_drum *drum)
 {
     char path[64];

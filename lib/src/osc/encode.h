@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #define HEAD_MODES 64     // chosen: modes sent of a head; 64 floats fit a small packet
+#define SOUND_FRAMES 240  // of sound in a packet; chosen: 5 ms, which fit a small packet in stereo
 #define SMALL_PACKET 1400 // off loopback (bytes); below Ethernet's 1500 with all headers
 #define LARGE_PACKET 8192 // on loopback (bytes); chosen: a whole pose, bundled
 #define PACKETS 4         // chosen: one state fills at most 4 packets (a VMC pose fills 2)
@@ -28,6 +29,13 @@ typedef struct osc_drum {
     float place[5]; ///< x y z (m), tilt (rad), radius (m)
     double hz;      ///< principal mode (Hz)
 } osc_drum;
+
+typedef struct osc_sound {
+    uint32_t first; ///< sample, modulo 2^32
+    int rate;       ///< (Hz)
+    int channels;   ///< 1 if only the first one sounds, else 2
+    float sample[SOUND_FRAMES][2];
+} osc_sound;
 
 /// Strikes are numbered, so that a receiver knows how many were lost on the way.
 typedef struct osc_strike {
@@ -61,6 +69,8 @@ void himc_osc_encode_targets(osc_packets *p, const osc_pose *pose);
 void himc_osc_encode_strike(osc_packets *p, const osc_strike *strike);
 void himc_osc_encode_beat(osc_packets *p, double beat);
 void himc_osc_encode_head(osc_packets *p, const osc_head *head);
+/// The sound as 16-bit numbers, highest byte first; what is beyond 1.0 is cut off.
+void himc_osc_encode_sound(osc_packets *p, const osc_sound *sound);
 void himc_osc_encode_drum(osc_packets *p, const osc_drum *drum);
 void himc_osc_encode_status(osc_packets *p, const osc_status *status,
                             const himc_osc_counts *counts);

@@ -71,6 +71,15 @@ void himc_osc_message_float(osc_message *m, float value)
     add32(m, 'f', &value);
 }
 
+void himc_osc_message_bytes(osc_message *m, const unsigned char *bytes, size_t size)
+{
+    unsigned char *at = add(m, 'b', (size + 7) / 4 * 4);
+    if (!at)
+        return;
+    himc_osc_put32(at, (uint32_t)size);
+    memcpy(at + 4, bytes, size);
+}
+
 size_t himc_osc_message_size(const osc_message *m)
 {
     return m->full ? 0 : padded(strlen(m->path)) + padded((size_t)m->count + 1) + m->used;

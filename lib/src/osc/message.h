@@ -22,6 +22,8 @@ void himc_osc_message_begin(osc_message *message, const char *path);
 void himc_osc_message_text(osc_message *message, const char *text);
 void himc_osc_message_int(osc_message *message, int32_t value);
 void himc_osc_message_float(osc_message *message, float value);
+/// Bytes of any kind (a blob).
+void himc_osc_message_bytes(osc_message *message, const unsigned char *bytes, size_t size);
 /// Bytes that himc_osc_message_write needs; 0 if the message outgrew its room.
 size_t himc_osc_message_size(const osc_message *message);
 void himc_osc_message_write(const osc_message *message, unsigned char *out);

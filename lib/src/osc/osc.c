@@ -88,6 +88,7 @@ typedef struct osc_host {
     double published;            // wall clock of the last block (s)
     double busy;                 // computing since the last status (s)
     bool status_sent;
+    uint64_t heard;                    // samples whose sound has been taken
     long strikes;                      // so far
     osc_bucket work;                   // time of commands (s)
     himc_loader *loader;               // borrowed, or NULL
@@ -96,6 +97,8 @@ typedef struct osc_host {
     char loading_drum[HIMC_NAME_SIZE]; // and this drum, or ""
     unsigned revision[HIMC_DRUMS];     // of the drums, as last sent
 } osc_host;
+
+#define REFUSALS 64 // kinds of refusals that the user is told; chosen: a page of a terminal
 
 struct himc_osc {
     osc_clock clock;
@@ -110,8 +113,10 @@ struct himc_osc {
     osc_network network;
     osc_subscriptions subscriptions;
     osc_bucket packets, points, answers;
-    osc_packets line; // the answer being sent
-    char *files;      // real path, or NULL
+    osc_packets line;           // the answer being sent
+    uint32_t refusal[REFUSALS]; // of lines that the user has been told
+    int refusals;
+    char *files; // real path, or NULL
 };
 
 static double monotonic(const himc_osc *osc)
@@ -233,6 +238,42 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
     end(osc);
 }
 
+// the sum of all drums from sample `first` on
+static void mix(himc_performance *performance, uint64_t first, osc_sound *out)
+{
+    double heard[SOUND_FRAMES];
+    himc_drum *drum;
+    memset(out->sample, 0, sizeof out->sample);
+    out->channels = 1;
+    for (int channel = 0; channel < 2; channel++)
+        for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
+            himc_drum_read_channel(drum, channel, first, SOUND_FRAMES, heard);
+            for (int i = 0; i < SOUND_FRAMES; i++) {
+                out->sample[i][channel] += (float)heard[i];
+                out->channels = channel && heard[i] != 0 ? 2 : out->channels;
+            }
+        }
+}
+
+static void put_sound(himc_osc *osc, himc_performance *performance, const himc_performance_stats *s)
+{
+    uint64_t now = himc_performance_time(performance), *heard = &osc->host.heard;
+    bool wanted = atomic_load_explicit(&osc->subscriptions.sounds, memory_order_relaxed) > 0;
+    // a pause, or time that was counted from 0 again
+    if (!wanted || *heard > now || now - *heard > HIMC_DRUM_RING / 2)
+        *heard = now;
+    for (; now - *heard >= SOUND_FRAMES; *heard += SOUND_FRAMES) {
+        osc_state *state =
+            begin(osc, STATE_SOUND, s->seconds - (double)(now - *heard) / s->sample_rate);
+        if (!state)
+            continue;
+        state->sound.first = (uint32_t)*heard;
+        state->sound.rate = (int)s->sample_rate;
+        mix(performance, *heard, &state->sound);
+        end(osc);
+    }
+}
+
 static void put_drum(himc_osc *osc, himc_drum *drum, double time)
 {
     const himc_head_frame *place = himc_drum_head_frame(drum);
@@ -271,6 +312,7 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
     h->busy += busy;
     int hz = atomic_load_explicit(&osc->subscriptions.head_hz, memory_order_relaxed);
     bool heads = due(&h->next_head, hz, t);
+    put_sound(osc, performance, &stats);
     bool status = now >= h->next_status || h->next_status > now + 2 * STATUS_PERIOD;
     himc_drum *drum;
     for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
@@ -462,11 +504,38 @@ static void send_line(himc_osc *osc, const osc_address *to, bool error, const ch
         himc_osc_network_send(&osc->network, to, p->data[0], p->size[0]);
 }
 
+// tells the user a refusal of a stranger, each line once
+static void tell_refusal(himc_osc *osc, const char *line)
+{
+    uint32_t hash = 2166136261u; // Fowler, Noll and Vo, FNV-1a
+    for (const char *c = line; *c; c++)
+        hash = (hash ^ (unsigned char)*c) * 16777619u;
+    for (int i = 0; i < osc->refusals; i++)
+        if (osc->refusal[i] == hash)
+            return;
+    if (osc->refusals == REFUSALS)
+        return;
+    osc->refusal[osc->refusals++] = hash;
+    himc_osc_tell(&osc->lines, "refused: %s%s", line,
+                  osc->refusals == REFUSALS ? " (further ones are counted alone)" : "");
+}
+
+// to its sender, to the user, and to the subscribers of refusals
+static void send_refusal(himc_osc *osc, const osc_address *to, const char *line)
+{
+    const osc_subscription *one = NULL;
+    send_line(osc, to, true, line);
+    tell_refusal(osc, line);
+    while ((one = himc_osc_errors_next(&osc->subscriptions, one)))
+        if (!himc_osc_address_same(&one->to, to) && afford(&osc->answers, monotonic(osc), 1))
+            send_line(osc, &one->to, true, line);
+}
+
 static void refuse(himc_osc *osc, const osc_address *to, const char *line)
 {
     himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
     if (to && afford(&osc->answers, monotonic(osc), 1))
-        send_line(osc, to, true, line);
+        send_refusal(osc, to, line);
     else if (!to)
         himc_osc_tell(&osc->lines, "%s", line);
 }
@@ -555,8 +624,12 @@ static void send_record(himc_osc *osc, const osc_record *r)
         himc_osc_deliver(&osc->subscriptions, &r->state, &counts, monotonic(osc));
         break;
     case RECORD_LINE:
-        if (r->line.paid || afford(&osc->answers, monotonic(osc), 1))
-            send_line(osc, &r->line.to, r->line.error, r->line.text);
+        if (!r->line.paid && !afford(&osc->answers, monotonic(osc), 1))
+            break;
+        if (r->line.error)
+            send_refusal(osc, &r->line.to, r->line.text);
+        else
+            send_line(osc, &r->line.to, false, r->line.text);
         break;
     case RECORD_CHANGE: subscribe(osc, &r->change); break;
     }

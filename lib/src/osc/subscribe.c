@@ -76,11 +76,16 @@ static bool is_allowed(const osc_subscriptions *s, const osc_change *change, con
     return good;
 }
 
+static bool sends_poses(const osc_subscription *one)
+{
+    return one->stream == STREAM_POSE || one->stream == STREAM_TARGETS || one->stream == STREAM_VMC;
+}
+
 // after a change of the table: the highest rates, and the first subscription of each address
 static void update(osc_subscriptions *s)
 {
     double pose = 0, head = 0;
-    int count = 0;
+    int count = 0, sounds = 0;
     for (int i = 0; i < SUBSCRIPTIONS; i++) {
         osc_subscription *one = &s->subscription[i];
         one->first = one->used && one->stream != STREAM_VMC;
@@ -90,13 +95,15 @@ static void update(osc_subscriptions *s)
         if (!one->used)
             continue;
         count++;
+        sounds += one->stream == STREAM_SOUND;
         if (one->stream == STREAM_HEAD)
             head = fmax(head, one->hz);
-        else if (one->stream != STREAM_STRIKES)
+        else if (sends_poses(one))
             pose = fmax(pose, one->hz);
     }
     atomic_store(&s->pose_hz, (int)ceil(pose));
     atomic_store(&s->head_hz, (int)ceil(head));
+    atomic_store(&s->sounds, sounds);
     atomic_store(&s->count, count);
 }
 
@@ -296,8 +303,7 @@ static void deliver_pose(osc_subscriptions *s, const osc_state *state, osc_packe
     himc_osc_encode_targets(targets, &state->pose);
     memset(s->encoded, 0, sizeof s->encoded);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
-        if (!one->used || one->stream == STREAM_STRIKES || one->stream == STREAM_HEAD ||
-            !due(one, now))
+        if (!one->used || !sends_poses(one) || !due(one, now))
             continue;
         bool only_targets = one->stream == STREAM_TARGETS;
         send_packets(s, &one->to, only_targets ? targets : encoded_pose(s, state, one), now);
@@ -310,6 +316,15 @@ static void send_once(osc_subscriptions *s, const osc_packets *p, double now)
     for (int i = 0; i < SUBSCRIPTIONS; i++)
         if (s->subscription[i].used && s->subscription[i].first)
             send_packets(s, &s->subscription[i].to, p, now);
+}
+
+const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
+                                             const osc_subscription *one)
+{
+    for (one = one ? one + 1 : s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && one->stream == STREAM_ERRORS)
+            return one;
+    return NULL;
 }
 
 static double principal_mode(const osc_subscriptions *s, const char *drum)
@@ -348,6 +363,14 @@ static void deliver_head(osc_subscriptions *s, const osc_head *head, osc_packets
     }
 }
 
+static void deliver_sound(osc_subscriptions *s, const osc_sound *sound, osc_packets *p, double now)
+{
+    himc_osc_encode_sound(p, sound);
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && one->stream == STREAM_SOUND)
+            send_packets(s, &one->to, p, now);
+}
+
 static void deliver_drum(osc_subscriptions *s, const osc_drum *drum, osc_packets *p, double now)
 {
     int i = 0;
@@ -370,6 +393,7 @@ void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_o
     case STATE_POSE: deliver_pose(s, state, &p, now); break;
     case STATE_STRIKE: deliver_strike(s, state, &p, now); break;
     case STATE_HEAD: deliver_head(s, &state->head, &p, now); break;
+    case STATE_SOUND: deliver_sound(s, &state->sound, &p, now); break;
     case STATE_DRUM: deliver_drum(s, &state->drum, &p, now); break;
     case STATE_BEAT:
         himc_osc_encode_beat(&p, state->beat);

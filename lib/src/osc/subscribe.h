@@ -1,6 +1,6 @@
 /// subscribe.h: the subscriptions: which address gets which state, how often, and who may ask for
-/// it. Sends the states too. Belongs to the network thread, but for `pose_hz`, `head_hz` and
-/// `count`, which any thread may read.
+/// it. Sends the states too. Belongs to the network thread, but for `pose_hz`, `head_hz`,
+/// `sounds` and `count`, which any thread may read.
 #ifndef HIMC_OSC_SUBSCRIBE_H
 #define HIMC_OSC_SUBSCRIBE_H
 
@@ -18,6 +18,8 @@ typedef enum osc_stream {
     STREAM_STRIKES,
     STREAM_HEAD,
     STREAM_VMC,
+    STREAM_SOUND,
+    STREAM_ERRORS, ///< lines that refuse commands of anyone
     STREAMS,
     STREAM_ANY = STREAMS ///< when unsubscribing
 } osc_stream;
@@ -36,7 +38,15 @@ typedef struct osc_change {
 
 /// A state of the performer, from the host to the network.
 typedef struct osc_state {
-    enum { STATE_POSE, STATE_STRIKE, STATE_BEAT, STATE_HEAD, STATE_DRUM, STATE_STATUS } kind;
+    enum {
+        STATE_POSE,
+        STATE_STRIKE,
+        STATE_BEAT,
+        STATE_HEAD,
+        STATE_DRUM,
+        STATE_STATUS,
+        STATE_SOUND
+    } kind;
     double time; ///< of the performance (s)
     double wall; ///< the same on the wall clock (s since 1970)
     union {
@@ -46,6 +56,7 @@ typedef struct osc_state {
         osc_head head;
         osc_drum drum;
         osc_status status;
+        osc_sound sound;
     };
 } osc_state;
 
@@ -61,6 +72,7 @@ typedef struct osc_subscription {
 
 typedef struct osc_subscriptions {
     _Atomic int pose_hz, head_hz; ///< highest rates asked for (Hz), 0 none
+    _Atomic int sounds;           ///< subscriptions of the sound
     _Atomic int count;
 
     osc_network *network; ///< borrowed, as are the next two
@@ -94,6 +106,9 @@ void himc_osc_subscriptions_free(osc_subscriptions *s);
 /// (s).
 void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
                       double now);
+/// The next subscriber of refusals after `one` (NULL: the first), or NULL.
+const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
+                                             const osc_subscription *one);
 /// Reads the reports of addresses where nobody listens; forgets those that stay so.
 void himc_osc_forget_unreachable(osc_subscriptions *s, double now);
 

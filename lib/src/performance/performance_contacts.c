@@ -4,7 +4,9 @@
 /// acceleration of forward dynamics, and is solved with the head's modes sample by sample
 /// (membrane.h); the impulse goes back to the body as a force in the same physics step. So both
 /// ends of the contact see the same force, and the body's tip and the point differ only by the
-/// change of M in a step; that offset is kept during contact and decays afterwards. From the
+/// change of M in a step; that offset is kept during contact and decays afterwards. What the drum's
+/// mallet has more or less than the body's own stick, it has at the end of the stick while it is
+/// near the head: the body feels the part of the force that moves its own mass. From the
 /// planned time of a stroke's contact, or its first force, to separation, control does not act along
 /// the head's normal. Then the plan continues from the measured state of the stick.
 ///
@@ -51,6 +53,8 @@
 #define RESTING_SPEED 0.25  // a contact slower than this ...
 #define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
+// chosen: about a stick's shaft without its ball
+#define LEAST_STICK 0.25    // of the body's stick
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
 
 void himc_contacts_clear(performance_contacts *c)
@@ -272,6 +276,14 @@ static double bounded(double x, double most)
     return x > most ? most : x < -most ? -most : x;
 }
 
+// effective mass of the body's stick at its end, held at the grip
+static double own_mass(const himc_skeleton *skeleton, himc_hand hand)
+{
+    const himc_segment *stick = &skeleton->segment[HIMC_LEFT_STICK + hand];
+    double turned = stick->inertia.x + stick->mass * stick->center.z * stick->center.z;
+    return turned / (skeleton->tip.z * skeleton->tip.z);
+}
+
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
                        const himc_articulation *art, const himc_vec3 *relative)
@@ -280,7 +292,10 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     himc_vec3 n = normal_of(s, c->drum);
     if (!c->stick.touching) // mallets are changed in the air
         c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum);
-    c->stick.mass = himc_effective_mass(&b->plant, &b->state, art, hand, n);
+    double body = himc_effective_mass(&b->plant, &b->state, art, hand, n);
+    double added = c->stick.head.mass - own_mass(&b->skeleton, hand);
+    c->stick.mass = fmax(body + added, LEAST_STICK * body);
+    c->share = body / c->stick.mass;
     c->stick.one_way = s->settings->one_way;
     c->stick.x = local.x;
     c->stick.y = local.y;
@@ -468,8 +483,9 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
         if (impulse > 0)
             himc_statistics_given(s->statistics, -work_on(&before[hand], &c->hand[hand].stick));
-        himc_vec3 normal = normal_of(s, near.below[hand]);
-        tip_force[hand] = himc_vec3_scale(normal, impulse * s->clock->sample_rate / n);
+        double force = impulse * s->clock->sample_rate / n;
+        tip_force[hand] =
+            himc_vec3_scale(normal_of(s, near.below[hand]), c->hand[hand].share * force);
     }
 }
 
