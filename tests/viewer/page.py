@@ -590,6 +590,11 @@ def test_sound_is_the_clock_of_a_playback():
         )
         assert abs(off) < 20 and passed >= 0, (off, passed)
     browser.run("viewer.playback.play(false)")
+    tracks = browser.run(
+        "viewer.actions.film(); const tracks = viewer.recorder.film.stream.getAudioTracks().length;"
+        "viewer.actions.film(); return tracks"
+    )
+    assert tracks == 1, "a film without sound"
     return f"{off:.2f} ms"
 
 
