@@ -187,6 +187,30 @@ static void test_strangers_get_50_answers_a_second(void)
     }
 }
 
+static void test_refusals_are_told_once_and_sent_to_their_subscribers(void)
+{
+    int port = 0, other = open_ear(&port), lines = 0;
+    char line[HIMC_OSC_LINE], atoms[64];
+    snprintf(atoms, sizeof atoms, "127.0.0.1 %d errors", port);
+    others_hear = true;
+    say("/himc/subscribe", atoms);
+    for (int i = 0; i < 3; i++) {
+        say("/himc/stroke", "2 up accent f"); // the parser refuses
+        say("/himc/gain", "finger 3 1");      // the performer does
+        play(0.1);
+    }
+    while (himc_osc_line(osc, line))
+        lines += strstr(line, "refused: stroke: HAND: up") ||
+                 strstr(line, "refused: gain: JOINT: finger");
+    TEST_ASSERT_EQUAL_INT(2, lines);
+    TEST_ASSERT_EQUAL_INT(6, count("/himc/error"));
+    forget();
+    wait_and_hear(other);
+    TEST_ASSERT_EQUAL_INT(6, count("/himc/error"));
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/body"));
+    close(other);
+}
+
 // as when the network thread stands still
 static void test_a_full_ring_is_counted_and_blocks_no_call(void)
 {
@@ -366,6 +390,7 @@ int main(void)
     RUN_TEST(test_a_command_that_takes_long_is_the_last_of_its_block);
     RUN_TEST(test_commands_beyond_1000_points_a_second_are_counted);
     RUN_TEST(test_strangers_get_50_answers_a_second);
+    RUN_TEST(test_refusals_are_told_once_and_sent_to_their_subscribers);
     RUN_TEST(test_a_full_ring_is_counted_and_blocks_no_call);
     RUN_TEST(test_a_storm_is_counted_and_poses_continue);
     RUN_TEST(test_the_reader_yields_when_it_has_taken_its_share);

@@ -28,7 +28,7 @@
 
 #define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
 #define HIMC_ROW_ROLL "single|double|press"
-#define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound"
+#define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound|errors"
 
 // to the performer
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,

@@ -98,6 +98,8 @@ typedef struct osc_host {
     unsigned revision[HIMC_DRUMS];     // of the drums, as last sent
 } osc_host;
 
+#define REFUSALS 64 // kinds of refusals that the user is told; chosen: a page of a terminal
+
 struct himc_osc {
     osc_clock clock;
     osc_ring records, orders, lines;
@@ -111,8 +113,10 @@ struct himc_osc {
     osc_network network;
     osc_subscriptions subscriptions;
     osc_bucket packets, points, answers;
-    osc_packets line; // the answer being sent
-    char *files;      // real path, or NULL
+    osc_packets line;           // the answer being sent
+    uint32_t refusal[REFUSALS]; // of lines that the user has been told
+    int refusals;
+    char *files; // real path, or NULL
 };
 
 static double monotonic(const himc_osc *osc)
@@ -500,11 +504,38 @@ static void send_line(himc_osc *osc, const osc_address *to, bool error, const ch
         himc_osc_network_send(&osc->network, to, p->data[0], p->size[0]);
 }
 
+// tells the user a refusal of a stranger, each line once
+static void tell_refusal(himc_osc *osc, const char *line)
+{
+    uint32_t hash = 2166136261u; // Fowler, Noll and Vo, FNV-1a
+    for (const char *c = line; *c; c++)
+        hash = (hash ^ (unsigned char)*c) * 16777619u;
+    for (int i = 0; i < osc->refusals; i++)
+        if (osc->refusal[i] == hash)
+            return;
+    if (osc->refusals == REFUSALS)
+        return;
+    osc->refusal[osc->refusals++] = hash;
+    himc_osc_tell(&osc->lines, "refused: %s%s", line,
+                  osc->refusals == REFUSALS ? " (further ones are counted alone)" : "");
+}
+
+// to its sender, to the user, and to the subscribers of refusals
+static void send_refusal(himc_osc *osc, const osc_address *to, const char *line)
+{
+    const osc_subscription *one = NULL;
+    send_line(osc, to, true, line);
+    tell_refusal(osc, line);
+    while ((one = himc_osc_errors_next(&osc->subscriptions, one)))
+        if (!himc_osc_address_same(&one->to, to) && afford(&osc->answers, monotonic(osc), 1))
+            send_line(osc, &one->to, true, line);
+}
+
 static void refuse(himc_osc *osc, const osc_address *to, const char *line)
 {
     himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
     if (to && afford(&osc->answers, monotonic(osc), 1))
-        send_line(osc, to, true, line);
+        send_refusal(osc, to, line);
     else if (!to)
         himc_osc_tell(&osc->lines, "%s", line);
 }
@@ -593,8 +624,12 @@ static void send_record(himc_osc *osc, const osc_record *r)
         himc_osc_deliver(&osc->subscriptions, &r->state, &counts, monotonic(osc));
         break;
     case RECORD_LINE:
-        if (r->line.paid || afford(&osc->answers, monotonic(osc), 1))
-            send_line(osc, &r->line.to, r->line.error, r->line.text);
+        if (!r->line.paid && !afford(&osc->answers, monotonic(osc), 1))
+            break;
+        if (r->line.error)
+            send_refusal(osc, &r->line.to, r->line.text);
+        else
+            send_line(osc, &r->line.to, false, r->line.text);
         break;
     case RECORD_CHANGE: subscribe(osc, &r->change); break;
     }

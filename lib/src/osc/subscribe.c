@@ -318,6 +318,15 @@ static void send_once(osc_subscriptions *s, const osc_packets *p, double now)
             send_packets(s, &s->subscription[i].to, p, now);
 }
 
+const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
+                                             const osc_subscription *one)
+{
+    for (one = one ? one + 1 : s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && one->stream == STREAM_ERRORS)
+            return one;
+    return NULL;
+}
+
 static double principal_mode(const osc_subscriptions *s, const char *drum)
 {
     for (int i = 0; i < s->drums; i++)

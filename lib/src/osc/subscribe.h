@@ -19,6 +19,7 @@ typedef enum osc_stream {
     STREAM_HEAD,
     STREAM_VMC,
     STREAM_SOUND,
+    STREAM_ERRORS, ///< lines that refuse commands of anyone
     STREAMS,
     STREAM_ANY = STREAMS ///< when unsubscribing
 } osc_stream;
@@ -105,6 +106,9 @@ void himc_osc_subscriptions_free(osc_subscriptions *s);
 /// (s).
 void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
                       double now);
+/// The next subscriber of refusals after `one` (NULL: the first), or NULL.
+const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
+                                             const osc_subscription *one);
 /// Reads the reports of addresses where nobody listens; forgets those that stay so.
 void himc_osc_forget_unreachable(osc_subscriptions *s, double now);
 
