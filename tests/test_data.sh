@@ -92,13 +92,29 @@ check test_the_motion_of_a_render_is_a_take [ "$("$himc" info tips.csv | grep -c
 # the controllers on one's own capture
 stroke=$(cd "$root" && cd "$HIMC_SHARED" 2>/dev/null && pwd)/mocap/drumstroke_pearl_240hz/stroke.trc
 if [ -f "$stroke" ]; then
-    "$himc" evaluate --take "$stroke" --csv own.csv --quiet
+    "$himc" evaluate --take "$stroke" --csv own.csv --figure own.svg --quiet
+    check test_the_figure_has_a_bar_for_each [ "$(grep -c '^<rect' own.svg)$(tail -n 1 own.svg)" = "7</svg>" ]
     check test_own_captures_get_a_row_for_each_controller_and_law [ "$?$(cut -d, -f 2-3 own.csv | tr '\n' ' ')" = \
         "0controller,law ik,none id,printed id,feedforward id,computed-torque himc,printed himc,feedforward himc,computed-torque " ]
     check test_computed_torque_follows_the_capture_best [ "$(awk -F, '$2 == "himc" { percent[$3] = $9 }
         END { print (percent["computed-torque"] < 1 && percent["printed"] > 2) }' own.csv)" = 1 ]
+    for order in "player 1.64 58; take $stroke" "take $stroke; player 1.64 58"; do
+        printf 'law printed; %s;\n' "$order" >order.txt
+        "$himc" render order.txt -o /dev/null --quiet | grep -o '"captured_rms_percent": [0-9.]*'
+    done | sort | uniq -c >orders
+    check test_player_and_take_may_come_in_any_order [ "$(sed 's/ *\([0-9]*\) .*: \([0-9]\).*/\1 \2/' orders)" = "2 4" ]
 fi
 refuses test_own_captures_must_be_takes "score.txt: not a take by its suffix" evaluate --take score.txt
+
+# the commands of the first ten minutes, as they stand there (evaluate has been, above)
+mkdir -p start/patches
+sed -n '/^```score/,/^```$/p' "$root/docs/start.md" | grep -v '^```' >start/strokes.txt
+head -n 12 "$root/patches/improvisation.txt" >start/patches/improvisation.txt
+(cd start && grep '^    himc [^e]' "$root/docs/start.md" | while read -r _ arguments; do
+    eval "$himc $arguments" >/dev/null 2>err || { echo "himc $arguments: $(cat err)"; break; }
+done) >failed
+check test_the_commands_of_the_first_ten_minutes_run [ "$(cat failed)" = "" ]
+check test_they_leave_what_they_say [ -s start/strokes.npz -a -s start/mine.bvh -a -s start/strokes.html ]
 
 echo
 echo "-----------------------"

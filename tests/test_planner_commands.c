@@ -408,6 +408,19 @@ static void test_nothing_is_allocated_while_playing(void)
     TEST_ASSERT_EQUAL_INT(0, allocations_seen());
 }
 
+static void test_a_score_has_room_behind_another_up_to_200000_strokes_of_a_hand(void)
+{
+    himc_stroke more[] = {{.hand = HIMC_LEFT},
+                          {.hand = HIMC_LEFT, .ornament = HIMC_ROLL_SINGLE},
+                          {.hand = HIMC_RIGHT},
+                          {.hand = HIMC_LEFT}};
+    for (int i = 0; i < 199999; i++)
+        add(planner, i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    TEST_ASSERT_TRUE(himc_planner_has_room(planner, more, 3, &error));
+    TEST_ASSERT_FALSE(himc_planner_has_room(planner, more, 4, &error));
+    TEST_ASSERT_EQUAL_STRING("stroke: one too many, allowed 200000 for a hand", error.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -431,5 +444,6 @@ int main(void)
     RUN_TEST(test_strokes_that_no_hand_reaches_are_given_up_once_each);
     RUN_TEST(test_strokes_out_of_one_hands_reach_are_all_played_by_the_other);
     RUN_TEST(test_nothing_is_allocated_while_playing);
+    RUN_TEST(test_a_score_has_room_behind_another_up_to_200000_strokes_of_a_hand);
     return UNITY_END();
 }

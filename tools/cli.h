@@ -42,8 +42,8 @@ typedef struct cli_call {
     int (*run)(const cli_arguments *arguments); ///< the exit status
 } cli_call;
 
-extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share, cli_play, cli_serve,
-    cli_bench;
+extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share,
+    cli_play, cli_serve, cli_bench;
 
 /// Reads the arguments after the call's name; false with one line: the fault and the allowed
 /// values.

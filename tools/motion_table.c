@@ -125,7 +125,8 @@ static size_t size_of(const array *a)
 
 static const double *values(const array *a, const himc_motion_row *row)
 {
-    return (const double *)((const char *)row + a->offset);
+    const void *field = (const char *)row + a->offset;
+    return field;
 }
 
 bool motion_table_is_numpy(const char *path)

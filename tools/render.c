@@ -24,8 +24,8 @@
 #define CELL_SECONDS 0.2
 #define TAIL_SECONDS 8.0
 #define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest
-#define SILENCE 1e-4   // of the peak: 80 dB
-#define HEARD_BY_TWO 2 // channels, one for each ear
+#define SILENCE 1e-4     // of the peak: 80 dB
+#define HEARD_BY_TWO 2   // channels, one for each ear
 #define BLOCK_MAX CLI_BLOCK
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))

@@ -511,6 +511,42 @@ def test_timeline_steps_loops_and_slows_down():
     assert abs(said["click"]) < 1e-6 and abs(said["zoom"] - 0.25) < 1e-6 and said["end"], said
 
 
+def test_controls_have_names_sizes_and_contrast():
+    """What a finger or a screen reader needs: at a phone's width every control that is shown is 42
+    pixels wide and high and has a name; writing stands out by 4.5 even where a drum is white."""
+    faults = browser.run(
+        """
+        document.body.classList.add("open");
+        const faults = [], shown = e => e.offsetParent !== null && !e.disabled;
+        for (const e of document.querySelectorAll("button, select, input, canvas[tabindex]")) {
+            if (!shown(e) && getComputedStyle(e).position !== "fixed") continue;
+            const box = e.getBoundingClientRect(), label = e.closest("label");
+            const name = e.ariaLabel || e.textContent.trim() || label?.textContent.trim();
+            if (!name) faults.push(`${e.id} has no name`);
+            if (e.tagName === "BUTTON" && (box.width < 41.5 || box.height < 41.5))
+                faults.push(`${e.id || name}: ${box.width} x ${box.height}`);
+        }
+        const light = ([r, g, b]) => [r, g, b].map(v => v / 255)
+            .map(v => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+            .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+        const parse = text => { const n = text.match(/[0-9.]+/g).map(Number); return n.length < 4 ? [...n, 1] : n; };
+        for (const e of document.querySelectorAll("button, #big span, #who div, nav label, #clock, #text span, #lost, #note, .playback label, #silent")) {
+            if (!e.textContent.trim()) continue;
+            let back = [225, 225, 225], layers = [];
+            for (let at = e; at && at !== document.body; at = at.parentElement)
+                layers.unshift(parse(getComputedStyle(at).backgroundColor));
+            for (const [r, g, b, a] of layers) back = back.map((v, i) => v + a * ([r, g, b][i] - v));
+            const [a, b] = [light(parse(getComputedStyle(e).color)), light(back)].sort((x, y) => y - x);
+            const ratio = (a + 0.05) / (b + 0.05);
+            if (!e.disabled && ratio < 4.5) faults.push(`${e.id || e.textContent}: contrast ${ratio.toFixed(2)}`);
+        }
+        document.body.classList.remove("open");
+        return faults;
+        """
+    )
+    assert not faults, faults
+
+
 def test_playback_shows_a_scene_as_the_library_does():
     browser.run("return viewer.playback.scene.name")
     with open(SCENE, "rb") as file:
@@ -554,7 +590,41 @@ def test_sound_is_the_clock_of_a_playback():
         )
         assert abs(off) < 20 and passed >= 0, (off, passed)
     browser.run("viewer.playback.play(false)")
+    tracks = browser.run(
+        "viewer.actions.film(); const tracks = viewer.recorder.film.stream.getAudioTracks().length;"
+        "viewer.actions.film(); return tracks"
+    )
+    assert tracks == 1, "a film without sound"
     return f"{off:.2f} ms"
+
+
+# Where the audio thread meets the first loud sample of a playback, against the picture's time (ms)
+SOUND_AGAINST_PICTURE = """
+const { sound, playback: p } = viewer, code = `registerProcessor("onset", class extends AudioWorkletProcessor {
+    process([[samples = []]]) {
+        const i = samples.findIndex(x => Math.abs(x) > 0.02);
+        if (i >= 0) this.port.postMessage(currentTime + i / sampleRate);
+        return i < 0;
+    }
+})`;
+sound.wake();
+const opened = new Promise(done => {
+    const look = () => (sound.ready ? done() : setTimeout(look, 20));
+    look();
+});
+return opened.then(async () => {
+    await sound.context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(code));
+    const ear = new AudioWorkletNode(sound.context, "onset"),
+        loud = sound.buffer.getChannelData(0).findIndex(x => Math.abs(x) > 0.02) / sound.buffer.sampleRate;
+    sound.gain.connect(ear);
+    p.setSpeed(1), p.seek(1000 * loud - 500), p.play(true);
+    const met = await new Promise(done => (ear.port.onmessage = e => done(e.data)));
+    p.advance(0);
+    const off = p.at - 1000 * (loud + sound.heard() - met);
+    p.play(false);
+    return off;
+});
+"""
 
 
 def test_a_shared_page_plays_from_the_disk():
@@ -572,11 +642,13 @@ def test_a_shared_page_plays_from_the_disk():
     expect("12.5")
     browser.run("viewer.playback.play(false); viewer.playback.seek(12500)")
     said = settle(1e-5)
+    off = browser.run(SOUND_AGAINST_PICTURE)
+    assert abs(off) < 20, off
     trouble = browser.log()
     assert not trouble, trouble
     seconds, size = browser.run("return viewer.playback.length") / 1000, os.path.getsize(html)
     assert size * 60 / seconds < 6e6, size
-    return f"{said}, {size * 60 / seconds / 1e6:.2f} MB a minute"
+    return f"{said}, sound {off:.1f} ms off, {size * 60 / seconds / 1e6:.2f} MB a minute"
 
 
 if __name__ == "__main__":

@@ -81,7 +81,7 @@ def test_heads_move_most_after_their_strikes():
         frames = [(max(map(abs, a)), time) for time, number, a in one.heads if number == drum["drum"]]
         most, time = max(frames)
         struck = [s["time"] for s in one.of("strike") if s["drum"] == drum["name"]]
-        assert 1e-5 < most < 0.01 and any(0 < time - t < 0.1 for t in struck), (drum["name"], most, time)
+        assert 1e-5 < most < 0.01 and any(0 < time - t < 0.3 for t in struck), (drum["name"], most, time)
 
 
 def test_it_ends_with_the_sound_and_is_small():

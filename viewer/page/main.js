@@ -68,7 +68,13 @@ const actions = {
     },
     setSpeed: speed => playback && playback.setSpeed(speed),
     mute: () => (sound.setVolume(sound.volume ? 0 : 1), sound.wake() && playback?.resound()),
-    live: () => (playback && close(), (playback = null)),
+    live() {
+        if (!playback || !stream) return;
+        playback = null;
+        close();
+        setLift(0);
+        panel.open(null);
+    },
 };
 const panel = new Panel(actions);
 
@@ -248,6 +254,7 @@ function frame(_, now = clock(), draw = true) {
         view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
     );
     view.update(Math.min(200, dt), first);
+    stage.haze(view.now.distance);
     const drawn = performance.now();
     if (draw) stage.renderer.render(stage.scene, view.camera);
     recorder.drawn();
@@ -292,6 +299,11 @@ function step(ms, draw = true) {
 
 // --- a scene
 
+function setLift(lift) {
+    view.lift = lift;
+    dispatchEvent(new Event("resize"));
+}
+
 // forgets the performer and the drums of the playback, or of the stream
 function close() {
     sound.stop();
@@ -309,8 +321,7 @@ async function play(bytes, name) {
     playback = new Playback(scene, sound);
     panel.open(playback);
     panel.loading(null);
-    view.lift = LIFT;
-    dispatchEvent(new Event("resize"));
+    setLift(LIFT);
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
@@ -372,8 +383,10 @@ actions.exaggerate(exaggeration);
 
 // a page of `himc share` brings its scene; any other asks the program that serves it
 let stream = null;
-if (window.himcScene) play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
-else {
+if (window.himcScene) {
+    document.body.classList.add("shared");
+    play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
+} else {
     stream = new Stream(live);
     fetch("/session.json")
         .then(answer => answer.json())

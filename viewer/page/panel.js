@@ -74,7 +74,7 @@ export class Panel {
             actions.exaggerate(Math.round(10 ** Number(e.target.value)));
         for (const speed of SPEEDS) $("speed").add(new Option(`× ${speed}`, speed));
         $("speed").onchange = e => actions.setSpeed(Number(e.target.value));
-        for (const id of ["picture", "film", "pause", "mute", "unloop"]) click(id, actions[id]);
+        for (const id of ["picture", "film", "pause", "mute", "unloop", "live"]) click(id, actions[id]);
         click("back", () => actions.step(-1, true));
         click("on", () => actions.step(1, true));
         click("from", () => actions.loopEnd(false));
@@ -140,8 +140,8 @@ export class Panel {
 
     open(playback) {
         this.playback = playback;
-        this.timeline.open(playback);
-        document.body.classList.add("playing");
+        document.body.classList.toggle("playing", !!playback);
+        if (playback) this.timeline.open(playback);
     }
 
     camera(name) {

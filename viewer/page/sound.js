@@ -1,6 +1,8 @@
 // The sound of a playback. Browsers start sound only after a click or a key, so the device is opened
 // by wake(); until then the playback is silent and goes by the wall clock.
-const PERFORMERS = 16; // as many as himc-viewer keeps
+const PERFORMERS = 16, // as many as himc-viewer keeps
+    POSE_DELAY = 0.045, // (s) of a live pose at 33 Hz (performer.js): sound and picture go together
+    SHORTEST = 0.02; // (s) of sound that waits; chosen: four packets
 
 export class Sound {
     constructor() {
@@ -101,7 +103,11 @@ export class LiveSound {
         if (this.nodes.has(key)) return this.nodes.get(key);
         if (this.nodes.size >= PERFORMERS) this.close();
         const { context, gain } = this.sound,
-            node = new AudioWorkletNode(context, "himc-live", { outputChannelCount: [2] });
+            behind = Math.max(SHORTEST, POSE_DELAY - (context.outputLatency || 0)),
+            node = new AudioWorkletNode(context, "himc-live", {
+                outputChannelCount: [2],
+                processorOptions: { behind },
+            });
         node.port.onmessage = e => (node.told = e.data);
         node.connect(gain);
         this.nodes.set(key, node);

@@ -192,8 +192,13 @@ export class Stage {
         this.curtain.scale.set(scale ** 0.6, scale ** 0.6, scale ** 0.3);
         this.key.angle = Math.min(0.75, 0.5 + 0.05 * scale);
         this.key.shadow.camera.far = 12 * scale;
-        ((this.scene.fog.near = 4.5 * scale), (this.scene.fog.far = 10.5 * scale));
         this.set.slice(1).forEach(l => (l.angle = Math.min(1.2, 0.55 * scale)));
+    }
+
+    // what stands as far as `distance` (m) is clear, what is behind it fades
+    haze(distance) {
+        const near = Math.max(4.5 * (this.scale || 1), distance + 1.5);
+        ((this.scene.fog.near = near), (this.scene.fog.far = (10.5 / 4.5) * near));
     }
 
     floor() {

@@ -1,15 +1,16 @@
 // Plays sound as it comes, in the audio thread. It is kept a little behind, so that packets that come
 // late are there in time; the delay is that of the picture. Both clocks drift, so the speed follows
 // the amount that waits.
-const BEHIND = 0.03, // (s) wanted in the buffer; with the device's latency about that of a live pose
-    MOST = 0.2, // (s) more is left out
+const MOST = 0.2, // (s) more is left out
     SIZE = 1 << 16, // of the ring (samples)
     PULL = 0.02, // how much of the speed follows (1/s)
     TOLD = 0.25; // (s) between two reports
 
 class Live extends AudioWorkletProcessor {
-    constructor() {
+    // `behind` (s) is wanted in the buffer
+    constructor({ processorOptions }) {
         super();
+        this.behind = processorOptions.behind;
         this.ring = [new Float32Array(SIZE), new Float32Array(SIZE)];
         ((this.written = 0), (this.read = 0), (this.next = null), (this.rate = 48000));
         ((this.begun = false), (this.missed = 0), (this.peak = 0), (this.told = 0));
@@ -35,10 +36,10 @@ class Live extends AudioWorkletProcessor {
     process(_, [output]) {
         const waits = (this.written - this.read) / this.rate;
         if (!this.begun || waits > MOST) {
-            this.read = Math.max(0, this.written - BEHIND * this.rate);
-            this.begun = this.written - this.read >= BEHIND * this.rate;
+            this.read = Math.max(0, this.written - this.behind * this.rate);
+            this.begun = this.written - this.read >= this.behind * this.rate;
         }
-        const step = (this.rate / sampleRate) * (1 + PULL * (waits - BEHIND));
+        const step = (this.rate / sampleRate) * (1 + PULL * (waits - this.behind));
         for (let i = 0; this.begun && i < output[0].length; i++) {
             const whole = Math.floor(this.read),
                 t = this.read - whole;

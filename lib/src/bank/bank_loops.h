@@ -82,8 +82,8 @@ TARGET static void NAMED(turn)(double *p, double *s, const double *rate, const d
     for (int i = 0; i < length; i += WIDTH) {
         VEC vp = *(VEC *)(p + i), d = *(const VEC *)(damp + i);
         VEC x = *(const VEC *)(tight + i) * vp, y = *(VEC *)(s + i) - d * vp;
-        VEC half = *(const VEC *)(rate + i) * (0.5 * by), size = 1 + half * half;
-        VEC c = (1 - half * half) / size, w = 2 * half / size;
+        VEC half = *(const VEC *)(rate + i) * (0.5 * by), size = 1 / (1 + half * half);
+        VEC c = (1 - half * half) * size, w = 2 * half * size;
         vp = (c * x + w * y) * *(const VEC *)(slack + i);
         *(VEC *)(p + i) = vp;
         *(VEC *)(s + i) = c * y - w * x + d * vp;

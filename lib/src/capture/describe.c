@@ -182,7 +182,9 @@ static void tell_measures(const himc_player *player, const himc_line_sink *to)
         himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (stated by the file)", c->height, from,
                   c->mass);
     else
-        himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f)",
+        himc_tell(to,
+                  "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f; the "
+                  "command player says otherwise)",
                   c->height, from, c->mass, c->mass / (c->height * c->height));
     tell_lengths(c, to);
 }

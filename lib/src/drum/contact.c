@@ -3,8 +3,8 @@
 /// One pair. Over a step of length h the compression goes from c0 to c0 + r and the force F(r) is
 /// constant (felt.c). Its elastic part does exactly the work V(c0 + r) - V(c0), the rest only takes
 /// energy, and F does not decrease with r. The bodies respond linearly: r = b - G F(r). So the
-/// residual r - b + G F(r) of one pair rises with slope >= 1 and has one root, between b - G F(b)
-/// and b; Newton steps kept inside that bracket find it. (Discrete gradient: Chatziioannou & van
+/// residual r - b + G F(r) of one pair rises with slope >= 1 and has one root, at most b; Newton's
+/// steps find it, kept between the places known to be below and above. (Discrete gradient: Chatziioannou & van
 /// Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
 ///
 /// Several pairs on one head. The residual is G times the gradient of the strictly convex
@@ -52,7 +52,7 @@
 #define MAX_PAIRS (2 * HIMC_STICKS)
 #define NEWTON_STEPS 60       // chosen: bisection alone converges in them
 #define LINE_STEPS 30         // halvings of a line search; chosen
-#define ROUNDING 4e-16        // relative; two units in the last place of a double
+#define NEAR_ROOT 1e-9        // relative; a step of Newton's so short ends within the square of it
 #define PUSH_ROUNDING 1.6e-15 // relative, a pair; chosen: with less the search ends in rounding
 #define CHATTER 0.0015        // (s) forces less than this apart are one contact; chosen
 #define STIFF_POINT 100.0     // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
@@ -84,8 +84,7 @@ typedef struct near_stick {
 
 static void solve_one(contact_pair *m, double g, double h)
 {
-    double slope, high = m->b, low = m->b - g * himc_felt_force(&m->felt, m->b, h, &slope);
-    double r = fmin(fmax(m->b - g * m->guess, low), high);
+    double slope, high = m->b, low = -INFINITY, r = fmin(m->b - g * m->guess, high);
     for (int i = 0; i < NEWTON_STEPS; i++) {
         m->force = himc_felt_force(&m->felt, r, h, &slope);
         double residual = r - m->b + g * m->force;
@@ -96,8 +95,10 @@ static void solve_one(contact_pair *m, double g, double h)
         double next = r - residual / (1 + g * slope);
         if (!(next >= low && next <= high))
             next = 0.5 * (low + high);
-        if (fabs(next - r) <= ROUNDING * (fabs(r) + fabs(m->c0)))
+        if (fabs(next - r) <= NEAR_ROOT * (fabs(r) + fabs(m->c0))) {
+            m->force += slope * (next - r);
             return;
+        }
         r = next;
     }
 }

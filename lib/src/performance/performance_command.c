@@ -367,15 +367,35 @@ static bool do_alive(himc_performance *p, const himc_command *c, himc_error *err
     return true;
 }
 
+// the take that is loaded, again, for another player: its lengths stay
+static bool retake(himc_performance *p, himc_error *error)
+{
+    himc_command take;
+    himc_command_copy(&take, &p->written.take_command);
+    return himc_job_carry_out(himc_performance_take_job(p, &take, error), error);
+}
+
+// Height and mass as asked for replace those of a take's player, whether the take comes after or
+// has come before. The usual ones are as if nobody had asked.
 static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    performance_settings s = p->settings;
+    performance_settings s = p->settings, before = s;
     const himc_skeleton_config usual = himc_skeleton_default();
     s.skeleton.height = himc_argument_usual(c->atom[0].number, usual.height);
     s.skeleton.mass = himc_argument_usual(c->atom[1].number, usual.mass);
+    bool asked = s.skeleton.height != usual.height || s.skeleton.mass != usual.mass;
+    s.asked_height = asked ? s.skeleton.height : 0;
+    s.asked_mass = asked ? s.skeleton.mass : 0;
     s.skeleton.seat = s.skeleton.shoulders = 0; // not those measured from a take
     memset(s.skeleton.length, 0, sizeof s.skeleton.length);
-    return himc_performance_rebuild(p, &s, error);
+    if (!p->motion->track || p->written.take_command.count == 0)
+        return himc_performance_rebuild(p, &s, error);
+    p->settings = s;
+    himc_drums_move_back(&p->drums, 0);
+    if (retake(p, error))
+        return true;
+    p->settings = before;
+    return false;
 }
 
 static bool do_push(himc_performance *p, const himc_command *c, himc_error *error)

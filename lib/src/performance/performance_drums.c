@@ -184,6 +184,15 @@ bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_err
     return true;
 }
 
+void himc_drums_move_back(performance_drums *d, int index)
+{
+    drum_slot *slot = &d->slot[index];
+    if (index >= d->count || !is_where_put(slot))
+        return;
+    himc_drum_stand(slot->drum, slot->found);
+    slot->moved = false;
+}
+
 void himc_drums_put_back(performance_drums *d)
 {
     drum_slot old[HIMC_DRUMS];

@@ -130,14 +130,15 @@ static void dump_rates(const himc_performance *p, const himc_line_sink *to)
               s->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY);
 }
 
-// a take has measured the player if it has lengths; then the take's line tells them
+// a take has measured the player if it has lengths; then the take's line tells them, and `player`
+// only what has been asked for instead
 static void dump_player(const himc_performance *p, const himc_line_sink *to)
 {
     const himc_skeleton_config *s = &p->settings.skeleton;
     bool measured = s->seat != 0 || s->shoulders != 0;
     for (size_t i = 0; i < sizeof s->length / sizeof *s->length; i++)
         measured = measured || s->length[i] != 0;
-    if (!measured)
+    if (!measured || p->settings.asked_height > 0)
         himc_state_tell(to, "player", NULL, 2, (double[]){s->height, s->mass});
 }
 

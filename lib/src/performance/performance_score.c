@@ -1,18 +1,19 @@
 /// performance_score.c: `score FILE`: a score is accepted as a whole, or refused.
 ///
 /// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its
-/// lines for drums go to copies of the drums, its lines for the performer are checked against what the
-/// lines before them leave, its drums are counted and those that are missing are made. Only then is it installed: the copies give their
-/// heads to the drums, lines and strokes follow in portions, a line that takes long is a job of its
-/// own. While a score plays, the beats of the next one follow its own. Invariants: a score that is
-/// refused has changed nothing; a score from the network may do what its sender may do. A hit or a
-/// blow, which happens once, is no reason to refuse a score: a note tells why it is left out.
+/// lines for drums go to copies of the drums, its lines for the performer are checked against what
+/// the lines before them leave, its drums are counted and those that are missing are made. Only then
+/// is it installed: the copies give their heads to the drums, lines and strokes follow in portions,
+/// a line that takes long is a job of its own. While a score plays, the beats of the next one follow
+/// its own. Invariants: a score that is refused has changed nothing; a score from the network may do
+/// what its sender may do. A hit or a blow, which happens once, is no reason to refuse a score: a
+/// note tells why it is left out.
 #include "performance/performance_state.h"
 
 #include "capture/take.h"
 #include "midi/score_file.h"
-#include "plan/score.h"
 #include "performance/confine.h"
+#include "plan/score.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,8 +161,9 @@ static bool rehearse_units(const score_job *j, const himc_command *c, score_stat
 // before the first drum as the lines before have placed it
 static bool rehearse_take(score_job *j, const himc_command *c, himc_error *error)
 {
-    const score_drum *first = find_drum(j, j->forms > 0 ? j->form[0].name : FIRST_DRUM);
-    const himc_head_frame *place = first          ? himc_drum_head_frame(first->trial)
+    const score_drum *first = j->forms > 0 ? find_drum(j, j->form[0].name) : j->drum;
+    bool tried = first && j->drums > 0;
+    const himc_head_frame *place = tried          ? himc_drum_head_frame(first->trial)
                                    : j->forms > 0 ? &j->form[0].place
                                                   : NULL;
     return himc_performance_try_take(j->take, c, place, error);

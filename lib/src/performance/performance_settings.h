@@ -23,7 +23,8 @@ typedef struct asked_gain {
 typedef struct performance_settings {
     double physics_rate, task_rate; ///< requested (Hz)
     himc_skeleton_config skeleton;
-    double weight[HIMC_SEGMENTS]; ///< mass of each simulated segment over its assumed mass
+    double asked_height, asked_mass; ///< by `player` (m, kg), also of a take's player; 0: not asked
+    double weight[HIMC_SEGMENTS];    ///< mass of each simulated segment over its assumed mass
     himc_controller_config control;
     asked_gain gain[HIMC_JOINTS]; ///< where control.gain_set
     himc_engine engine;

@@ -46,6 +46,7 @@ typedef struct performance_written {
     himc_text_lines score;     ///< strokes, ornaments and changes of heads
     himc_text_lines units;     ///< the commands `units`
     char take[HIMC_PATH_SIZE]; ///< the file of the take; "" without one
+    himc_command take_command; ///< that has loaded it; without atoms if it came from memory
 } performance_written;
 
 struct himc_performance {

@@ -44,6 +44,7 @@ typedef struct take_job {
     // of the performance, when the job was made
     himc_take_options options;
     himc_skeleton_config body;
+    double asked_height, asked_mass; ///< by `player`, instead of those measured; 0: not asked
     himc_posture posture;
     double sample_rate;    ///< (Hz)
     bool has_drum;         ///< else a silent one is made
@@ -312,6 +313,10 @@ static bool prepare(himc_job *job, himc_error *error)
         if (!j->take)
             return false;
         j->player = himc_player_new(j->take, &j->options, &j->body, error);
+        if (j->player && j->asked_height > 0) {
+            j->player->config.height = j->asked_height;
+            j->player->config.mass = j->asked_mass;
+        }
     }
     return (j->player && make_track(j, error)) || prefix_with(j->name, error);
 }
@@ -403,6 +408,8 @@ static void copy_performance(take_job *j)
     const himc_performance *p = j->performance;
     j->options = p->host.take_options;
     j->body = p->settings.skeleton;
+    j->asked_height = p->settings.asked_height;
+    j->asked_mass = p->settings.asked_mass;
     j->posture = p->motion->posture;
     j->sample_rate = p->clock.sample_rate;
     j->own_regression = has_own_regression(p);
@@ -447,6 +454,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_motion_set_track(p->motion, j->track, j->player->pose ? &j->learned : NULL, step_time(p));
     j->track = dropped;
     snprintf(p->written.take, sizeof p->written.take, "%s", j->name);
+    himc_command_copy(&p->written.take_command, &j->command);
     himc_performance_renew_limits(p);
     adopt_regression(j);
     return HIMC_JOB_DONE;
