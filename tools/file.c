@@ -3,7 +3,7 @@
 /// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
 /// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
 /// that the link stays and its file changes.
-#define _DEFAULT_SOURCE // mkstemps
+#define _XOPEN_SOURCE 700
 #include "base/file.h"
 #include "cli.h"
 #include "system/files.h"
@@ -202,7 +202,7 @@ bool cli_is_standard(const char *path)
 }
 
 // where the standard input is kept, until the program ends
-static char input[64];
+static char input[300];
 
 static void remove_input(void)
 {
@@ -234,8 +234,13 @@ const char *cli_input(const char *operand, himc_error *error)
         return operand;
     size_t size = fread(bytes, 1, sizeof bytes, stdin);
     const char *suffix = suffix_of(bytes, size);
-    snprintf(input, sizeof input, "/tmp/himc-stdin-XXXXXX%s", suffix);
-    int descriptor = mkstemps(input, (int)strlen(suffix));
+    const char *folder = getenv("TMPDIR");
+    char made[256];
+    snprintf(made, sizeof made, "%.200s/himc-stdin-XXXXXX", folder ? folder : "/tmp");
+    int descriptor = mkstemp(made);
+    snprintf(input, sizeof input, "%s%s", made, suffix);
+    if (descriptor >= 0 && !himc_system_rename(made, input))
+        descriptor = -1;
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     if (!file) {
         file_error(input, error);
