@@ -2,7 +2,7 @@
 ///
 /// With the tip held, an arm still turns about the line from shoulder to wrist, and hand and stick
 /// turn about the tip, up and aside. These six angles g of both arms descend the potential
-///     F(g) = sum over pairs (D - gap)+^2 / (2 D)
+///     F(g) = sum over pairs (D - gap)+^3 / (3 D^2)
 /// of the gaps below D, summed over the postures foreseen: dg/dt = -K dF/dg - g / T. Each gap below
 /// D pushes on the joints beside its nearest points, along the line between these; dF/dg is the
 /// work of all pushes (virtual work). So the angles are

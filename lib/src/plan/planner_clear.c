@@ -1,8 +1,9 @@
 /// planner_clear.c: hands that would meet pass each other: one is lifted over the other.
 ///
-/// The gap of both sticks and arms is looked at in steps along what has just been planned. Where it
-/// is too small, lifts of several lengths and directions are tried, and the one that lacks least is
-/// kept.
+/// What has just been planned is rehearsed: in steps along it the body is asked for its gaps, with
+/// trunk, elbows and wrists as they will have moved by then. Where the hands come near, the upper one
+/// is lifted: lifts of several lengths and directions are tried, and the one that lacks least is
+/// kept. The least gap that remains is the planner's to judge (planner_motion.c).
 #include "plan/planner_motion.h"
 #include "plan/stroke_plan.h"
 
@@ -91,7 +92,7 @@ static near_time find_near(const himc_planner *planner, double begin, double end
     return n;
 }
 
-/// Ways past the other hand, in the order in which they are tried: over it, outside it, before it.
+/// Ways past the other hand, in the order in which they are tried: over it, over and outwards.
 static himc_vec3 way_past(himc_vec3 tip, int k)
 {
     static const double share[WAYS][2] = {{1, 0}, {1, 0.7}, {0.3, 1}};

@@ -5,8 +5,8 @@
 /// and extends it again from the state there, so there is one way of planning and all joins are
 /// alike. A stroke less than 80 ms away is committed: no player could take it back.
 ///
-/// Planning a stroke has a result: planned, too far away, or no time to prepare it. In the last two
-/// cases it is reassigned to the other hand, or given up. Only a stroke of the score is reassigned,
+/// Planning a stroke has a result: planned, too far away, no time to prepare it, or the hands would
+/// meet, even with its spot moved aside or after a wait. In the last three cases it is reassigned to the other hand, or given up. Only a stroke of the score is reassigned,
 /// once, and only if the other hand has nothing else within HIT_GAP and is there in time; a player
 /// would rather leave a stroke out than disturb another one. Meanwhile the other hand's own strokes
 /// are not reassigned in turn, so two hands are all that one call plans.
