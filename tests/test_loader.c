@@ -11,7 +11,9 @@
 #include "himc/membrane.h"
 
 #include "capture/take.h"
+#include "system/thread.h"
 
+#include <pthread.h>
 #include <sched.h>
 
 #define BVH "build/loader-take.bvh"
@@ -191,6 +193,36 @@ static void test_a_failed_load_is_told_in_its_line_and_the_next_go_on(void)
     TEST_ASSERT_EQUAL_STRING("done", told[3]);
     TEST_ASSERT_NOT_NULL(strstr(told[4], "missing.txt"));
     TEST_ASSERT_EQUAL_INT(HIMC_MODES_AUTO, modes_of(p)); // nothing of the score was installed
+    himc_loader_free(loader);
+    himc_performance_free(p);
+}
+
+static void *policy_of_a_helper(void *policy)
+{
+    himc_system_give_way();
+    *(int *)policy = sched_getscheduler(0);
+    return NULL;
+}
+
+// as in Pure Data with -rt, which the system allows root and members of its audio group
+static void test_helpers_of_a_host_of_real_time_priority_have_none(void)
+{
+    struct sched_param urgent = {.sched_priority = 6}, usual = {.sched_priority = 0};
+    if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &urgent) != 0)
+        TEST_IGNORE_MESSAGE("real-time priority is not allowed here");
+    himc_performance *p = session_new();
+    himc_loader *loader = loader_new();
+    ask(loader, p, "take missing.bvh");
+    himc_loader_run(loader);
+    pthread_t network;
+    int policy = -1;
+    TEST_ASSERT_EQUAL_INT(0, pthread_create(&network, NULL, policy_of_a_helper, &policy));
+    pthread_join(network, NULL);
+    TEST_ASSERT_EQUAL_INT(SCHED_OTHER, policy);
+    pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
+    himc_loader_finish(loader);
+    TEST_ASSERT_EQUAL_INT(1, tellings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told[0], "missing.bvh"), told[0]);
     himc_loader_free(loader);
     himc_performance_free(p);
 }
@@ -405,6 +437,7 @@ int main(void)
     RUN_TEST(test_units_and_a_recording_begin_as_at_once);
     RUN_TEST(test_what_comes_behind_a_load_waits_for_it);
     RUN_TEST(test_a_failed_load_is_told_in_its_line_and_the_next_go_on);
+    RUN_TEST(test_helpers_of_a_host_of_real_time_priority_have_none);
     RUN_TEST(test_the_257th_command_that_waits_is_dropped_with_a_line);
     RUN_TEST(test_a_drum_changed_meanwhile_keeps_both_changes);
     RUN_TEST(test_a_drum_that_changes_all_the_time_does_not_hold_up_a_load);

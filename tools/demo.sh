@@ -127,7 +127,7 @@ echo "Pure Data plays $patch ..."
 play_in_pd
 echo "himc render plays $score ..."
 "$himc" render "$score" --channels 1 -o "$work/render.wav" --strokes "$out/strokes.csv" \
-    --motion "$out/motion.csv" >"$work/render.log" || exit 1
+    --motion "$out/motion.csv" --quiet >"$work/render.log" || exit 1
 landed="$(number played) of $(number strokes)"
 apart=$(number tip_rms_mm | awk '{printf "%.2g", $1}')
 echo "gnuplot draws ..."

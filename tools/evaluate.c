@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS, OWN, JSON, TAKE };
+enum { TRIALS, RANGE, ONLY, CSV, LOG, JOBS, OWN, JSON, FIGURE, TAKE };
 
 static const cli_option options[] = {
     {"trials", 0, "N", "trials for each nuance and controller, 1 .. 10000 (100)"},
@@ -25,6 +25,7 @@ static const cli_option options[] = {
     {"jobs", 0, "N", "parallel trials, 1 .. 256 (the number of cores)"},
     {"take", 0, "FILE...", "own captures instead, each under every controller and law"},
     {"json", 0, NULL, "with --take: the rows as one JSON array of objects"},
+    {"figure", 0, "F.svg", "with --take: the errors as bars"},
     CLI_TAKE_OPTIONS,
     {0},
 };
@@ -170,7 +171,8 @@ static bool write_table(const evaluation *e, cli_file *file, himc_error *error)
     return cli_file_close(file, error) && cli_file_keep(file, error);
 }
 
-static bool run_own(const cli_arguments *arguments, cli_file *csv, himc_error *error)
+static bool run_own(const cli_arguments *arguments, cli_file *csv, cli_file *figure,
+                    himc_error *error)
 {
     himc_take_options take_options;
     int jobs = pool_cores();
@@ -178,18 +180,22 @@ static bool run_own(const cli_arguments *arguments, cli_file *csv, himc_error *e
            cli_take_options(arguments->repeated[0], arguments->value + TAKE, &take_options,
                             error) &&
            cli_file_open(csv, arguments->value[CSV], error) &&
+           cli_file_open(figure, arguments->value[FIGURE], error) &&
            evaluate_takes(arguments->repeated, arguments->repeats, &take_options, jobs,
-                          arguments->value[JSON], csv->stream ? csv->stream : stdout, error) &&
-           cli_file_close(csv, error) && cli_file_keep(csv, error);
+                          arguments->value[JSON], csv->stream ? csv->stream : stdout,
+                          figure->stream, error) &&
+           cli_file_close(csv, error) && cli_file_close(figure, error) &&
+           cli_file_keep(csv, error) && cli_file_keep(figure, error);
 }
 
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
     if (arguments->repeats) {
-        cli_file own = {0};
-        bool played = run_own(arguments, &own, &error);
+        cli_file own = {0}, figure = {0};
+        bool played = run_own(arguments, &own, &figure, &error);
         cli_file_drop(&own);
+        cli_file_drop(&figure);
         return played ? cli_finish(&cli_evaluate) : cli_fail(&cli_evaluate, "%s", error.text);
     }
     evaluation e = {0};

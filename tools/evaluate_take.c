@@ -303,8 +303,51 @@ static void print_row(const own_takes *own, int item, bool json, FILE *stream)
     fputs(json ? "}" : "\n", stream);
 }
 
+#define BAR 16     // width (pixels)
+#define GROUP 150  // of a take
+#define HIGH 240   // of the axis
+#define DECADES 6  // of the axis, from 0.001 % to 1000 %
+#define LEAST 1e-3 // (%)
+
+// errors in percent of the strokes' height, or in mm where the take has no strokes, as bars on a
+// logarithmic axis: figure 6b of the 2012 paper for own takes
+static void draw(const own_takes *own, FILE *out)
+{
+    static const char *const colour[KINDS] = {"#999",    "#9ecae1", "#4292c6", "#084594",
+                                              "#fdbe85", "#fd8d3c", "#a63603"};
+    fprintf(out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
+            "font-family=\"sans-serif\" font-size=\"11\">\n",
+            220 + GROUP * own->count, HIGH + 60);
+    for (int decade = 0; decade <= DECADES; decade++) {
+        int y = 20 + HIGH - HIGH * decade / DECADES;
+        fprintf(out,
+                "<path d=\"M50 %dH%d\" stroke=\"#ddd\"/><text x=\"45\" y=\"%d\" "
+                "text-anchor=\"end\">%g</text>\n",
+                y, 60 + GROUP * own->count, y + 4, LEAST * pow(10, decade));
+    }
+    for (int i = 0; i < own->count * KINDS; i++) {
+        const own_result *r = &own->result[i];
+        double value = isfinite(r->percent) ? r->percent : 1e3 * r->rms;
+        double high = fmin(fmax(log10(value / LEAST) / DECADES, 0), 1) * HIGH;
+        fprintf(out, "<rect x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%.1f\" fill=\"%s\"/>\n",
+                60 + GROUP * (i / KINDS) + BAR * (i % KINDS), 20 + HIGH - high, BAR - 2, high,
+                colour[i % KINDS]);
+        if (i % KINDS == 0)
+            fprintf(out, "<text x=\"%d\" y=\"%d\">take %d, %s</text>\n", 60 + GROUP * (i / KINDS),
+                    HIGH + 36, i / KINDS + 1, isfinite(r->percent) ? "%" : "mm");
+    }
+    for (int k = 0; k < KINDS; k++) {
+        trial_kind kind = kind_of(k);
+        fprintf(out, "<text x=\"%d\" y=\"%d\" fill=\"%s\">%s %s</text>\n", 75 + GROUP * own->count,
+                40 + 18 * k, colour[k], trial_controller_name(kind.controller).text,
+                k ? trial_law_name(&kind).text : "");
+    }
+    fputs("</svg>\n", out);
+}
+
 bool evaluate_takes(const char *const *path, int count, const himc_take_options *options, int jobs,
-                    bool json, FILE *stream, himc_error *error)
+                    bool json, FILE *stream, FILE *figure, himc_error *error)
 {
     own_takes own = {.path = path, .count = count, .options = options};
     own.result = calloc((size_t)count * KINDS, sizeof *own.result);
@@ -320,6 +363,8 @@ bool evaluate_takes(const char *const *path, int count, const himc_take_options 
         print_row(&own, i, json, stream);
     if (good && json)
         fputs("\n]\n", stream);
+    if (good && figure)
+        draw(&own, figure);
     for (int i = 0; good && i < count; i++)
         if (!own.result[i * KINDS + KINDS - 1].learned)
             cli_say("%s: no other take shows a whole arm, and this one; himc has its own posture "

@@ -3,7 +3,7 @@
 /// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
 /// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
 /// that the link stays and its file changes.
-#define _DEFAULT_SOURCE // mkstemps
+#define _XOPEN_SOURCE 700
 #include "base/file.h"
 #include "cli.h"
 #include "system/files.h"

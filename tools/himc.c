@@ -22,7 +22,10 @@ static void print_help(void)
     printf("himc %s: a virtual timpanist\n\nusage: himc CALL ...\n\n", himc_version());
     for (size_t i = 0; i < CALLS; i++)
         printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
-    printf("\nhimc CALL --help says more; himc --version prints the version.\n");
+    printf(
+        "\nhimc CALL --help says more; himc --version prints the version. A file - is the standard\n"
+        "input or output. Exit status 0, or 1 with one line on standard error that says what was\n"
+        "wrong and where.\n");
 }
 
 static const cli_call *find_call(const char *name)

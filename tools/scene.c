@@ -5,7 +5,7 @@
 /// numbers, whose high bytes are nearly all zero. They go plane by plane, all lowest bytes of a
 /// column first, through deflate. The arithmetic is modulo 2^32, so nothing can overflow, and each
 /// chunk begins anew, so none needs another. The sound is Ogg Vorbis, which every browser's own
-/// decoder but the oldest reads.
+/// decoder but the oldest reads; or WAV, ten times as large, where libsndfile has no Vorbis.
 #include "scene.h"
 
 #include <errno.h>
@@ -49,7 +49,7 @@ struct scene_writer {
     head_frame head[FRAMES];
     int heads;
     bytes events, chunk, packed, sound;
-    SNDFILE *ogg;
+    SNDFILE *file;
     int trouble; // errno of the first write that failed
 };
 
@@ -311,16 +311,19 @@ static bool open_sound(scene_writer *s, int rate, himc_error *error)
     SF_INFO info = {
         .samplerate = rate, .channels = s->channels, .format = SF_FORMAT_OGG | SF_FORMAT_VORBIS};
     double quality = VORBIS_QUALITY;
-    s->ogg = sf_open_virtual(&memory, SFM_WRITE, &info, &s->sound);
-    if (!s->ogg)
+    if (!sf_format_check(&info)) // a libsndfile without Vorbis
+        info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
+    s->file = sf_open_virtual(&memory, SFM_WRITE, &info, &s->sound);
+    if (!s->file)
         return himc_error_set(error, "the scene's sound at %d Hz: %s", rate, sf_strerror(NULL));
-    sf_command(s->ogg, SFC_SET_VBR_ENCODING_QUALITY, &quality, sizeof quality);
+    sf_command(s->file, SFC_SET_VBR_ENCODING_QUALITY, &quality, sizeof quality);
+    sf_command(s->file, SFC_SET_CLIPPING, NULL, SF_TRUE);
     return true;
 }
 
 void scene_sound(scene_writer *s, const float *frames, int n)
 {
-    if (sf_writef_float(s->ogg, frames, n) != n)
+    if (sf_writef_float(s->file, frames, n) != n)
         s->sound.failed = true;
 }
 
@@ -328,8 +331,8 @@ void scene_sound(scene_writer *s, const float *frames, int n)
 
 static void free_writer(scene_writer *s)
 {
-    if (s->ogg)
-        sf_close(s->ogg);
+    if (s->file)
+        sf_close(s->file);
     bytes *all[] = {&s->events, &s->chunk, &s->packed, &s->sound};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]->data);
@@ -383,9 +386,9 @@ bool scene_close(scene_writer *s, himc_error *error)
 {
     write_rows(s);
     write_heads(s);
-    sf_close(s->ogg);
-    s->ogg = NULL;
-    write_chunk(s, "ogg ", &s->sound);
+    sf_close(s->file);
+    s->file = NULL;
+    write_chunk(s, "snd ", &s->sound);
     int trouble = s->trouble;
     free_writer(s);
     return !trouble || himc_error_set(error, "the scene cannot be written: %s", strerror(trouble));

@@ -84,7 +84,7 @@ typedef enum himc_pickup_kind {
 } himc_pickup_kind;
 
 /// (Pa) chosen: the strongest stroke on a timpano, heard from one metre, peaks at 0.7 to 0.9
-#define HIMC_PICKUP_PRESSURE 170.0
+#define HIMC_PICKUP_PRESSURE 180.0
 #define HIMC_PICKUP_VELOCITY 10.0 ///< (m/s) chosen
 
 /// Where the sound is read. Azimuth 0 is beyond the drum as the performer sees it, positive to

@@ -179,7 +179,7 @@ typedef struct himc_motion_row {
 } himc_motion_row;
 
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it. Works and energies
-/// are then added up in every physics step, which costs a few percent.
+/// are then added up in every physics step, which costs a tenth of its time.
 void himc_performance_on_motion(himc_performance *performance,
                                 void (*row)(void *, const himc_motion_row *), void *user);
 

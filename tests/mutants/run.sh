@@ -1,6 +1,7 @@
 #!/bin/sh
 # Faults put into the library one at a time, to see that a test notices each (make mutants).
 #   tests/mutants/run.sh [NUMBER...]     of mutants in tests/mutants/table.txt; all without one
+#   tests/mutants/run.sh --check         only whether each stands in its file, exactly once
 # A mutant is one object compiled anew and linked before the library. The tests of its heading run one after the other, in a
 # folder of its own, until one fails: then it is killed, if that test passes without it. What no test notices has survived. JOBS
 # mutants run at a time. The environment has COMPILE, LINK and LIBS of the Makefile. Fails if less than 95 of 100 are killed, or
@@ -84,6 +85,27 @@ one() {
 if [ "$1" = --one ]; then
     one "$2"
     exit 0
+fi
+
+if [ "$1" = --check ]; then
+    awk '/^# / || /^$/ { next }
+        /^\[.*\]$/ {
+            split(substr($0, 2, length($0) - 2), part, / *\| */)
+            text = ""
+            while ((getline line < part[1]) > 0) text = text line "\n"
+            close(part[1])
+            next
+        }
+        {
+            n++
+            old = substr($0, 1, index($0, " ==> ") - 1)
+            where = old == "" ? 0 : index(text, old)
+            if (where && !index(substr(text, where + 1), old)) next
+            print "mutant " n ": not exactly once in " part[1] ": " $0
+            bad = 1
+        }
+        END { exit bad }' $table
+    exit
 fi
 
 count=$(grep -cv '^# \|^\[\|^$' $table)

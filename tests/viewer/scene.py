@@ -21,7 +21,7 @@ class Scene:
                 self.rows += self.read_rows(zlib.decompress(body))
             elif kind == "head":
                 self.heads += self.read_heads(zlib.decompress(body))
-            elif kind == "ogg ":
+            elif kind == "snd ":
                 self.sound += body
             at += 8 + size
 

@@ -233,7 +233,7 @@ export async function readScene(bytes, name) {
             if (kind === "json") JSON.parse(text.decode(await inflate(body))).forEach(e => scene.add(e));
             else if (kind === "rows") scene.rows(await inflate(body));
             else if (kind === "head") scene.heads(await inflate(body));
-            else if (kind === "ogg ") scene.sounds.push(body);
+            else if (kind === "snd ") scene.sounds.push(body);
         }
         scene.finish();
     } catch (error) {

@@ -350,7 +350,10 @@ static void step_engine(himc_character *c, const segment_forces *f, double h)
 static void step_accounted(himc_character *c, const himc_step_forces *sources,
                            const segment_forces *f, double h)
 {
-    segment_states before = c->state;
+    segment_states before; // what himc_body_work_add reads of it
+    memcpy(before.joints.spin, c->state.joints.spin, sizeof before.joints.spin);
+    memcpy(before.joints.rotation, c->state.joints.rotation, sizeof before.joints.rotation);
+    memcpy(before.velocity, c->state.velocity, sizeof before.velocity);
     himc_character_articulation(c);
     if (c->engine == HIMC_ENGINE_ODE)
         himc_articulate_legs(&c->skeleton, &c->state.joints, &c->articulation);

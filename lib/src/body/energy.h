@@ -20,8 +20,8 @@ typedef struct himc_step_forces {
     const himc_vec3 *push;      ///< on centres of mass (N) (HIMC_SEGMENTS)
 } himc_step_forces;
 
-/// Adds the work of a step of `h` seconds that led from `before` to `after`; `art` is the
-/// articulation of `before`.
+/// Adds the work of a step of `h` seconds that led from `before`, of which spins, rotations and
+/// velocities are read, to `after`; `art` is the articulation of `before`.
 HIMC_RT void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
                                 const himc_articulation *art, const himc_step_forces *forces,
                                 const segment_states *before, const segment_states *after,

@@ -101,6 +101,8 @@ static bool start(himc_loader *loader, himc_error *error)
     pthread_attr_init(&attributes);
     pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
     pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
+    // without it the host's own, which is not allowed for this policy
+    pthread_attr_setschedparam(&attributes, &(struct sched_param){.sched_priority = 0});
     loader->running = pthread_create(&loader->thread, &attributes, help, loader) == 0;
     pthread_attr_destroy(&attributes);
     return loader->running || himc_error_set(error, "no thread to load in");

@@ -155,7 +155,8 @@ bool himc_system_same(const char *a, const char *b)
 
 int himc_system_temporary(char *path, size_t size, const char *ending)
 {
-    snprintf(path, size, "/tmp/himc-XXXXXX%s", ending);
+    const char *folder = getenv("TMPDIR");
+    snprintf(path, size, "%.200s/himc-XXXXXX%s", folder ? folder : "/tmp", ending);
     return mkstemps(path, (int)strlen(ending));
 }
 

@@ -41,6 +41,8 @@ void himc_system_go_first(void)
 
 void himc_system_give_way(void)
 {
+    // a host's real-time priority is inherited, and makes nice meaningless
+    sched_setscheduler(0, SCHED_OTHER, &(struct sched_param){.sched_priority = 0});
     setpriority(PRIO_PROCESS, 0, NICE);
 }
 
