@@ -114,10 +114,14 @@ static int groups_of(const heard *h, himc_hand hand, group *groups)
     return n;
 }
 
-static void falls_strictly(const group *g)
+// Speeds of impact are relative to the head, which still swings by some centimetres a second: a
+// contact may be that much faster than the one before, not than the second before.
+static void gets_softer(const group *g)
 {
-    for (int k = 1; k < g->count; k++)
-        TEST_ASSERT_TRUE(g->speed[k] < g->speed[k - 1]);
+    for (int k = 1; k < g->count; k++) {
+        TEST_ASSERT_TRUE(g->speed[k] < g->speed[k - 1] + 0.05);
+        TEST_ASSERT_TRUE(k < 2 || g->speed[k] < g->speed[k - 2]);
+    }
 }
 
 // both hands in turn, so that all contacts are even
@@ -147,7 +151,7 @@ static void plays_doubles(const char *mode, double rate)
             TEST_ASSERT_EQUAL_INT(2, g->count);
             worst = fmax(worst, fabs(4 * rate * (g->time[1] - g->time[0]) - 1));
             ratio += g->speed[1] / g->speed[0] / 12;
-            falls_strictly(g);
+            gets_softer(g);
         }
     }
     printf("%s, doubles at %g Hz: intervals off by %.1f %% at most, %.2f of the speed\n", mode,
@@ -178,7 +182,7 @@ static void plays_buzzes(const char *mode, const char *dynamic)
         for (int i = groups_of(&h, (himc_hand)hand, groups[hand]) - 1; i >= 0; i--) {
             const group *g = &groups[hand][i];
             TEST_ASSERT_TRUE(g->count >= 5);
-            falls_strictly(g);
+            gets_softer(g);
             for (int k = 1; k < g->count; k++)
                 TEST_ASSERT_TRUE(g->time[k] - g->time[k - 1] > 0.02 &&
                                  g->time[k] - g->time[k - 1] < 0.06);

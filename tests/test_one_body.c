@@ -96,7 +96,7 @@ static void test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand(v
     TEST_ASSERT_EQUAL_INT(2, w.heard.notes);
 }
 
-static void test_strokes_of_both_hands_that_would_meet_are_left_out_with_one_line(void)
+static void test_strokes_that_no_hand_has_room_for_are_played_with_one_line(void)
 {
     static const char *const drum[] = {"place 0.35 0.75 0.82", "place 0.35 -0.80 0.82"};
     watched w = begin_score(drum, 2, 60);
@@ -104,9 +104,14 @@ static void test_strokes_of_both_hands_that_would_meet_are_left_out_with_one_lin
         session_do(w.p, "stroke %g right legato mf normal %c", 1.5 + 1.5 * i, i ? 'b' : 'a');
         session_do(w.p, "stroke %g left legato mf normal %c", 1.5 + 1.5 * i, i ? 'a' : 'b');
     }
-    play_score(&w, 5.5, 3);
-    TEST_ASSERT_EQUAL_STRING("stroke at beat 1.5 left: given up, the hands would meet",
+    session_do(w.p, "play");
+    session_play(w.p, 5.5, &w.heard);
+    free(w.heard.strike);
+    TEST_ASSERT_EQUAL_INT(4, himc_performance_measure(w.p).played);
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 1.5 left: the hands come too near on the way",
                              w.heard.note);
+    TEST_ASSERT_EQUAL_INT(1, w.heard.notes);
+    himc_performance_free(w.p);
 }
 
 /// From the right to the far left, past the left shoulder, while the right hand is far on the right.
@@ -210,7 +215,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_hands_crossed_over_two_drums_pass_each_other);
     RUN_TEST(test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand);
-    RUN_TEST(test_strokes_of_both_hands_that_would_meet_are_left_out_with_one_line);
+    RUN_TEST(test_strokes_that_no_hand_has_room_for_are_played_with_one_line);
     RUN_TEST(test_a_tip_passes_its_shoulder_at_a_distance);
     RUN_TEST(test_hands_on_four_drums_pass_each_other);
     RUN_TEST(test_forearms_do_not_pass_through_the_back_for_drums_behind);

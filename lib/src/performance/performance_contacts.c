@@ -52,9 +52,8 @@
 #define LIFTED_SPEED 0.2    // ... or one that rises so fast (m/s)
 #define RESTING_SPEED 0.25  // a contact slower than this ...
 #define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
+#define LEAST_STICK 0.25    // of the body's stick; chosen: about its shaft without its ball
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
-// chosen: about a stick's shaft without its ball
-#define LEAST_STICK 0.25    // of the body's stick
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
 
 void himc_contacts_clear(performance_contacts *c)

@@ -393,8 +393,9 @@ static const struct {
 } avoidance[] = {{0.03, false}, {0.06, false}, {0, true}};
 #define AVOIDANCES (int)(sizeof avoidance / sizeof avoidance[0])
 
-/// Appends a stroke to its hand's plan, if the hand can play it.
-static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
+/// Appends a stroke to its hand's plan, if the hand can play it; `anyway`: although the hands would
+/// meet.
+static plan_result plan_stroke(himc_planner *planner, timed_stroke *s, bool anyway)
 {
     planner_hand *h = &planner->hand[s->stroke.hand];
     int n = h->planned_count;
@@ -422,7 +423,8 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         h->planned_count = n;
         timed_stroke beside = *s;
         bool same_place = since < ROLL_TIME && displace(planner, &beside, avoidance[0].aside);
-        if (plain < (s->reassigned ? -REASSIGNED_LACK : -SLIM_RODS) && !same_place)
+        bool meets = plain < (s->reassigned ? -REASSIGNED_LACK : -SLIM_RODS) && !same_place;
+        if (meets && !anyway)
             return MEETS;
         try_stroke(planner, same_place ? &beside : s, false);
     }
@@ -490,7 +492,7 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     take(planner, &next);
     if (is_settled(planner, &next))
         return PLANNED;
-    plan_result result = plan_stroke(planner, &next);
+    plan_result result = plan_stroke(planner, &next, false);
     *refused = next;
     return result == PLANNED ? check_following(planner, hand, refused) : result;
 }
@@ -500,9 +502,14 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
 }
 
+/// No hand can play it: a line says so. If only the hands would meet it is played all the same, with
+/// that line: to a listener a stroke left out is worse.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
     char name[64], reason[48];
+    timed_stroke anyway = *s;
+    if (result == MEETS && plan_stroke(planner, &anyway, true) == PLANNED)
+        return;
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     settle(planner, s);
