@@ -57,12 +57,8 @@ typedef struct performance_motion {
         regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
     himc_avoidance avoidance;
-    double avoided;               ///< time of its last update (s)
-    himc_shells shells;           ///< the drums at the last tick
-    himc_grip grip;               ///< at the last tick
-    himc_avoidance rehearsed;     ///< avoidance ...
-    himc_trunk_posture rehearsal; ///< ... and trunk while a plan is rehearsed
-    bool crossfade_due;           ///< joint targets change their source at the next tick
+    double avoided;     ///< time of its last update (s)
+    bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;            ///< of the ticks before and after
     himc_setpoint_course between;      ///< these ticks

@@ -9,18 +9,9 @@
 #define HIMC_PLANNER_H
 
 #include "base/quintic.h"
-#include "body/capsules.h"
 #include "himc/score.h"
 #include "capture/units.h"
 #include "plan/human.h"
-
-/// Both hands at a moment of their plans.
-typedef struct himc_moment {
-    double time;                 ///< (s)
-    double after;                ///< the moment before (s); negative: it is the first
-    himc_vec3 tip[HIMC_HANDS];   ///< (m)
-    himc_vec3 place[HIMC_HANDS]; ///< of the next touch, or the tip (m)
-} himc_moment;
 
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
@@ -28,11 +19,9 @@ typedef struct himc_planner_config {
     /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
     /// NULL: all is in reach.
     double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
-    const void *body; ///< given to `beyond`; borrowed
-    /// Gaps of the body at a moment of the plan, one moment after the other; HIMC_RT. NULL: the
-    /// hands never meet.
-    himc_clearance (*rehearse)(void *motion, const himc_moment *moment);
-    void *motion; ///< given to `rehearse`; borrowed
+    /// Least gap between hands and sticks with the tips there (m); HIMC_RT. NULL: they never meet.
+    double (*gap)(const void *body, const himc_vec3 tip[HIMC_HANDS]);
+    const void *body; ///< given to `beyond` and `gap`; borrowed
 } himc_planner_config;
 
 himc_planner_config himc_planner_default(void);

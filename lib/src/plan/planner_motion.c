@@ -5,8 +5,8 @@
 /// and extends it again from the state there, so there is one way of planning and all joins are
 /// alike. A stroke less than 80 ms away is committed: no player could take it back.
 ///
-/// Planning a stroke has a result: planned, too far away, no time to prepare it, or the hands would
-/// meet, even with its spot moved aside or after a wait. In the last three cases it is reassigned to the other hand, or given up. Only a stroke of the score is reassigned,
+/// Planning a stroke has a result: planned, too far away, or no time to prepare it. In the last two
+/// cases it is reassigned to the other hand, or given up. Only a stroke of the score is reassigned,
 /// once, and only if the other hand has nothing else within HIT_GAP and is there in time; a player
 /// would rather leave a stroke out than disturb another one. Meanwhile the other hand's own strokes
 /// are not reassigned in turn, so two hands are all that one call plans.
@@ -52,18 +52,10 @@
 #define OTHER_SPOT 10     // as a difference of log speed
 #define OTHER_GRIP 20     // as a difference of log speed
 
-#define SLIM_RODS 0.008      // (m) gaps are of rods twice as thick as slim ones (HIMC_ROD_RADIUS)
-#define REASSIGNED_LACK 0.02 // (m) of a stroke that no hand is left for; chosen: a pressed sleeve
-
-// spots that are moved, away from the other hand; chosen
-#define ROLL_TIME 0.3   // between strokes of a hand: no time to pass (s)
-#define SAME_PLACE 0.25 // from its tip, at most (m)
-#define LEAST_SIDE 0.01 // with less each hand goes to its own side (m)
-
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
-typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS } plan_result;
+typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME } plan_result;
 
 void himc_planner_motion_init(himc_planner *planner)
 {
@@ -316,7 +308,7 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
         himc_format(text, 48, "out of reach by %.2f m",
                     beyond(planner, s->stroke.hand, &s->written));
     else
-        himc_format(text, 48, result == MEETS ? "the hands would meet" : "no time to prepare it");
+        himc_format(text, 48, "no time to prepare it");
     return text;
 }
 
@@ -347,55 +339,8 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
            !himc_hand_can_follow(&s->written, &after.written);
 }
 
-/// Appends the motion of a stroke, at once or after a wait over the last spot; returns the least
-/// gap of the body on the way (m). NaN, and nothing appended, without time.
-static double try_stroke(himc_planner *planner, const timed_stroke *s, bool waits)
-{
-    planner_hand *h = &planner->hand[s->stroke.hand];
-    himc_hand_plan before = h->plan;
-    if (waits)
-        himc_hand_wait(&h->plan, before.end, true);
-    bool hurried = waits && h->plan.end + himc_hand_time(&h->plan, &s->goal) > s->goal.time;
-    if (h->planned_count == PLANNER_PLANNED || hurried || !himc_hand_strike(&h->plan, &s->goal)) {
-        h->plan = before;
-        return NAN;
-    }
-    timed_stroke *planned = &h->planned[h->planned_count++];
-    *planned = *s;
-    planned->goal = h->plan.last;
-    return himc_planner_keep_clear(planner, s->stroke.hand, before.end);
-}
-
-/// Moves the spot of a stroke on its head, away from the other hand; false if that is far.
-static bool displace(const himc_planner *planner, timed_stroke *s, double by)
-{
-    const himc_head_frame *head = &planner->drum[s->drum];
-    const himc_hand_plan *plan = &planner->hand[other_hand(s->stroke.hand)].plan;
-    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
-    himc_vec3 tip =
-        himc_head_frame_from_world(head, himc_hand_at(plan, fmin(s->goal.time, plan->end)).x);
-    double side = at.y - tip.y;
-    if (hypot(at.x - tip.x, side) > SAME_PLACE)
-        return false;
-    if (fabs(side) < LEAST_SIDE)
-        side = s->stroke.hand == HIMC_LEFT ? 1 : -1;
-    at.y += copysign(by, side);
-    keep_inside(head, &at.x, &at.y);
-    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
-    s->varied = true;
-    return true;
-}
-
-/// What is tried, in this order, before a stroke is refused because the hands would meet.
-static const struct {
-    double aside; // the spot (m)
-    bool waits;   // the hand first waits over its last spot
-} avoidance[] = {{0.03, false}, {0.06, false}, {0, true}};
-#define AVOIDANCES (int)(sizeof avoidance / sizeof avoidance[0])
-
-/// Appends a stroke to its hand's plan, if the hand can play it; `anyway`: although the hands would
-/// meet.
-static plan_result plan_stroke(himc_planner *planner, timed_stroke *s, bool anyway)
+/// Appends a stroke to its hand's plan, if the hand can play it.
+static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
     planner_hand *h = &planner->hand[s->stroke.hand];
     int n = h->planned_count;
@@ -403,39 +348,23 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s, bool anyw
         s->goal = s->written;
         s->varied = false;
     }
+    double begin = h->plan.end;
+    double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
     if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
-    double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
-    bool scored = s->index >= 0 || s->reassigned;
-    himc_hand_plan before = h->plan;
-    double gap = try_stroke(planner, s, false), plain = gap;
-    if (isnan(gap))
+    if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
         return NO_TIME;
-    for (int i = 0; i < AVOIDANCES && gap < 0 && scored; i++) {
-        timed_stroke other = *s;
-        h->plan = before;
-        h->planned_count = n;
-        if (avoidance[i].aside == 0 || displace(planner, &other, avoidance[i].aside))
-            gap = fmax(try_stroke(planner, &other, avoidance[i].waits), -1);
-    }
-    if (gap < 0 && scored) {
-        h->plan = before;
-        h->planned_count = n;
-        timed_stroke beside = *s;
-        bool same_place = since < ROLL_TIME && displace(planner, &beside, avoidance[0].aside);
-        bool meets = plain < (s->reassigned ? -REASSIGNED_LACK : -SLIM_RODS) && !same_place;
-        if (meets && !anyway)
-            return MEETS;
-        try_stroke(planner, same_place ? &beside : s, false);
-    }
-    if (gap < 0) {
+    timed_stroke *planned = &h->planned[h->planned_count++];
+    *planned = *s;
+    planned->goal = h->plan.last;
+    planned->small = is_small(planner, s, since);
+    h->drum = s->drum;
+    h->targeted = false;
+    if (!himc_planner_keep_clear(planner, s->stroke.hand, begin, s->goal.time)) {
         char name[64];
         himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
                          name_of(s, name));
     }
-    h->planned[n].small = is_small(planner, s, since);
-    h->drum = s->drum;
-    h->targeted = false;
     return PLANNED;
 }
 
@@ -451,32 +380,6 @@ static plan_result check_following(himc_planner *planner, himc_hand hand, timed_
     return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
 }
 
-static double try_wait(himc_planner *planner, himc_hand hand, double until, bool ready)
-{
-    himc_hand_plan *plan = &planner->hand[hand].plan;
-    double begin = plan->end;
-    if (!ready)
-        renew_home(planner, hand);
-    bool rests = plan->at_home;
-    himc_hand_wait(plan, until, ready);
-    return rests ? HUGE_VAL : himc_planner_keep_clear(planner, hand, begin);
-}
-
-/// Waits over the last spot if `ready`, else at home; where the other hand would be met, the other
-/// way round if that is better.
-static void wait(himc_planner *planner, himc_hand hand, double until, bool ready)
-{
-    himc_hand_plan *plan = &planner->hand[hand].plan, before = *plan;
-    double gap = try_wait(planner, hand, until, ready);
-    if (gap >= 0)
-        return;
-    *plan = before;
-    if (try_wait(planner, hand, until, !ready) >= gap)
-        return;
-    *plan = before;
-    try_wait(planner, hand, until, ready);
-}
-
 /// Plans a hand's next stroke, or a wait before it. If the result is not PLANNED, `refused` is the
 /// stroke that cannot be played: that one or the one after it.
 static plan_result plan_next(himc_planner *planner, himc_hand hand, double until,
@@ -486,13 +389,17 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     timed_stroke next;
     bool more = next_stroke(planner, hand, &next);
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
-        wait(planner, hand, until, more);
+        if (!more)
+            renew_home(planner, hand);
+        double begin = h->plan.end;
+        himc_hand_wait(&h->plan, until, more);
+        himc_planner_keep_clear(planner, hand, begin, h->plan.end);
         return PLANNED;
     }
     take(planner, &next);
     if (is_settled(planner, &next))
         return PLANNED;
-    plan_result result = plan_stroke(planner, &next, false);
+    plan_result result = plan_stroke(planner, &next);
     *refused = next;
     return result == PLANNED ? check_following(planner, hand, refused) : result;
 }
@@ -502,14 +409,9 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
 }
 
-/// No hand can play it: a line says so. If only the hands would meet it is played all the same, with
-/// that line: to a listener a stroke left out is worse.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
     char name[64], reason[48];
-    timed_stroke anyway = *s;
-    if (result == MEETS && plan_stroke(planner, &anyway, true) == PLANNED)
-        return;
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     settle(planner, s);
@@ -643,24 +545,12 @@ void himc_planner_cut_both(himc_planner *planner, double t)
         himc_planner_cut(planner, (himc_hand)hand, t);
 }
 
-/// The hand that strikes next is planned first: the other one has more time to make way.
-static void extend_both(himc_planner *planner, double until)
-{
-    double time[HIMC_HANDS] = {HUGE_VAL, HUGE_VAL};
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        timed_stroke next;
-        if (planner->hand[hand].plan.end < until && next_stroke(planner, (himc_hand)hand, &next))
-            time[hand] = next.goal.time;
-    }
-    himc_hand first = time[HIMC_RIGHT] < time[HIMC_LEFT] ? HIMC_RIGHT : HIMC_LEFT;
-    himc_planner_extend(planner, first, until);
-    himc_planner_extend(planner, other_hand(first), until);
-}
-
 void himc_planner_replan(himc_planner *planner, double t)
 {
-    himc_planner_cut_both(planner, t);
-    extend_both(planner, t + PLANNER_HORIZON);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_planner_cut(planner, (himc_hand)hand, t);
+        himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
+    }
 }
 
 void himc_planner_rebase(himc_planner *planner, double t)
@@ -785,9 +675,10 @@ void himc_planner_advance(himc_planner *planner, double t)
 {
     planner->now = fmax(planner->now, t);
     planner->begun = true;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         drop_past(&planner->hand[hand], planner->now);
-    extend_both(planner, planner->now + PLANNER_HORIZON);
+        himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
+    }
     himc_planner_notes_tell_hits(&planner->notes, planner->now);
 }
 

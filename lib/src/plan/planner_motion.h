@@ -63,9 +63,10 @@ struct himc_planner {
     planner_score score;
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
-    int hits;   ///< since the last `clear` or change of `human`
-    double now; ///< of the last advance (s)
-    bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
+    himc_hand above; ///< of the hands that passed each other last, the one that was lifted
+    int hits;        ///< since the last `clear` or change of `human`
+    double now;      ///< of the last advance (s)
+    bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 /// The tip's position when it touches a head at (x, y) (m). HIMC_RT.
@@ -87,8 +88,10 @@ HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *st
 /// reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 /// planner_clear.c: moves the hand past the other one where they would meet in what has just been
-/// planned, from `begin` (s) to the plan's end. Of hands over each other the upper one makes way. Returns the least gap of the body then (m).
-HIMC_RT double himc_planner_keep_clear(himc_planner *planner, himc_hand hand, double begin);
+/// planned, from `begin` (s) to the plan's end; the next touch is at `touch` (s). Of crossed hands
+/// the one that was lifted stays above. False if they meet nevertheless.
+HIMC_RT bool himc_planner_keep_clear(himc_planner *planner, himc_hand hand, double begin,
+                                     double touch);
 /// True if the hand reaches a stroke's spot.
 HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand,
                                   const himc_goal *goal);
