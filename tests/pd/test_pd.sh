@@ -61,7 +61,7 @@ for run in "64 64" "64 64" "1 1" "1024 1024" "64 1024" "1024 64"; do
     cp "$work/log" "$work/$name.log"
 done
 play_pd play-drum-first.pd -send "himc-test 64 1 $work/drum-first.wav"
-end=190000 # all strokes and their ringing
+end=160000 # all strokes and their ringing; later Pd rounds samples below 1e-19 to 0
 
 report sound_in_pd_equals_himc_render_bit_by_bit "$(different render pd-64-64 0 $end)"
 report sound_is_the_same_in_blocks_of_1_sample "$(different render pd-1-1 0 $end)"
