@@ -12,7 +12,7 @@ check() {
 }
 
 no_stray_whitespace() {
-    ! git grep --untracked -nIE '[[:blank:]]+$|^ *	' -- . ':!Makefile' ':!*/Makefile' ':!*.mk' ':!*.pd' ':!docs/figures/*.svg' ':!mocap' ':!tests/fuzz/corpus'
+    ! git grep --untracked -nIE '[[:blank:]]+$|^ *	' -- . ':!Makefile' ':!*/Makefile' ':!*.mk' ':!debian/rules' ':!*.pd' ':!docs/figures/*.svg' ':!mocap' ':!tests/fuzz/corpus'
 }
 prefixed_symbols() {
     nm -g --defined-only "$build/libhimc.a" | awk 'NF == 3 && $3 !~ /^(himc_|_Z.*10himc_eigen|_ZTI|_ZTS|DW\.ref\.)/ { print "no himc_ prefix: " $3; bad = 1 } END { exit bad }'
