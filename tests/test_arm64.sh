@@ -1,6 +1,7 @@
 #!/bin/sh
 # The program for arm64, run by qemu: the strikes of a score are those of this machine, digit by digit, and so is the sound.
 # `make test-arm64` runs it.
+. tests/check.sh
 : "${HIMC_BUILD:=build}"
 root=$HIMC_BUILD/arm64/debian/root/usr/lib/aarch64-linux-gnu
 work=$(mktemp -d)
@@ -15,18 +16,10 @@ render() { # render NAME COMMAND...
 render here "$HIMC_BUILD/bin/himc"
 render arm64 qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH="$root" "$HIMC_BUILD/arm64/bin/himc"
 
-failures=0
-check() { # check NAME CONDITION...
-    name=$1
-    shift
-    "$@" && echo "tests/test_arm64.sh:0:$name:PASS" || { failures=$((failures + 1)); echo "tests/test_arm64.sh:0:$name:FAIL: not so: $*"; }
-}
 check test_three_strikes_are_played [ "$(wc -l <"$work/here.csv")" = 4 ]
 check test_strikes_are_those_of_this_machine cmp "$work/here.csv" "$work/arm64.csv"
 check test_sound_is_that_of_this_machine cmp "$work/here.wav" "$work/arm64.wav"
 needed=$(LC_ALL=C aarch64-linux-gnu-readelf -d "$HIMC_BUILD"/arm64/externals/himc/*.so | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
     grep -vE '^(libc|libm|ld-linux.*)\.so\.[0-9]+$')
 check test_externals_need_the_c_library_alone [ -z "$needed" ]
-echo "-----------------------"
-echo "4 Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

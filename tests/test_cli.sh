@@ -1,5 +1,6 @@
 #!/bin/sh
 # The program from outside: what it prints, what it writes, how it refuses; real takes if present.
+. tests/check.sh
 : "${HIMC_BUILD:=build}" "${HIMC_SHARED:=../shared}"
 root=$PWD
 himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc
@@ -7,27 +8,6 @@ stroke=$(cd "$HIMC_SHARED" 2>/dev/null && pwd)/mocap/drumstroke_pearl_240hz/stro
 work=$(mktemp -d "$(cd "$HIMC_BUILD" && pwd)/cli.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-tests=0
-failures=0
-ignored=0
-
-# line NAME RESULT; prints what Unity would
-line() {
-    echo "tests/test_cli.sh:0:$1:$2"
-}
-
-# check NAME CONDITION...
-check() {
-    name=$1
-    shift
-    tests=$((tests + 1))
-    if "$@"; then
-        line "$name" PASS
-    else
-        failures=$((failures + 1))
-        line "$name" "FAIL: not so: $*"
-    fi
-}
 
 # refuses NAME TEXT ARGUMENT...: status 1, nothing on stdout, one line on stderr with TEXT in it
 refuses() {
@@ -393,6 +373,4 @@ else
     line test_real_take "IGNORE: $stroke is not there"
 fi
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures $ignored Ignored"
-[ $failures = 0 ]
+finish

@@ -1,36 +1,16 @@
 /// test_controller_terms.c: single terms of the laws against the equations: what is asked of a tip
 /// by the transpose, gains of the user axis by axis, servos at the step's end.
-#include "control/controller.h"
 #include "body/dynamics.h"
 
-#include "bodies.h"
+#include "still_controller.h"
 #include "unity.h"
 
-#include <string.h>
-
-#define LEVEL 0.8675
-
 static himc_controller controller;
-static himc_reference reference;
-static himc_body_state state;
-static himc_pose pose;
 static himc_vec3 torque[HIMC_JOINTS];
 
-// at rest, on the joint targets and the tips'
 void setUp(void)
 {
-    himc_posture posture;
-    himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, LEVEL + 0.1}, {0.46, -0.05, LEVEL + 0.2}};
-    default_skeleton(8);
-    himc_posture_init(&posture, &skeleton, LEVEL);
-    himc_posture_at(&posture, tip, &pose);
-    himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_controller_config control = himc_controller_config_default();
-    himc_controller_init(&controller, &control, &skeleton, &state);
-    memset(&reference, 0, sizeof reference);
-    memcpy(reference.posture.joint, pose.joint, sizeof pose.joint);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        reference.tip[hand].x = state.tip[hand];
+    controller = still_controller();
 }
 
 void tearDown(void)

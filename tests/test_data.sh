@@ -1,26 +1,12 @@
 #!/bin/sh
 # Data out of the program: columns of motion, the standard streams, JSON, and what is refused by name.
+. tests/check.sh
 : "${HIMC_BUILD:=build}" "${HIMC_SHARED:=../shared}"
 root=$PWD
 himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc
 work=$(mktemp -d "$(cd "$HIMC_BUILD" && pwd)/data.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-tests=0
-failures=0
-
-# check NAME CONDITION...
-check() {
-    name=$1
-    shift
-    tests=$((tests + 1))
-    if "$@"; then
-        echo "tests/test_data.sh:0:$name:PASS"
-    else
-        failures=$((failures + 1))
-        echo "tests/test_data.sh:0:$name:FAIL: not so: $*"
-    fi
-}
 
 # refuses NAME TEXT ARGUMENT...: status 1 and one line on stderr with TEXT in it
 refuses() {
@@ -116,8 +102,4 @@ done) >failed
 check test_the_commands_of_the_first_ten_minutes_run [ "$(cat failed)" = "" ]
 check test_they_leave_what_they_say [ -s start/strokes.npz -a -s start/mine.bvh -a -s start/strokes.html ]
 
-echo
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ] && echo OK
-[ $failures = 0 ]
+finish

@@ -1,25 +1,11 @@
 #!/bin/sh
 # `himc evaluate` from outside: its table, trials in pieces and on more cores, a log gone on with, what it refuses.
+. tests/check.sh
 : "${HIMC_BUILD:=build}"
 himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc
 work=$(mktemp -d "$(cd "$HIMC_BUILD" && pwd)/evaluate.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-tests=0
-failures=0
-
-# check NAME CONDITION... ; prints the line that Unity would
-check() {
-    name=$1
-    shift
-    tests=$((tests + 1))
-    if "$@"; then
-        echo "tests/test_evaluate.sh:0:$name:PASS"
-    else
-        failures=$((failures + 1))
-        echo "tests/test_evaluate.sh:0:$name:FAIL: not so: $*"
-    fi
-}
 
 # refuses NAME TEXT ARGUMENT...: status 1, nothing on stdout, one line on stderr with TEXT in it
 refuses() {
@@ -92,6 +78,4 @@ for text in 'a letter' 'a letter\nof two lines\n'; do
     check test_what_is_no_log_stays_as_it_is cmp letter.txt kept.txt
 done
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

@@ -1,25 +1,12 @@
 #!/bin/sh
 # The installed library as its users meet it: the examples of docs/examples are built with the flags of pkg-config, in C against the
 # shared library, against the static one, and in C++; they run and do what they say.
+. tests/check.sh
 : "${HIMC_BUILD:=build}" "${CC:=gcc}" "${CXX:=g++}"
 dir=$(pwd)/$HIMC_BUILD/tests/examples
-tests=0
-failures=0
 rm -rf "$dir"
 mkdir -p "$dir"
 
-# check NAME CONDITION... ; prints the line that Unity would
-check() {
-    name=$1
-    shift
-    tests=$((tests + 1))
-    if "$@"; then
-        echo "tests/test_examples.sh:0:$name:PASS"
-    else
-        failures=$((failures + 1))
-        echo "tests/test_examples.sh:0:$name:FAIL: not so: $*"
-    fi
-}
 quiet() {
     "$@" >"$dir/log" 2>&1 || { cat "$dir/log" >&2; false; }
 }
@@ -113,6 +100,4 @@ touch "$prefix/pd/himc/of-the-user"
 check test_uninstall_succeeds quiet make -s uninstall BUILD="$HIMC_BUILD" PREFIX="$prefix" PDEXTRA="$prefix/pd"
 check test_uninstall_leaves_what_is_not_ours [ "$(find "$prefix" ! -type d)" = "$prefix/pd/himc/of-the-user" ]
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

@@ -1,17 +1,11 @@
 #!/bin/sh
 # Both objects as plain C files in a program that contains Pure Data (tests/libpd/embed.c): they say what they say in Debian's Pd,
 # alone and in four instances at once, a thread each; and no symbol of ours can clash. `make test-libpd LIBPD=path` runs it.
+. tests/check.sh
 : "${HIMC_BUILD:=build}"
 here=$(realpath "$HIMC_BUILD")
 dir=$here/libpd
-failures=0 tests=0
 
-check() { # check NAME CONDITION...
-    name=$1
-    shift
-    tests=$((tests + 1))
-    "$@" && echo "tests/test_libpd.sh:0:$name:PASS" || { failures=$((failures + 1)); echo "tests/test_libpd.sh:0:$name:FAIL: not so: $*"; }
-}
 build() { # build NAME OPTION...
     kind=$1
     shift
@@ -35,6 +29,4 @@ for i in 0 1 2 3; do
     check test_instance_${i}_says_what_pd_says cmp "$dir/pd.txt" "$dir/instance.txt"
 done
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

@@ -2,16 +2,10 @@
 # What is crossed to macOS, which this machine cannot run: Mach-O for arm64, and nothing needed but the system's library and Pd's own
 # functions. `make check-macos` runs it.
 #   tests/test_macos.sh BUILD
+. tests/check.sh
 macos=$1
 export LC_ALL=C
-failures=0 tests=0
 
-check() { # check NAME CONDITION...
-    name=$1
-    shift
-    tests=$((tests + 1))
-    "$@" && echo "tests/test_macos.sh:0:$name:PASS" || { failures=$((failures + 1)); echo "tests/test_macos.sh:0:$name:FAIL: not so: $*"; }
-}
 kind() {
     llvm-objdump --macho --private-header "$1" | tail -n 1 | awk '{ print $2, $5 }'
 }
@@ -31,6 +25,4 @@ for object in himc membrane; do
     check "test_${object}_lacks_pd_alone" [ "$(grep -cx gensym "$macos/lacks.txt")/$(grep -cvxFf "$macos/pd.txt" "$macos/lacks.txt")" = 1/0 ]
 done
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

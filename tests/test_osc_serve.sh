@@ -1,25 +1,12 @@
 #!/bin/sh
 # `himc serve` and [himc~] as programs: they start, print their port, refuse in one line, end cleanly.
 # Each event is waited for, at most a minute; nothing depends on how long it takes.
+. tests/check.sh
 : "${HIMC_BUILD:=build}"
 himc=$HIMC_BUILD/bin/himc
 dir=$HIMC_BUILD/tests/osc_serve
 mkdir -p "$dir"
 ear=$((20000 + 8 * $$ % 12000)) # and 7 after it; ours, should two of these run at once, and below those that the system gives
-tests=0
-failures=0
-
-check() {
-    name=$1
-    shift
-    tests=$((tests + 1))
-    if "$@"; then
-        echo "tests/test_osc_serve.sh:0:$name:PASS"
-    else
-        failures=$((failures + 1))
-        echo "tests/test_osc_serve.sh:0:$name:FAIL: not so: $*"
-    fi
-}
 
 await() { # await FILE WORDS: until the file has a line with them
     for _ in $(seq 600); do
@@ -87,6 +74,4 @@ if command -v pd >/dev/null; then
     check test_himc_tilde_sends_poses [ "$(grep -c '^body: left-stick' "$dir/pd")" -gt 20 ]
 fi
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

@@ -2,38 +2,20 @@
 /// same bits as one that computes them in each step.
 #include "control/still_legs.h"
 
-#include "bodies.h"
+#include "still_controller.h"
 #include "unity.h"
 
-#include <string.h>
-
-#define LEVEL 0.8675
 #define STEPS 60
 #define KNEE HIMC_LEFT_LOWER_LEG
 
 static himc_controller keeps, plain;
 static himc_still_legs legs;
-static himc_reference reference;
-static himc_body_state state;
-static himc_pose pose;
 
 void setUp(void)
 {
-    himc_posture posture;
-    himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, LEVEL + 0.1}, {0.46, -0.05, LEVEL + 0.2}};
-    default_skeleton(8);
-    himc_posture_init(&posture, &skeleton, LEVEL);
-    himc_posture_at(&posture, tip, &pose);
-    himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_controller_config control = himc_controller_config_default();
-    himc_controller_init(&plain, &control, &skeleton, &state);
+    plain = keeps = still_controller();
     memset(&legs, 0, sizeof legs);
-    keeps = plain;
     keeps.legs = &legs;
-    memset(&reference, 0, sizeof reference);
-    memcpy(reference.posture.joint, pose.joint, sizeof pose.joint);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        reference.tip[hand].x = state.tip[hand];
 }
 
 void tearDown(void)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # The program and the externals for Windows, run by wine, the externals in Pd 0.53 crossed by tools/windows.sh: the strikes of a score
 # are those of this machine, digit by digit, and its sound is the same within 1e-9 of full scale. `make test-windows` runs it.
+. tests/check.sh
 : "${HIMC_BUILD:=build}"
 windows=$(realpath "$HIMC_BUILD/windows")
 here=$(realpath "$HIMC_BUILD")
@@ -8,16 +9,10 @@ patch=$PWD/tests/pd/score.pd
 work=$(mktemp -d)
 export WINEPREFIX=$windows/wine WINEDEBUG=-all
 wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
-pd= failures=0 tests=0
+pd=
 trap 'kill $pd 2>/dev/null; rm -rf "$work"' EXIT
 cd "$work" || exit 1
 
-check() { # check NAME CONDITION...
-    name=$1
-    shift
-    tests=$((tests + 1))
-    "$@" && echo "tests/test_windows.sh:0:$name:PASS" || { failures=$((failures + 1)); echo "tests/test_windows.sh:0:$name:FAIL: not so: $*"; }
-}
 himc() {
     "$wine" "$windows/bin/himc.exe" "$@"
 }
@@ -121,6 +116,4 @@ done
 check test_a_stroke_by_osc_comes_back_as_a_strike grep -q '^heard: .* right kettle ' osc.log
 [ $failures = 0 ] || tail -n 5 ./*.log
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+finish

@@ -1,26 +1,12 @@
 #!/bin/sh
 # [himc~] and [membrane~] are two binaries that share structs of the library. One of them built from sources with a changed struct:
 # they refuse each other in one line, the strokes are silent, nothing crashes.
+. tests/check.sh
 root=$(pwd)
 build=$root/${HIMC_BUILD:-build}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-tests=0
-failures=0
 
-# check NAME CONDITION... ; prints the line that Unity would
-check() {
-    name=$1
-    shift
-    tests=$((tests + 1))
-    if "$@"; then
-        echo "tests/pd/test_stale.sh:0:$name:PASS"
-    else
-        failures=$((failures + 1))
-        echo "tests/pd/test_stale.sh:0:$name:FAIL: not so: $*"
-        tail -n 5 "$work/log"
-    fi
-}
 play() { # play FOLDER: with the externals there
     timeout "${TEST_TIMEOUT:-600}" pd -nogui -nrt -stderr -noprefs -noaudio -nomidi -r 48000 -batch -path "$1" -open tests/pd/stale.pd \
         >"$work/log" 2>&1 </dev/null
@@ -44,6 +30,5 @@ check test_two_builds_end_without_a_crash [ $? = 0 ]
 check test_two_builds_refuse_each_other_in_one_line [ "$(grep -c 'himc~: \[membrane~ kettle\] is of another build (.*), allowed: both from one build: its strokes are silent' "$work/log")" = 1 ]
 check test_two_builds_play_on_a_silent_drum grep -q '^himc: strike' "$work/log"
 
-echo "-----------------------"
-echo "$tests Tests $failures Failures 0 Ignored"
-[ $failures = 0 ]
+[ $failures = 0 ] || tail -n 5 "$work/log"
+finish
