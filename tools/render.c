@@ -348,6 +348,7 @@ static bool open_all(rendering *r, const job *wanted, const char *const *value, 
         !cli_file_open(&r->motion, value[MOTION], error) ||
         !cli_file_open(&r->scene, value[SCENE], error))
         return false;
+    cli_unwatch(r->performance);
     if (r->scene.stream)
         r->record = scene_record_begin(r->performance, r->scene.stream, wanted->source,
                                        wanted->rate, wanted->channels, error);
