@@ -121,6 +121,8 @@ static void test_wrong_tables_are_refused_where_they_are_wrong(void)
         "a.csv:13: Ida:RTIP X is \"soon\", allowed: a number up to 1e8, or an empty cell for a gap");
     refused("a.csv", NEXUS_HEAD "7,0,1,2,3,1,2\n",
             "a.csv:13: Ida:RTIP has 2 of its 3 coordinates, allowed all or none");
+    refused("a.csv", "Trajectories\n100\n,,A,,,B\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,m,m,m\n",
+            "a.csv:5: markers in several units, allowed one");
     refused("a.tsv", TSV_HEAD, "a.tsv:8: no rows, allowed: a TSV with MARKER_NAMES, then numbers");
     refused("a.tsv", "NO_OF_FRAMES\t1\n1\t2\t3\n", "a.tsv:1: no MARKER_NAMES before the rows");
     refused("a.csv", "A_x_m,A_y_m,A_z_m\n1,2,3\n", "a.csv:1: no column time (s)");
