@@ -347,6 +347,11 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
+papers: $(PROGRAM) ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md
+	@HIMC_BUILD=$(BUILD) tools/papers/papers.sh >$(BUILD)/papers.md
+	@sed '/^| place |/,$$d' docs/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/papers.md
+	@echo "wrote docs/papers.md"
+
 air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
@@ -379,7 +384,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
 .PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
-        reference FORCE figures check-figures air-table manual lint format help
+        reference FORCE figures check-figures papers air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
