@@ -13,7 +13,8 @@ static const cli_call *const calls[] = {
 #ifndef _WIN32 // its workers are forks
     &cli_evaluate,
 #endif
-    &cli_info,     &cli_modes, &cli_import, &cli_share, &cli_play, &cli_serve, &cli_bench,
+    &cli_info,     &cli_modes, &cli_import, &cli_share,
+    &cli_film,     &cli_play,  &cli_serve,  &cli_bench,
 };
 #define CALLS (sizeof calls / sizeof *calls)
 
