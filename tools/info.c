@@ -137,8 +137,10 @@ static bool describe_player(himc_take *take, const himc_take_options *take_optio
 {
     himc_skeleton_config given = himc_skeleton_default();
     himc_player *player = himc_player_new(take, take_options, &given, error);
-    if (!player)
-        return false;
+    if (!player) { // the take was read nevertheless
+        tell("player: none that can play: %s", error->text);
+        return true;
+    }
     himc_drum *drum = himc_drum_new(CLI_DRUM, CLI_INCHES, 48000, error);
     if (drum) {
         himc_head_frame place = *himc_drum_head_frame(drum);

@@ -235,7 +235,7 @@ def _play_to_the_end(p: Performance) -> Rendering:
 
 
 class Take:
-    """A motion capture: BVH, C3D, TRC, Nexus CSV, Qualisys TSV, or CSV with NAME_x_m, NAME_y_m, NAME_z_m."""
+    """A motion capture: BVH, C3D, TRC, Nexus or Motive CSV, Qualisys TSV, or CSV with NAME_x_m, NAME_y_m, NAME_z_m."""
 
     def __init__(self, path: Union[str, Path], left_tip: Optional[str] = None, right_tip: Optional[str] = None,
                  up: Optional[str] = None, subject: Optional[str] = None):
