@@ -131,7 +131,7 @@ windows: deps ## program and externals for Windows, crossed by mingw-w64, in bui
 	@tools/windows.sh $(BUILD)/windows/parts
 	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
 	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
-	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool"
+	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
 windows-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=m_amd64 ARCHIVES=$(WINDOWS)/lib PDBINDIR=$(WINDOWS)/lib PDINCLUDEDIR=/usr/include/pd)
@@ -492,7 +492,7 @@ $(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
 	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
 $(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
 
-$(BUILD)/tools/share.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(BUILD)/tools/share.o $(BUILD)/tools/film.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
 $(BUILD)/tools/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(call say,link)

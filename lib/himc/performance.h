@@ -192,6 +192,9 @@ typedef struct himc_tick {
     const himc_body_state *body;  ///< all segments in the world
     himc_vec3 target[HIMC_HANDS]; ///< targets of the tips (m)
     const himc_motion_row *row;   ///< all else; NULL unless himc_performance_on_motion is in use
+    /// Rotations of the joints in the take itself, each in its parent's frame (HIMC_JOINTS);
+    /// the joint's target where the take shows none. NULL unless a take with joints plays.
+    const himc_quat *captured;
 } himc_tick;
 
 /// Calls `tick` in himc_performance_process at each task tick, beside himc_performance_on_motion;

@@ -146,6 +146,15 @@ bool himc_motion_captured(const performance_motion *m, himc_hand hand, double t,
            himc_track_captured(m->track, hand, t - m->track_start, x);
 }
 
+bool himc_motion_captured_joints(const performance_motion *m, double t, himc_posture_motion *joints)
+{
+    if (!m->track || !isfinite(m->track_start) || !himc_track_has_posture(m->track))
+        return false;
+    *joints = m->reference.posture;
+    himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start, NULL, joints);
+    return true;
+}
+
 static double take_end(const performance_motion *m)
 {
     return m->track_start + himc_track_length(m->track);

@@ -137,6 +137,10 @@ HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand han
 /// Place of that hand's tip in the take that moves it; false if none does.
 HIMC_RT bool himc_motion_captured(const performance_motion *motion, himc_hand hand, double t,
                                   himc_vec3 *x);
+/// The joints in the take that plays, their targets where it shows none; false without a take that
+/// has joints.
+HIMC_RT bool himc_motion_captured_joints(const performance_motion *motion, double t,
+                                         himc_posture_motion *joints);
 /// Gives the hands of the take to the planner.
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
