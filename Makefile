@@ -307,7 +307,7 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 
 test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
 	@tools/deps.sh tools/deps-python.txt
-	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools matplotlib; }
+	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools wheel matplotlib; }
 	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
 	@build/python/bin/python python/tests/test_himc.py
 
@@ -371,7 +371,7 @@ lint: ## formatting, warnings as errors, cppcheck, the one-way order of the room
 	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
 	@tools/lint.sh build/lint $(SOURCES)
 
-reference: ## the public headers as web pages, build/reference/index.html (doxygen); no warning is let pass
+reference: ## the public headers and the Python package as web pages, build/reference/index.html (doxygen); no warning is let pass
 	@tools/deps.sh tools/deps-reference.txt
 	@mkdir -p $(BUILD)
 	doxygen docs/Doxyfile
