@@ -131,7 +131,7 @@ windows: deps ## program and externals for Windows, crossed by mingw-w64, in bui
 	@tools/windows.sh $(BUILD)/windows/parts
 	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
 	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
-	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool"
+	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
 windows-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=m_amd64 ARCHIVES=$(WINDOWS)/lib PDBINDIR=$(WINDOWS)/lib PDINCLUDEDIR=/usr/include/pd)
@@ -147,7 +147,7 @@ check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/ma
 	@tools/macos.sh $(BUILD)/macos/parts
 	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib \
 	    CPPFLAGS="-isystem $(MACOS)/root/include" CFLAGS="-Werror -Wno-unused-command-line-argument $(CFLAGS)"
-	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
+	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/m_imp.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
 	@tests/test_macos.sh $(BUILD)/macos
 macos-here: $(PROGRAM) $(SHARED)
 	@echo "pd   $(BUILD)/externals"
@@ -307,7 +307,7 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 
 test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
 	@tools/deps.sh tools/deps-python.txt
-	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools matplotlib; }
+	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools wheel matplotlib; }
 	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
 	@build/python/bin/python python/tests/test_himc.py
 
@@ -347,6 +347,11 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
+papers: $(PROGRAM) ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md
+	@HIMC_BUILD=$(BUILD) tools/papers/papers.sh >$(BUILD)/papers.md
+	@sed '/^| place |/,$$d' docs/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/papers.md
+	@echo "wrote docs/papers.md"
+
 air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
 	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
@@ -366,7 +371,7 @@ lint: ## formatting, warnings as errors, cppcheck, the one-way order of the room
 	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
 	@tools/lint.sh build/lint $(SOURCES)
 
-reference: ## the public headers as web pages, build/reference/index.html (doxygen); no warning is let pass
+reference: ## the public headers and the Python package as web pages, build/reference/index.html (doxygen); no warning is let pass
 	@tools/deps.sh tools/deps-reference.txt
 	@mkdir -p $(BUILD)
 	doxygen docs/Doxyfile
@@ -379,7 +384,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
 .PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
-        reference FORCE figures check-figures air-table manual lint format help
+        reference FORCE figures check-figures papers air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -487,7 +492,7 @@ $(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
 	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
 $(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
 
-$(BUILD)/tools/share.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(BUILD)/tools/share.o $(BUILD)/tools/film.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
 $(BUILD)/tools/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(call say,link)

@@ -151,6 +151,24 @@ static void test_hands_on_four_drums_pass_each_other(void)
     play_score(&w, 27, 20);
 }
 
+static void test_no_joint_whips_where_a_leap_passes_under_the_shoulder(void)
+{
+    static const char *const drum[] = {"place 0.251 0.843 0.85", "place 0.832 0.287 0.85",
+                                       "place 0.763 -0.439 0.85"};
+    watched w = begin_score(drum, 3, 126);
+    session_do(w.p, "stroke 1.5 left legato mf normal b");
+    session_do(w.p, "stroke 2 left accent f normal a");
+    session_do(w.p, "stroke 2 right accent f normal c");
+    session_do(w.p, "play");
+    session_play(w.p, 2, NULL);
+    himc_performance_stats s = himc_performance_measure(w.p);
+    TEST_ASSERT_EQUAL_INT(3, s.played);
+    char text[80];
+    snprintf(text, sizeof text, "%.0f rad/s, %.0f N m", s.peak_rate, s.peak_torque);
+    TEST_ASSERT_TRUE_MESSAGE(s.peak_rate < 50 && s.peak_torque < 600, text);
+    himc_performance_free(w.p);
+}
+
 static void test_forearms_do_not_pass_through_the_back_for_drums_behind(void)
 {
     static const char *const drum[] = {"place -0.35 0.606 0.85", "place -0.35 -0.606 0.85"};
@@ -233,6 +251,7 @@ int main(void)
     RUN_TEST(test_strokes_that_no_hand_has_room_for_are_played_with_one_line);
     RUN_TEST(test_a_tip_passes_its_shoulder_at_a_distance);
     RUN_TEST(test_hands_on_four_drums_pass_each_other);
+    RUN_TEST(test_no_joint_whips_where_a_leap_passes_under_the_shoulder);
     RUN_TEST(test_forearms_do_not_pass_through_the_back_for_drums_behind);
     RUN_TEST(test_where_nothing_is_near_nothing_is_avoided);
     RUN_TEST(test_gap_of_two_capsules_is_that_of_their_nearest_points);

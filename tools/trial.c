@@ -344,7 +344,7 @@ static void compare(void *user, const himc_motion_row *row)
         compare_hand(t, row, &captured, (himc_hand)hand);
         compare_joints(t, row, &pose, (himc_hand)hand);
     }
-    trial_frame frame = {time, &pose, &captured, row, &t->body};
+    trial_frame frame = {time, &skeleton, &pose, &captured, row, &t->body};
     if (t->config->frame)
         t->config->frame(t->config->user, &frame);
 }

@@ -35,7 +35,8 @@ himc_word trial_law_name(const trial_kind *kind); ///< "none" for `ik`
 
 /// A frame of a trial, captured and simulated, in the library's coordinates.
 typedef struct trial_frame {
-    double time; ///< from the take's first frame (s)
+    double time;                   ///< from the take's first frame (s)
+    const himc_skeleton *skeleton; ///< of the captured body
     const himc_pose *captured_pose;
     const himc_body_state *captured;
     const himc_motion_row *simulated;

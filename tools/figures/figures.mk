@@ -11,7 +11,7 @@
 # KIND=svg draws for print.
 KIND   ?= png
 DRAWN  := $(BUILD)/figures
-CURVES := strokes strokes-default phases legato-accent evaluation claim measures timbre
+CURVES := strokes strokes-default elbow tip phases blows legato-accent evaluation claim measures timbre
 PLAYED := $(patsubst %,$(BUILD)/sounds/%.ogg,scale roll glissando mallets)
 FIGURES := $(patsubst %,$(DRAWN)/%.$(KIND),$(CURVES)) $(DRAWN)/spectrograms.png $(DRAWN)/improvisation.png \
            $(PLAYED) $(BUILD)/sounds/improvisation.ogg
@@ -52,6 +52,14 @@ $(DRAWN)/phases.$(KIND): SAID := right hand; printed law, gain × 1, joint limit
 $(DRAWN)/phases.$(KIND): $(RESULTS)/phases.csv tools/figures/phases.gp $(STYLE)
 	$(call draw,phases,data='$<'; said='$(SAID)')
 
+$(DRAWN)/elbow.$(KIND): SAID := legato, right arm; IK: damped least squares, 40 steps a frame
+$(DRAWN)/elbow.$(KIND): $(RESULTS)/strokes.csv tools/figures/curves.gp $(STYLE)
+	$(call draw,curves,data='$<'; said='$(SAID)'; title='Flexion of the elbow'; axis='elbow flexion (°)'; quantity='elbow_deg'; motions='captured reach')
+
+$(DRAWN)/tip.$(KIND): SAID := legato, right hand; printed law, gain × 1, joint limits on
+$(DRAWN)/tip.$(KIND): $(RESULTS)/strokes.csv tools/figures/curves.gp $(STYLE)
+	$(call draw,curves,data='$<'; said='$(SAID)'; title='Height of the drumstick'; axis='height of the tip (cm)'; quantity='tip_cm'; motions='captured id himc')
+
 # a score
 $(DRAWN)/beats.txt: tools/figures/score.awk tools/figures/legato-accent.txt
 	$(call play,awk -f $^)
@@ -62,6 +70,13 @@ $(DRAWN)/legato-accent.csv: tools/figures/legato-accent.txt $(PROGRAM)
 
 $(DRAWN)/legato-accent.$(KIND): $(DRAWN)/beats.txt $(DRAWN)/legato-accent.csv tools/figures/score.gp $(STYLE)
 	$(call draw,score,beats='$<'; motion='$(word 2,$^)')
+
+$(DRAWN)/blows.csv: tools/figures/blows.txt $(PROGRAM)
+	@mkdir -p $(@D) && echo "play $@"
+	$(Q)$(PROGRAM) render $< --channels 1 -o $(DRAWN)/blows.wav --strokes $@ --quiet >/dev/null
+
+$(DRAWN)/blows.$(KIND): $(DRAWN)/blows.csv tools/figures/blows.gp $(STYLE)
+	$(call draw,blows,strokes='$<'; sound='$(DRAWN)/blows.wav')
 
 # the drum alone
 $(DRAWN)/timbre.txt: $(BUILD)/tools/figures/timbre

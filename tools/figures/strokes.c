@@ -1,12 +1,17 @@
 /// strokes.c: captured strokes and the same strokes as the controllers play them, for figures 5 and
-/// 6(a) of Bouënard, Gibet & Wanderley 2012: `strokes follow|phases LAW GAIN FROM TO` prints a CSV
-/// table of an excerpt (s), one row for every second frame.
+/// 6(a) of Bouënard, Gibet & Wanderley 2012 and figures 2 and 3 of theirs at CASA 2009 (figure 4 of
+/// the preprint): `strokes follow|phases LAW GAIN FROM TO` prints a CSV table of an excerpt (s), one
+/// row for every second frame.
 ///
 /// `follow` plays the first trial of the evaluation, legato, with `ik`, `id` and `himc`: time (s),
 /// then for the captured motion and each controller flexion of wrist, elbow and shoulder (degrees)
-/// and heights of tip, wrist and elbow (cm), all of the right side (follow.gp). `phases` plays each
-/// nuance with `himc`: nuance, depth and height of the right tip, captured and simulated (cm)
-/// (phases.gp).
+/// and heights of tip, wrist and elbow (cm), all of the right side (follow.gp, elbow.gp, tip.gp).
+/// `phases` plays each nuance with `himc`: nuance, depth and height of the right tip, captured and
+/// simulated (cm) (phases.gp).
+///
+/// `ik` follows the captured joints, bent to the tips. The papers' inverse kinematics knows the tip
+/// alone: `reach` is that, equation (3) repeated as often as in the papers, from the captured pose
+/// at the beginning; all that is not this arm is as captured.
 ///
 /// Flexions are computed alike for all: of the elbow the angle between upper arm and forearm, of
 /// the shoulder the angle of the upper arm from hanging in the sagittal plane, of the wrist the
@@ -22,12 +27,16 @@
 #define EVERY 2 // frames for a row; chosen: 125 rows a second, finer than a pixel
 #define MOST_ROWS 1000
 #define ARM 6     // values of an arm
-#define MOTIONS 4 // captured, ik, id, himc
+#define MOTIONS 5 // captured, ik, id, himc, reach
+#define REACH (MOTIONS - 1)
+#define REACH_STEPS 40 // 10 kHz / 250 Hz, the published inner steps of a task
 
 typedef struct excerpt {
     double from, to; // (s)
     const char *nuance;
     int motion, frame, rows; // of `value`: being filled, frames so far, rows so far
+    bool reached;            // `arm` is of the frame before
+    himc_quat arm[HIMC_ARM_JOINTS];
     double time[MOST_ROWS], value[MOST_ROWS][MOTIONS][ARM];
 } excerpt;
 
@@ -53,6 +62,40 @@ static void measure_arm(const himc_body_state *body, double value[ARM])
     value[5] = 100 * origin(body, 1).z;
 }
 
+// one step of equation (3): q <- q + J+ (X_t - X)
+static void reach_step(const himc_skeleton *skeleton, himc_vec3 target, himc_pose *pose,
+                       himc_body_state *state)
+{
+    himc_arm_jacobian jacobian;
+    himc_vec3 rotation[HIMC_ARM_JOINTS];
+    double damping = himc_controller_config_default().damping;
+    himc_arm_jacobian_at(state, HAND, &jacobian);
+    himc_ik_solve(&jacobian, HIMC_SOLVER_DLS, damping, himc_vec3_sub(target, state->tip[HAND]),
+                  rotation);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(HAND, k);
+        const himc_mat3 *parent = &state->rotation[skeleton->segment[j + 1].parent];
+        himc_quat turn = himc_quat_exp(himc_mat3_apply_transposed(parent, rotation[k]));
+        pose->joint[j] = himc_quat_unit(himc_quat_mul(turn, pose->joint[j]));
+    }
+    himc_pose_to_state(skeleton, pose, NULL, state);
+}
+
+static himc_body_state reach(excerpt *e, const trial_frame *frame)
+{
+    himc_pose pose = *frame->captured_pose;
+    himc_body_state state;
+    for (int k = 0; e->reached && k < HIMC_ARM_JOINTS; k++)
+        pose.joint[himc_arm_joint(HAND, k)] = e->arm[k];
+    himc_pose_to_state(frame->skeleton, &pose, NULL, &state);
+    for (int step = 0; step < REACH_STEPS; step++)
+        reach_step(frame->skeleton, frame->captured->tip[HAND], &pose, &state);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        e->arm[k] = pose.joint[himc_arm_joint(HAND, k)];
+    e->reached = true;
+    return state;
+}
+
 static bool in_excerpt(excerpt *e, const trial_frame *frame)
 {
     return frame->time >= e->from && frame->time <= e->to && e->frame++ % EVERY == 0;
@@ -61,10 +104,12 @@ static bool in_excerpt(excerpt *e, const trial_frame *frame)
 static void keep_follow(void *user, const trial_frame *frame)
 {
     excerpt *e = user;
+    himc_body_state reached = reach(e, frame);
     if (!in_excerpt(e, frame) || e->rows == MOST_ROWS)
         return;
     e->time[e->rows] = frame->time;
     measure_arm(frame->captured, e->value[e->rows][0]);
+    measure_arm(&reached, e->value[e->rows][REACH]);
     measure_arm(frame->simulated_body, e->value[e->rows++][e->motion]);
 }
 
@@ -85,6 +130,7 @@ static bool play(trial_kind kind, double gain, void (*frame)(void *, const trial
     config.frame = frame;
     config.user = e;
     e->frame = e->rows = 0;
+    e->reached = false;
     return trial_run(&config, &result, error);
 }
 
@@ -106,8 +152,8 @@ static void print_follow(const excerpt *e, const char *const motions[MOTIONS])
 static bool follow(himc_law law, double gain, excerpt *e, himc_error *error)
 {
     static const himc_pipeline order[] = {HIMC_PIPELINE_IK, HIMC_PIPELINE_ID, HIMC_PIPELINE_HIMC};
-    static const char *const motions[MOTIONS] = {"captured", "ik", "id", "himc"};
-    for (e->motion = 1; e->motion < MOTIONS; e->motion++)
+    static const char *const motions[MOTIONS] = {"captured", "ik", "id", "himc", "reach"};
+    for (e->motion = 1; e->motion < REACH; e->motion++)
         if (!play((trial_kind){HIMC_LEGATO, order[e->motion - 1], law}, gain, keep_follow, e,
                   error))
             return false;

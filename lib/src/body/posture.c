@@ -38,9 +38,14 @@
 #define PLANE_BESIDE 0.05     // ... and outside it (m)
 // Where the wrist comes under or behind the shoulder, front and back are ambiguous for a hanging
 // elbow. Chosen: it moves backwards smoothly, before that happens.
-#define BACK_BEGINS 0.12  // forward part of the unit vector from shoulder to wrist: begins here ...
+#define BACK_BEGINS 0.5   // forward part of the unit vector from shoulder to wrist: begins here ...
 #define BACK_ENDS (-0.35) // ... and is complete here
 #define BACK_MOST 2.0     // backward part of the hanging direction, relative to its downward part
+// The forearm's roll. Chosen: the hand's while their axes of flexion agree, in every usual stroke; where
+// hand and forearm would part, the elbow's has the larger share, so no axis is lost.
+#define ROLL_AGREES 0.5 // cosine between these axes: the elbow's share begins below it ...
+#define ROLL_PARTS 1.0  // ... grows while it falls by this ...
+#define ELBOW_SHARE 1.2 // ... to this
 // The triangle. Chosen: the limits keep its angles away from 0 and pi, where rates are infinite.
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
@@ -70,6 +75,7 @@
 #define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
 #define REACHED_ABOVE 0.1  // above the level of impact (m)
 #define PROBE 1e-4         // of the moves of an arm (rad)
+#define GRIP_STEPS 60      // of himc_posture_tip_of_grip; chosen: to a millimetre in French grip
 #define BISECTIONS 40      // chosen: to 1e-12 of the distance
 
 // thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if the
@@ -237,13 +243,20 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
     a->wrist = himc_vec3_madd(a->grip, -palm, a->hand);
 }
 
+// from 0 at 0 to 1 at 1, with no acceleration at either end
+static double smooth_step(double x)
+{
+    x = fmin(fmax(x, 0), 1);
+    return x * x * x * (10 + x * (-15 + x * 6));
+}
+
 // the direction in which the elbow hangs: down, and backwards too when the wrist, in the direction
 // u from the shoulder, comes under or behind the shoulder
 static himc_vec3 downward(himc_vec3 u, double turn)
 {
     double ahead = u.x * cos(turn) + u.y * sin(turn);
-    double x = fmin(fmax((BACK_BEGINS - ahead) / (BACK_BEGINS - BACK_ENDS), 0), 1);
-    double back = BACK_MOST * x * x * x * (10 + x * (-15 + x * 6));
+    double x = (BACK_BEGINS - ahead) / (BACK_BEGINS - BACK_ENDS);
+    double back = BACK_MOST * smooth_step(x);
     return himc_vec3_make(-back * cos(turn), -back * sin(turn), -1);
 }
 
@@ -270,6 +283,14 @@ static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     return fabs(used - distance);
 }
 
+// the axis that the forearm's roll follows
+static himc_vec3 forearm_side(himc_vec3 hand, himc_vec3 elbow)
+{
+    double agree = himc_vec3_dot(hand, elbow);
+    return himc_vec3_madd(hand, ELBOW_SHARE * smooth_step((ROLL_AGREES - agree) / ROLL_PARTS),
+                          elbow);
+}
+
 static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
                          himc_pose *pose)
 {
@@ -278,10 +299,11 @@ static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 
     double missing = solve_elbow(posture, hand, &a);
     himc_vec3 upper = himc_vec3_unit(himc_vec3_sub(a.elbow, a.shoulder));
     himc_vec3 lower = himc_vec3_unit(himc_vec3_sub(a.wrist, a.elbow));
+    himc_vec3 flexion = himc_vec3_cross(lower, upper);
     himc_quat frame[HIMC_ARM_JOINTS + 1] = {
-        a.trunk, himc_quat_from_limb(upper, himc_vec3_cross(lower, upper)),
-        himc_quat_from_limb(lower, a.side), himc_quat_from_limb(a.hand, a.side),
-        himc_quat_from_limb(a.stick, a.side)};
+        a.trunk, himc_quat_from_limb(upper, flexion),
+        himc_quat_from_limb(lower, forearm_side(a.side, himc_vec3_unit(flexion))),
+        himc_quat_from_limb(a.hand, a.side), himc_quat_from_limb(a.stick, a.side)};
     double roll = (hand == HIMC_LEFT ? FRENCH_ROLL : -FRENCH_ROLL) * a.french;
     for (int k = 2; k <= HIMC_ARM_JOINTS; k++)
         frame[k] = himc_quat_mul(frame[k], himc_quat_exp(himc_vec3_make(0, 0, roll)));
@@ -432,4 +454,17 @@ himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand, hi
             missed = middle;
     }
     return himc_vec3_madd(from, reached, line);
+}
+
+// the stick turns by less than its length allows the grip to move back, so the tip moves by what the
+// grip misses until that is nothing
+himc_vec3 himc_posture_tip_of_grip(const himc_posture *posture, himc_hand hand, himc_vec3 grip)
+{
+    arm a = arm_of(posture, hand);
+    himc_vec3 tip = grip;
+    for (int i = 0; i < GRIP_STEPS; i++) {
+        solve_wrist(posture, hand, tip, &a);
+        tip = himc_vec3_add(tip, himc_vec3_sub(grip, a.grip));
+    }
+    return tip;
 }

@@ -105,6 +105,11 @@ bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strok
 /// is.
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                             himc_error *error);
+/// Exchanges the strokes with those of `other`, which does not play. The plan so far stays, and goes
+/// on as it would if these strokes had been there from the start. False, and nothing changed, if a
+/// stroke differs on which the plan so far may rest, if the tempo maps differ, or while looping or
+/// stopped.
+bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
 /// Stops, drops all strokes and goes to beat 0; moving sticks come to rest.
 void himc_planner_clear(himc_planner *planner);
 
@@ -157,6 +162,14 @@ HIMC_RT bool himc_planner_correct(himc_planner *planner, himc_hand hand, double 
 /// within 0.3 s of each other are a stream (10 Hz .. 1 kHz): the tip follows one period late and
 /// comes to rest when the stream ends. A stroke less than 0.6 s away is played first.
 HIMC_RT void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x);
+
+/// The hand lays itself down: its tip goes to x, comes to rest there at `at` (s) or as soon as it
+/// can, and stays until its next stroke or target. False, and nothing changed, if a stroke is near,
+/// the place is out of reach, or the hands would meet there.
+HIMC_RT bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x,
+                              double at);
+/// The hand goes from there to where it rests; false if a stroke takes it away anyway.
+HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
 
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.

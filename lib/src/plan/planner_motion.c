@@ -22,9 +22,10 @@
 
 // when a stroke is planned; chosen: a player cannot take back the second half of a fall, and
 // prepares no stroke more than a slow bar ahead
-#define COMMIT_TIME 0.08   // a stroke so near is not changed any more (s)
-#define PREPARED_AHEAD 3.0 // a stroke further away is not prepared yet (s)
-#define MOST_TRIES 32      // of one search; chosen: twice the strokes that can be planned
+#define COMMIT_TIME 0.08    // a stroke so near is not changed any more (s)
+#define PREPARED_AHEAD 3.0  // a stroke further away is not prepared yet (s)
+#define PREPARED_MARGIN 0.5 // by which a human may play it early, and more; chosen (s)
+#define MOST_TRIES 32       // of one search; chosen: twice the strokes that can be planned
 
 // the measured touch against the planned one; chosen: a tip bounces once within 0.12 s, and strokes
 // are rarely nearer than 0.1 s
@@ -39,7 +40,8 @@
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
-#define TARGET_STROKE 0.6   // a stroke so near is prepared, live targets are not followed (s)
+#define LIFT_TIME 0.5 // of a hand that has lain on a head, to its rest (s); chosen: without haste
+#define TARGET_STROKE 0.6 // a stroke so near is prepared, live targets are not followed (s)
 
 // of the time to the hand's next stroke, at most; chosen: contacts of a double roll are even, and a
 // buzz ends when the other hand has struck
@@ -629,6 +631,12 @@ void himc_planner_detach(himc_planner *planner, himc_hand hand)
         h->planned[i].index = -1;
 }
 
+double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
+{
+    *index = planner->score.part[hand].next + 1; // the next stroke and the one that follows it
+    return planner->hand[hand].plan.end + PREPARED_AHEAD + PREPARED_MARGIN;
+}
+
 double himc_planner_lateness(himc_planner *planner)
 {
     double late = 0;
@@ -691,9 +699,43 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
     if (stream && himc_hand_room(&h->plan))
         himc_stream_follow(&h->stream, &h->plan, t);
     else
-        himc_hand_reach(&h->plan, x);
+        himc_hand_reach(&h->plan, x, 0);
     h->targeted = true;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+}
+
+/// Whether the sticks meet with one tip there.
+static bool meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    const himc_planner_config *c = &planner->config;
+    himc_rehearsed rehearsed = {{0}};
+    himc_moment m = {.time = t, .after = -1};
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    return c->rehearse && c->rehearse(c->motion, &m, &rehearsed).sticks < 0;
+}
+
+bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
+{
+    const himc_planner_config *c = &planner->config;
+    planner_hand *h = &planner->hand[hand];
+    if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
+        (c->beyond && c->beyond(c->body, hand, x) > PLANNER_UNREACHED) ||
+        meets_at(planner, t, hand, x))
+        return false;
+    himc_planner_cut(planner, hand, t);
+    himc_hand_reach(&h->plan, x, at);
+    h->targeted = true;
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    return true;
+}
+
+bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand)
+{
+    bool lifted =
+        himc_planner_lay(planner, t, hand, himc_planner_rest_place(planner, hand), t + LIFT_TIME);
+    planner->hand[hand].targeted = false;
+    return lifted;
 }
 
 /// Drops the strokes that are past but the last, and the motion before `now`.

@@ -1,0 +1,92 @@
+#!/bin/sh
+# Links of the documentation lead somewhere; docs/papers.md has a row for each figure, table, algorithm and equation of the papers,
+# its verdicts are those of today's program, and the commands in it are there. With HIMC_LONG they run, and the numbers are compared.
+. tests/check.sh
+: "${HIMC_BUILD:=build}"
+work=$(mktemp -d "$HIMC_BUILD/docs.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+
+# FILE:TARGET of each link
+find . -name build -prune -o -name '*.md' -print | sort | while read -r file; do
+    sed '/^```/,/^```/d' "$file" | grep -oE '\]\([^) ]+\)' | sed "s|^](|$file:|; s|)\$||"
+done | grep -vE ':(https?|mailto):' >"$work/links"
+# the anchors of a file, as GitHub makes them from headings
+anchors() {
+    sed -n 's/^##* //p' "$1" | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g'
+}
+while IFS=: read -r file target; do
+    path=${target%%#*}
+    [ -n "$path" ] && path=$(dirname "$file")/$path || path=$file
+    [ -e "$path" ] || echo "$file: $target"
+    case $target in *'#'*) anchors "$path" | grep -qx -- "${target#*#}" || echo "$file: no heading $target" ;; esac
+done <"$work/links" >"$work/lost"
+check test_links_of_the_documentation_resolve [ "$(wc -l <"$work/links" | awk '{print ($1 > 50)}')$(cat "$work/lost")" = 1 ]
+
+# one NAME NUMBER a line; a 2012 figure with parts has a row for each or for all
+numbers() {
+    for i in 1 2 3; do echo "CASA figure $i"; done
+    for i in 1 2 3 4 5 6; do echo "preprint figure $i"; done
+    for i in 1 2 3 4 5a 5b 5c 5d 5e 5f 6a 6b 7 8; do echo "2012 figure $i"; done
+    for i in 1 2; do printf 'CASA equation %d\npreprint equation %d\n2012 table %d\n2012 algorithm %d\n' $i $i $i $i; done
+    for i in 1 2 3 4 5 6; do echo "2012 equation $i"; done
+}
+# places name a paper once for several equations: "CASA figure 1, equation 1" or "2012 equations 2 and 3"
+sed -n 's/^| \([^|]*\) | .*/\1/p' docs/papers.md | sed 's/; /\n/g' |
+    sed 's/^\([^ ]*\) \(.*\), equation/\1 \2\n\1 equation/; s/^\([^ ]*\) equations \([0-9]\) and /\1 equation \2\n\1 equation /' |
+    sed 's/, CASA/\nCASA/; s/, preprint/\npreprint/; s/, 2012/\n2012/' >"$work/places"
+numbers | while read -r number; do
+    grep -q "^$number\([ ,]\|$\)" "$work/places" || echo "$number"
+done >"$work/missing"
+check test_each_figure_table_and_equation_of_the_papers_has_a_row [ "$(cat "$work/missing")" = "" ]
+
+tools/papers/papers.sh >"$work/table"
+sed -n '/^| place |/,$p' docs/papers.md >"$work/documented"
+verdicts() {
+    awk -F ' [|] ' '{ print $1, $(NF - 1), $NF }' "$1"
+}
+verdicts "$work/table" >"$work/verdicts"
+check test_verdicts_of_the_papers_are_those_of_today [ "$(verdicts "$work/documented" | diff - "$work/verdicts")" = "" ]
+check test_nothing_agrees_without_a_number [ "$(awk -F ' [|] ' '$4 == "agrees" && $3 !~ /[0-9]/' "$work/documented")" = "" ]
+
+# exists COMMAND: it could be run
+exists() {
+    case $1 in
+    make\ *) ! make -n ${1#make } 2>&1 | grep 'No rule to make' ;;
+    himc\ *) "$HIMC_BUILD/bin/himc" "$(echo "$1" | cut -d ' ' -f 2)" --help ;;
+    build/tools/*) ! make -n ${1%% *} 2>&1 | grep 'No rule to make' ;;
+    build/*) [ -x "$HIMC_BUILD/${1#build/}" ] ;;
+    *) [ -x "$1" ] ;;
+    esac >"$work/said" 2>&1
+}
+sed -n 's/.* | `\(.*\)` |$/\1/p' "$work/documented" | sort -u >"$work/commands"
+while read -r command; do
+    exists "$command" || echo "$command"
+done <"$work/commands" >"$work/absent"
+check test_commands_of_the_papers_are_there [ "$(wc -l <"$work/commands" | awk '{print ($1 > 20)}')$(cat "$work/absent")" = 1 ]
+
+if [ -n "${HIMC_LONG-}" ]; then
+    if command -v doxygen >/dev/null; then
+        check test_each_public_name_has_its_comment doxygen docs/Doxyfile
+    fi
+    check test_numbers_of_the_papers_are_those_of_today cmp "$work/documented" "$work/table"
+    # strokes and phases played again; what takes hours is read
+    strokes=$HIMC_BUILD/tools/figures/strokes
+    cp docs/figures/*.csv "$work"
+    make "$strokes" >"$work/said" 2>&1
+    "$strokes" follow printed 0.333333 2.2 5 >"$work/strokes.csv"
+    "$strokes" follow computed-torque 1 2.2 5 >"$work/strokes-default.csv"
+    "$strokes" phases printed 0.333333 2 4.6 >"$work/phases.csv"
+    tools/papers/papers.sh "$work" >"$work/anew"
+    verdicts "$work/anew" >"$work/verdicts-anew"
+    check test_strokes_played_again_have_the_same_verdicts cmp "$work/verdicts" "$work/verdicts-anew"
+    # figures need gnuplot, which make figures installs
+    grep -v -e '^make build/trials' -e '^himc bench' -e '^tests/' "$work/commands" | while read -r command; do
+        case $command in
+        himc*) command="$HIMC_BUILD/bin/$(echo "$command" | sed 's|SCORE|tools/figures/blows.txt|')" ;;
+        esac
+        $command >"$work/said" 2>&1 || echo "$command"
+    done >"$work/failed"
+    check test_commands_of_the_papers_run [ "$(cat "$work/failed")" = "" ]
+fi
+
+finish
