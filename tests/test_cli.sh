@@ -72,17 +72,26 @@ version=$(sed -n 's/^#define HIMC_VERSION_[A-Z]* \([0-9]*\)$/\1/p' "$root/lib/hi
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
-    "render evaluate info modes import share play serve bench " ]
+    "render evaluate edit info modes import share film play serve bench " ]
 for call in $calls; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "allowed: render, evaluate, info, modes, import, share, play, serve, bench"
+refuses test_no_call_is_refused "allowed: render, evaluate, edit, info, modes, import, share, film, play, serve, bench"
 refuses test_unknown_call_is_refused '"drum"' drum
 refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
     render piece.txt -o x.wav --speed 2
+refuses test_film_of_another_kind_is_refused "allowed endings are .webm, .png, .glb" film a.himc -o a.mp4
+refuses test_film_of_an_odd_size_is_refused "allowed 64x64 .. 4096x4096" film a.himc -o a.webm --size 12x
+refuses test_film_from_behind_its_end_is_refused "--to 2: allowed more than 3" film a.himc -o a.webm --from 3 --to 2
+refuses test_camera_that_is_none_is_refused "--camera to: allowed stage front" film a.himc -o a.webm --camera to
+refuses test_others_need_a_scene "--compare: no --scene" render piece.txt -o x.wav --compare ik
+refuses test_unknown_others_are_refused "allowed are some of ik,id,himc,captured" \
+    render piece.txt -o x.wav --scene x.himc --compare ik,dk
+refuses test_a_score_has_nothing_captured "piece.txt is no take" \
+    render piece.txt -o x.wav --scene x.himc --compare captured
 refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q
 refuses test_option_without_value_is_refused "--rate needs a value" render piece.txt -o x.wav --rate
 red=$(printf '\033[31m')

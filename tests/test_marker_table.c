@@ -106,6 +106,59 @@ static void test_time_behind_the_markers_and_semicolons_are_read(void)
     himc_take_free(take);
 }
 
+static void test_decimal_commas_are_read_where_no_comma_parts_the_cells(void)
+{
+    himc_take *take = read("a.csv", "time_s;A_x_m;A_y_m;A_z_m\n0;0,25;-1,5e-1;1\n0,01;0;0;1\n");
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100, himc_take_rate(take));
+    check_point(take, 0, 0, 0.25, -0.15, 1);
+    himc_take_free(take);
+    refused(
+        "a.csv", "time_s;A_x_m;A_y_m;A_z_m\n0;1.250,25;0;1\n0,01;0;0;1\n",
+        "a.csv:2: A X is \"1.250,25\", allowed: a number up to 1e8, or an empty cell for a gap");
+}
+
+#define MOTIVE_FIRST                                                        \
+    "Format Version,1.23,Take Name,\"a, b\",Capture Frame Rate,240.000000," \
+    "Export Frame Rate,120.000000,Rotation Type,Quaternion,Length Units,Centimeters\n\n"
+#define MOTIVE_HEAD                                                                       \
+    MOTIVE_FIRST                                                                          \
+    ",Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,"            \
+    "Rigid Body,Rigid Body,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,"        \
+    "Marker,Marker,Marker\n"                                                              \
+    ",Name,Stick,Stick,Stick,Stick,Stick,Stick,Stick,Stick,\"S:1\",\"S:1\",\"S:1\","      \
+    "\"S:1\",\"S:1\",\"S:1\"\n,ID,1,1,1,1,1,1,1,1,2,2,2,2,2,2\n"                          \
+    ",,Rotation,Rotation,Rotation,Rotation,Position,Position,Position,Mean Marker Error," \
+    "Position,Position,Position,Position,Position,Position\n"                             \
+    "Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,,X,Y,Z,X,Y,Z\n"
+
+static void test_motive_is_read_with_the_markers_as_measured(void)
+{
+    himc_take *take = read("a.csv", MOTIVE_HEAD "3,0.025,0,0,0,1,10,20,30,0.1,7,7,7,1,2,3\n"
+                                                "4,0.033,,,,,,,,,7,7,7,4,5,6\n");
+    TEST_ASSERT_EQUAL_INT(2, himc_take_points(take));
+    TEST_ASSERT_EQUAL_STRING("Stick", himc_take_point_name(take, 0));
+    TEST_ASSERT_EQUAL_STRING("S:1", himc_take_point_name(take, 1));
+    TEST_ASSERT_EQUAL_DOUBLE(120, himc_take_rate(take));
+    TEST_ASSERT_EQUAL_INT(3, himc_take_first_frame(take));
+    TEST_ASSERT_EQUAL_INT(1, himc_take_missing(take, 0));
+    // y is up in the file, z here
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.2, himc_take_point(take, 0, 0).z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.05, himc_take_point(take, 1, 1).z);
+    himc_take_free(take);
+}
+
+static void test_motive_without_markers_or_header_is_refused(void)
+{
+    refused("a.csv", MOTIVE_FIRST "0,0.0,1,2,3\n",
+            "a.csv:3: no line Frame,Time (Seconds),X,Y,Z,..., allowed: an export with a header");
+    refused("a.csv",
+            MOTIVE_FIRST ",,Bone,Bone,Bone\n,,A,A,A\n,,Rotation,Rotation,Rotation\n"
+                         "Frame,Time (Seconds),X,Y,Z\n0,0,1,2,3\n",
+            "a.csv:6: no columns Position, allowed: an export with markers, rigid bodies or bones");
+    refused("a.csv", "Format Version,1.23,Export Frame Rate,fast\n",
+            "a.csv:1: Export Frame Rate is no number (Hz)");
+}
+
 static void test_wrong_tables_are_refused_where_they_are_wrong(void)
 {
     refused("a.csv", "Devices\n1000\n",
@@ -180,6 +233,9 @@ int main(void)
     RUN_TEST(test_qualisys_tables_are_read_with_and_without_frame_and_time);
     RUN_TEST(test_columns_of_any_csv_are_found_by_name_and_unit);
     RUN_TEST(test_time_behind_the_markers_and_semicolons_are_read);
+    RUN_TEST(test_decimal_commas_are_read_where_no_comma_parts_the_cells);
+    RUN_TEST(test_motive_is_read_with_the_markers_as_measured);
+    RUN_TEST(test_motive_without_markers_or_header_is_refused);
     RUN_TEST(test_wrong_tables_are_refused_where_they_are_wrong);
     RUN_TEST(test_captures_that_are_not_read_are_refused_with_the_way_out);
     RUN_TEST(test_tables_are_not_written);

@@ -138,6 +138,20 @@ static void test_numbers_are_read_like_strtod(void)
     }
 }
 
+static void test_several_tabs_between_the_values_of_the_header_are_read(void)
+{
+    himc_take *take = read_text(
+        "PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n"
+        "  100.0\t\t  100.0\t\t    1\t\t     1\t\t mm\nFrame#\tTime\tA\n\t\tX1\tY1\tZ1\n"
+        "1\t0,00\t1,5\t2\t3\n",
+        "a.trc", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_DOUBLE(100, himc_take_rate(take));
+    TEST_ASSERT_EQUAL_INT(1, himc_take_points(take));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0015, fabs(himc_take_point(take, 0, 0).x));
+    himc_take_free(take);
+}
+
 static void refuses(int frames, int markers, const char *units, const char *rows,
                     const char *reason)
 {
@@ -179,8 +193,8 @@ static void test_bad_cells_are_refused_with_line_and_marker(void)
             "a.trc:7: B X is \"inf\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1e999\t2\t3\n",
             "a.trc:7: B X is \"1e999\", allowed: a number up to 1e8, or an empty cell for a gap");
-    refuses(1, 2, "mm", "1\t0\t1\t2\t3\t0,5\t2\t3\n",
-            "a.trc:7: B X is \"0,5\", allowed: a number up to 1e8, or an empty cell for a gap");
+    refuses(1, 2, "mm", "1\t0\t1\t2\t3\t0,5,1\t2\t3\n",
+            "a.trc:7: B X is \"0,5,1\", allowed: a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t\t3\t1\t2\t3\n",
             "a.trc:7: A has 2 of its 3 coordinates, allowed all or none");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1\t2\t3\t4\n",
@@ -257,6 +271,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_y_up_millimetres_become_z_up_metres);
+    RUN_TEST(test_several_tabs_between_the_values_of_the_header_are_read);
     RUN_TEST(test_commas_semicolons_and_line_ends_of_all_systems_are_read);
     RUN_TEST(test_centimetres_and_metres_are_scaled);
     RUN_TEST(test_empty_cells_nan_and_missing_cells_at_the_end_are_gaps);

@@ -2,8 +2,9 @@
 ///
 /// As in the published comparison (trial.c), the player's measures, mean posture and joint limits
 /// come from the take; the posture regression, the null-space target of `himc`, from the other takes
-/// that show a whole arm: leave one out. Without such a take it is the built-in one, and a line says
-/// so. Under the `printed` law `himc` has no null-space target, as published. A capture has its own
+/// that show a whole arm and strike a head if this one does, or do not either: leave one out. (An arm
+/// that reaches teaches a stroke worse than the built-in one, learned from strokes.) Without such a
+/// take it is the built-in one, and a line says so. Under the `printed` law `himc` has no null-space target, as published. A capture has its own
 /// noise and its own body, so none is added, and a take is played once.
 #include "evaluate_take.h"
 #include "control/posture_regression.h"
@@ -61,12 +62,24 @@ typedef struct opened {
     himc_player *player;
     himc_take_options options;
     char name[HIMC_HANDS][64];
+    bool strikes; ///< strikes are seen in the tips
 } opened;
 
 static void close_take(opened *o)
 {
     himc_player_free(o->player);
     himc_take_free(o->take);
+}
+
+static bool find_strikes(opened *o, himc_error *error)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    int count = 0;
+    if (!himc_take_tips(o->take, &o->options, tips, error))
+        return false;
+    free(himc_take_find_strikes(o->take, tips, &count));
+    o->strikes = count > 0;
+    return true;
 }
 
 static bool open_take(const own_takes *own, int file, opened *o, himc_error *error)
@@ -83,7 +96,7 @@ static bool open_take(const own_takes *own, int file, opened *o, himc_error *err
     himc_take_free(o->take); // the tips decide where the take faces
     o->take = himc_take_load(own->path[file], &o->options, error);
     o->player = o->take ? himc_player_new(o->take, &o->options, &given, error) : NULL;
-    if (o->player)
+    if (o->player && find_strikes(o, error))
         return true;
     close_take(o);
     return himc_error_prefix(error, "%s", own->path[file]);
@@ -95,9 +108,15 @@ static bool shows_arm(const himc_player *player, int hand)
            himc_player_known_arm(player, (himc_hand)hand) == HIMC_ARM_JOINTS;
 }
 
-/// Learns from the other takes that show a whole arm. `learned` false without one.
-static bool learn_from_others(const own_takes *own, int unseen, himc_posture_regression *regression,
-                              bool *learned, himc_error *error)
+static bool shows_any_arm(const himc_player *player)
+{
+    return shows_arm(player, HIMC_LEFT) || shows_arm(player, HIMC_RIGHT);
+}
+
+/// Learns from the other takes that show a whole arm, of strokes if `strikes`, else of other motion.
+/// `learned` false without one.
+static bool learn_from_others(const own_takes *own, int unseen, bool strikes,
+                              himc_posture_regression *regression, bool *learned, himc_error *error)
 {
     opened other[LEARNED];
     himc_skeleton skeleton[LEARNED];
@@ -110,7 +129,7 @@ static bool learn_from_others(const own_takes *own, int unseen, himc_posture_reg
             continue;
         good = open_take(own, i, o, error);
         const himc_player *p = good ? o->player : NULL;
-        if (!p || (!shows_arm(p, HIMC_LEFT) && !shows_arm(p, HIMC_RIGHT))) {
+        if (!p || !shows_any_arm(p) || o->strikes != strikes) {
             if (p)
                 close_take(o);
             continue;
@@ -139,9 +158,9 @@ static bool use_others(himc_performance *p, const own_takes *own, int file, cons
     himc_posture_regression regression;
     himc_skeleton skeleton;
     *learned = false;
-    if (!shows_arm(o->player, HIMC_LEFT) && !shows_arm(o->player, HIMC_RIGHT))
+    if (!shows_any_arm(o->player))
         return true; // this player's means are not known
-    if (!learn_from_others(own, file, &regression, learned, error))
+    if (!learn_from_others(own, file, o->strikes, &regression, learned, error))
         return false;
     if (!*learned)
         return true;
@@ -367,9 +386,10 @@ bool evaluate_takes(const char *const *path, int count, const himc_take_options 
         draw(&own, figure);
     for (int i = 0; good && i < count; i++)
         if (!own.result[i * KINDS + KINDS - 1].learned)
-            cli_say("%s: no other take shows a whole arm, and this one; himc has its own posture "
-                    "instead of one learned from them\n",
-                    path[i]);
+            cli_say(
+                "%s: its arm or that of another take of the same kind, with strokes or without, is "
+                "not wholly shown; himc has its built-in posture, not one learned from them\n",
+                path[i]);
     free(own.result);
     return good;
 }

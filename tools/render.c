@@ -20,12 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
-#define CELL_SECONDS 0.2
-#define TAIL_SECONDS 8.0
-#define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest
-#define SILENCE 1e-4     // of the peak: 80 dB
-#define HEARD_BY_TWO 2   // channels, one for each ear
+#define HEARD_BY_TWO 2 // channels, one for each ear
 #define BLOCK_MAX CLI_BLOCK
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
@@ -39,6 +34,7 @@ enum {
     MOTION,
     COLUMNS,
     SCENE,
+    COMPARE,
     MODE,
     LAW,
     SOLVER,
@@ -60,6 +56,8 @@ static const cli_option options[] = {
     {"columns", 0, "LIST",
      "what is in it: groups like tips,torques,energy, or all; help lists them"},
     {"scene", 0, "F.himc", "a recording for himc-viewer --play: motion, drums, strikes, sound"},
+    {"compare", 0, "MODES",
+     "in the scene also what others make of it: some of ik,id,himc, and captured, the take itself"},
     {"mode", 0, "mode", "control pipeline (himc)"},
     {"law", 0, "law", "inverse dynamics (computed-torque)"},
     {"solver", 0, "solver", "inverse kinematics (dls)"},
@@ -86,17 +84,46 @@ typedef struct rendering {
     scene_record *record; ///< NULL without --scene
     SNDFILE *sound;
     int channels;
-    bool done;     ///< the performer has come to rest
     int failed;    ///< errno of the first write that did not arrive
     bool too_long; ///< for a WAV file
-    uint64_t samples, done_at;
-    double peak, cell_peak; ///< of the sound so far, of the cell under way
+    cli_ending ending;
 } rendering;
 
 /// Samples of a channel that a WAV file can hold.
 static double room(int channels)
 {
     return WAV_SAMPLES / channels;
+}
+
+// what is compared, in this order, and whether a list "ik,id" has it
+static const char *const others[] = {"ik", "id", "himc", "captured"};
+enum { CAPTURED = 3, OTHERS };
+
+static bool lists(const char *list, const char *word)
+{
+    size_t length = strlen(word);
+    for (const char *at = list; at; at = strchr(at, ',')) {
+        at += *at == ',';
+        if (!strncmp(at, word, length) && (!at[length] || at[length] == ','))
+            return true;
+    }
+    return false;
+}
+
+static bool check_compare(const char *list, const char *scene, const char *source,
+                          himc_error *error)
+{
+    size_t known = 0, words = 1;
+    for (const char *at = list; (at = strchr(at, ',')); at++)
+        words++;
+    for (int i = 0; i < OTHERS; i++)
+        known += lists(list, others[i]);
+    if (known != words)
+        return himc_error_set(error, "--compare %s: allowed are some of ik,id,himc,captured", list);
+    if (!scene)
+        return himc_error_set(error, "--compare: no --scene F.himc given");
+    return cli_is_take(source) || !lists(list, others[CAPTURED]) ||
+           himc_error_set(error, "--compare captured: %s is no take", source);
 }
 
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
@@ -115,6 +142,8 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
     if (value[COLUMNS] && !value[MOTION])
         return himc_error_set(error, "--columns: no --motion F given");
+    if (value[COMPARE] && !check_compare(value[COMPARE], value[SCENE], out->source, error))
+        return false;
     for (int i = 0; i < FILES; i++)
         for (int k = i + 1; k < FILES; k++)
             if (cli_same_file(files[i], files[k]))
@@ -140,10 +169,10 @@ static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, him
     double beat = score->stroke_count ? score->strokes[score->stroke_count - 1].beat : 0;
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
     himc_score_free(score);
-    if (seconds + TAIL_SECONDS > room(wanted->channels) / wanted->rate)
+    if (seconds + CLI_TAIL > room(wanted->channels) / wanted->rate)
         return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %d Hz: %.0f s",
                               wanted->source, seconds, wanted->rate,
-                              room(wanted->channels) / wanted->rate - TAIL_SECONDS);
+                              room(wanted->channels) / wanted->rate - CLI_TAIL);
     return true;
 }
 
@@ -236,9 +265,10 @@ static void take_events(rendering *r)
             render_stroke_row(r->strokes.stream, &event.strike);
         else if (event.kind == HIMC_EVENT_NOTE) {
             clear_progress();
-            cli_say("note: %s\n", event.text);
+            if (r->sound)
+                cli_say("note: %s\n", event.text);
         } else if (event.kind == HIMC_EVENT_DONE)
-            r->done = true;
+            r->ending.done = true;
     }
 }
 
@@ -255,34 +285,21 @@ static void play_block(rendering *r, int n)
 {
     float out[HEARD_BY_TWO * BLOCK_MAX];
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
-    r->cell_peak = fmax(r->cell_peak, cli_mix(r->performance, r->samples, n, r->channels, out));
+    r->ending.cell_peak =
+        fmax(r->ending.cell_peak, cli_mix(r->performance, r->ending.samples, n, r->channels, out));
     errno = 0;
-    if (sf_writef_float(r->sound, out, n) != n)
+    if (r->sound && sf_writef_float(r->sound, out, n) != n)
         r->failed = errno ? errno : EIO;
-    r->samples += (uint64_t)n;
+    r->ending.samples += (uint64_t)n;
     take_events(r);
     if (r->record)
-        scene_record_block(r->record, out, n);
-}
-
-/// Called where a cell ends: true if nothing more can be heard.
-static bool is_over(rendering *r, int rate)
-{
-    r->peak = fmax(r->peak, r->cell_peak);
-    bool silent = r->cell_peak <= SILENCE * r->peak;
-    r->cell_peak = 0;
-    if (!r->done)
-        return false;
-    if (!r->done_at)
-        r->done_at = r->samples;
-    double since = (double)(r->samples - r->done_at) / rate;
-    return (silent && since >= REST_SECONDS) || since >= TAIL_SECONDS;
+        scene_record_block(r->record, r->channels ? out : NULL, n);
 }
 
 /// Plays to the end; returns how long it took (s).
 static double play(rendering *r, const job *wanted)
 {
-    int cell = (int)lround(CELL_SECONDS * wanted->rate);
+    int cell = (int)lround(CLI_CELL * wanted->rate);
     double start = cli_now();
     do {
         for (int left = cell; left > 0 && !r->failed;) {
@@ -290,9 +307,9 @@ static double play(rendering *r, const job *wanted)
             play_block(r, n);
             left -= n;
         }
-        r->too_long = (double)(r->samples + (uint64_t)cell) > room(r->channels);
-        show_progress((double)r->samples / wanted->rate, cli_now() - start);
-    } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
+        r->too_long = (double)(r->ending.samples + (uint64_t)cell) > room(r->channels);
+        show_progress((double)r->ending.samples / wanted->rate, cli_now() - start);
+    } while (!cli_is_over(&r->ending, wanted->rate) && !r->failed && !r->too_long);
     double elapsed = cli_now() - start;
     clear_progress();
     return elapsed;
@@ -334,24 +351,81 @@ static void close_all(rendering *r)
     himc_performance_free(r->performance);
 }
 
-static bool open_all(rendering *r, const job *wanted, const char *const *value, himc_error *error)
+static bool open_performance(rendering *r, const job *wanted, himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
     config.sample_rate = wanted->rate;
     if (config.physics_rate > wanted->rate)
         config.physics_rate = wanted->rate;
-    r->channels = wanted->channels;
     r->performance = himc_performance_new(&config, error);
-    if (!r->performance || !prepare(r->performance, wanted, error) ||
-        !open_sound(r, value[OUT], wanted, error) ||
+    if (!r->performance || !prepare(r->performance, wanted, error))
+        return false;
+    cli_unwatch(r->performance);
+    return true;
+}
+
+static bool open_record(rendering *r, const job *wanted, FILE *stream, const char *name,
+                        bool captured, himc_error *error)
+{
+    scene_record_config config = {.performance = r->performance,
+                                  .stream = stream,
+                                  .source = wanted->source,
+                                  .name = name ? name : "himc",
+                                  .rate = wanted->rate,
+                                  .channels = r->channels,
+                                  .captured = captured};
+    r->record = scene_record_begin(&config, error);
+    himc_performance_on_tick(r->performance, r->record ? scene_record_tick : NULL, r->record);
+    return r->record != NULL;
+}
+
+// plays the same once more by another pipeline, as long, into the scene of `r`
+static bool play_other(rendering *r, const job *wanted, const char *mode, himc_error *error)
+{
+    rendering other = {0};
+    FILE *file = tmpfile();
+    bool good = file || himc_error_set(error, "no temporary file: %s", strerror(errno));
+    good = good && open_performance(&other, wanted, error) &&
+           cli_tell(other.performance, "mode", mode, error) &&
+           open_record(&other, wanted, file, mode, false, error);
+    if (good) {
+        himc_performance_on_motion(other.performance, take_row, &other);
+        while (other.ending.samples < r->ending.samples) {
+            uint64_t left = r->ending.samples - other.ending.samples;
+            play_block(&other, left < (uint64_t)wanted->block ? (int)left : wanted->block);
+        }
+        good = scene_record_end(other.record, error);
+        other.record = NULL;
+    }
+    if (good)
+        scene_record_more(r->record, file);
+    close_all(&other);
+    if (file)
+        fclose(file);
+    return good;
+}
+
+static bool compare(rendering *r, const job *wanted, himc_error *error)
+{
+    const char *const *value = wanted->arguments->value, *own = value[MODE] ? value[MODE] : "himc";
+    for (int i = 0; value[COMPARE] && i < CAPTURED; i++)
+        if (lists(value[COMPARE], others[i]) && strcmp(others[i], own) != 0 &&
+            !play_other(r, wanted, others[i], error))
+            return false;
+    return true;
+}
+
+static bool open_all(rendering *r, const job *wanted, const char *const *value, himc_error *error)
+{
+    r->channels = wanted->channels;
+    if (!open_performance(r, wanted, error) || !open_sound(r, value[OUT], wanted, error) ||
         !cli_file_open(&r->strokes, value[STROKES], error) ||
         !cli_file_open(&r->motion, value[MOTION], error) ||
         !cli_file_open(&r->scene, value[SCENE], error))
         return false;
-    if (r->scene.stream)
-        r->record = scene_record_begin(r->performance, r->scene.stream, wanted->source,
-                                       wanted->rate, wanted->channels, error);
-    if (r->scene.stream && !r->record)
+    const char *compare = value[COMPARE];
+    if (r->scene.stream && !open_record(r, wanted, r->scene.stream, value[MODE],
+                                        compare && lists(compare, others[CAPTURED]), error))
         return false;
     if (r->strokes.stream)
         render_stroke_header(r->strokes.stream);
@@ -381,9 +455,9 @@ static int run(const cli_arguments *arguments)
         close_all(&r);
         return cli_fail(&cli_render, "%s", error.text);
     }
-    double elapsed = play(&r, &wanted), seconds = (double)r.samples / wanted.rate;
+    double elapsed = play(&r, &wanted), seconds = (double)r.ending.samples / wanted.rate;
     himc_performance_stats stats = himc_performance_measure(r.performance);
-    bool good = keep_files(&r, &error),
+    bool good = compare(&r, &wanted, &error) && keep_files(&r, &error),
          piped = r.wav.standard || r.strokes.standard || r.motion.standard;
     close_all(&r);
     if (!good)

@@ -40,9 +40,7 @@ typedef struct head_frame {
 } head_frame;
 
 struct scene_writer {
-    FILE *stream;
-    int columns, channels;
-    const scene_column *column;
+    scene_config config;
     int32_t *row; // (ROWS, columns)
     int rows;
     double start, period, last; // of the rows that wait (s)
@@ -101,7 +99,7 @@ static void put_float(bytes *b, float value)
 static void write_all(scene_writer *s, const void *from, size_t size)
 {
     errno = 0;
-    if (!s->trouble && fwrite(from, 1, size, s->stream) != size)
+    if (!s->trouble && fwrite(from, 1, size, s->config.stream) != size)
         s->trouble = errno ? errno : EIO;
 }
 
@@ -206,14 +204,16 @@ static void write_rows(scene_writer *s)
     put_double(&s->chunk, s->start);
     put_double(&s->chunk, s->period);
     put_number(&s->chunk, (uint32_t)s->rows, 4);
-    for (int i = 0; i < s->columns; i++)
-        put_column(&s->chunk, s->row + i, s->rows, s->columns);
+    for (int i = 0; i < s->config.columns; i++)
+        put_column(&s->chunk, s->row + i, s->rows, s->config.columns);
     write_packed(s, "rows", &s->chunk);
     s->rows = 0;
 }
 
 static int32_t rounded(double value, double step)
 {
+    if (isnan(value)) // what a pipeline does not have
+        return 0;
     return (int32_t)fmax(-INT32_MAX, fmin(INT32_MAX, nearbyint(value / step)));
 }
 
@@ -225,9 +225,9 @@ void scene_row(scene_writer *s, double time, const double *value)
         s->start = time;
     if (s->rows == 1)
         s->period = time - s->start;
-    for (int i = 0; i < s->columns; i++)
-        s->row[(size_t)s->rows * (size_t)s->columns + (size_t)i] =
-            rounded(value[i], s->column[i].step);
+    int32_t *row = s->row + (size_t)s->rows * (size_t)s->config.columns;
+    for (int i = 0; i < s->config.columns; i++)
+        row[i] = rounded(value[i], s->config.column[i].step);
     s->last = time;
     s->rows++;
 }
@@ -305,11 +305,13 @@ static sf_count_t sound_tell(void *user)
     return (sf_count_t)((bytes *)user)->at;
 }
 
-static bool open_sound(scene_writer *s, int rate, himc_error *error)
+static bool open_sound(scene_writer *s, himc_error *error)
 {
+    int rate = s->config.rate;
     SF_VIRTUAL_IO memory = {sound_size, sound_seek, sound_read, sound_write, sound_tell};
-    SF_INFO info = {
-        .samplerate = rate, .channels = s->channels, .format = SF_FORMAT_OGG | SF_FORMAT_VORBIS};
+    SF_INFO info = {.samplerate = rate,
+                    .channels = s->config.channels,
+                    .format = SF_FORMAT_OGG | SF_FORMAT_VORBIS};
     double quality = VORBIS_QUALITY;
     if (!sf_format_check(&info)) // a libsndfile without Vorbis
         info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
@@ -329,6 +331,23 @@ void scene_sound(scene_writer *s, const float *frames, int n)
 
 // --- the whole
 
+void scene_more(scene_writer *s, FILE *stream)
+{
+    bytes all = {0};
+    unsigned char *at;
+    write_rows(s);
+    rewind(stream);
+    while ((at = grow(&all, 65536))) {
+        size_t got = fread(at, 1, 65536, stream);
+        if (!got)
+            break;
+        all.size += got;
+    }
+    all.failed |= ferror(stream) != 0;
+    write_chunk(s, "more", &all);
+    free(all.data);
+}
+
 static void free_writer(scene_writer *s)
 {
     if (s->file)
@@ -340,55 +359,61 @@ static void free_writer(scene_writer *s)
     free(s);
 }
 
-static void begin(scene_writer *s, int rate)
+static void begin(scene_writer *s)
 {
+    const scene_config *c = &s->config;
     bytes names = {0};
-    for (int i = 0; i < s->columns; i++) {
+    for (int i = 0; i < c->columns; i++) {
         char one[96];
-        int length = snprintf(one, sizeof one, "%s[\"%s\",%g]", i ? "," : "", s->column[i].name,
-                              s->column[i].step);
+        int length = snprintf(one, sizeof one, "%s[\"%s\",%g]", i ? "," : "", c->column[i].name,
+                              c->column[i].step);
         put(&names, one, (size_t)length);
     }
     put(&names, "", 1);
-    write_all(s, "himcscn\x01", 8);
-    scene_event(s,
-                "\"event\":\"scene\",\"time\":0,\"version\":%d,\"program\":\"himc %s\","
-                "\"sound\":%d,\"channels\":%d,\"columns\":[%s]",
-                SCENE_VERSION, himc_version(), rate, s->channels,
-                names.failed ? "" : (char *)names.data);
+    if (!c->bare)
+        write_all(s, "himcscn\x01", 8);
+    scene_event(
+        s,
+        "\"event\":\"scene\",\"time\":0,\"version\":%d,\"program\":\"himc %s\",\"name\":\"%s\","
+        "\"sound\":%d,\"channels\":%d,\"columns\":[%s]",
+        SCENE_VERSION, himc_version(), c->name, c->rate, c->channels,
+        names.failed ? "" : (char *)names.data);
     free(names.data);
 }
 
-scene_writer *scene_open(FILE *stream, const scene_column *columns, int count, int rate,
-                         int channels, himc_error *error)
+scene_writer *scene_open(const scene_config *config, himc_error *error)
 {
     scene_writer *s = calloc(1, sizeof *s);
-    int32_t *row = s ? malloc(sizeof *row * ROWS * (size_t)count) : NULL;
+    int32_t *row = s ? malloc(sizeof *row * ROWS * (size_t)config->columns) : NULL;
     if (!row) {
         free(s);
         himc_error_set(error, "out of memory");
         return NULL;
     }
-    s->stream = stream;
-    s->column = columns;
-    s->columns = count;
-    s->channels = channels;
+    s->config = *config;
     s->row = row;
-    if (!open_sound(s, rate, error)) {
+    if (config->channels && !open_sound(s, error)) {
         free_writer(s);
         return NULL;
     }
-    begin(s, rate);
+    begin(s);
     return s;
+}
+
+void scene_flush(scene_writer *s)
+{
+    write_rows(s);
+    write_heads(s);
 }
 
 bool scene_close(scene_writer *s, himc_error *error)
 {
-    write_rows(s);
-    write_heads(s);
-    sf_close(s->file);
-    s->file = NULL;
-    write_chunk(s, "snd ", &s->sound);
+    scene_flush(s);
+    if (s->file) {
+        sf_close(s->file);
+        s->file = NULL;
+        write_chunk(s, "snd ", &s->sound);
+    }
     int trouble = s->trouble;
     free_writer(s);
     return !trouble || himc_error_set(error, "the scene cannot be written: %s", strerror(trouble));

@@ -19,10 +19,20 @@ typedef struct scene_column {
 /// A scene under way. Opaque.
 typedef struct scene_writer scene_writer;
 
-/// Begins a scene in `stream` (binary, borrowed until scene_close) with sound of `rate` (Hz) and
-/// 1 or 2 `channels`. The columns are borrowed as well. NULL with the reason.
-scene_writer *scene_open(FILE *stream, const scene_column *columns, int count, int rate,
-                         int channels, himc_error *error);
+/// What a scene is made of; all borrowed until scene_close.
+typedef struct scene_config {
+    FILE *stream;     ///< binary
+    const char *name; ///< of what plays, in letters and digits
+    const scene_column *column;
+    int columns;
+    int rate, channels; ///< of the sound (Hz; 0 channels: none, 1 or 2)
+    bool bare;          ///< only the chunks after the file's first eight bytes
+} scene_config;
+
+/// Begins a scene. NULL with the reason.
+scene_writer *scene_open(const scene_config *config, himc_error *error);
+/// Writes what waits, but no sound, for a reader that takes the chunks while they are made.
+void scene_flush(scene_writer *scene);
 /// Adds an event: a JSON object without its braces (printf format). Call scene_text for what came
 /// from elsewhere.
 void scene_event(scene_writer *scene, const char *format, ...)
@@ -35,6 +45,8 @@ void scene_row(scene_writer *scene, double time, const double *value);
 /// Adds the amplitudes (m) of a head's first `modes` (1 .. 64) modes at `time` (s); `drum` is the
 /// number that its event "drum" gives.
 void scene_head(scene_writer *scene, int drum, double time, const double *amplitude, int modes);
+/// Adds a whole scene without sound, from the beginning of `stream`: the same piece played by others.
+void scene_more(scene_writer *scene, FILE *stream);
 /// Adds `n` (1 .. 8192) frames of sound, channels interleaved.
 void scene_sound(scene_writer *scene, const float *frames, int n);
 /// Writes what waits and frees the writer. False with the reason if anything could not be written.

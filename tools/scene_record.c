@@ -10,6 +10,7 @@
 #include "himc/membrane.h"
 #include "scene.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,13 +18,15 @@
 enum {
     TARGET = 3 * HIMC_JOINTS, // columns
     FORCE = TARGET + 3 * HIMC_HANDS,
-    COLUMNS = FORCE + HIMC_HANDS,
+    TORQUE = FORCE + HIMC_HANDS,
+    COLUMNS = TORQUE + 3 * HIMC_JOINTS,
     MODES = 64 // of a head, as many as are sent over OSC
 };
 // chosen: at the mallets, 1 m from the joints, well below 0.01 mm; and as fine as anyone looks
 #define ROTATION_STEP 1e-6 // (rad)
 #define TARGET_STEP 1e-5   // (m)
 #define FORCE_STEP 0.01    // (N)
+#define TORQUE_STEP 0.02   // (N m)
 #define HEAD_HZ 33.0       // as subscriptions have it
 #define STILL 1e-8         // (m) a head that moves less is at rest; chosen: far below a pixel
 // (m) measures this near are those of the same body; chosen: in hard blows joints give way by some
@@ -33,6 +36,9 @@ enum {
 struct scene_record {
     himc_performance *performance;
     scene_writer *scene;
+    FILE *captured_file; // the scene of the take itself
+    scene_writer *captured;
+    int captured_rows;
     scene_column column[COLUMNS];
     himc_vec3 origin[HIMC_SEGMENTS], tip[HIMC_HANDS]; // measures of the body that was told
     unsigned told[HIMC_DRUMS];                        // revision of each drum, plus 1
@@ -62,6 +68,9 @@ static void name_columns(scene_column *column)
                  himc_hand_name((himc_hand)i));
         column[FORCE + i].step = FORCE_STEP;
     }
+    for (int i = 0; i < COLUMNS - TORQUE; i++)
+        name_column(&column[TORQUE + i], himc_joint_name(i / 3), "_torque", (char)('x' + i % 3),
+                    "n_m", TORQUE_STEP);
 }
 
 // --- the body
@@ -110,12 +119,31 @@ static void tell_body(scene_record *r, double time)
     used += (size_t)snprintf(text + used, sizeof text - used, "],\"tips\":[");
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         used += put_point(text + used, sizeof text - used, hand ? "," : "", r->tip[hand]);
-    scene_event(r->scene, "\"event\":\"body\",\"time\":%.6f,\"segments\":[%s]", time, text);
+    for (int i = 0; i < 2; i++)
+        if (i ? r->captured : r->scene)
+            scene_event(i ? r->captured : r->scene,
+                        "\"event\":\"body\",\"time\":%.6f,\"segments\":[%s]", time, text);
 }
 
-static void on_tick(void *user, const himc_tick *tick)
+static double component(himc_vec3 v, int i)
 {
-    scene_record *r = user;
+    return i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
+}
+
+// a row of the take itself: its joints, and the targets it was tracked by
+static void captured_row(scene_record *r, const himc_tick *tick)
+{
+    double value[COLUMNS] = {0};
+    for (int i = 0; i < FORCE; i++)
+        value[i] = component(
+            i < TARGET ? himc_quat_log(tick->captured[i / 3]) : tick->target[(i - TARGET) / 3], i);
+    scene_row(r->captured, tick->time, value);
+    r->captured_rows++;
+}
+
+void scene_record_tick(void *record, const himc_tick *tick)
+{
+    scene_record *r = record;
     const himc_body_state *b = tick->body;
     bool changed = differs(&r->origin[0], b->origin[0]);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
@@ -125,18 +153,20 @@ static void on_tick(void *user, const himc_tick *tick)
             differs(&r->tip[hand], in_frame(b, himc_stick_segment((himc_hand)hand), b->tip[hand]));
     if (changed)
         tell_body(r, tick->time);
+    if (r->captured && tick->captured)
+        captured_row(r, tick);
 }
 
 void scene_record_row(void *record, const himc_motion_row *row)
 {
     scene_record *r = record;
     double value[COLUMNS];
-    for (int i = 0; i < FORCE; i++) {
-        const himc_vec3 *v = i < TARGET ? &row->joint[i / 3] : &row->target[(i - TARGET) / 3];
-        value[i] = i % 3 == 0 ? v->x : i % 3 == 1 ? v->y : v->z;
-    }
+    for (int i = 0; i < FORCE; i++)
+        value[i] = component(i < TARGET ? row->joint[i / 3] : row->target[(i - TARGET) / 3], i);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         value[FORCE + hand] = row->force[hand];
+    for (int i = 0; i < COLUMNS - TORQUE; i++)
+        value[TORQUE + i] = component(row->torque[i / 3], i);
     scene_row(r->scene, row->time, value);
 }
 
@@ -234,7 +264,8 @@ void scene_record_block(scene_record *r, const float *frames, int n)
     }
     if (heads)
         r->next_head = time + 1 / HEAD_HZ;
-    scene_sound(r->scene, frames, n);
+    if (frames)
+        scene_sound(r->scene, frames, n);
 }
 
 // --- the whole
@@ -248,8 +279,29 @@ static void tell_score(scene_record *r, const char *source)
                 scene_text(text, sizeof text, source), listed(r));
 }
 
-scene_record *scene_record_begin(himc_performance *performance, FILE *stream, const char *source,
-                                 int rate, int channels, himc_error *error)
+static scene_writer *open_scene(scene_record *r, const scene_record_config *c, himc_error *error)
+{
+    scene_config scene = {.stream = c->stream,
+                          .name = c->name,
+                          .column = r->column,
+                          .columns = COLUMNS,
+                          .rate = c->rate,
+                          .channels = c->channels,
+                          .bare = c->bare};
+    return scene_open(&scene, error);
+}
+
+static bool open_captured(scene_record *r, himc_error *error)
+{
+    r->captured_file = tmpfile();
+    scene_record_config own = {.stream = r->captured_file, .name = "captured"};
+    if (!r->captured_file)
+        return himc_error_set(error, "no temporary file: %s", strerror(errno));
+    r->captured = open_scene(r, &own, error);
+    return r->captured != NULL;
+}
+
+scene_record *scene_record_begin(const scene_record_config *config, himc_error *error)
 {
     scene_record *r = calloc(1, sizeof *r);
     if (!r) {
@@ -257,25 +309,46 @@ scene_record *scene_record_begin(himc_performance *performance, FILE *stream, co
         return NULL;
     }
     name_columns(r->column);
-    r->performance = performance;
-    r->scene = scene_open(stream, r->column, COLUMNS, rate, channels, error);
-    if (!r->scene) {
-        free(r);
+    r->performance = config->performance;
+    r->scene = open_scene(r, config, error);
+    if (!r->scene || (config->captured && !open_captured(r, error))) {
+        scene_record_end(r, NULL);
         return NULL;
     }
-    tell_score(r, source);
-    himc_performance_on_tick(performance, on_tick, r);
+    tell_score(r, config->source);
     return r;
+}
+
+void scene_record_flush(scene_record *r)
+{
+    scene_flush(r->scene);
+}
+
+void scene_record_more(scene_record *r, FILE *stream)
+{
+    scene_more(r->scene, stream);
+}
+
+static bool end_captured(scene_record *r, himc_error *error)
+{
+    bool good = !r->captured || scene_close(r->captured, error);
+    if (good && r->captured_rows)
+        scene_more(r->scene, r->captured_file);
+    if (r->captured_file)
+        fclose(r->captured_file);
+    return good;
 }
 
 bool scene_record_end(scene_record *r, himc_error *error)
 {
     if (!r)
         return true;
-    double time = himc_performance_measure(r->performance).seconds;
-    himc_performance_on_tick(r->performance, NULL, NULL);
-    scene_event(r->scene, "\"event\":\"end\",\"time\":%.6f", time);
-    bool good = scene_close(r->scene, error);
+    bool good = end_captured(r, error);
+    if (r->scene) {
+        scene_event(r->scene, "\"event\":\"end\",\"time\":%.6f",
+                    himc_performance_measure(r->performance).seconds);
+        good &= scene_close(r->scene, error);
+    }
     free(r->lines);
     free(r);
     return good;

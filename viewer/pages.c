@@ -36,9 +36,14 @@
     SCRIPT(FILE, playback)                                                 \
     SCRIPT(FILE, sound)                                                    \
     SCRIPT(FILE, worklet)                                                  \
+    SCRIPT(FILE, spectrum)                                                 \
     SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \
+    SCRIPT(FILE, film)                                                     \
+    SCRIPT(FILE, webm)                                                     \
+    SCRIPT(FILE, gltf)                                                     \
+    FILE(export, "/export.js", "text/javascript", "viewer/page/export.js") \
     FILE(skeleton, "/skeleton.js", "text/javascript", MADE "/skeleton.js") \
     FILE(three, "/three.js", "text/javascript", THREE_JS "/three.module.js")
 

@@ -6,6 +6,7 @@ answers. What the viewer must do in real time is in realtime.py.
 
 import base64
 import csv
+import json
 import os
 import random
 import shutil
@@ -596,6 +597,175 @@ def test_sound_is_the_clock_of_a_playback():
     )
     assert tracks == 1, "a film without sound"
     return f"{off:.2f} ms"
+
+
+def test_others_are_shown_over_and_beside_the_performer():
+    """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
+    others = os.path.join(MADE, "others.himc")
+    command = [HIMC, "render", FOUR_SCORE, "-o", os.path.join(MADE, "others.wav")]
+    subprocess.run([*command, "--scene", others, "--compare", "ik", "--quiet"], check=True)
+    with open(others, "rb") as file:
+        scene = base64.b64encode(file.read()).decode()
+    said = browser.run(
+        """
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0)), done = arguments[1];
+        return viewer.play(bytes, "others.himc").then(() => {
+            const { playback: p, performers, drums, actions } = viewer, told = {};
+            viewer.held = true;
+            const far = (a, b) => Math.max(...a.map((v, i) => Math.hypot(...v.map((x, k) => x - b[i][k]))));
+            p.play(false), p.seek(2600), viewer.step(0, false);
+            const here = () => [...performers.values()].filter(q => q.group.visible);
+            const own = q => {
+                const scene = p.scenes.find(s => s.name === q.key), pose = scene.pose(p.at / 1000, new Float64Array(140));
+                return Array.from({ length: 20 }, (_, i) => [...pose.subarray(7 * i, 7 * i + 3)]);
+            };
+            const off = q => far(own(q), q.points().slice(0, 20).map(v => q.group.worldToLocal(v).toArray()));
+            told.over = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
+            told.apart = far(own(here()[0]), own(here()[1]));
+            told.drums = drums.size;
+            p.play(true);
+            for (let i = 0; i < 12; i++) viewer.step(20, false);
+            p.play(false);
+            told.colors = here().map(q => q.trails[1].points.at(-1).color.getHexString());
+            actions.compare("side"), viewer.step(0, false), viewer.step(0, false);
+            told.beside = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
+            told.both = drums.size;
+            actions.compare(""), viewer.step(0, false);
+            told.alone = here().length;
+            viewer.resume();
+            return told;
+        });
+        """,
+        scene,
+    )
+    for how in ("over", "beside"):
+        assert [p[0] for p in said[how]] == ["himc", "ik"], said
+        assert all(p[2] < 1e-6 for p in said[how]), said
+    assert [p[3] for p in said["over"]] == [False, True] and not any(p[3] for p in said["beside"]), said
+    assert said["over"][0][1] == said["over"][1][1] == 0 and said["drums"] == 4, said
+    assert abs(said["beside"][0][1] - said["beside"][1][1]) > 1 and said["both"] == 8, said
+    assert said["apart"] > 1e-4 and said["alone"] == 1 and len(said["colors"]) == 2, said
+    return f"{1000 * said['apart']:.1f} mm apart"
+
+
+def made_by_film(ending, *options):
+    out = os.path.join(MADE, "made." + ending)
+    command = [HIMC, "film", FOUR, "-o", out, "--size", "96x64", *options]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if "without three.js" in done.stderr:
+        raise report.Ignored("himc was built without three.js")
+    assert done.returncode == 0, done.stderr
+    with open(out, "rb") as file:
+        return file.read()
+
+
+def test_a_film_has_all_its_pictures_and_the_sound_in_step():
+    """The browser's own reader of films, and where the first stroke is heard in it."""
+    film = made_by_film("webm", "--from", "1", "--to", "2.2", "--fps", "10")
+    assert film.count(b"V_VP9") + film.count(b"V_VP8") == 1 and film.count(b"A_OPUS") == 1
+    said = browser.run(
+        """
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0)),
+            video = document.createElement("video");
+        video.src = URL.createObjectURL(new Blob([bytes], { type: "video/webm" }));
+        video.muted = true;
+        const event = name => new Promise((done, fail) => ((video["on" + name] = done), (video.onerror = fail)));
+        return event("loadeddata").then(async () => {
+            const told = { size: [video.videoWidth, video.videoHeight], seconds: video.duration };
+            video.currentTime = 1.1;
+            await event("seeked");
+            told.at = video.currentTime;
+            const sound = await new OfflineAudioContext(2, 1, 48000).decodeAudioData(bytes.buffer.slice(0)),
+                loud = (list, from) => list.findIndex((x, i) => i > from && Math.abs(x) > 0.02) / 48000;
+            told.heard = loud(sound.getChannelData(0), 0);
+            return told;
+        });
+        """,
+        base64.b64encode(film).decode(),
+    )
+    loud = browser.run(
+        """
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
+        return viewer.readScene(bytes, "a").then(scene => viewer.sound.load(scene.sounds, 48000)).then(b =>
+            b.getChannelData(0).findIndex((x, i) => i > 48000 && Math.abs(x) > 0.02) / 48000 - 1);
+        """,
+        base64.b64encode(open(FOUR, "rb").read()).decode(),
+    )
+    assert said["size"] == [96, 64] and abs(said["seconds"] - 1.2) < 0.03, said
+    assert abs(said["at"] - 1.1) < 1e-6 and abs(said["heard"] - loud) < 0.02, (said, loud)
+    return f"sound {1000 * (said['heard'] - loud):.1f} ms off"
+
+
+def test_a_still_is_a_picture_of_that_size():
+    still = made_by_film("png", "--at", "2", "--camera", "hands")
+    assert still[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", still[16:24]) == (96, 64)
+
+
+def matrix(node, rotation=None):
+    """Of a glTF node, by rows."""
+    if "matrix" in node:
+        return [[node["matrix"][4 * c + r] for c in range(4)] for r in range(4)]
+    x, y, z, w = rotation or node.get("rotation", [0, 0, 0, 1])
+    at = node.get("translation", [0, 0, 0])
+    turned = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return [[*turned[r], at[r]] for r in range(3)] + [[0, 0, 0, 1]]
+
+
+def times(a, b):
+    return [[sum(a[r][k] * b[k][c] for k in range(4)) for c in range(4)] for r in range(4)]
+
+
+def test_the_figure_as_gltf_moves_as_on_the_page():
+    data = made_by_film("glb")
+    magic, version, size, length, kind = struct.unpack_from("<IIIII", data)
+    assert (magic, version, size, kind) == (0x46546C67, 2, len(data), 0x4E4F534A)
+    gltf = json.loads(data[20 : 20 + length])
+    binary = data[28 + length :]
+    assert len(binary) == gltf["buffers"][0]["byteLength"]
+    for accessor in gltf["accessors"]:
+        view = gltf["bufferViews"][accessor["bufferView"]]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}[accessor["type"]]
+        width *= 2 if accessor["componentType"] == 5123 else 4
+        assert width * accessor["count"] == view["byteLength"] and view["byteOffset"] % 4 == 0
+    animation, frame = gltf["animations"][0], 120  # 2 s
+    turned = {}
+    for channel in animation["channels"]:
+        accessor = gltf["accessors"][animation["samplers"][channel["sampler"]]["output"]]
+        start = gltf["bufferViews"][accessor["bufferView"]]["byteOffset"] + 16 * frame
+        turned[channel["target"]["node"]] = struct.unpack_from("<4f", binary, start)
+    assert len(turned) == 19 and gltf["skins"][0]["joints"][0] == 1
+    where = {}
+
+    def walk(index, above):
+        node = gltf["nodes"][index]
+        own = times(above, matrix(node, turned.get(index)))
+        where[node.get("name")] = own
+        for child in node.get("children", []):
+            walk(child, own)
+
+    walk(0, [[float(r == c) for c in range(4)] for r in range(4)])
+    there = browser.run(
+        """
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
+        return viewer.readScene(bytes, "a").then(scene => [...scene.pose(2, new Float64Array(140))]);
+        """,
+        base64.b64encode(open(FOUR, "rb").read()).decode(),
+    )
+    names = [n["name"] for n in gltf["nodes"][1:21]]
+    worst = max(
+        abs(a - b)
+        for i, name in enumerate(names)
+        # y up: (x, y, z) of himc is (x, z, -y) there
+        for a, b in zip(
+            (where[name][0][3], -where[name][2][3], where[name][1][3]), there[7 * i : 7 * i + 3]
+        )
+    )
+    assert worst < 1e-5, worst
+    return f"joints within {1e6 * worst:.1f} µm, {len(data) / 1e6:.1f} MB"
 
 
 # Where the audio thread meets the first loud sample of a playback, against the picture's time (ms)

@@ -27,7 +27,8 @@ def render(*options):
 def scene(name="one.himc", *options):
     if not os.path.exists(path(name)):
         done = render(
-            "--scene", path(name), "--motion", path("m.csv"), "--strokes", path("s.csv"), *options
+            "--scene", path(name), "--motion", path("m.csv"), "--strokes", path("s.csv"),
+            "--columns", "usual,torques", *options
         )
         assert done.returncode == 0, done.stderr
     with open(path(name), "rb") as file:
@@ -100,6 +101,46 @@ def test_block_size_changes_nothing_but_the_looks_at_the_heads():
     one, other = scene(), scene("other.himc", "--block", "1000")
     assert one.rows == other.rows and one.of("strike") == other.of("strike")
     assert one.of("body") == other.of("body") and one.of("beat") == other.of("beat")
+
+
+def test_others_and_the_take_itself_are_in_the_scene():
+    """The take is what this program played, so its joints are those of that playing."""
+    with open(path("two.txt"), "w") as file:
+        file.write("stroke 1 left accent f;\nstroke 2 right legato mf;\n")
+    for source, *options in (
+        [path("two.txt"), "--set", f"record {path('two.bvh')}", "--scene", path("played.himc")],
+        [path("two.bvh"), "--scene", path("others.himc"), "--compare", "himc,ik,captured"],
+    ):
+        command = [HIMC, "render", source, "-o", path("two.wav"), *options]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    with open(path("played.himc"), "rb") as file:
+        played = Scene(file.read())
+    with open(path("others.himc"), "rb") as file:
+        one = Scene(file.read())
+    ik, captured = one.more
+    assert [s.of("scene")[0]["name"] for s in (one, ik, captured)] == ["himc", "ik", "captured"]
+    assert len(ik.rows) == len(one.rows) == len(captured.rows)
+    assert not ik.sound and not captured.sound and not captured.of("strike")
+    names = [name for name, _ in one.of("scene")[0]["columns"]]
+    joints = [i + 1 for i, name in enumerate(names) if name.endswith("_rad")]
+    struck = [s.of("strike")[0]["time"] for s in (played, one)]
+    # a frame of the take lies up to half a row beside a row; 0.05 rad: a whole row beside it
+    off = round(250 * (struck[1] - struck[0]))
+    worst = max(
+        abs(captured.rows[i + off][c] - played.rows[i][c]) for i in range(100, 500) for c in joints
+    )
+    assert worst < 0.04, worst
+    return f"within {worst:.4f} rad"
+
+
+def test_a_film_without_a_browser_is_refused_in_one_line():
+    scene()
+    lacking = dict(os.environ, HIMC_BROWSER="/nowhere")
+    command = [HIMC, "film", path("one.himc"), "-o", path("film.webm")]
+    done = subprocess.run(command, capture_output=True, text=True, env=lacking)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1, done
+    assert "Debian: " in done.stderr and not os.path.exists(path("film.webm")), done.stderr
 
 
 def test_a_file_that_is_named_twice_is_refused():

@@ -8,7 +8,7 @@ import zlib
 class Scene:
     def __init__(self, data):
         assert data[:8] == b"himcscn\x01", data[:8]
-        self.size, self.events, self.rows, self.heads, self.sound = {}, [], [], [], b""
+        self.size, self.events, self.rows, self.heads, self.more, self.sound = {}, [], [], [], [], b""
         at = 8
         while at < len(data):
             kind, size = data[at : at + 4].decode(), struct.unpack_from("<I", data, at + 4)[0]
@@ -21,6 +21,8 @@ class Scene:
                 self.rows += self.read_rows(zlib.decompress(body))
             elif kind == "head":
                 self.heads += self.read_heads(zlib.decompress(body))
+            elif kind == "more":
+                self.more.append(Scene(body))
             elif kind == "snd ":
                 self.sound += body
             at += 8 + size

@@ -9,6 +9,8 @@ const presets = {
     front: [[0.3, 0, 0.68], 0, 0.16, 2.9],
     side: [[0.32, 0, 0.68], -1.5708, 0.1, 2.75],
     top: [[0.45, 0, 0.8], -0.001, 1.45, 2.6],
+    hands: [[0.45, 0, 0.95], -0.55, 0.42, 0.95],
+    head: [[0.7, 0, 0.85], -0.45, 0.3, 1.15],
 };
 
 const NEAREST = 0.2, // from the target (m)
@@ -19,6 +21,8 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)");
 export class View {
     constructor(canvas) {
         this.points = () => []; // what a double click may look at (m)
+        this.chosen = () => {}; // a click
+        this.follow = () => null; // where the camera of that name looks now (m)
         this.camera = new THREE.PerspectiveCamera(38, 1, 0.03, 80);
         this.camera.up.set(0, 0, 1);
         this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
@@ -27,16 +31,18 @@ export class View {
         this.spread = 0; // half the width of the group of performers (m)
         this.pointers = new Map();
         this.preset("stage");
-        this.copy();
+        this.settle();
         const on = (name, f) => canvas.addEventListener(name, f, { passive: false });
         on(
             "pointerdown",
             e => (
                 canvas.setPointerCapture(e.pointerId),
+                (this.pressed = [e.clientX, e.clientY]),
                 this.pointers.set(e.pointerId, [e.clientX, e.clientY])
             ),
         );
         on("pointermove", e => this.drag(e));
+        on("pointerup", e => this.still(e) && this.chosen(e));
         for (const name of ["pointerup", "pointercancel"])
             on(name, e => this.pointers.delete(e.pointerId));
         on("wheel", e => (e.preventDefault(), this.zoom(Math.exp(0.0012 * e.deltaY), e)));
@@ -44,7 +50,8 @@ export class View {
         on("contextmenu", e => e.preventDefault());
     }
 
-    copy() {
+    // goes at once where it is going to
+    settle() {
         Object.assign(this.now, { ...this.goal, target: this.goal.target.clone() });
     }
 
@@ -64,6 +71,7 @@ export class View {
             });
             this.goal.target.set(...target);
             if (this.spread) this.goal.target.x += 0.35 * this.spread;
+            if (this.follow(name)) this.goal.distance = distance * narrow;
         }
         return this.name === name;
     }
@@ -87,18 +95,30 @@ export class View {
         this.leave();
     }
 
-    focus(e) {
+    // a click, not a drag
+    still(e) {
+        return Math.hypot(e.clientX - this.pressed[0], e.clientY - this.pressed[1]) < 4;
+    }
+
+    // which of the points is under the pointer; -1: none
+    nearest(points, e) {
         const [x, y] = this.screen(e),
-            off = p => {
+            off = points.map(p => {
                 const q = p.clone().project(this.camera);
                 return Math.abs(q.z) > 1
                     ? Infinity
                     : Math.hypot(((q.x - x) * innerWidth) / 2, ((q.y - y) * innerHeight) / 2);
-            },
-            nearest = this.points().sort((a, b) => off(a) - off(b))[0];
-        if (!nearest || off(nearest) > PICK) return;
+            }),
+            least = Math.min(...off);
+        return least > PICK ? -1 : off.indexOf(least);
+    }
+
+    focus(e) {
+        const points = this.points(),
+            i = this.nearest(points, e);
+        if (i < 0) return;
         this.leave();
-        this.goal.target.copy(nearest);
+        this.goal.target.copy(points[i]);
         this.goal.distance = Math.min(this.goal.distance, CLOSE_UP);
     }
 
@@ -154,6 +174,8 @@ export class View {
         const eye = this.name === "eye" && performer && performer.group.visible;
         if (performer) performer.figure.showHead(!eye);
         if (eye) return this.look(performer);
+        const followed = this.follow(this.name);
+        if (followed) this.goal.target.copy(followed);
         if (this.camera.fov !== 38) ((this.camera.fov = 38), this.camera.updateProjectionMatrix());
         const k = calm.matches ? 1 : 1 - Math.exp(-dt / 120),
             n = this.now,

@@ -209,6 +209,7 @@ export class Drum {
             (this.to = new Float32Array(MODES)),
             (this.now = new Float32Array(MODES)));
         this.fromTime = this.toTime = 0;
+        this.mark = -Infinity; // the last strike, by the clock of marks (ms)
         this.heard = this.struck = 0; // amplitudes, a strike (ms)
         this.excursion = 0; // largest displacement of the head now, not exaggerated (m)
         this.setPlace(usualPlace);

@@ -420,6 +420,32 @@ export class Figure {
         });
     }
 
+    // in one transparent colour, or as ever
+    ghost(color) {
+        this.glass ??= [true, false].map(
+            skinning =>
+                new THREE.MeshStandardMaterial({
+                    skinning,
+                    transparent: true,
+                    opacity: 0.2,
+                    depthWrite: false,
+                    polygonOffset: true, // behind a surface in the same place
+                    polygonOffsetFactor: 2,
+                    polygonOffsetUnits: 2,
+                    roughness: 0.9,
+                    emissiveIntensity: 0.35,
+                }),
+        );
+        if (color)
+            for (const glass of this.glass) (glass.color.copy(rgb(color)), glass.emissive.copy(rgb(color)));
+        this.group.traverse(part => {
+            if (!part.isMesh) return;
+            part.own ??= part.material;
+            part.material = color ? this.glass[part.isSkinnedMesh ? 0 : 1] : part.own;
+            part.castShadow = !color;
+        });
+    }
+
     // hidden for the camera of the performer's eye
     showHead(yes) {
         for (const mesh of this.headMeshes) mesh.visible = yes;

@@ -12,6 +12,9 @@ import { readScene } from "./scene.js";
 import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
+import { Exporter } from "./export.js";
+import { HANDS, bone } from "./body.js";
+import { segments } from "./skeleton.js";
 
 const canvas = document.getElementById("stage"),
     stage = new Stage(canvas),
@@ -26,8 +29,11 @@ const PERFORMERS = 16, // as many as himc-viewer keeps
     DRUMS = 32,
     ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
     LIFT = 0.08, // of the picture over the timeline, of the window's height
+    TALL = 0.17, // with all lanes
+    SLOW = 0.02, // speed for a look at a head; the slowest
     SECOND = 1000; // over which frames are counted (ms)
-const shown = { targets: false, trails: true, forces: true, marks: true, drums: true };
+const shown = { targets: false, trails: true, errors: false, forces: false, marks: false, drums: true };
+const GHOSTS = { captured: "#f4efe2", ik: "#ff9a5c", id: "#5cb8ff", himc: "#7ddc9a" }; // chosen
 const numbers = { fps: 0, script: 0, latency: null, render: 0 };
 const clock = () => performance.timeOrigin + performance.now(); // himc-viewer's clock too (ms)
 const latencies = [],
@@ -35,10 +41,22 @@ const latencies = [],
     frames = []; // when they were drawn (ms)
 let exaggeration = 8, // of a head's motion; chosen: seen from the stage, and no wilder than a film's
     playback = null,
+    stream = null,
     waiting = [];
 
 const actions = {
-    camera: name => view.preset(name) && panel.camera(name),
+    camera(name) {
+        if (!view.preset(name)) return;
+        panel.camera(name);
+        // the head is seen to move when it moves slowly
+        if (name === "head" && playback && playback.speed > SLOW) playback.setSpeed(SLOW);
+    },
+    select: joint => panel.timeline.select(joint),
+    lanes() {
+        if (!playback) return;
+        panel.tall(panel.timeline.more());
+        setLift(document.body.classList.contains("tall") ? TALL : LIFT);
+    },
     frameAll: () => actions.camera(view.name && view.name !== "eye" ? view.name : "stage"),
     orbit: (x, y) => view.orbit(x, y),
     show: (what, yes) => (
@@ -50,6 +68,16 @@ const actions = {
     ),
     picture: () => recorder.picture(),
     film: () => attempt(() => recorder.toggleFilm()),
+    export(kind) {
+        if (!playback) return;
+        if (exporter.running) return void (exporter.stopped = true);
+        const [from, to] = playback.span,
+            tell = done => panel.exporting(done < 1 ? done : null);
+        exporter
+            .save(kind, { from, to, speed: playback.speed }, tell)
+            .catch(error => panel.note(error.message))
+            .finally(() => panel.exporting(null));
+    },
     pause: () => playback && playback.play(!playback.playing),
     seek: ms => playback && playback.seek(ms),
     step: (by, strikes) => playback && playback.step(by, strikes),
@@ -67,6 +95,14 @@ const actions = {
         playback.setSpeed(SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, i + by))]);
     },
     setSpeed: speed => playback && playback.setSpeed(speed),
+    compare(how) {
+        if (!playback || !playback.scene.ghosts.length) return;
+        const next = { overlay: "side", side: "", "": "overlay" }[playback.compare];
+        playback.compare = how ?? next;
+        playback.jumped = true;
+        forget();
+        panel.compared(playback.compare);
+    },
     mute: () => (sound.setVolume(sound.volume ? 0 : 1), sound.wake() && playback?.resound()),
     live() {
         if (!playback || !stream) return;
@@ -125,6 +161,7 @@ function strike(event, time) {
     const d = drum(event.from, event.drum);
     if (!d) return;
     d.striker = event.from;
+    d.mark = time;
     marks.add(d.tilted, event, time);
 }
 
@@ -160,11 +197,16 @@ const live = {
 // what a playback shows: `now` keeps its performer and its drums present
 const played = {
     now: 0,
-    pose(pose, target) {
-        performer(playback.scene.name)?.show(this.now, pose, target);
+    pose(scene, pose, target) {
+        const one = performer(scene.name),
+            name = scene.head.name,
+            ghost = scene !== playback.scene;
+        one?.show(this.now, pose, target);
+        one?.ghost(ghost && playback.compare === "overlay" ? (GHOSTS[name] ?? "#e7b6ff") : null);
+        if (one) one.title = playback.compare ? (name ?? scene.name) : scene.name;
     },
-    drum(name, place, amplitude) {
-        drum(playback.scene.name, name)?.show(this.now, place, amplitude);
+    drum(scene, name, place, amplitude) {
+        drum(scene.name, name)?.show(this.now, place, amplitude);
     },
     strike: (event, time) => strike(event, time),
     jump() {
@@ -183,7 +225,7 @@ function control(what, [first, second]) {
 // one performer sits at the origin, several in an arc, all facing its centre (sizes chosen by eye)
 function arrange(now) {
     const here = [...performers.values()]
-            .filter(p => p.present(now))
+            .filter(p => p.present(now) && !p.ghostly)
             .sort((a, b) => a.index - b.index),
         n = here.length;
     const radius = Math.max(2.6, n * 0.62),
@@ -193,6 +235,9 @@ function arrange(now) {
         p.group.rotation.z = -angle;
         p.group.position.set(radius - radius * Math.cos(angle), radius * Math.sin(angle), 0);
     });
+    for (const p of performers.values())
+        if (p.ghostly && here.length)
+            (p.group.position.copy(here[0].group.position), (p.group.rotation.z = here[0].group.rotation.z));
     const drumsReach = [...drums.values()]
         .filter(d => d.group.visible)
         .reduce((most, d) => Math.max(most, Math.abs(d.place[1]) + d.place[4]), 0);
@@ -279,7 +324,7 @@ function frame(_, now = clock(), draw = true) {
         panel.silent(playback ? !!sound.buffer : now - liveSound.heard < 1000, sound);
         panel.filming(recorder.filming);
     }
-    stage.adapt(dt, view);
+    if (!virtual) stage.adapt(dt, view);
 }
 
 function next() {
@@ -308,6 +353,10 @@ function setLift(lift) {
 function close() {
     sound.stop();
     liveSound.close();
+    forget();
+}
+
+function forget() {
     marks.clear();
     for (const table of [performers, drums]) {
         for (const one of table.values()) discard(one.group);
@@ -315,32 +364,40 @@ function close() {
     }
 }
 
-async function play(bytes, name) {
+// `others` are scenes of the same piece, to compare
+async function play(bytes, name, others = []) {
     const scene = await readScene(bytes, name);
+    scene.ghosts.push(...others);
     close();
     playback = new Playback(scene, sound);
     panel.open(playback);
+    panel.compared(playback.compare);
+    actions.show("errors", !!playback.compare);
     panel.loading(null);
-    setLift(LIFT);
+    setLift(panel.timeline.all ? TALL : LIFT);
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
     panel.timeline.heard(buffer);
     if (playback?.scene === scene) playback.resound();
+    window.viewer.ready = true; // all is there, the sound too
 }
 
 const tell = name => error => (panel.loading(null), panel.note(error.message || name));
 
-function drop(file) {
-    const capture = /\.(bvh|c3d|trc|txt|mid)$/i.test(file.name);
+// one file, or several of one piece, the first with its sound
+async function drop(files) {
+    const [first, ...more] = files,
+        capture = files.find(file => /\.(bvh|c3d|trc|txt|mid)$/i.test(file.name)),
+        bytes = async file => new Uint8Array(await file.arrayBuffer());
     if (capture)
-        panel.note(
-            `${file.name}: make a scene of it with "himc render ${file.name} -o sound.wav --scene scene.himc", and drop scene.himc`,
+        throw new Error(
+            `${capture.name}: make a scene of it with "himc render ${capture.name} -o sound.wav --scene scene.himc", and drop scene.himc`,
         );
-    else
-        file.arrayBuffer()
-            .then(buffer => play(new Uint8Array(buffer), file.name))
-            .catch(tell(file.name));
+    const others = [];
+    for (const file of more) others.push(await readScene(await bytes(file), file.name));
+    for (const scene of others) scene.head.name = scene.name.replace(/\.himc$/, "");
+    await play(await bytes(first), first.name, others);
 }
 
 // the scene of --play, with progress; its bytes grow by what has come
@@ -359,15 +416,34 @@ async function fetchScene(name) {
     await play(bytes, name);
 }
 
+// a click on a limb chooses its joint for the lanes
+view.chosen = e => {
+    const p = [...performers.values()].find(q => q.group.visible && !q.ghostly),
+        i = p ? view.nearest(p.points(), e) : -1;
+    if (i < 0) return;
+    // after the segments come the tips; the first segment has no joint
+    const segment = i < segments.length ? i : bone(`${HANDS[i - segments.length]}-stick`);
+    if (segments[segment].joint && segment) actions.select(segments[segment].joint);
+};
 addEventListener("resize", () => (stage.resize(view), view.name && view.preset(view.name)));
 addEventListener("dragover", e => e.preventDefault());
 addEventListener("drop", e => {
     e.preventDefault();
-    if (e.dataTransfer.files[0]) drop(e.dataTransfer.files[0]);
+    const files = [...e.dataTransfer.files];
+    if (files.length) drop(files).catch(tell(files[0].name));
 });
 for (const gesture of ["pointerdown", "keydown"])
     addEventListener(gesture, () => sound.wake() && playback?.resound(), true);
 
+// the middle of the first performer's hands; the head that was struck last
+view.follow = name => {
+    const p = [...performers.values()].find(q => q.group.visible && !q.ghostly),
+        all = [...drums.values()].filter(d => d.group.visible);
+    if (name === "hands" && p) return p.hands();
+    if (name !== "head" || !all.length) return null;
+    const last = all.reduce((a, b) => (b.mark > a.mark ? b : a));
+    return last.head.getWorldPosition(new THREE.Vector3());
+};
 view.points = () => [
     ...[...performers.values()]
         .filter(p => p.group.visible)
@@ -381,8 +457,45 @@ panel.shown(shown);
 actions.camera("stage");
 actions.exaggerate(exaggeration);
 
+// For tests and pictures: joints and tips read back from the scene (m). `held` stops the frames,
+// because a software renderer is too slow to draw between them.
+function joints(key) {
+    const p = key ? performers.get(key) : [...performers.values()].find(q => q.group.visible);
+    return p && p.group.visible ? p.points().map(position => position.toArray()) : null;
+}
+const exporter = new Exporter((window.viewer = {
+    held: location.hash === "#held",
+    step,
+    resume: () => ((window.viewer.held = false), (virtual = 0), next()),
+    joints,
+    play,
+    readScene,
+    numbers,
+    latencies,
+    scripts,
+    marks,
+    performers,
+    drums,
+    get stream() {
+        return stream;
+    },
+    panel,
+    actions,
+    view,
+    stage,
+    sound,
+    liveSound,
+    lift: setLift,
+    recorder,
+    get exporter() {
+        return exporter;
+    },
+    get playback() {
+        return playback;
+    },
+}));
+
 // a page of `himc share` brings its scene; any other asks the program that serves it
-let stream = null;
 if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
@@ -397,35 +510,3 @@ if (window.himcScene) {
         .catch(tell("himc-viewer"));
 }
 next();
-
-// For tests and pictures: joints and tips read back from the scene (m). `held` stops the frames,
-// because a software renderer is too slow to draw between them.
-function joints(key) {
-    const p = key ? performers.get(key) : [...performers.values()].find(q => q.group.visible);
-    return p && p.group.visible ? p.points().map(position => position.toArray()) : null;
-}
-window.viewer = {
-    held: false,
-    step,
-    resume: () => ((window.viewer.held = false), (virtual = 0), next()),
-    joints,
-    play,
-    readScene,
-    numbers,
-    latencies,
-    scripts,
-    marks,
-    performers,
-    drums,
-    stream,
-    panel,
-    actions,
-    view,
-    stage,
-    sound,
-    liveSound,
-    recorder,
-    get playback() {
-        return playback;
-    },
-};

@@ -1,6 +1,5 @@
 // Everything written over the stage: buttons, numbers, the running score of what is played live, and
 // the timeline of a playback.
-import { shirts } from "./figure.js";
 import { SPEEDS } from "./playback.js";
 import { Timeline, nuanceColor } from "./timeline.js";
 import { before } from "./scene.js";
@@ -17,9 +16,10 @@ const TURN = 0.08; // of the view by an arrow key (rad); chosen
 
 // what a key does: its name on the page, the words there, the action; "" is a shift
 const KEYS = [
-    ["1 – 5", "cameras", null],
+    ["1 – 7", "cameras", null],
     ["f", "show everything", a => a.frameAll()],
     ["t", "targets", a => a.show("targets")],
+    ["c", "others over, beside, not", a => a.compare()],
     ["p", "save a picture", a => a.picture()],
     ["r", "record a film", a => a.film()],
     ["h", "hide all writing", () => document.body.classList.toggle("bare")],
@@ -31,10 +31,11 @@ const KEYS = [
     ["[ ]", "the loop begins, ends here", null],
     ["\\", "no loop", a => a.unloop()],
     ["home end", "the beginning, the end", null],
+    ["l", "more lanes: angles, torques, spectrum", a => a.lanes()],
     ["m", "sound on, off", a => a.mute()],
     ["?", "these keys", null],
 ];
-const cameras = ["stage", "front", "side", "top", "eye"];
+const cameras = ["stage", "front", "side", "top", "eye", "hands", "head"];
 const more = {
     " ": a => a.pause(),
     "-": a => a.speed(-1),
@@ -70,11 +71,15 @@ export class Panel {
             button.onclick = () => actions.camera(button.dataset.camera);
         for (const box of document.querySelectorAll("[data-show]"))
             box.onclick = () => actions.show(box.dataset.show);
+        for (const b of document.querySelectorAll("[data-compare]"))
+            b.onclick = () => actions.compare(b.dataset.compare);
         $("exaggeration").oninput = e =>
             actions.exaggerate(Math.round(10 ** Number(e.target.value)));
         for (const speed of SPEEDS) $("speed").add(new Option(`× ${speed}`, speed));
         $("speed").onchange = e => actions.setSpeed(Number(e.target.value));
-        for (const id of ["picture", "film", "pause", "mute", "unloop", "live"]) click(id, actions[id]);
+        for (const id of ["picture", "film", "pause", "mute", "unloop", "live", "lanes"]) click(id, actions[id]);
+        click("make-webm", () => actions.export("webm"));
+        click("make-glb", () => actions.export("glb"));
         click("back", () => actions.step(-1, true));
         click("on", () => actions.step(1, true));
         click("from", () => actions.loopEnd(false));
@@ -144,6 +149,18 @@ export class Panel {
         if (playback) this.timeline.open(playback);
     }
 
+    tall(yes) {
+        document.body.classList.toggle("tall", yes);
+        $("lanes").setAttribute("aria-pressed", yes);
+    }
+
+    // how a playback is compared with others, "" not
+    compared(how) {
+        document.body.classList.toggle("compared", !!this.playback?.scene.ghosts.length);
+        for (const b of document.querySelectorAll("[data-compare]"))
+            b.setAttribute("aria-pressed", b.dataset.compare === how);
+    }
+
     camera(name) {
         for (const b of document.querySelectorAll("[data-camera]"))
             b.setAttribute("aria-pressed", b.dataset.camera === name);
@@ -152,11 +169,19 @@ export class Panel {
     shown(shown) {
         for (const b of document.querySelectorAll("[data-show]"))
             b.setAttribute("aria-pressed", !!shown[b.dataset.show]);
+        document.body.classList.toggle("off-target", shown.errors && shown.trails);
     }
 
     exaggeration(times) {
         $("exaggeration").value = Math.log10(times);
         $("times").textContent = `×${times}`;
+    }
+
+    // how far a film is (0 .. 1); null when none is made
+    exporting(done) {
+        const working = done !== null;
+        $("make-webm").setAttribute("aria-pressed", working);
+        $("make-webm").textContent = working ? `stop (${Math.round(100 * done)} %)` : "make film";
     }
 
     filming(yes) {
@@ -205,15 +230,15 @@ export class Panel {
     }
 
     list(here) {
-        const names = here.map(p => `${p.index} ${p.key} ${p.rate.toFixed(0)}`).join("\n");
+        const names = here.map(p => `${p.title} ${p.color} ${p.key} ${p.rate.toFixed(0)}`).join("\n");
         if (names === this.listed) return;
         this.listed = names;
         $("who").replaceChildren(
             ...here.map((p, i) => {
                 const row = document.createElement("div"),
                     dot = row.appendChild(document.createElement("i"));
-                dot.style.background = shirts[p.index % shirts.length];
-                const name = this.playback ? p.key : `performer ${i + 1}`;
+                dot.style.background = p.color;
+                const name = this.playback ? p.title : `performer ${i + 1}`;
                 row.append(name);
                 const from = row.appendChild(document.createElement("span"));
                 from.textContent = this.playback ? "" : ` ${p.key} ${p.rate.toFixed(0)} Hz`;

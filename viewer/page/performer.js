@@ -4,7 +4,7 @@
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
 import { HANDS, bone } from "./body.js";
-import { Figure } from "./figure.js";
+import { Figure, shirts } from "./figure.js";
 import { segments } from "./skeleton.js";
 import { Trail } from "./strike.js";
 
@@ -27,6 +27,7 @@ function interpolate(a, b, t, out) {
 export class Performer {
     constructor(key, index, stage) {
         this.key = key;
+        this.color = shirts[index % shirts.length];
         this.index = index;
         this.figure = new Figure(index, stage.environment);
         this.group = this.figure.group;
@@ -53,7 +54,8 @@ export class Performer {
                     }),
                 ),
         );
-        this.group.add(stool(stage.environment), ...this.targets, ...this.trails.map(t => t.mesh));
+        this.stool = stool(stage.environment);
+        this.group.add(this.stool, ...this.targets, ...this.trails.map(t => t.mesh));
         stage.scene.add(this.group);
     }
 
@@ -111,7 +113,7 @@ export class Performer {
                 this.target[3 * hand + 2],
             );
         });
-        const seat = this.group.children.find(c => c.name === "stool");
+        const seat = this.stool;
         seat.position.set(this.pose[0], this.pose[1], 0);
         seat.children[0].position.z = this.pose[2] - 0.115 * this.figure.scale.x;
         this.group.updateMatrixWorld();
@@ -120,15 +122,35 @@ export class Performer {
             const p = new THREE.Vector3().setFromMatrixPosition(
                 this.figure.sticks[hand].tip.matrixWorld,
             );
-            if (shown.trails) trail.add(p, time, camera, this.group);
+            const wanted = shown.errors && (this.haveTargets >> hand) & 1 ? this.targets[hand].position : null;
+            if (shown.trails) trail.add(p, time, camera, this.group, wanted);
         });
+    }
+
+    // drawn in one transparent colour, without a stool; `color` null: as a performer
+    ghost(color) {
+        if (this.ghostly === color) return;
+        this.ghostly = color;
+        this.stool.visible = !color;
+        this.figure.ghost(color);
+        this.color = color ?? shirts[this.index % shirts.length];
+    }
+
+    // the middle of the hands in the scene (m)
+    hands() {
+        const [a, b] = HANDS.map(hand =>
+            new THREE.Vector3().setFromMatrixPosition(this.figure.bones[bone(`${hand}-hand`)].matrixWorld),
+        );
+        return a.lerp(b, 0.5).applyMatrix4(this.group.matrixWorld);
     }
 
     // its joints and tips in the scene (m)
     points() {
         const { bones, sticks } = this.figure;
         return [
-            ...bones.map(b => new THREE.Vector3().setFromMatrixPosition(b.matrixWorld)),
+            ...bones.map(b =>
+                new THREE.Vector3().setFromMatrixPosition(b.matrixWorld).applyMatrix4(this.group.matrixWorld),
+            ),
             ...sticks.map(s => s.tip.getWorldPosition(new THREE.Vector3())),
         ];
     }
@@ -188,7 +210,6 @@ function stool(envMap) {
         group.add(rod(from, to, 0.012, steel));
     }
     group.traverse(o => (o.castShadow = o.receiveShadow = true));
-    group.name = "stool";
     return group;
 }
 

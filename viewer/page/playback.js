@@ -13,6 +13,7 @@ export class Playback {
         ((this.at = 0), (this.speed = 1), (this.playing = true));
         ((this.loop = null), (this.jumped = true), (this.shownTo = 0));
         this.length = 1000 * scene.end;
+        this.compare = scene.ghosts.length ? "overlay" : ""; // or "side": the ghosts beside the performer
         this.pose = new Float64Array(7 * segments.length);
         this.target = new Float64Array(6);
         this.amplitude = new Float32Array(64);
@@ -94,19 +95,27 @@ export class Playback {
     // shows this time: calls on.pose, on.drum for each drum, and on.strike for each strike since the
     // last call, or since `memory` ms ago after a jump
     show(on, memory) {
-        const time = this.at / 1000,
-            scene = this.scene;
+        const time = this.at / 1000;
         if (this.jumped || this.at < this.shownTo) on.jump();
-        on.pose(this.scene.pose(time, this.pose), scene.targets(time, this.target));
-        for (const drum of scene.drums.values()) {
-            const change = drum.changes[Math.max(0, before(drum.changes, time, c => c.time))];
-            if (change) on.drum(drum.name, change.place, this.head(drum, time));
-        }
         const since = this.jumped || this.at < this.shownTo ? this.at - memory : this.shownTo,
             of = s => 1000 * s.time;
-        for (let i = before(scene.strikes, since, of) + 1; i <= before(scene.strikes, this.at, of); i++)
-            on.strike(scene.strikes[i], 1000 * scene.strikes[i].time);
+        for (const scene of this.scenes) {
+            on.pose(scene, scene.pose(time, this.pose), scene.targets(time, this.target));
+            if (scene !== this.scene && this.compare !== "side") continue;
+            for (const drum of scene.drums.values()) {
+                const change = drum.changes[Math.max(0, before(drum.changes, time, c => c.time))];
+                if (change) on.drum(scene, drum.name, change.place, this.head(drum, time));
+            }
+            const last = before(scene.strikes, this.at, of);
+            for (let i = before(scene.strikes, since, of) + 1; i <= last; i++)
+                on.strike(scene.strikes[i], of(scene.strikes[i]));
+        }
         ((this.shownTo = this.at), (this.jumped = false));
+    }
+
+    // the performer's, and those it is compared with
+    get scenes() {
+        return this.compare ? [this.scene, ...this.scene.ghosts] : [this.scene];
     }
 
     // amplitudes of a head, between two frames in proportion

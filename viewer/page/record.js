@@ -1,5 +1,5 @@
 // Saves the next frame as a picture, or the coming frames as a film.
-function save(blob, suffix) {
+export function save(blob, suffix) {
     const link = document.createElement("a"),
         stamp = new Date().toISOString().slice(0, 19).replace(/[:T]/g, "-");
     link.href = URL.createObjectURL(blob);

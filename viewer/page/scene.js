@@ -41,7 +41,7 @@ export class Scene {
         this.name = name;
         ((this.head = null), (this.end = 0), (this.score = []));
         ((this.bodies = []), (this.drums = new Map()), (this.strikes = []));
-        ((this.beats = []), (this.notes = []), (this.sounds = []));
+        ((this.beats = []), (this.notes = []), (this.sounds = []), (this.ghosts = []));
         ((this.times = []), (this.blocks = []), (this.column = new Map()));
         this.local = new Float64Array(4 * segments.length);
         ((this.ahead = new Float64Array(4)), (this.local[0] = 1));
@@ -215,7 +215,8 @@ export class Scene {
     }
 }
 
-export async function readScene(bytes, name) {
+// `depth` is 1 for a scene within a scene, which has none in itself
+export async function readScene(bytes, name, depth = 0) {
     const scene = new Scene(name),
         view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length),
         text = new TextDecoder();
@@ -234,6 +235,8 @@ export async function readScene(bytes, name) {
             else if (kind === "rows") scene.rows(await inflate(body));
             else if (kind === "head") scene.heads(await inflate(body));
             else if (kind === "snd ") scene.sounds.push(body);
+            else if (kind === "more" && !depth)
+                scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, 1));
         }
         scene.finish();
     } catch (error) {

@@ -159,6 +159,16 @@ export class Marks {
 const POINTS = 60,
     TRAIL = 900; // (ms)
 
+// The colour of a tip's distance from its target: chosen, green up to 0.1 mm, yellow at 1 mm, orange
+// at 10 mm, red from 100 mm on.
+export const ERRORS = ["#3ddc84", "#ffe14d", "#ff9a3d", "#ff3b3b"];
+const errorColors = ERRORS.map(rgb);
+function errorColor(distance, out) {
+    const at = Math.min(2.999, Math.max(0, 4 + Math.log10(Math.max(1e-9, distance)))),
+        i = Math.floor(at);
+    return out.copy(errorColors[i]).lerp(errorColors[i + 1], at - i);
+}
+
 // A ribbon that faces the camera and gets thinner with age.
 export class Trail {
     constructor(color) {
@@ -200,18 +210,20 @@ export class Trail {
         this.geometry.setDrawRange(0, 0);
     }
 
-    add(p, now, camera, group) {
+    // `target`: where p should be, for a colour of its own; or null
+    add(p, now, camera, group, target) {
         this.inverse.getInverse(group.matrixWorld);
         p.applyMatrix4(this.inverse);
         this.eye.copy(camera.position).applyMatrix4(this.inverse);
-        this.points.push({ p, now });
+        const color = target ? errorColor(p.distanceTo(target), new THREE.Color()) : this.color;
+        this.points.push({ p, now, color });
         while (
             this.points.length > POINTS ||
             (this.points.length && now - this.points[0].now > TRAIL)
         )
             this.points.shift();
         const position = this.geometry.attributes.position,
-            color = this.geometry.attributes.color,
+            colors = this.geometry.attributes.color,
             n = this.points.length;
         for (let i = 0; i < n; i++) {
             const at = this.points[i],
@@ -235,15 +247,10 @@ export class Trail {
                 at.p.z - this.side.z,
             );
             const light = 0.4 * life * life;
-            color.setXYZ(2 * i, light * this.color.r, light * this.color.g, light * this.color.b);
-            color.setXYZ(
-                2 * i + 1,
-                light * this.color.r,
-                light * this.color.g,
-                light * this.color.b,
-            );
+            for (const k of [2 * i, 2 * i + 1])
+                colors.setXYZ(k, light * at.color.r, light * at.color.g, light * at.color.b);
         }
         this.geometry.setDrawRange(0, Math.max(0, 6 * (n - 1)));
-        position.needsUpdate = color.needsUpdate = true;
+        position.needsUpdate = colors.needsUpdate = true;
     }
 }

@@ -2,6 +2,7 @@
 // time. The lanes are drawn once for a view; a frame adds the cursor. Sizes and colours: chosen by
 // eye. Times in milliseconds.
 import { before } from "./scene.js";
+import { spectrogram } from "./spectrum.js";
 
 export const handColor = ["#7fd6ff", "#ffb066"];
 export const nuanceColor = {
@@ -15,13 +16,23 @@ const STRONGEST = 150, // tallest stroke (N); a forte stroke
     NEAR = 6, // a click this near to a stroke jumps to it (pixels)
     SHORTEST = 100, // of a view (ms)
     BUCKETS = 400; // of the sound's outline, each second
+// what is shown, and its share of the height; all of it if more lanes are wanted
 const LANES = [
-    { name: "beats", share: 0.12 },
-    { name: "strokes", share: 0.3 },
-    { name: "height", share: 0.22 },
-    { name: "force", share: 0.14 },
-    { name: "sound", share: 0.22 },
-];
+        { name: "beats", share: 12 },
+        { name: "strokes", share: 30 },
+        { name: "height", share: 22 },
+        { name: "force", share: 14 },
+        { name: "sound", share: 22 },
+    ],
+    MORE = [
+        ...LANES,
+        { name: "angle", share: 34 },
+        { name: "torque", share: 34 },
+        { name: "spectrum", share: 40 },
+    ];
+const AXES = ["#ff8f8f", "#8fe08f", "#8fb8ff"], // x, y, z
+    CURVES = { angle: ["", "rad"], torque: ["_torque", "n_m"] }, // of a joint: its columns' names
+    USUAL = "right-wrist"; // the joint before one is chosen
 
 // least and largest sample of each bucket
 function outline(buffer) {
@@ -48,6 +59,7 @@ export class Timeline {
         ((this.canvas = canvas), (this.actions = actions), (this.ink = canvas.getContext("2d")));
         this.lanes = document.createElement("canvas");
         ((this.playback = null), (this.view = [0, 1]), (this.stale = true), (this.hover = null));
+        ((this.all = false), (this.joint = USUAL));
         this.pointers = new Map();
         const on = (name, f) => canvas.addEventListener(name, f, { passive: false });
         on("pointerdown", e => this.press(e));
@@ -66,12 +78,37 @@ export class Timeline {
     open(playback) {
         ((this.playback = playback), (this.waves = null));
         ((this.range = undefined), (this.loudest = undefined));
+        ((this.buffer = null), (this.picture = null), (this.extent = new Map()));
         this.show(0, playback.length);
     }
 
     heard(buffer) {
         this.waves = buffer && outline(buffer);
+        this.buffer = buffer;
+        this.analyse();
         this.stale = true;
+    }
+
+    // shows angles, torques and spectrum as well, or not
+    more() {
+        this.all = !this.all;
+        this.stale = true;
+        this.analyse();
+        return this.all;
+    }
+
+    // the joint whose angles and torques are shown
+    select(joint) {
+        ((this.joint = joint), (this.stale = true));
+    }
+
+    analyse() {
+        const { buffer } = this;
+        if (!buffer || !this.all || this.analysed === buffer) return;
+        this.analysed = buffer;
+        spectrogram(buffer, () => this.buffer === buffer).then(
+            picture => picture && ((this.picture = picture), (this.stale = true)),
+        );
     }
 
     show(from, to) {
@@ -154,9 +191,11 @@ export class Timeline {
         ((lanes.width = Math.round(w * ratio)), (lanes.height = Math.round(h * ratio)));
         c.setTransform(ratio, 0, 0, ratio, 0, 0);
         c.font = "11px system-ui, sans-serif";
+        const shown = this.all ? MORE : LANES,
+            sum = shown.reduce((all, { share }) => all + share, 0);
         let top = 0;
-        for (const { name, share } of LANES) {
-            const tall = share * h;
+        for (const { name, share } of shown) {
+            const tall = (share / sum) * h;
             c.save();
             c.translate(0, top);
             this[name](c, w, tall);
@@ -222,6 +261,74 @@ export class Timeline {
             c.lineTo(x, y(most));
         }
         c.stroke();
+    }
+
+    // the joint's three columns of that kind, and the largest value in them; null where there are none
+    curve(kind) {
+        const { scene } = this.playback,
+            [what, unit] = CURVES[kind],
+            names = ["x", "y", "z"].map(axis => `${this.joint}${what}_${axis}_${unit}`);
+        if (!names.every(name => scene.column.has(name))) return null;
+        if (!this.extent.has(names[0])) {
+            let most = 0;
+            for (const name of names)
+                for (let row = 0; row < scene.times.length; row++)
+                    most = Math.max(most, Math.abs(scene.value(row, name)));
+            this.extent.set(names[0], most);
+        }
+        return { names, most: this.extent.get(names[0]) };
+    }
+
+    // from the least to the largest value under each pixel
+    swing(c, w, color, value, y) {
+        const { times } = this.playback.scene,
+            [from, to] = this.view;
+        c.strokeStyle = color;
+        c.beginPath();
+        let row = Math.max(0, before(times, from / 1000) - 1);
+        for (let x = 0; x < w && row < times.length; x++) {
+            const end = (from + ((x + 1) / w) * (to - from)) / 1000;
+            if (times[row] > end) continue;
+            let [low, high] = [Infinity, -Infinity];
+            for (; row < times.length && times[row] <= end; row++) {
+                const v = value(row);
+                ((low = Math.min(low, v)), (high = Math.max(high, v)));
+            }
+            (c.lineTo(x, y(low)), c.lineTo(x, y(high)));
+        }
+        c.stroke();
+    }
+
+    curves(c, w, h, kind, unit) {
+        const curve = this.curve(kind),
+            { scene } = this.playback;
+        if (curve && curve.most > 0)
+            curve.names.forEach((name, axis) =>
+                this.swing(c, w, AXES[axis], r => scene.value(r, name), v => h / 2 - (v / curve.most) * (h / 2 - 3)),
+            );
+        const most = curve && curve.most > 0 ? `± ${curve.most.toPrecision(3)} ${unit}` : "none";
+        this.label(c, `${this.joint.replace("-", " ")}: ${kind}, ${most}`, 11);
+        AXES.forEach((color, axis) => {
+            c.fillStyle = color;
+            c.fillText("xyz"[axis], w - 36 + 11 * axis, 11);
+        });
+    }
+
+    angle(c, w, h) {
+        this.curves(c, w, h, "angle", "rad");
+    }
+
+    torque(c, w, h) {
+        this.curves(c, w, h, "torque", "N m");
+    }
+
+    spectrum(c, w, h) {
+        const { picture } = this;
+        if (picture) {
+            const [from, to] = this.view.map(t => (t / 1000 / this.buffer.duration) * picture.width);
+            c.drawImage(picture, from, 0, to - from, picture.height, 0, 1, w, h - 1);
+        }
+        this.label(c, "50 Hz to 4 kHz", 11);
     }
 
     height(c, w, h) {

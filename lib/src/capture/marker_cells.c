@@ -2,6 +2,7 @@
 #include "capture/marker_cells.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool refuse_cell(const marker_row *row, int point, int axis, himc_span cell)
 {
@@ -19,13 +20,24 @@ static bool is_gap_mark(himc_span cell, double value)
            value == 9999999;
 }
 
+bool himc_marker_number(himc_span cell, char separator, double *value)
+{
+    char point[40];
+    const char *comma = memchr(cell.at, ',', cell.length);
+    if (separator == ',' || !comma || cell.length > sizeof point)
+        return himc_span_number(cell, value);
+    memcpy(point, cell.at, cell.length);
+    point[comma - cell.at] = '.';
+    return himc_span_number((himc_span){point, cell.length}, value);
+}
+
 bool himc_marker_row_point(const marker_row *row, himc_span *rest, int frame, int point)
 {
     double v[3] = {0, 0, 0};
     int seen = 0;
     for (int axis = 0; axis < 3; axis++) {
         himc_span cell = rest->at ? himc_span_cell(rest, row->separator) : (himc_span){"", 0};
-        bool number = himc_span_number(cell, &v[axis]);
+        bool number = himc_marker_number(cell, row->separator, &v[axis]);
         if (is_gap_mark(cell, v[axis]))
             continue;
         if (!number || !(fabs(v[axis]) <= TAKE_LARGEST))

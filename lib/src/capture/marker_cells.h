@@ -13,6 +13,9 @@ typedef struct marker_row {
     himc_error *error;
 } marker_row;
 
+/// Reads a decimal number, with a comma instead of the point if no comma is between cells.
+bool himc_marker_number(himc_span cell, char separator, double *value);
+
 /// Takes the three cells of a point off the row: a position, or a gap if all of them are empty,
 /// "nan" or 9999999. False with the reason.
 bool himc_marker_row_point(const marker_row *row, himc_span *rest, int frame, int point);

@@ -1,17 +1,22 @@
-/// marker_table.c: tables of markers as text: Vicon Nexus' ASCII export (.csv), Qualisys' TSV, and any
-/// CSV with columns NAME_x, NAME_y, NAME_z.
+/// marker_table.c: tables of markers as text: Vicon Nexus' ASCII export (.csv), OptiTrack Motive's
+/// export (.csv), Qualisys' TSV, and any CSV with columns NAME_x, NAME_y, NAME_z.
 ///
-/// All three are a head that says rate, unit and the column where each marker's three cells begin,
+/// All are a head that says rate, unit and the column where each marker's three cells begin,
 /// then rows of numbers. A head is read into a plan; one loop reads the rows of all.
 ///
 ///     Nexus     sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is read: the
 ///               rate, a line of names each above its first column, "Frame,Sub Frame,X,Y,Z,...", a
 ///               line of units, rows up to an empty one
+///     Motive    "Format Version,1.23,Export Frame Rate,120,Length Units,Meters,...", then lines of types
+///               (Marker, Rigid Body, Bone, ...), names, identifiers, properties (Position, Rotation),
+///               and "Frame,Time (Seconds),X,Y,Z,..."; y up. Positions of all are read, but not where
+///               a body's markers ought to be if the file has where they were
 ///     Qualisys  lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then rows,
 ///               with Frame and Time first if the line before them says so
 ///     any       one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
 ///               NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others
-///               are not read. So motion.csv of `himc render` is a take, too
+///               are not read. So motion.csv of `himc render` is a take, too. Where a semicolon or a
+///               tab parts the cells, numbers may have a decimal comma
 #include "capture/marker_cells.h"
 
 #include <math.h>
@@ -60,6 +65,12 @@ static void add_point(plan *p, himc_span name, int column)
 {
     p->names[p->points] = name;
     p->begin[p->points++] = column;
+}
+
+static himc_span unquoted(himc_span cell)
+{
+    bool quoted = cell.length > 1 && cell.at[0] == '"' && cell.at[cell.length - 1] == '"';
+    return quoted ? (himc_span){cell.at + 1, cell.length - 2} : cell;
 }
 
 static double unit_of(himc_span word)
@@ -127,6 +138,92 @@ static bool read_nexus(plan *p)
     p->frame = 0;
     p->ends_with_blank = true;
     return himc_text_line(&p->text, &line) ? nexus_units(p, line) : refuse(p, "no line of units");
+}
+
+// Motive
+
+static double motive_unit(himc_span word)
+{
+    return himc_span_is(word, "meters")        ? 1
+           : himc_span_is(word, "centimeters") ? 0.01
+           : himc_span_is(word, "millimeters") ? 0.001
+                                               : 0;
+}
+
+static bool motive_settings(plan *p, himc_span line)
+{
+    double capture = 0;
+    while (line.at) {
+        himc_span key = himc_span_cell(&line, ','), rest = line;
+        himc_span value = rest.at ? himc_span_cell(&rest, ',') : (himc_span){"", 0};
+        if (himc_span_is(key, "export frame rate") && !himc_span_number(value, &p->rate))
+            return refuse(p, "Export Frame Rate is no number (Hz)");
+        if (himc_span_is(key, "capture frame rate") && !himc_span_number(value, &capture))
+            return refuse(p, "Capture Frame Rate is no number (Hz)");
+        if (himc_span_is(key, "length units"))
+            p->take->file_unit = motive_unit(value);
+    }
+    p->rate = p->rate > 0 ? p->rate : capture;
+    return true;
+}
+
+static himc_span next_cell(himc_span *line)
+{
+    return line->at ? himc_span_cell(line, ',') : (himc_span){"", 0};
+}
+
+static bool has_measured_markers(himc_span types)
+{
+    while (types.at)
+        if (himc_span_is(himc_span_cell(&types, ','), "marker"))
+            return true;
+    return false;
+}
+
+static bool motive_columns(plan *p, himc_span types, himc_span names, himc_span properties,
+                           himc_span axes)
+{
+    bool measured = has_measured_markers(types);
+    int next = 0; // axis that goes on with the point
+    if (!make_room(p, count_cells(axes, ',')))
+        return false;
+    for (int column = 0; axes.at; column++) {
+        himc_span type = next_cell(&types), name = unquoted(next_cell(&names));
+        himc_span property = next_cell(&properties), axis = next_cell(&axes);
+        bool expected =
+            himc_span_is(type, "rigid body marker") || himc_span_is(type, "bone marker");
+        bool here = himc_span_is(property, "position") && !(measured && expected);
+        if (!here || axis.length != 1 || (axis.at[0] | 32) != 'x' + next) {
+            next = 0;
+            continue;
+        }
+        if (next == 2)
+            add_point(p, name, column - 2);
+        next = (next + 1) % 3;
+    }
+    return p->points > 0 || refuse(p, "no columns Position, allowed: an export with markers, rigid "
+                                      "bodies or bones");
+}
+
+static bool read_motive(plan *p)
+{
+    himc_span line, types = {"", 0}, names = {"", 0}, properties = {"", 0};
+    memcpy(p->take->format, "CSV (OptiTrack Motive)", 23);
+    p->take->format_up = himc_vec3_make(0, 1, 0);
+    if (!himc_text_line(&p->text, &line) || !motive_settings(p, line))
+        return false;
+    for (int row = 0; himc_text_filled_line(&p->text, &line); row++) {
+        himc_span rest = line;
+        if (himc_span_is(himc_span_cell(&rest, ','), "frame")) {
+            p->frame = 0;
+            p->time = p->rate > 0 ? NOT_THERE : 1;
+            return motive_columns(p, types, names, properties, line);
+        }
+        types = row == 0 ? line : types;
+        names = row == 1 ? line : names;
+        properties = line;
+    }
+    return refuse(p, "no line Frame,Time (Seconds),X,Y,Z,..., allowed: an export with a header");
 }
 
 // Qualisys
@@ -226,12 +323,6 @@ static bool same_name(himc_span a, himc_span b)
     return a.length == b.length && memcmp(a.at, b.at, a.length) == 0;
 }
 
-static himc_span unquoted(himc_span cell)
-{
-    bool quoted = cell.length > 1 && cell.at[0] == '"' && cell.at[cell.length - 1] == '"';
-    return quoted ? (himc_span){cell.at + 1, cell.length - 2} : cell;
-}
-
 static bool any_columns(plan *p, himc_span line)
 {
     himc_span name, last = {"", 0};
@@ -271,7 +362,7 @@ static bool read_any(plan *p)
     if (p->points == 0)
         return refuse(p,
                       "no markers, allowed: columns time,NAME_x_m,NAME_y_m,NAME_z_m,... (or _mm, "
-                      "_cm); Vicon Nexus' ASCII export; Qualisys' .tsv");
+                      "_cm); Vicon Nexus' or Motive's export; Qualisys' .tsv");
     return p->time != NOT_THERE || refuse(p, "no column time (s)");
 }
 
@@ -299,7 +390,7 @@ static int count_rows(const plan *p)
 static bool read_number(const plan *p, himc_span cell, const char *column, double *value)
 {
     char text[44];
-    return (himc_span_number(cell, value) && fabs(*value) <= TAKE_LARGEST) ||
+    return (himc_marker_number(cell, p->separator, value) && fabs(*value) <= TAKE_LARGEST) ||
            himc_error_set(p->error, "%s:%d: %s is \"%s\", allowed: a number", p->take->file,
                           p->text.line, column, himc_span_text(cell, text));
 }
@@ -398,6 +489,13 @@ static bool is_nexus(himc_text text)
            himc_span_is(cell, "segments") || himc_span_is(cell, "events");
 }
 
+static bool is_motive(himc_text text)
+{
+    himc_span line;
+    return himc_text_line(&text, &line) &&
+           himc_span_is(himc_span_cell(&line, ','), "format version");
+}
+
 static bool read_as(himc_take *take, const void *bytes, size_t size, char separator,
                     bool (*head)(plan *), himc_error *error)
 {
@@ -416,8 +514,12 @@ static bool read_as(himc_take *take, const void *bytes, size_t size, char separa
 
 bool himc_csv_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
-    bool nexus = is_nexus(himc_text_open(bytes, size));
-    return read_as(take, bytes, size, ',', nexus ? read_nexus : read_any, error);
+    himc_text text = himc_text_open(bytes, size);
+    return read_as(take, bytes, size, ',',
+                   is_nexus(text)    ? read_nexus
+                   : is_motive(text) ? read_motive
+                                     : read_any,
+                   error);
 }
 
 bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *error)

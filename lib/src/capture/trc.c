@@ -37,11 +37,30 @@ static char find_separator(himc_span line)
     return *candidates ? *candidates : '\t';
 }
 
-// the value under a key of line 2, in line 3; empty if there is none
+static int count_filled(himc_span line, char separator)
+{
+    int count = 0;
+    while (line.at)
+        count += himc_span_cell(&line, separator).length > 0;
+    return count;
+}
+
+static himc_span filled_cell(himc_span *line, char separator)
+{
+    himc_span cell = {"", 0};
+    while (line->at && cell.length == 0)
+        cell = himc_span_cell(line, separator);
+    return cell;
+}
+
+// the value under a key of line 2, in line 3; empty if there is none. Some programs put several
+// separators between values: with as many values as keys, empty cells do not count
 static himc_span header_value(himc_span keys, himc_span values, char separator, const char *key)
 {
+    bool packed = count_filled(keys, separator) == count_filled(values, separator);
     while (keys.at && values.at) {
-        himc_span k = himc_span_cell(&keys, separator), v = himc_span_cell(&values, separator);
+        himc_span k = packed ? filled_cell(&keys, separator) : himc_span_cell(&keys, separator);
+        himc_span v = packed ? filled_cell(&values, separator) : himc_span_cell(&values, separator);
         if (himc_span_is(k, key))
             return v;
     }
@@ -66,7 +85,7 @@ static bool read_header(trc *r)
     himc_span frames = header_value(keys, values, separator, "NumFrames");
     himc_span markers = header_value(keys, values, separator, "NumMarkers");
     himc_span units = header_value(keys, values, separator, "Units");
-    if (!himc_span_number(rate, &r->rate))
+    if (!himc_marker_number(rate, separator, &r->rate))
         return refuse_value(r, "DataRate", rate, "a number (Hz)");
     if (!himc_span_integer(frames, 1, TAKE_MOST_FRAMES, &r->frames))
         return refuse_value(r, "NumFrames", frames, "1 .. 1000000");
@@ -138,7 +157,7 @@ static bool read_row(trc *r, himc_span row, int frame, double *time)
         return refuse_value(r, "Frame#", number, "a whole number");
     if (frame == 0)
         r->take->first_frame = (int)label;
-    if (!himc_span_number(second, time))
+    if (!himc_marker_number(second, r->separator, time))
         *time = NAN;
     marker_row cells = {r->take, r->text.line, r->separator, r->error};
     for (int point = 0; point < r->take->points; point++)

@@ -196,6 +196,14 @@ static bool do_posture(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
+static bool do_nudge(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_nudge nudge = himc_performance_nudge(c);
+    if (!p->motion->track)
+        return himc_error_set(error, "nudge: no take is loaded");
+    return himc_track_nudge(p->motion->track, &nudge, error);
+}
+
 static bool do_bend(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
@@ -570,6 +578,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
 static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
 {
     himc_drums_catch_up(&p->drums);
+    himc_motion_stir(p->motion);
     return actions[command->id](p, command, error);
 }
 

@@ -146,6 +146,15 @@ bool himc_motion_captured(const performance_motion *m, himc_hand hand, double t,
            himc_track_captured(m->track, hand, t - m->track_start, x);
 }
 
+bool himc_motion_captured_joints(const performance_motion *m, double t, himc_posture_motion *joints)
+{
+    if (!m->track || !isfinite(m->track_start) || !himc_track_has_posture(m->track))
+        return false;
+    *joints = m->reference.posture;
+    himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start, NULL, joints);
+    return true;
+}
+
 static double take_end(const performance_motion *m)
 {
     return m->track_start + himc_track_length(m->track);
@@ -446,6 +455,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
                            const performance_drums *drums, double t, double next)
 {
     himc_planner_advance(m->planner, t);
+    himc_motion_stir(m);
     set_course(m, s, drums, t);
     if (m->replan)
         fill_tick(m, s, &m->from, t);
@@ -644,11 +654,38 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
     return first;
 }
 
-long himc_motion_beat(performance_motion *m, double t)
+static long whole_beat(const performance_motion *m, double t)
 {
     double beat = himc_planner_beat(m->planner, t);
     bool waits = m->track || himc_planner_is_preparing(m->planner, t);
-    long whole = waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    return waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+}
+
+static bool is_over(const performance_motion *m, double t)
+{
+    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
+    return m->playing && t >= end;
+}
+
+bool himc_motion_is_calm(const performance_motion *m, double t)
+{
+    return t < m->calm && !m->replan;
+}
+
+void himc_motion_foresee(performance_motion *m, double next)
+{
+    // beats follow each other in time, so that none begins between two equal ones
+    m->calm = whole_beat(m, next) == m->last_beat && !is_over(m, next) ? next : -INFINITY;
+}
+
+void himc_motion_stir(performance_motion *m)
+{
+    m->calm = -INFINITY;
+}
+
+long himc_motion_beat(performance_motion *m, double t)
+{
+    long whole = whole_beat(m, t);
     bool begun = whole != m->last_beat;
     m->last_beat = whole;
     return begun ? whole : -1;
@@ -656,8 +693,7 @@ long himc_motion_beat(performance_motion *m, double t)
 
 bool himc_motion_done(performance_motion *m, double t)
 {
-    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
-    if (!m->playing || !(t >= end))
+    if (!is_over(m, t))
         return false;
     m->playing = false;
     himc_planner_finish(m->planner, t);

@@ -70,6 +70,7 @@ typedef struct performance_motion {
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
     long last_beat;
+    double calm; ///< no beat begins and no end comes before, if nothing changes (s)
 } performance_motion;
 
 /// Motion from time 0 without a body: himc_motion_build gives it one. NULL without memory.
@@ -137,6 +138,10 @@ HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand han
 /// Place of that hand's tip in the take that moves it; false if none does.
 HIMC_RT bool himc_motion_captured(const performance_motion *motion, himc_hand hand, double t,
                                   himc_vec3 *x);
+/// The joints in the take that plays, their targets where it shows none; false without a take that
+/// has joints.
+HIMC_RT bool himc_motion_captured_joints(const performance_motion *motion, double t,
+                                         himc_posture_motion *joints);
 /// Gives the hands of the take to the planner.
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
@@ -167,6 +172,13 @@ HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const him
 /// Refuses a live target, because the take moves the hand. True for the first one.
 HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
 
+/// True if no beat begins and no end comes at `t`: himc_motion_foresee has found it so, and nothing
+/// has changed.
+HIMC_RT bool himc_motion_is_calm(const performance_motion *motion, double t);
+/// Finds out if a beat or the end comes before the time `next` (s).
+HIMC_RT void himc_motion_foresee(performance_motion *motion, double next);
+/// Something may have changed: nothing is foreseen.
+HIMC_RT void himc_motion_stir(performance_motion *motion);
 /// The whole beat that has begun at `t` since the last call, or -1.
 HIMC_RT long himc_motion_beat(performance_motion *motion, double t);
 /// True once everything has been played at `t`.

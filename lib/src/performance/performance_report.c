@@ -187,7 +187,10 @@ static void fill_row(himc_performance *p, double t, himc_motion_row *row)
 
 static void tell_body(const himc_performance *p, double t, const himc_motion_row *row)
 {
+    himc_posture_motion captured;
     himc_tick tick = {.time = t, .body = &p->body->state, .row = row};
+    if (himc_motion_captured_joints(p->motion, t, &captured))
+        tick.captured = captured.joint;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         tick.target[hand] = p->motion->reference.tip[hand].x;
     p->events.on_tick(p->events.tick_user, &tick);
