@@ -302,6 +302,33 @@ static void enliven(performance_motion *m, const performance_drums *drums, doubl
     himc_alive_add(&m->posture, &next, t, &m->course.goal);
 }
 
+// when a hand has nothing to play; never while live targets move it
+static himc_free_hand free_hand(const performance_motion *m, const performance_drums *drums,
+                                himc_hand hand, double t)
+{
+    planned_stroke next = himc_motion_stroke(m, drums, hand, t);
+    himc_free_hand free = {m->answered[hand], next.any ? next.time : INFINITY};
+    if (m->live[hand].time > 0 && m->live[hand].time > free.from)
+        free.until = free.from;
+    return free;
+}
+
+// hands lie on heads that are damped; a take shows its own
+static void damp(performance_motion *m, const performance_drums *drums, double t)
+{
+    himc_free_hand hand[HIMC_HANDS];
+    himc_damped_head head[HIMC_DRUMS];
+    double soon = himc_planner_beat(m->planner, t + HIMC_DAMPING_FORESIGHT);
+    for (int i = 0; i < HIMC_HANDS; i++)
+        hand[i] = free_hand(m, drums, (himc_hand)i, t);
+    for (int i = 0; i < drums->count; i++)
+        head[i] = (himc_damped_head){.frame = himc_drums_frame(drums, i),
+                                     .now = himc_drums_damped(drums, i),
+                                     .soon = himc_drums_will_be_damped(drums, i, soon)};
+    if (himc_damping_move(&m->damping, m->planner, &m->posture, head, drums->count, hand, t))
+        m->replan = true;
+}
+
 // keeps the planned tips of the next half second and the next strokes clear of the body
 static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
 {
@@ -456,6 +483,8 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
 {
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
+    if (s->alive && !m->track)
+        damp(m, drums, t);
     set_course(m, s, drums, t);
     if (m->replan)
         fill_tick(m, s, &m->from, t);

@@ -5,6 +5,7 @@
 
 #include "plan/planner.h"
 #include "control/avoidance.h"
+#include "control/damping.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
@@ -57,6 +58,7 @@ typedef struct performance_motion {
         regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
     himc_avoidance avoidance;
+    himc_damping damping;
     double avoided;     ///< time of its last update (s)
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
