@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -79,10 +80,35 @@ def test_the_body_is_that_of_the_player():
 def test_heads_move_most_after_their_strikes():
     one = scene()
     for drum in one.of("drum"):
-        frames = [(max(map(abs, a)), time) for time, number, a in one.heads if number == drum["drum"]]
+        frames = [(max(map(abs, q)), time) for time, number, q, _ in one.heads if number == drum["drum"]]
         most, time = max(frames)
         struck = [s["time"] for s in one.of("strike") if s["drum"] == drum["name"]]
         assert 1e-5 < most < 0.01 and any(0 < time - t < 0.3 for t in struck), (drum["name"], most, time)
+
+
+def test_between_two_frames_a_head_rings_freely():
+    """From one frame to the next, by the frequencies and decays in the scene, to the rounding."""
+    with open(path("two.txt"), "w") as file:
+        file.write("stroke 1 left accent f;\nstroke 2 right legato mf;\n")
+    command = [HIMC, "render", path("two.txt"), "-o", path("two.wav"), "--scene", path("two.himc")]
+    assert subprocess.run(command, capture_output=True).returncode == 0
+    with open(path("two.himc"), "rb") as file:
+        one = Scene(file.read())
+    modes, tried, worst = one.of("modes")[-1]["modes"], 0, 0
+    loud = [s["time"] for s in one.of("strike")]  # a loud head is stiffer
+    for (t, _, q, s), (t1, _, q1, _) in zip(one.heads, one.heads[1:]):
+        if t1 - t > 0.05 or any(t - 0.5 < blow < t1 for blow in loud):
+            continue
+        step = max(map(abs, q + s)) / 127
+        for k, (hz, d) in enumerate(modes):
+            w0 = 2 * math.pi * hz
+            w = math.sqrt(w0 * w0 - d * d)
+            there = math.exp(-d * (t1 - t)) * (
+                q[k] * math.cos(w * (t1 - t)) + (s[k] * w0 + d * q[k]) / w * math.sin(w * (t1 - t))
+            )
+            worst, tried = max(worst, abs(there - q1[k]) / step), tried + 1
+    assert tried > 1000 and worst < 1.5, (tried, worst)
+    return f"{tried} modes within {worst:.2f} of a step"
 
 
 def test_it_ends_with_the_sound_and_is_small():
