@@ -131,7 +131,7 @@ windows: deps ## program and externals for Windows, crossed by mingw-w64, in bui
 	@tools/windows.sh $(BUILD)/windows/parts
 	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
 	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
-	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser"
+	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
 windows-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=m_amd64 ARCHIVES=$(WINDOWS)/lib PDBINDIR=$(WINDOWS)/lib PDINCLUDEDIR=/usr/include/pd)
@@ -307,7 +307,7 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 
 test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
 	@tools/deps.sh tools/deps-python.txt
-	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools matplotlib; }
+	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools wheel matplotlib; }
 	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
 	@build/python/bin/python python/tests/test_himc.py
 
@@ -371,7 +371,7 @@ lint: ## formatting, warnings as errors, cppcheck, the one-way order of the room
 	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
 	@tools/lint.sh build/lint $(SOURCES)
 
-reference: ## the public headers as web pages, build/reference/index.html (doxygen); no warning is let pass
+reference: ## the public headers and the Python package as web pages, build/reference/index.html (doxygen); no warning is let pass
 	@tools/deps.sh tools/deps-reference.txt
 	@mkdir -p $(BUILD)
 	doxygen docs/Doxyfile

@@ -72,14 +72,14 @@ version=$(sed -n 's/^#define HIMC_VERSION_[A-Z]* \([0-9]*\)$/\1/p' "$root/lib/hi
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
-    "render evaluate info modes import share film play serve bench " ]
+    "render evaluate edit info modes import share film play serve bench " ]
 for call in $calls; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "allowed: render, evaluate, info, modes, import, share, film, play, serve, bench"
+refuses test_no_call_is_refused "allowed: render, evaluate, edit, info, modes, import, share, film, play, serve, bench"
 refuses test_unknown_call_is_refused '"drum"' drum
 refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
     render piece.txt -o x.wav --speed 2

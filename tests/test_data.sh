@@ -90,7 +90,13 @@ if [ -f "$stroke" ]; then
     done | sort | uniq -c >orders
     check test_player_and_take_may_come_in_any_order [ "$(sed 's/ *\([0-9]*\) .*: \([0-9]\).*/\1 \2/' orders)" = "2 4" ]
 fi
+refuses test_a_take_without_analog_channels_says_so "--analog: tips.csv has no analog channels" info tips.csv --analog x.csv
 reach=$(dirname "$stroke")/../upperlimb_pyomeca_100hz/markers_analogs.c3d
+if [ -f "$reach" ]; then
+    "$himc" info "$reach" --analog analog.csv >out
+    check test_analog_samples_are_written [ "$?$(head -n 1 analog.csv | tr ',' '\n' | wc -l) $(wc -l <analog.csv) $(grep ^analog: out)" = \
+        "039 11601 analog: 38 channels of 11600 samples at 2000 Hz" ]
+fi
 if [ -n "${HIMC_LONG-}" ] && [ -f "$reach" ]; then
     "$himc" evaluate --take "$stroke" "$reach" --right-tip RTIP,Daphnee:INDEX --csv both.csv --quiet
     check test_a_reaching_arm_teaches_no_stroke [ "$(grep -v markers_analogs both.csv | cut -d, -f 2-)" = "$(cut -d, -f 2- own.csv)" ]

@@ -65,6 +65,9 @@ done <"$work/commands" >"$work/absent"
 check test_commands_of_the_papers_are_there [ "$(wc -l <"$work/commands" | awk '{print ($1 > 20)}')$(cat "$work/absent")" = 1 ]
 
 if [ -n "${HIMC_LONG-}" ]; then
+    if command -v doxygen >/dev/null; then
+        check test_each_public_name_has_its_comment doxygen docs/Doxyfile
+    fi
     check test_numbers_of_the_papers_are_those_of_today cmp "$work/documented" "$work/table"
     # strokes and phases played again; what takes hours is read
     strokes=$HIMC_BUILD/tools/figures/strokes

@@ -249,6 +249,50 @@ static void test_playing_allocates_nothing(void)
     TEST_ASSERT_EQUAL_INT(0, allocations_seen());
 }
 
+static void test_a_nudge_is_smooth_and_leaves_strikes_their_height_and_speed(void)
+{
+    make_take(4, 0.0002);
+    double jump[3], time, x, y, after_x, after_y;
+    himc_track_current(track, HIMC_RIGHT, 1.7, &time, &x, &y);
+    himc_target far = at(0.9), before = at(time - 1e-9), middle = at(1.7);
+    himc_nudge one = {HIMC_RIGHT, 1.7, 0.6, {0.03, -0.02, 0.05}, 0, 0},
+               at_strike = {HIMC_RIGHT, 1.9, 0.4, {-0.04, 0.01, 0.3}, 0, 0};
+    TEST_ASSERT_TRUE(himc_track_nudge(track, &one, &error));
+    himc_target moved = at(1.7);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, middle.x.x + 0.03, moved.x.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, middle.x.z + 0.05, moved.x.z);
+    TEST_ASSERT_TRUE(himc_track_nudge(track, &at_strike, &error));
+    himc_target still = at(0.9), touch = at(time - 1e-9);
+    TEST_ASSERT_EQUAL_MEMORY(&far, &still, sizeof far);
+    TEST_ASSERT_EQUAL_DOUBLE(before.x.z, touch.x.z);
+    TEST_ASSERT_EQUAL_DOUBLE(before.v.z, touch.v.z);
+    himc_track_current(track, HIMC_RIGHT, 1.7, &time, &after_x, &after_y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, touch.x.x - before.x.x, after_x - x);
+    largest_jumps(0.05, 3.9, jump);
+    TEST_ASSERT_TRUE(jump[0] < 1e-8);
+    TEST_ASSERT_TRUE(jump[1] < 1e-4);
+    TEST_ASSERT_TRUE(jump[2] < 10);
+}
+
+static void test_nudges_outside_the_take_are_refused(void)
+{
+    make_take(4, 0);
+    himc_nudge early = {HIMC_RIGHT, 0.2, 0.3, {0, 0, 0.1}, 0, 0}, left = early, good = early;
+    left.hand = HIMC_LEFT;
+    good.time = left.time = 1;
+    TEST_ASSERT_FALSE(himc_track_nudge(track, &early, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "TIME"));
+    TEST_ASSERT_FALSE(himc_track_nudge(track, &left, &error));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "left"));
+    // while it plays: not if it has begun
+    error.text[0] = 0;
+    TEST_ASSERT_FALSE(himc_track_exchange(track, &good, 1, 0.8, &error));
+    TEST_ASSERT_EQUAL_STRING("", error.text);
+    TEST_ASSERT_TRUE(himc_track_exchange(track, &good, 1, 0.5, &error));
+    TEST_ASSERT_FALSE(himc_track_exchange(track, NULL, 0, 0.8, &error));
+    TEST_ASSERT_TRUE(himc_track_exchange(track, NULL, 0, 0.5, &error));
+}
+
 static void test_a_hand_without_a_tip_rests(void)
 {
     make_take(4, 0);
@@ -297,5 +341,7 @@ int main(void)
     RUN_TEST(test_playing_allocates_nothing);
     RUN_TEST(test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth);
     RUN_TEST(test_a_hand_without_a_tip_rests);
+    RUN_TEST(test_a_nudge_is_smooth_and_leaves_strikes_their_height_and_speed);
+    RUN_TEST(test_nudges_outside_the_take_are_refused);
     return UNITY_END();
 }

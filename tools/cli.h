@@ -43,7 +43,7 @@ typedef struct cli_call {
 } cli_call;
 
 extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share,
-    cli_film, cli_play, cli_serve, cli_bench;
+    cli_film, cli_play, cli_serve, cli_bench, cli_edit;
 
 /// Reads the arguments after the call's name; false with one line: the fault and the allowed
 /// values.
@@ -119,6 +119,22 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
 /// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).
 /// Returns the largest magnitude.
 double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out);
+
+/// How far a piece played offline is from its end. Zero at first.
+typedef struct cli_ending {
+    bool done;              ///< the performer has come to rest: set it at HIMC_EVENT_DONE
+    uint64_t samples;       ///< played so far
+    uint64_t done_at;       ///< sample at which a cell first found it done
+    double peak, cell_peak; ///< of the sound so far, of the cell under way: raise it
+} cli_ending;
+
+#define CLI_CELL 0.2 ///< the end is tested so often (s), so it depends on no block's size; chosen
+#define CLI_TAIL \
+    8.0 ///< no piece lasts longer after it is done (s); chosen: no timpano rings longer
+
+/// Called where a cell ends: true if nothing more can be heard. The performer is done, rests, and a
+/// whole cell stayed 80 dB below the peak, or CLI_TAIL has passed.
+bool cli_is_over(cli_ending *ending, int rate);
 
 /// Time on the monotonic clock (s).
 double cli_now(void);

@@ -10,8 +10,8 @@
 
 static const cli_call *const calls[] = {
     &cli_render,
-#ifndef _WIN32 // its workers are forks
-    &cli_evaluate,
+#ifndef _WIN32 // their workers are forks
+    &cli_evaluate, &cli_edit,
 #endif
     &cli_info,     &cli_modes, &cli_import, &cli_share,
     &cli_film,     &cli_play,  &cli_serve,  &cli_bench,

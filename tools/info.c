@@ -1,6 +1,7 @@
 /// info.c: `himc info`: describes a take or a score in a few lines.
 #include "capture/take.h"
 #include "cli.h"
+#include "capture/take.h"
 
 #include "himc/drum.h"
 #include "himc/mocap.h"
@@ -129,8 +130,12 @@ static bool describe_score(const char *path, himc_error *error)
 }
 
 static const cli_option options[] = {
-    CLI_TAKE_OPTIONS, {"json", 0, NULL, "the lines as one JSON array of [name, text]"}, {0}};
-enum { JSON = CLI_TAKE_VALUES };
+    CLI_TAKE_OPTIONS,
+    {"json", 0, NULL, "the lines as one JSON array of [name, text]"},
+    {"analog", 0, "F.csv",
+     "writes the samples of a C3D's analog channels: time_s and each channel"},
+    {0}};
+enum { JSON = CLI_TAKE_VALUES, ANALOG };
 
 static bool describe_player(himc_take *take, const himc_take_options *take_options,
                             himc_error *error)
@@ -152,12 +157,44 @@ static bool describe_player(himc_take *take, const himc_take_options *take_optio
     return drum != NULL;
 }
 
+static bool write_analog(const himc_take *take, const char *path, himc_error *error)
+{
+    cli_file file = {0};
+    if (!path)
+        return true;
+    if (!take->analog)
+        return himc_error_set(error, "--analog: %s has no analog channels", take->file);
+    if (!cli_file_open(&file, path, error))
+        return false;
+    fputs("time_s", file.stream);
+    for (int channel = 0; channel < take->analog_channels; channel++) {
+        char quoted[2 * TAKE_NAME] = "", *to = quoted;
+        for (const char *from = take->analog_names[channel]; *from; *to++ = *from++)
+            if (*from == '"')
+                *to++ = '"';
+        fprintf(file.stream, ",\"%s\"", quoted);
+    }
+    for (int i = 0; i < take->analog_samples; i++) {
+        fprintf(file.stream, "\n%.6f", i / take->analog_rate);
+        for (int channel = 0; channel < take->analog_channels; channel++)
+            fprintf(file.stream, ",%.9g", take->analog[i * take->analog_channels + channel]);
+    }
+    fputc('\n', file.stream);
+    bool good = cli_file_close(&file, error) && cli_file_keep(&file, error);
+    cli_file_drop(&file);
+    return good;
+}
+
 static bool describe_take(const char *path, const himc_take_options *take_options,
-                          himc_error *error)
+                          const char *analog, himc_error *error)
 {
     himc_take *take = himc_take_load(path, take_options, error);
     if (!take)
         return false;
+    if (!write_analog(take, analog, error)) {
+        himc_take_free(take);
+        return false;
+    }
     himc_take_tip tips[HIMC_HANDS];
     bool named = take_options->left_tip || take_options->right_tip;
     if (named && !himc_take_tips(take, take_options, tips, error)) {
@@ -176,9 +213,10 @@ static int run(const cli_arguments *arguments)
     const char *path = cli_input(arguments->operand, &error);
     himc_take_options take_options;
     json = arguments->value[JSON] != NULL;
-    bool good = path && cli_take_options(path, arguments->value, &take_options, &error) &&
-                (cli_is_take(path) ? describe_take(path, &take_options, &error)
-                                   : describe_score(path, &error));
+    bool good =
+        path && cli_take_options(path, arguments->value, &take_options, &error) &&
+        (cli_is_take(path) ? describe_take(path, &take_options, arguments->value[ANALOG], &error)
+                           : describe_score(path, &error));
     if (json && good)
         printf("\n]\n");
     return good ? cli_finish(&cli_info) : cli_fail(&cli_info, "%s", error.text);

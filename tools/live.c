@@ -4,6 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest; chosen
+#define SILENCE 1e-4     // of the peak: 80 dB
+
 static bool load(himc_performance *p, const char *source, double rate, const char *listener,
                  himc_error *error)
 {
@@ -48,4 +51,17 @@ double cli_mix(himc_performance *performance, uint64_t start, int n, int channel
         }
     }
     return peak;
+}
+
+bool cli_is_over(cli_ending *e, int rate)
+{
+    e->peak = fmax(e->peak, e->cell_peak);
+    bool silent = e->cell_peak <= SILENCE * e->peak;
+    e->cell_peak = 0;
+    if (!e->done)
+        return false;
+    if (!e->done_at)
+        e->done_at = e->samples;
+    double since = (double)(e->samples - e->done_at) / rate;
+    return (silent && since >= REST_SECONDS) || since >= CLI_TAIL;
 }

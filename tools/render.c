@@ -20,12 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// chosen: a cell is long against a period of the deepest drum, a tail longer than any timpano rings
-#define CELL_SECONDS 0.2
-#define TAIL_SECONDS 8.0
-#define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest
-#define SILENCE 1e-4     // of the peak: 80 dB
-#define HEARD_BY_TWO 2   // channels, one for each ear
+#define HEARD_BY_TWO 2 // channels, one for each ear
 #define BLOCK_MAX CLI_BLOCK
 /// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
 #define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
@@ -89,11 +84,9 @@ typedef struct rendering {
     scene_record *record; ///< NULL without --scene
     SNDFILE *sound;
     int channels;
-    bool done;     ///< the performer has come to rest
     int failed;    ///< errno of the first write that did not arrive
     bool too_long; ///< for a WAV file
-    uint64_t samples, done_at;
-    double peak, cell_peak; ///< of the sound so far, of the cell under way
+    cli_ending ending;
 } rendering;
 
 /// Samples of a channel that a WAV file can hold.
@@ -176,10 +169,10 @@ static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, him
     double beat = score->stroke_count ? score->strokes[score->stroke_count - 1].beat : 0;
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
     himc_score_free(score);
-    if (seconds + TAIL_SECONDS > room(wanted->channels) / wanted->rate)
+    if (seconds + CLI_TAIL > room(wanted->channels) / wanted->rate)
         return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %d Hz: %.0f s",
                               wanted->source, seconds, wanted->rate,
-                              room(wanted->channels) / wanted->rate - TAIL_SECONDS);
+                              room(wanted->channels) / wanted->rate - CLI_TAIL);
     return true;
 }
 
@@ -275,7 +268,7 @@ static void take_events(rendering *r)
             if (r->sound)
                 cli_say("note: %s\n", event.text);
         } else if (event.kind == HIMC_EVENT_DONE)
-            r->done = true;
+            r->ending.done = true;
     }
 }
 
@@ -292,34 +285,21 @@ static void play_block(rendering *r, int n)
 {
     float out[HEARD_BY_TWO * BLOCK_MAX];
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
-    r->cell_peak = fmax(r->cell_peak, cli_mix(r->performance, r->samples, n, r->channels, out));
+    r->ending.cell_peak =
+        fmax(r->ending.cell_peak, cli_mix(r->performance, r->ending.samples, n, r->channels, out));
     errno = 0;
     if (r->sound && sf_writef_float(r->sound, out, n) != n)
         r->failed = errno ? errno : EIO;
-    r->samples += (uint64_t)n;
+    r->ending.samples += (uint64_t)n;
     take_events(r);
     if (r->record)
         scene_record_block(r->record, r->channels ? out : NULL, n);
 }
 
-/// Called where a cell ends: true if nothing more can be heard.
-static bool is_over(rendering *r, int rate)
-{
-    r->peak = fmax(r->peak, r->cell_peak);
-    bool silent = r->cell_peak <= SILENCE * r->peak;
-    r->cell_peak = 0;
-    if (!r->done)
-        return false;
-    if (!r->done_at)
-        r->done_at = r->samples;
-    double since = (double)(r->samples - r->done_at) / rate;
-    return (silent && since >= REST_SECONDS) || since >= TAIL_SECONDS;
-}
-
 /// Plays to the end; returns how long it took (s).
 static double play(rendering *r, const job *wanted)
 {
-    int cell = (int)lround(CELL_SECONDS * wanted->rate);
+    int cell = (int)lround(CLI_CELL * wanted->rate);
     double start = cli_now();
     do {
         for (int left = cell; left > 0 && !r->failed;) {
@@ -327,9 +307,9 @@ static double play(rendering *r, const job *wanted)
             play_block(r, n);
             left -= n;
         }
-        r->too_long = (double)(r->samples + (uint64_t)cell) > room(r->channels);
-        show_progress((double)r->samples / wanted->rate, cli_now() - start);
-    } while (!is_over(r, wanted->rate) && !r->failed && !r->too_long);
+        r->too_long = (double)(r->ending.samples + (uint64_t)cell) > room(r->channels);
+        show_progress((double)r->ending.samples / wanted->rate, cli_now() - start);
+    } while (!cli_is_over(&r->ending, wanted->rate) && !r->failed && !r->too_long);
     double elapsed = cli_now() - start;
     clear_progress();
     return elapsed;
@@ -407,8 +387,8 @@ static bool play_other(rendering *r, const job *wanted, const char *mode, himc_e
            open_record(&other, wanted, file, mode, false, error);
     if (good) {
         himc_performance_on_motion(other.performance, take_row, &other);
-        while (other.samples < r->samples) {
-            uint64_t left = r->samples - other.samples;
+        while (other.ending.samples < r->ending.samples) {
+            uint64_t left = r->ending.samples - other.ending.samples;
             play_block(&other, left < (uint64_t)wanted->block ? (int)left : wanted->block);
         }
         good = scene_record_end(other.record, error);
@@ -472,7 +452,7 @@ static int run(const cli_arguments *arguments)
         close_all(&r);
         return cli_fail(&cli_render, "%s", error.text);
     }
-    double elapsed = play(&r, &wanted), seconds = (double)r.samples / wanted.rate;
+    double elapsed = play(&r, &wanted), seconds = (double)r.ending.samples / wanted.rate;
     himc_performance_stats stats = himc_performance_measure(r.performance);
     bool good = compare(&r, &wanted, &error) && keep_files(&r, &error),
          piped = r.wav.standard || r.strokes.standard || r.motion.standard;

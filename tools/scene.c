@@ -372,7 +372,8 @@ static void begin(scene_writer *s)
         put(&names, one, (size_t)length);
     }
     put(&names, "", 1);
-    write_all(s, "himcscn\x01", 8);
+    if (!c->bare)
+        write_all(s, "himcscn\x01", 8);
     scene_event(
         s,
         "\"event\":\"scene\",\"time\":0,\"version\":%d,\"program\":\"himc %s\",\"name\":\"%s\","
@@ -401,10 +402,15 @@ scene_writer *scene_open(const scene_config *config, himc_error *error)
     return s;
 }
 
-bool scene_close(scene_writer *s, himc_error *error)
+void scene_flush(scene_writer *s)
 {
     write_rows(s);
     write_heads(s);
+}
+
+bool scene_close(scene_writer *s, himc_error *error)
+{
+    scene_flush(s);
     if (s->file) {
         sf_close(s->file);
         s->file = NULL;

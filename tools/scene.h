@@ -26,10 +26,13 @@ typedef struct scene_config {
     const scene_column *column;
     int columns;
     int rate, channels; ///< of the sound (Hz; 0 channels: none, 1 or 2)
+    bool bare;          ///< only the chunks after the file's first eight bytes
 } scene_config;
 
 /// Begins a scene. NULL with the reason.
 scene_writer *scene_open(const scene_config *config, himc_error *error);
+/// Writes what waits, but no sound, for a reader that takes the chunks while they are made.
+void scene_flush(scene_writer *scene);
 /// Adds an event: a JSON object without its braces (printf format). Call scene_text for what came
 /// from elsewhere.
 void scene_event(scene_writer *scene, const char *format, ...)

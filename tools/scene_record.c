@@ -334,7 +334,8 @@ static scene_writer *open_scene(scene_record *r, const scene_record_config *c, h
                           .column = r->column,
                           .columns = COLUMNS,
                           .rate = c->rate,
-                          .channels = c->channels};
+                          .channels = c->channels,
+                          .bare = c->bare};
     return scene_open(&scene, error);
 }
 
@@ -364,6 +365,11 @@ scene_record *scene_record_begin(const scene_record_config *config, himc_error *
     }
     tell_score(r, config->source);
     return r;
+}
+
+void scene_record_flush(scene_record *r)
+{
+    scene_flush(r->scene);
 }
 
 void scene_record_more(scene_record *r, FILE *stream)

@@ -16,11 +16,14 @@ typedef struct scene_record_config {
     const char *source; ///< what it plays, for the reader
     const char *name;   ///< who plays it: "himc"
     int rate, channels; ///< of the sound (Hz; 0 channels: none, 1 or 2)
+    bool bare;          ///< only chunks, for a reader that takes them while they are made
     bool captured;      ///< also the take's own joints, if one plays that has any
 } scene_record_config;
 
 /// Begins to record. NULL with the reason.
 scene_record *scene_record_begin(const scene_record_config *config, himc_error *error);
+/// Writes what waits, but no sound.
+void scene_record_flush(scene_record *record);
 /// For himc_performance_on_tick, which the caller sets; `record` is a scene_record.
 void scene_record_tick(void *record, const himc_tick *tick);
 /// For himc_performance_on_motion; `record` is a scene_record.

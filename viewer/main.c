@@ -1,9 +1,11 @@
 /// himc-viewer: OSC in, a page in the browser out.
 #define _POSIX_C_SOURCE 200809L
+#include "editor.h"
 #include "receive.h"
 #include "recording.h"
 #include "web.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,12 +21,13 @@ static const char help[] =
     "  --osc PORT       receive OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
     "  --http PORT      serve the page on this port (8080)\n"
     "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in\n"
+    "  --edit SOURCE    change a score, a MIDI file or a take on the page, and hear it at once\n"
     "  --play F.himc    play a scene that himc render --scene wrote\n"
     "  --no-browser     only print the address\n"
     "  --help           this text\n";
 
 typedef struct options {
-    const char *address, *play;
+    const char *address, *play, *edit;
     int osc, http;
     bool browser;
 } options;
@@ -57,7 +60,7 @@ static bool parse_port(const char *name, const char *text, int *port, himc_error
 static bool parse_option(options *o, const char *name, const char *value, himc_error *error)
 {
     bool known = !strcmp(name, "--osc") || !strcmp(name, "--http") || !strcmp(name, "--bind") ||
-                 !strcmp(name, "--play");
+                 !strcmp(name, "--play") || !strcmp(name, "--edit");
     if (!known)
         return himc_error_set(error, "%.60s: unknown option; himc-viewer --help lists them", name);
     if (!value)
@@ -66,7 +69,9 @@ static bool parse_option(options *o, const char *name, const char *value, himc_e
         return parse_port(name, value, &o->osc, error);
     if (!strcmp(name, "--http"))
         return parse_port(name, value, &o->http, error);
-    *(strcmp(name, "--bind") ? &o->play : &o->address) = value;
+    *(!strcmp(name, "--bind")   ? &o->address
+      : !strcmp(name, "--play") ? &o->play
+                                : &o->edit) = value;
     return true;
 }
 
@@ -84,12 +89,13 @@ static bool parse(options *o, char **argv, himc_error *error)
     return true;
 }
 
-// a browser cannot open 0.0.0.0
-static void print_url(char url[128], const char *address, int port)
+// a browser cannot open 0.0.0.0; what comes after # it keeps to itself
+static void print_url(char url[192], const char *address, int port, const char *key)
 {
     bool all = !strcmp(address, "0.0.0.0") || !strcmp(address, "::");
     const char *host = all ? "127.0.0.1" : address;
-    snprintf(url, 128, strchr(host, ':') ? "http://[%s]:%d/" : "http://%s:%d/", host, port);
+    snprintf(url, 192, strchr(host, ':') ? "http://[%s]:%d/#%s" : "http://%s:%d/#%s", host, port,
+             key);
 }
 
 static void open_browser(const char *url)
@@ -111,13 +117,27 @@ static void handle_signals(void)
     signal(SIGPIPE, SIG_IGN);
 }
 
+// what is wrong with the piece itself, himc tells the page
+static bool check_edit(const options *o, himc_error *error)
+{
+    if (o->play)
+        return himc_error_set(error, "--play and --edit: allowed is one of them");
+    return access(o->edit, R_OK) == 0 ||
+           himc_error_set(error, "%.200s: %s", o->edit, strerror(errno));
+}
+
 static int serve(const options *o, himc_error *error)
 {
     static scene s;
     web_config config = {.address = o->address, .port = o->http};
-    char *recording = o->play ? recording_load(o->play, &config.play_size, error) : NULL, url[128];
-    if (o->play && !recording)
+    char *recording = o->play ? recording_load(o->play, &config.play_size, error) : NULL, url[192],
+         key[EDITOR_KEY + 1];
+    if ((o->play && !recording) || !editor_key(key, error) || (o->edit && !check_edit(o, error))) {
+        free(recording);
         return fail(error);
+    }
+    config.edit = o->edit;
+    config.key = key;
     config.play = recording;
     config.play_name = o->play;
     config.osc = receive_open(o->address, o->osc, error);
@@ -128,7 +148,7 @@ static int serve(const options *o, himc_error *error)
     }
     // before the address is printed, so that a signal sent after it ends the program cleanly
     handle_signals();
-    print_url(url, o->address, web_port(w));
+    print_url(url, o->address, web_port(w), key);
     printf("%s shows what arrives as OSC at %s UDP port %d\n", url, o->address,
            receive_port(config.osc));
     fflush(stdout);

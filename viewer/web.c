@@ -3,11 +3,14 @@
 /// The stream is for our page alone (access.h). One gate decides on each request for an upgrade,
 /// whatever its protocol: libwebsockets would otherwise accept h2c, and websockets without a
 /// protocol. The page never sends data; clients that send anything but control frames are
-/// disconnected. A slow browser gets the newest pose when it is ready for it, so no queue grows
+/// disconnected. Another stream is for editing: it is for a page that knows the key in its address.
+/// Its messages go to `himc edit` (editor.c), one line each, or are a file to be edited; and what that
+/// program tells goes back, as fast as the page takes it. A slow browser gets the newest pose when it is ready for it, so no queue grows
 /// here. Invariant: connections are bounded in number, and each that makes no progress in time.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
 #include "access.h"
+#include "editor.h"
 #include "receive.h"
 #include "pages.h"
 
@@ -32,6 +35,7 @@ enum {
     CLIENT_TIMEOUT = 20, // of a client that takes no more of a page or of the stream (s)
     CLOSE_TIMEOUT = 500, // from the decision to close a stream to its end (ms)
     PAUSE = 3,           // (ms), a tenth of the time between poses: waking up costs most
+    PASSED = 65536,      // of what `himc edit` tells in one message (bytes)
     HEADER_SIZE = 264    // of a host or an origin with its zero; longer ones are refused
 };
 
@@ -52,6 +56,12 @@ struct web {
     struct lws *osc; // the OSC socket in the loop
     uint64_t rejected;
     char session[1024]; // JSON: where OSC is received, what is played
+    editor edit;
+    struct lws *editing, *edited; // the page that edits, the program's output in the loop
+    char *heard;                  // owned: what has come of a message of that page
+    size_t heard_size, heard_room;
+    size_t waiting; // bytes of the program in `passed`
+    unsigned char passed[LWS_PRE + PASSED];
     lws_sorted_usec_list_t pause, second;
     double cpu, clock; // at the last report (s)
     unsigned char out[LWS_PRE + SCENE_FRAME_MAX];
@@ -165,7 +175,7 @@ static int send_news(struct lws *wsi, session *own)
     return 0;
 }
 
-static const struct lws_protocols protocols[3];
+static const struct lws_protocols protocols[5];
 
 static void request_writes(web *w)
 {
@@ -200,16 +210,27 @@ static void on_packet(web *w, struct lws *wsi)
     lws_sul_schedule(w->context, 0, &w->pause, on_pause_over, PAUSE * LWS_US_PER_MS);
 }
 
+// the address of an editing page's stream is /edit/KEY
+static bool knows_key(struct lws *wsi)
+{
+    static const char begin[] = "/edit/";
+    char path[HEADER_SIZE];
+    return header(wsi, WSI_TOKEN_GET_URI, path) && strncmp(path, begin, strlen(begin)) == 0 &&
+           editor_is_key(web_of(wsi)->config.key, path + strlen(begin));
+}
+
 // the gate: each request for an upgrade passes here, whatever it wants to become
 static int on_upgrade(struct lws *wsi)
 {
     char host[HEADER_SIZE], origin[HEADER_SIZE], upgrade[16], protocol[16];
     bool ours = header(wsi, WSI_TOKEN_HOST, host) && header(wsi, WSI_TOKEN_ORIGIN, origin) &&
                 access_is_our_page(host, origin);
+    bool edits = lws_hdr_copy(wsi, protocol, sizeof protocol, WSI_TOKEN_PROTOCOL) > 0 &&
+                 strcmp(protocol, protocols[2].name) == 0;
     bool stream = lws_hdr_copy(wsi, upgrade, sizeof upgrade, WSI_TOKEN_UPGRADE) > 0 &&
                   strcasecmp(upgrade, "websocket") == 0 &&
                   lws_hdr_copy(wsi, protocol, sizeof protocol, WSI_TOKEN_PROTOCOL) > 0 &&
-                  strcmp(protocol, protocols[1].name) == 0 &&
+                  (edits ? knows_key(wsi) : strcmp(protocol, protocols[1].name) == 0) &&
                   lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
     return !ours || !stream                  ? refuse(wsi, HTTP_STATUS_FORBIDDEN)
            : web_of(wsi)->clients >= CLIENTS ? refuse(wsi, HTTP_STATUS_SERVICE_UNAVAILABLE)
@@ -277,7 +298,151 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
     }
 }
 
-static const struct lws_protocols protocols[3] = {
+// --- editing
+
+// a line for the page, as `himc edit` tells it; dropped if other bytes wait
+static void tell_page(web *w, const char *text)
+{
+    char line[512], *json = (char *)w->passed + LWS_PRE + 8;
+    uint32_t size;
+    if (!w->editing || w->waiting)
+        return;
+    scene_word(line, sizeof line, text);
+    size = (uint32_t)snprintf(json, PASSED - 8, "{\"event\":\"failed\",\"text\":\"%s\"}", line);
+    memcpy(json - 8, "edit", 4);
+    memcpy(json - 4, &size, 4);
+    w->waiting = size + 8;
+    lws_callback_on_writable(w->editing);
+}
+
+// the program for w->edit plays from the start
+static void begin_editing(web *w)
+{
+    himc_error error;
+    if (w->edited)
+        lws_set_timeout(w->edited, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
+    w->waiting = 0;
+    if (!editor_start(&w->edit, &error)) {
+        tell_page(w, error.text);
+        return;
+    }
+    lws_sock_file_fd_type from = {.filefd = w->edit.from};
+    w->edited = lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, from,
+                                           protocols[3].name, NULL);
+    editor_say(&w->edit, "hello", 5);
+}
+
+// a whole message of the page: a line, or a file
+static bool take_message(web *w, bool file)
+{
+    himc_error error;
+    if (!file)
+        return editor_say(&w->edit, w->heard, w->heard_size);
+    if (editor_keep(&w->edit, w->heard, w->heard_size, &error))
+        begin_editing(w);
+    else
+        tell_page(w, error.text);
+    return true;
+}
+
+// a part of a message; false if it is too long, or no line
+static bool hear_page(web *w, struct lws *wsi, const char *in, size_t length)
+{
+    bool file = lws_frame_is_binary(wsi);
+    size_t most = file ? EDITOR_UPLOAD : EDITOR_LINE, size = w->heard_size + length;
+    if (wsi != w->editing || size > most)
+        return false;
+    if (size > w->heard_room) {
+        char *more = realloc(w->heard, 2 * size);
+        if (!more)
+            return false;
+        w->heard = more;
+        w->heard_room = 2 * size;
+    }
+    memcpy(w->heard + w->heard_size, in, length);
+    w->heard_size = size;
+    if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0)
+        return true;
+    bool good = take_message(w, file);
+    w->heard_size = 0;
+    return good;
+}
+
+static int pass_on(web *w, struct lws *wsi)
+{
+    if (!w->waiting || wsi != w->editing)
+        return 0;
+    int size = (int)w->waiting;
+    w->waiting = 0;
+    lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0);
+    if (lws_write(wsi, w->passed + LWS_PRE, (size_t)size, LWS_WRITE_BINARY) < size)
+        return -1;
+    if (w->edited)
+        lws_rx_flow_control(w->edited, 1);
+    return 0;
+}
+
+static int on_edit(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                   size_t length)
+{
+    web *w = web_of(wsi);
+    session *own = user;
+    switch (reason) {
+    case LWS_CALLBACK_ESTABLISHED:
+        if (w->editing) // the newest page edits
+            lws_set_timeout(w->editing, PENDING_TIMEOUT_USER_OK, 1);
+        w->editing = wsi;
+        w->heard_size = 0;
+        w->clients++;
+        own->counted = true;
+        if (w->edit.source[0])
+            begin_editing(w);
+        return 0;
+    case LWS_CALLBACK_SERVER_WRITEABLE: return own->closing ? 0 : pass_on(w, wsi);
+    case LWS_CALLBACK_RECEIVE:
+        if (!own->closing && hear_page(w, wsi, in, length))
+            return 0;
+        return on_data(wsi, own);
+    case LWS_CALLBACK_WS_SERVER_DROP_PROTOCOL:
+        own->closing = true;
+        lws_set_timer_usecs(wsi, CLOSE_TIMEOUT * LWS_US_PER_MS);
+        return 0;
+    case LWS_CALLBACK_TIMER: return -1;
+    case LWS_CALLBACK_CLOSED:
+        w->clients -= own->counted;
+        own->counted = false;
+        w->editing = w->editing == wsi ? NULL : w->editing;
+        return 0;
+    default: return 0;
+    }
+}
+
+// what the program tells waits until the page has taken what came before
+static int on_edited(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                     size_t length)
+{
+    web *w = web_of(wsi);
+    (void)user, (void)in, (void)length;
+    if (reason == LWS_CALLBACK_RAW_CLOSE_FILE && w->edited == wsi)
+        w->edited = NULL;
+    if (reason != LWS_CALLBACK_RAW_RX_FILE || w->edited != wsi)
+        return 0;
+    if (w->waiting || !w->editing) {
+        lws_rx_flow_control(wsi, 0);
+        return 0;
+    }
+    ssize_t got = read(w->edit.from, w->passed + LWS_PRE, PASSED);
+    if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR))
+        return -1;
+    if (got > 0) {
+        w->waiting = (size_t)got;
+        lws_rx_flow_control(wsi, 0);
+        lws_callback_on_writable(w->editing);
+    }
+    return 0;
+}
+
+static const struct lws_protocols protocols[5] = {
     {.name = "http",
      .callback = on_http,
      .per_session_data_size = sizeof(session),
@@ -286,6 +451,11 @@ static const struct lws_protocols protocols[3] = {
      .callback = on_stream,
      .per_session_data_size = sizeof(session),
      .rx_buffer_size = 256},
+    {.name = "edit",
+     .callback = on_edit,
+     .per_session_data_size = sizeof(session),
+     .rx_buffer_size = 4096},
+    {.name = "edited", .callback = on_edited, .rx_buffer_size = 1024},
     {0},
 };
 
@@ -389,6 +559,8 @@ web *web_new(const web_config *config, scene *s, himc_error *error)
     w->s = s;
     w->config = *config;
     describe_session(w);
+    if (config->edit)
+        snprintf(w->edit.source, sizeof w->edit.source, "%s", config->edit);
     if (!listen_to_all(w)) {
         himc_error_set(error, "cannot serve the page on %s port %d", config->address, config->port);
         web_free(w);
@@ -415,5 +587,9 @@ void web_free(web *w)
 {
     if (w && w->context)
         lws_context_destroy(w->context);
+    if (w) {
+        editor_close(&w->edit);
+        free(w->heard);
+    }
     free(w);
 }

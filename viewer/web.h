@@ -12,6 +12,8 @@ typedef struct web_config {
     const char *play;      ///< bytes of a scene, served as /play.himc, or NULL
     size_t play_size;      ///< (bytes)
     const char *play_name; ///< its file
+    const char *edit;      ///< file of a piece to be edited, or NULL
+    const char *key;       ///< that a page must know to edit (editor.h)
 } web_config;
 
 typedef struct web web;

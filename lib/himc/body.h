@@ -278,7 +278,12 @@ HIMC_RT void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_bod
 
 /// A symmetric 3x3 matrix.
 typedef struct himc_symmetric {
-    double xx, xy, xz, yy, yz, zz; ///< the upper triangle
+    double xx; ///< the upper triangle, row by row
+    double xy; ///< the same
+    double xz; ///< the same
+    double yy; ///< the same
+    double yz; ///< the same
+    double zz; ///< the same
 } himc_symmetric;
 
 /// The articulated inertias of the segments at a state: working memory of forward dynamics.

@@ -75,6 +75,9 @@ HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDE
                  "loads a score; while one plays, the new one follows it")
 HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, HIMC_IN_FOLDER, "FILE",
                  "loads a motion capture and tracks it")
+HIMC_COMMAND_ROW(NUDGE, nudge, PERFORMER, NOW, 0, "HAND TIME SPAN X Y Z",
+                 "leads a tip of the take aside by that way at that time, smoothly within SPAN "
+                 "before and after; strikes stay strikes")
 HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
                  "cuts strokes out of a take and plays them instead of the built-in ones")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",

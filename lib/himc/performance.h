@@ -214,23 +214,26 @@ typedef struct himc_performance_stats {
     double peak_force;      ///< largest contact force (N)
     int unplanned_contacts; ///< of a stick and a head that no stroke asked for
     double longest_contact; ///< time from a stick's first touch to its last (s)
-    /// Distance of the tip from its place in the take itself, contacts and all, not from a target
-    /// that was planned again after a contact (m): RMS and largest, and the same in percent of
-    /// stroke_height. At the task rate; NaN if no take was played, percent also before a stroke.
-    double captured_rms, captured_most, captured_rms_percent, captured_most_percent;
-    double peak_rate;       ///< largest rate of a joint, of its axes together (rad/s) ...
-    int peak_rate_joint;    ///< ... and the joint
-    double peak_torque;     ///< largest torque of a joint (N m), 0 in `ik` ...
-    int peak_torque_joint;  ///< ... and the joint
-    int hits;               ///< accepted hits
-    double hit_latency;     ///< of the last hit, from its command to its planned contact (s)
-    double longest_latency; ///< of all hits (s)
-    long recoveries;        ///< times a non-finite state was met and the last good one restored
-    long limit_hits;        ///< times a joint came to its bounds
-    long events_lost;       ///< events dropped because the host did not take them
-    double sample_rate;     ///< in force (Hz)
-    double physics_rate;    ///< in force (Hz)
-    double task_rate;       ///< in force (Hz)
+    /// RMS distance of the tip from its place in the take itself, contacts and all, not from a
+    /// target that was planned again after a contact (m). At the task rate; NaN if no take was
+    /// played, in percent also before a stroke.
+    double captured_rms;
+    double captured_most;         ///< the largest such distance (m)
+    double captured_rms_percent;  ///< captured_rms / stroke_height (%)
+    double captured_most_percent; ///< captured_most / stroke_height (%)
+    double peak_rate;             ///< largest rate of a joint, of its axes together (rad/s) ...
+    int peak_rate_joint;          ///< ... and the joint
+    double peak_torque;           ///< largest torque of a joint (N m), 0 in `ik` ...
+    int peak_torque_joint;        ///< ... and the joint
+    int hits;                     ///< accepted hits
+    double hit_latency;           ///< of the last hit, from its command to its planned contact (s)
+    double longest_latency;       ///< of all hits (s)
+    long recoveries;     ///< times a non-finite state was met and the last good one restored
+    long limit_hits;     ///< times a joint came to its bounds
+    long events_lost;    ///< events dropped because the host did not take them
+    double sample_rate;  ///< in force (Hz)
+    double physics_rate; ///< in force (Hz)
+    double task_rate;    ///< in force (Hz)
 } himc_performance_stats;
 
 /// The figures now.

@@ -2,7 +2,8 @@
 
 ``render`` plays a score or a take offline; ``Performance`` plays step by step, with live targets; ``Take`` is a motion capture as
 arrays; ``modes`` lists a drum's modes; ``evaluate`` compares the controllers on own captures. All units are SI; docs/data.md of the
-repository has frames and conventions.
+repository has frames and conventions. ``joint_names`` and ``segment_names`` are the names of the 19 joints and 20 segments, in the order
+of the rows' arrays.
 
 Arrays of sound, motion and takes are the library's own memory, not copies. They stay valid as long as Python has them.
 """
@@ -21,13 +22,13 @@ from numpy.typing import NDArray
 from ._himc import ffi, lib
 
 __all__ = ["Error", "Performance", "Rendering", "Take", "evaluate", "joint_names", "modes", "render", "segment_names"]
-__version__: str = ffi.string(lib.himc_version()).decode()
+__version__ = ffi.string(lib.himc_version()).decode()
 
-HANDS = ("left", "right")
-LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
-CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
-TAIL = 8.0  # s; a drum rings no longer
-SILENCE = 1e-4  # of the peak
+_HANDS = ("left", "right")
+_LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
+_CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
+_TAIL = 8.0  # s; a drum rings no longer
+_SILENCE = 1e-4  # of the peak
 
 joint_names: list[str] = [ffi.string(lib.himc_joint_name(j)).decode() for j in range(19)]
 segment_names: list[str] = [ffi.string(lib.himc_segment_name(i)).decode() for i in range(20)]
@@ -99,10 +100,12 @@ class Performance:
         made = lib.session_new(rate, physics, task, error)
         _check(made != ffi.NULL, error)
         self._session = ffi.gc(made, lib.session_free)
-        self.rate, self.channels = rate, channels
+        ## Sample rate of the sound (Hz).
+        self.rate = rate
+        self._channels = channels
         lib.session_keep_rows(self._session, motion)
         if channels == 2:
-            self.command(LISTENER)
+            self.command(_LISTENER)
 
     def command(self, text: str, word: Union[None, str, Path] = None) -> None:
         """Carries out a command of the manual: ``"tempo 90"``, or a name and one word that may have spaces: ``("take", path)``."""
@@ -127,15 +130,15 @@ class Performance:
     def target(self, hand: Union[str, int], xyz: Sequence[float]) -> None:
         """A live target of a drumstick's tip (m, world frame), for now."""
         x, y, z = map(float, xyz)
-        lib.himc_performance_target(self._session.performance, HANDS.index(hand) if isinstance(hand, str) else hand, [x, y, z])
+        lib.himc_performance_target(self._session.performance, _HANDS.index(hand) if isinstance(hand, str) else hand, [x, y, z])
 
     def process(self, seconds: float, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
         """Plays on; the sound, (samples, channels) float32. `out` is filled instead, as long as it is (no copy)."""
         if out is None:
-            out = np.empty((round(seconds * self.rate), self.channels), np.float32)
-        elif out.dtype != np.float32 or out.ndim != 2 or out.shape[1] != self.channels or not out.flags.c_contiguous:
-            raise Error(f"out: allowed float32, C order, shape (samples, {self.channels})")
-        lib.session_process(self._session, len(out), self.channels, ffi.cast("float *", out.ctypes.data))
+            out = np.empty((round(seconds * self.rate), self._channels), np.float32)
+        elif out.dtype != np.float32 or out.ndim != 2 or out.shape[1] != self._channels or not out.flags.c_contiguous:
+            raise Error(f"out: allowed float32, C order, shape (samples, {self._channels})")
+        lib.session_process(self._session, len(out), self._channels, ffi.cast("float *", out.ctypes.data))
         if self._session.failed:
             raise MemoryError("no memory for rows or strikes")
         return out
@@ -174,11 +177,15 @@ class Performance:
 
 @dataclass(frozen=True)
 class Rendering:
-    """What a piece sounds and looks like."""
-    sound: NDArray[np.float32]  #: (samples, channels), 1.0 is full scale
-    rate: float  #: (Hz)
-    motion: NDArray  #: structured (rows,), as in docs/data.md; empty unless asked for
-    strikes: NDArray  #: structured (strikes,)
+    """What a piece sounds and looks like.
+
+    ``sound``: (samples, channels) float32, 1.0 is full scale; ``rate`` (Hz). ``motion``: a structured array (rows,) with the columns of
+    docs/data.md, empty unless asked for; ``strikes``: one of (strikes,). ``stats``: the figures of ``himc render``; ``notes``: its lines.
+    """
+    sound: NDArray[np.float32]
+    rate: float
+    motion: NDArray
+    strikes: NDArray
     stats: Mapping[str, float]
     notes: Sequence[str]
 
@@ -202,12 +209,12 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
     makes = 0 if take else lib.session_makes_drums(path.encode(), error)
     _check(makes >= 0, error)
     p = Performance(rate, channels=0, motion=motion)
-    p.channels = channels
+    p._channels = channels
     p.take_options(left_tip, right_tip, up)
     if not makes:
         p.add_drum()
     if channels == 2:
-        p.command(LISTENER)
+        p.command(_LISTENER)
     commands = [(text, None) for text in settings]
     whole = [("take" if take else "score", path)]
     for text, word in commands + whole if take else whole + commands:
@@ -221,13 +228,13 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
 def _play_to_the_end(p: Performance) -> Rendering:
     cells, peak, done_at = [], 0.0, None
     while True:
-        cells.append(p.process(CELL))
+        cells.append(p.process(_CELL))
         quiet = p._session.peak
         peak = max(peak, quiet)
         if p.done:
             if done_at is None:
                 done_at = p.time
-            if (quiet <= SILENCE * peak and p.time > done_at) or p.time - done_at >= TAIL:
+            if (quiet <= _SILENCE * peak and p.time > done_at) or p.time - done_at >= _TAIL:
                 break
     s = p._session
     return Rendering(np.concatenate(cells), p.rate, _array(s, s.rows, s.row_count, _ROW),
@@ -235,28 +242,32 @@ def _play_to_the_end(p: Performance) -> Rendering:
 
 
 class Take:
-    """A motion capture: BVH, C3D, TRC, Nexus or Motive CSV, Qualisys TSV, or CSV with NAME_x_m, NAME_y_m, NAME_z_m."""
+    """A motion capture: BVH, C3D, TRC, Nexus or Motive CSV, Qualisys TSV, or CSV with NAME_x_m, NAME_y_m, NAME_z_m.
+
+    ``rate`` (Hz); ``names`` of the points; ``points``: (frames, points, 3) in m, z up, facing along x, NaN in gaps. Of a C3D also
+    ``analog``: (samples, channels) in the file's units, ``analog_names`` and ``analog_rate`` (Hz, 0 without such channels). Arrays are the
+    library's memory, read only.
+    """
 
     def __init__(self, path: Union[str, Path], left_tip: Optional[str] = None, right_tip: Optional[str] = None,
                  up: Optional[str] = None, subject: Optional[str] = None):
+        """Reads the file. `subject` chooses one of several players by name; the others as in `take_options`."""
         error = ffi.new("himc_error *")
         made = lib.take_load(_text(path), _text(left_tip), _text(right_tip), _text(up), _text(subject), error)
         _check(made != ffi.NULL, error)
         self._take = ffi.gc(made, lib.himc_take_free)
         self._tips = _text(left_tip), _text(right_tip)
-        self.rate: float = lib.himc_take_rate(made)  #: (Hz)
+        self.rate: float = lib.himc_take_rate(made)
         self.names: list[str] = [ffi.string(lib.himc_take_point_name(made, i)).decode()
                                  for i in range(lib.himc_take_points(made))]
         frames = lib.himc_take_frames(made)
-        #: (frames, points, 3), m, z up, facing along x; NaN in gaps. The library's memory, read only.
         self.points: NDArray[np.float64] = _array(self._take, lib.take_points(made), frames * len(self.names) * 3,
                                                   np.dtype(np.float64)).reshape(frames, len(self.names), 3)
 
         count, channels, rate = ffi.new("int *"), ffi.new("int *"), ffi.new("double *")
         analog = lib.take_analog(made, count, channels, rate)
-        self.analog_rate: float = rate[0]  #: (Hz), 0 without analog channels
+        self.analog_rate: float = rate[0]
         self.analog_names: list[str] = [ffi.string(lib.take_analog_name(made, i)).decode() for i in range(channels[0])]
-        #: (samples, channels) of a C3D, in the file's units. The library's memory, read only.
         self.analog: NDArray[np.float64] = _array(self._take, analog, count[0] * channels[0],
                                                   np.dtype(np.float64)).reshape(count[0], channels[0])
 

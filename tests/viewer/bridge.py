@@ -29,16 +29,17 @@ WAIT = 300  # longest wait for an event (s): only a test that fails waits so lon
 class Viewer:
     """A running bridge on free ports."""
 
-    def __init__(self, *options):
+    def __init__(self, *options, home="/tmp"):
         self.process = subprocess.Popen(
             [VIEWER, "--no-browser", "--osc", "0", "--http", "0", *options],
             stdout=subprocess.PIPE,
             text=True,
             # memory is measured: the address sanitizer, if there, keeps less of what was freed
-            env=dict(os.environ, ASAN_OPTIONS="quarantine_size_mb=1"),
+            env=dict(os.environ, ASAN_OPTIONS="quarantine_size_mb=1", TMPDIR=home),
         )
         line = self.process.stdout.readline()
         self.http = int(line.split("/")[2].split(":")[1])
+        self.key = re.search("#([0-9a-f]{32}) ", line)[1]
         self.osc = int(line.split()[-1])
         self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.udp.bind(("127.0.0.1", 0))
@@ -130,12 +131,13 @@ class Stream:
         upgrade="websocket",
         key="AA==",
         receive=None,
+        path="/",
     ):
         self.s = viewer.connect(receive)
         host = host or f"127.0.0.1:{viewer.http}"
         origin = f"http://{host}" if origin == "" else origin
         lines = [
-            "GET / HTTP/1.1",
+            f"GET {path} HTTP/1.1",
             f"Host: {host}",
             f"Upgrade: {upgrade}",
             "Connection: Upgrade",
@@ -222,12 +224,12 @@ class Stream:
         # sent again only where a flood before it has filled the socket
         return self.until(lambda blocks: mark in events(blocks), lambda: viewer.send(packet))
 
-    def say(self, payload):
+    def say(self, payload, opcode=2):
         mask = b"\x00\x00\x00\x00"
         head = (
-            struct.pack(">BBH", 0x82, 0x80 | 126, len(payload))
+            struct.pack(">BBH", 0x80 | opcode, 0x80 | 126, len(payload))
             if len(payload) < 65536
-            else struct.pack(">BBQ", 0x82, 0xFF, len(payload))
+            else struct.pack(">BBQ", 0x80 | opcode, 0xFF, len(payload))
         )
         try:
             self.s.sendall(head + mask + payload)
@@ -444,6 +446,110 @@ def test_a_client_that_sends_data_is_disconnected():
                 got = stream.frame()
             assert got is None or got[0] == 8
         assert Stream(v).status == 101
+
+
+class Editing(Stream):
+    """The stream of a page that edits: messages of `himc edit`, in pieces as they come."""
+
+    def __init__(self, viewer, key=None, **options):
+        super().__init__(
+            viewer, protocol="edit", path=f"/edit/{viewer.key if key is None else key}", **options
+        )
+        self.told = b""
+
+    def next(self):
+        """(kind, bytes) of the next message; None at the end."""
+
+        def need(size):
+            while len(self.told) < size:
+                got = self.frame()
+                if not got or got[0] == 8:
+                    raise EOFError
+                self.told += got[1]
+
+        try:
+            need(8)
+            size = struct.unpack_from("<I", self.told, 4)[0]
+            need(8 + size)
+        except EOFError:
+            return None
+        kind, data = self.told[:4].decode(), self.told[8 : 8 + size]
+        self.told = self.told[8 + size :]
+        return kind, data
+
+    def until(self, wanted):
+        """Takes messages up to one of that kind, or an event of that name."""
+        while got := self.next():
+            event = json.loads(got[1]) if got[0] == "edit" else {"event": got[0]}
+            if event["event"] == wanted:
+                return event if got[0] == "edit" else got[1]
+        raise AssertionError(f"the stream ends without {wanted}")
+
+
+def score_of(*strokes):
+    return "".join(f"stroke {s};\n" for s in strokes).encode()
+
+
+def test_only_a_page_that_knows_the_key_edits():
+    with Viewer() as v:
+        wrong = ("0" if v.key[0] != "0" else "1") + v.key[1:]
+        for key in ("", "0", wrong, v.key[:-1], v.key + "0", v.key.upper() + "x", "../" + v.key):
+            assert Editing(v, key).status == 403, key
+        assert Editing(v, origin="http://evil.example").status == 403
+        assert Stream(v, protocol="scene", path=f"/edit/{v.key}").status == 101
+        assert Stream(v, protocol="edit").status == 403
+        assert Editing(v).status == 101
+        assert v.key not in v.get("/")[2].decode() + v.get("/session.json")[2].decode()
+
+
+def test_a_piece_is_edited_over_the_stream():
+    with tempfile.TemporaryDirectory() as home:
+        path = os.path.join(home, "piece.txt")
+        with open(path, "wb") as file:
+            file.write(score_of("0 right legato mf", "1 left legato mf"))
+        with Viewer("--edit", path) as v:
+            page = Editing(v)
+            assert len(page.until("text")["statements"]) == 2
+            page.until("over")
+            page.say(b"set 1 stroke 1 left accent ff", 1)
+            assert page.until("text")["statements"][1]["nuance"] == "accent"
+            page.until("pcm ")
+            page.say(b"set 1 boing", 1)
+            assert "boing" in page.until("refused")["text"]
+            page.say(b"undo", 1)
+            assert page.until("text")["statements"][1]["nuance"] == "legato"
+            # another page takes over, and is told all
+            newer = Editing(v)
+            assert newer.until("text")["redo"] == 0
+            newer.until("over")
+
+
+def test_a_dropped_file_is_played():
+    with tempfile.TemporaryDirectory() as home, Viewer(home=home) as v:
+        page = Editing(v)
+        page.say(b"my score.txt\0" + score_of("0 right legato mf"))
+        assert len(page.until("text")["statements"]) == 1
+        page.until("pcm ")
+        page.say(b"none.exe\0MZ")
+        assert ".bvh" in page.until("failed")["text"]
+        page.say(b"reads.txt\0take /etc/passwd;")
+        assert "names other files" in page.until("failed")["text"]
+        page.say(b"bad.c3d\0not a capture")
+        assert "bad" not in page.until("failed")["text"]
+        assert len(os.listdir(home)) == 1
+        v.process.terminate()
+        v.process.wait(WAIT)
+        assert not os.listdir(home)
+
+
+def test_what_is_no_line_ends_the_stream_of_editing():
+    with Viewer() as v:
+        for said in (b"a\nb", b"x" * 5000, b"a\0b"):
+            page = Editing(v)
+            page.say(b"x.txt\0" + score_of("0 right legato mf"))
+            page.until("text")
+            page.say(said, 1)
+            assert page.ended()
 
 
 def test_after_a_close_frame_nothing_comes_and_the_stream_ends():

@@ -196,6 +196,14 @@ static bool do_posture(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
+static bool do_nudge(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_nudge nudge = himc_performance_nudge(c);
+    if (!p->motion->track)
+        return himc_error_set(error, "nudge: no take is loaded");
+    return himc_track_nudge(p->motion->track, &nudge, error);
+}
+
 static bool do_bend(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;

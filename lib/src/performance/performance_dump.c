@@ -255,12 +255,22 @@ static void dump_tempi(const himc_planner *planner, const himc_line_sink *to)
                         (double[]){tempi[i].bpm, tempi[i].beat});
 }
 
+static void dump_nudges(const himc_track *track, const himc_line_sink *to)
+{
+    int count = 0;
+    const himc_nudge *n = track ? himc_track_nudges(track, &count) : NULL;
+    for (int i = 0; i < count; i++, n++)
+        himc_state_tell(to, "nudge", himc_hand_name(n->hand), 5,
+                        (double[]){n->time, n->span, n->way.x, n->way.y, n->way.z});
+}
+
 static void dump(const himc_performance *p, const himc_line_sink *to)
 {
     dump_drums(p, to);
     dump_rates(p, to);
     if (p->written.take[0])
         himc_state_tell(to, "take", p->written.take, 0, NULL);
+    dump_nudges(p->motion->track, to);
     dump_player(p, to);
     dump_control(p, to);
     dump_gains(p, to);

@@ -13,6 +13,8 @@
 #include "capture/take.h"
 #include "midi/score_file.h"
 #include "performance/confine.h"
+#include "performance/research.h"
+#include "plan/ornament.h"
 #include "plan/score.h"
 
 #include <stdio.h>
@@ -188,6 +190,7 @@ static bool rehearse_command(score_job *j, const himc_command *c, score_state *s
     case HIMC_COMMAND_RATE: return himc_performance_allows(state->recording, c, error);
     case HIMC_COMMAND_RESET: *state = (score_state){.units = 0}; return true;
     case HIMC_COMMAND_TAKE: return rehearse_take(j, c, error);
+    case HIMC_COMMAND_NUDGE: return himc_performance_try_nudge(j->take, c, error);
     case HIMC_COMMAND_UNITS: return rehearse_units(j, c, state, error);
     case HIMC_COMMAND_RECORD: return rehearse_record(j, c, state, error);
     default: // the network's are always refused
@@ -651,4 +654,68 @@ himc_job *himc_performance_state_job(himc_performance *p, const char *state, him
     j->path = "state";
     j->text = state;
     return &j->job;
+}
+
+bool himc_performance_load_text(himc_performance *p, const char *text, const char *name,
+                                himc_error *error)
+{
+    score_job *j = job_new(p, error);
+    if (!j)
+        return false;
+    j->path = name;
+    j->text = text;
+    return himc_job_carry_out(&j->job, error);
+}
+
+// the strokes of a score that is not installed, in the order of add_strokes(); a drum that there is
+// not yet leaves the reason empty
+static bool plan_aside(himc_performance *p, himc_planner *aside, const himc_score *score,
+                       himc_error *error)
+{
+    bool good = himc_planner_set_tempi(aside, score->tempi, score->tempo_count, error);
+    for (int i = 0; i < 2 * score->stroke_count && good; i++) {
+        himc_stroke stroke = score->strokes[i % score->stroke_count];
+        int drum = stroke.drum[0] ? himc_drums_find(&p->drums, stroke.drum) : 0;
+        bool own = i < score->stroke_count, rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
+        if (drum < 0 || (rolls && score->change_count > 0)) // a roll depends on the first pitch
+            good = false;
+        else if (!own && stroke.ornament != HIMC_PLAIN)
+            himc_planner_add_ornament(aside, &stroke, drum,
+                                      himc_drum_pitch(p->drums.slot[drum].drum));
+        else if (own && !rolls) {
+            stroke.ornament = HIMC_PLAIN;
+            good = himc_planner_add(aside, &stroke, drum, error);
+        }
+    }
+    return good;
+}
+
+// the score's nudges in place of those of the take
+static bool exchange_nudges(himc_performance *p, const himc_score *score, himc_error *error)
+{
+    himc_nudge list[HIMC_NUDGES];
+    int count = 0;
+    for (int i = 0; i < score->line_count; i++)
+        if (score->lines[i].command.id == HIMC_COMMAND_NUDGE) {
+            if (count == HIMC_NUDGES)
+                return himc_error_set(error, "nudge: one too many, allowed %d", HIMC_NUDGES);
+            list[count++] = himc_performance_nudge(&score->lines[i].command);
+        }
+    return himc_track_exchange(p->motion->track, list, count, step_time(p) - p->motion->track_start,
+                               error);
+}
+
+bool himc_performance_exchange_strokes(himc_performance *p, const char *text, const char *name,
+                                       himc_error *error)
+{
+    himc_planner_config config = himc_planner_default();
+    error->text[0] = 0;
+    himc_score *score = himc_score_parse(text, name, error);
+    himc_planner *aside = score ? himc_planner_new(&config, error) : NULL;
+    bool good = aside && (p->motion->track ? exchange_nudges(p, score, error)
+                                           : plan_aside(p, aside, score, error) &&
+                                                 himc_planner_exchange(p->motion->planner, aside));
+    himc_planner_free(aside);
+    himc_score_free(score);
+    return good;
 }

@@ -168,6 +168,10 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
 /// The command `take` as a job; NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
+/// The same for a `nudge` after a take that has been tried.
+bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);
+/// What a `nudge` asks for.
+himc_nudge himc_performance_nudge(const himc_command *command);
 /// A job to try takes with, as the performance is now; NULL without memory.
 himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error);
 /// True if it could play this command's take, the first drum being at `place`, which may be NULL:

@@ -15,6 +15,8 @@
 #define MOST_HEAD_RADIUS 10.0  // (m)
 
 #define PREPARATION_TIME 1.0 // of a late score; chosen (s)
+// no variation depends on a neighbour further away: a fifth of it is more than any lateness; chosen (s)
+#define NEIGHBOUR_TIME 1.0
 #define LATENESS_NOTED 0.001 // a smaller delay of the first beat is not worth a note (s)
 
 himc_planner_config himc_planner_default(void)
@@ -193,6 +195,64 @@ bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *t
     if (beat <= 0 || count < 1)
         return himc_planner_set_tempi(planner, tempi, count, error);
     return himc_planner_score_join_tempi(&planner->score, tempi, count, beat, error);
+}
+
+/// Time of a stroke of a part that may be of another score (s); infinite past its end.
+static double part_time(const planner_score *score, const planner_part *part, int i)
+{
+    return i < part->count ? himc_planner_score_time(score, 0, part->list[i].stroke.beat) -
+                                 part->list[i].stroke.early
+                           : HUGE_VAL;
+}
+
+/// Time of the last stroke of the hand that has been looked at (s).
+static double last_look(const himc_planner *planner, himc_hand hand)
+{
+    int index;
+    double to = himc_planner_looked_to(planner, hand, &index),
+           time = part_time(&planner->score, &planner->score.part[hand], index);
+    return fmin(time, to);
+}
+
+/// True if a hand's plan so far is the same with the strokes of `fresh`.
+static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_part *fresh)
+{
+    const planner_score *score = &planner->score;
+    const planner_part *part = &score->part[hand];
+    int index, same = himc_planner_score_common(part, fresh);
+    double to = himc_planner_looked_to(planner, hand, &index),
+           time = fmin(part_time(score, part, same), part_time(score, fresh, same));
+    bool ends = same == part->count || same == fresh->count;
+    if (time == HUGE_VAL) // they are the same
+        return true;
+    // a hand that has nothing more to play goes home
+    if (same < index && (ends || time < to))
+        return false;
+    if (same == index && time < to)
+        return false;
+    // variation depends on the time to the neighbours in both hands
+    for (int i = 0; i < HIMC_HANDS && planner->human.amount > 0; i++)
+        if (time < last_look(planner, (himc_hand)i) + NEIGHBOUR_TIME)
+            return false;
+    return true;
+}
+
+bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
+{
+    planner_score *score = &planner->score, *fresh = &other->score;
+    if (!score->playing || score->loop || score->past > 0 || fresh->playing ||
+        score->tempo_count != fresh->tempo_count)
+        return false;
+    for (int i = 0; i < score->tempo_count; i++)
+        if (score->tempi[i].beat != fresh->tempi[i].beat ||
+            score->tempi[i].bpm != fresh->tempi[i].bpm)
+            return false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (!may_exchange(planner, (himc_hand)hand, &fresh->part[hand]))
+            return false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        himc_planner_score_exchange(&score->part[hand], &fresh->part[hand]);
+    return true;
 }
 
 void himc_planner_clear(himc_planner *planner)

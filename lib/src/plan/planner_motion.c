@@ -22,9 +22,10 @@
 
 // when a stroke is planned; chosen: a player cannot take back the second half of a fall, and
 // prepares no stroke more than a slow bar ahead
-#define COMMIT_TIME 0.08   // a stroke so near is not changed any more (s)
-#define PREPARED_AHEAD 3.0 // a stroke further away is not prepared yet (s)
-#define MOST_TRIES 32      // of one search; chosen: twice the strokes that can be planned
+#define COMMIT_TIME 0.08    // a stroke so near is not changed any more (s)
+#define PREPARED_AHEAD 3.0  // a stroke further away is not prepared yet (s)
+#define PREPARED_MARGIN 0.5 // by which a human may play it early, and more; chosen (s)
+#define MOST_TRIES 32       // of one search; chosen: twice the strokes that can be planned
 
 // the measured touch against the planned one; chosen: a tip bounces once within 0.12 s, and strokes
 // are rarely nearer than 0.1 s
@@ -587,6 +588,12 @@ void himc_planner_detach(himc_planner *planner, himc_hand hand)
     planner_hand *h = &planner->hand[hand];
     for (int i = 0; i < h->planned_count; i++)
         h->planned[i].index = -1;
+}
+
+double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
+{
+    *index = planner->score.part[hand].next + 1; // the next stroke and the one that follows it
+    return planner->hand[hand].plan.end + PREPARED_AHEAD + PREPARED_MARGIN;
 }
 
 double himc_planner_lateness(himc_planner *planner)

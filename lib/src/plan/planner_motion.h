@@ -116,6 +116,9 @@ HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
 /// A stroke has been put into the hand's score at `index`: later ones move up by one.
 HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
+/// The hand's plan so far rests on no stroke of its part after this time (s); *index is that of the
+/// last one that has been looked at, if it is before that time.
+HIMC_RT double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index);
 /// Hits are counted from 0 again.
 HIMC_RT void himc_planner_count_hits(himc_planner *planner);
 /// Drops the strokes that wait for a hand.

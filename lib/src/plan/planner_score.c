@@ -154,6 +154,32 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
         part->next++;
 }
 
+static bool is_same(const planner_stroke *a, const planner_stroke *b)
+{
+    const himc_stroke *s = &a->stroke, *r = &b->stroke;
+    return a->drum == b->drum && s->beat == r->beat && s->hand == r->hand &&
+           s->nuance == r->nuance && s->dynamic == r->dynamic && s->spot == r->spot &&
+           s->x == r->x && s->y == r->y && s->early == r->early && s->bounces == r->bounces &&
+           s->bounce_time == r->bounce_time && strcmp(s->drum, r->drum) == 0;
+}
+
+int himc_planner_score_common(const planner_part *a, const planner_part *b)
+{
+    int i = 0;
+    while (i < a->count && i < b->count && is_same(&a->list[i], &b->list[i]))
+        i++;
+    return i;
+}
+
+void himc_planner_score_exchange(planner_part *a, planner_part *b)
+{
+    planner_part old = *a;
+    for (int i = himc_planner_score_common(a, b) - 1; i >= 0; i--)
+        b->list[i].settled = a->list[i].settled;
+    a->list = b->list, a->count = b->count, a->room = b->room;
+    b->list = old.list, b->count = old.count, b->room = old.room;
+}
+
 void himc_planner_score_clear(planner_score *score, himc_hand hand)
 {
     planner_part *part = &score->part[hand];

@@ -66,6 +66,11 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
 /// Puts a stroke at that index.
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke,
                                int drum);
+/// Number of strokes with which both lists begin.
+int himc_planner_score_common(const planner_part *a, const planner_part *b);
+/// Exchanges the lists of strokes, and nothing else; what has been reassigned or given up of the
+/// strokes that are the same is so in both.
+void himc_planner_score_exchange(planner_part *a, planner_part *b);
 /// Drops the strokes of a hand.
 void himc_planner_score_clear(planner_score *score, himc_hand hand);
 

@@ -37,7 +37,8 @@
 #define HOVER_HEIGHT 0.08 // of a tip at rest above the head (m) ...
 #define HOVER_FALL 0.25   // ... and this share of the fall's speed times the halt's duration
 
-#define LEAST_FRAMES 8 // of a take; chosen: enough for one local fit
+#define LOOKED_AHEAD 0.1 // what the motion at a time may rest on; chosen: some task periods (s)
+#define LEAST_FRAMES 8   // of a take; chosen: enough for one local fit
 
 // fits frames lo .. hi, one stretch between strikes
 static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
@@ -310,6 +311,31 @@ static himc_target played_at(const himc_track *track, const hand_track *h, doubl
     return himc_quintic_at(&b->path, t - b->contact);
 }
 
+// all nudges of a hand at take time `t`
+static himc_target aside_at(const himc_track *track, himc_hand hand, double t)
+{
+    himc_target sum = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < track->nudges; i++) {
+        const himc_nudge *n = &track->nudge[i];
+        if (n->hand != hand || fabs(t - n->time) >= n->span)
+            continue;
+        himc_target one = himc_nudge_at(n, t);
+        sum.x = himc_vec3_add(sum.x, one.x);
+        sum.v = himc_vec3_add(sum.v, one.v);
+        sum.a = himc_vec3_add(sum.a, one.a);
+    }
+    return sum;
+}
+
+// `s` with the nudges once (1) or without them (-1)
+static himc_target nudged(himc_target s, himc_target aside, double sign)
+{
+    s.x = himc_vec3_madd(s.x, sign, aside.x);
+    s.v = himc_vec3_madd(s.v, sign, aside.v);
+    s.a = himc_vec3_madd(s.a, sign, aside.a);
+    return s;
+}
+
 himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
 {
     const hand_track *h = &track->hand[hand];
@@ -321,7 +347,7 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     if (t < -0.5 * HIMC_TRACK_RAMP && h->approach_time > 0)
         return himc_quintic_at(&h->approach, fmax(t + 0.5 * HIMC_TRACK_RAMP + h->approach_time, 0));
     himc_track_warp(himc_track_take_length(track), t, at);
-    himc_target s = played_at(track, h, at[0]);
+    himc_target s = nudged(played_at(track, h, at[0]), aside_at(track, hand, at[0]), 1);
     s.a = himc_vec3_madd(himc_vec3_scale(s.a, at[1] * at[1]), at[2], s.v);
     s.v = himc_vec3_scale(s.v, at[1]);
     return s;
@@ -338,6 +364,7 @@ bool himc_track_captured(const himc_track *track, himc_hand hand, double t, himc
     double u = fmin(fmax(at[0], 0), length) * track->rate;
     int k = (int)fmin(u, track->frames - 2);
     *x = himc_vec3_madd(h->captured[k], u - k, himc_vec3_sub(h->captured[k + 1], h->captured[k]));
+    *x = himc_vec3_add(*x, aside_at(track, hand, at[0]).x);
     return true;
 }
 
@@ -355,8 +382,9 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     *contact_time = himc_track_unwarp(himc_track_take_length(track), h->bridges[i].contact);
     if (fmax(t, *contact_time) >= track->stop)
         return false;
-    *x = h->bridges[i].spot.x;
-    *y = h->bridges[i].spot.y;
+    himc_vec3 aside = aside_at(track, hand, h->bridges[i].contact).x;
+    *x = h->bridges[i].spot.x + aside.x;
+    *y = h->bridges[i].spot.y + aside.y;
     return true;
 }
 
@@ -382,6 +410,10 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     if (at[1] < SLOWEST_REJOIN)
         return;
     double t = at[0];
+    himc_target from = *measured;
+    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
+    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
+    from = nudged(from, aside_at(track, hand, t), -1);
     int i = bridge_at(h->bridges, h->bridge_count, t);
     if (i == h->bridge_count || t < h->bridges[i].from) {
         if (i == 0 || h->bridges[i - 1].to < t - REJOIN_TIME)
@@ -392,7 +424,7 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     double to =
         fmax(t + REJOIN_TIME, b->next / track->rate); // between last and next nothing is known
     to = above_head(track, h, to, b->spot.z);
-    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, measured->x);
+    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
     if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
         to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
     if (i + 1 < h->bridge_count)
@@ -401,10 +433,80 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     if (to < t + LEAST_REJOIN)
         return;
     b->to = to;
-    himc_target back = captured_at(track, h, b->to), from = *measured;
-    double speed = himc_vec3_length(from.v);
-    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / speed) / at[1]);
-    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
+    himc_target back = captured_at(track, h, b->to);
     b->restart = t;
     b->path = himc_quintic_make(&from, &back, b->to - t);
+}
+
+// the height rises after the strike before, and is back before the strike after
+static void fit_height(const himc_track *track, himc_nudge *n)
+{
+    const hand_track *h = &track->hand[n->hand];
+    n->rise = n->fall = n->span;
+    for (int i = 0; i < h->bridge_count; i++) {
+        const bridge *b = &h->built[i];
+        n->rise = b->contact <= n->time ? fmin(n->rise, n->time - b->to) : n->rise;
+        n->fall = b->contact > n->time ? fmin(n->fall, b->from - n->time) : n->fall;
+    }
+    n->rise = fmax(n->rise, 0);
+    n->fall = fmax(n->fall, 0);
+}
+
+// a nudge as it acts on this take
+static bool accept_nudge(const himc_track *track, const himc_nudge *nudge, int count,
+                         himc_nudge *out, himc_error *error)
+{
+    double length = himc_track_take_length(track);
+    if (!track->hand[nudge->hand].present)
+        return himc_error_set(error, "nudge: HAND: the take has no %s tip",
+                              himc_hand_name(nudge->hand));
+    if (nudge->time - nudge->span < 0 || nudge->time + nudge->span > length)
+        return himc_error_set(error, "nudge: TIME: %g s, %g s before and after, allowed 0 .. %g s",
+                              nudge->time, nudge->span, length);
+    if (count >= HIMC_NUDGES)
+        return himc_error_set(error, "nudge: one too many, allowed %d", HIMC_NUDGES);
+    *out = *nudge;
+    fit_height(track, out);
+    return true;
+}
+
+bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error)
+{
+    bool good = accept_nudge(track, nudge, track->nudges, &track->nudge[track->nudges], error);
+    track->nudges += good;
+    return good;
+}
+
+const himc_nudge *himc_track_nudges(const himc_track *track, int *count)
+{
+    *count = track->nudges;
+    return track->nudge;
+}
+
+static bool same_nudge(const himc_nudge *a, const himc_nudge *b)
+{
+    return a->hand == b->hand && a->time == b->time && a->span == b->span &&
+           himc_vec3_length(himc_vec3_sub(a->way, b->way)) == 0;
+}
+
+bool himc_track_exchange(himc_track *track, const himc_nudge *list, int count, double t,
+                         himc_error *error)
+{
+    himc_nudge fresh[HIMC_NUDGES];
+    double at[3];
+    int same = 0;
+    for (int i = 0; i < count; i++)
+        if (!accept_nudge(track, &list[i], i, &fresh[i], error))
+            return false;
+    himc_track_warp(himc_track_take_length(track), t, at);
+    while (same < count && same < track->nudges && same_nudge(&list[same], &track->nudge[same]))
+        same++;
+    for (int i = same; i < count || i < track->nudges; i++)
+        if ((i < count && fresh[i].time - fresh[i].span < at[0] + LOOKED_AHEAD) ||
+            (i < track->nudges &&
+             track->nudge[i].time - track->nudge[i].span < at[0] + LOOKED_AHEAD))
+            return false;
+    memcpy(track->nudge, fresh, (size_t)count * sizeof *fresh);
+    track->nudges = count;
+    return true;
 }

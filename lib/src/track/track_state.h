@@ -5,6 +5,7 @@
 #include "track/track.h"
 
 #include "base/interpolate.h"
+#include "track/nudge.h"
 #include "track/track_fit.h"
 
 /// From a stop to rest (s). Chosen: a stick at 5 m/s halts with less than 5 g.
@@ -54,6 +55,8 @@ struct himc_track {
     himc_head_frame head;
     double stop; ///< time at which the take is left (s); infinite if it is not
     hand_track hand[HIMC_HANDS];
+    himc_nudge nudge[HIMC_NUDGES];
+    int nudges;
     joint_track joints;
 };
 

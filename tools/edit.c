@@ -1,0 +1,362 @@
+/// edit.c: `himc edit`: a piece under edit, for a program that shows it (himc-viewer --edit).
+///
+/// Lines in at standard input, frames out at standard output, in the form of a scene's chunks:
+/// docs/viewer.md has both. The text is changed at once; playing follows, again from shortly before
+/// the change, while more lines may come.
+#define _POSIX_C_SOURCE 200809L // open_memstream
+#include "base/file.h"
+#include "base/text.h"
+#include "capture/take.h"
+#include "cli.h"
+#include "edit_play.h"
+#include "edit_text.h"
+#include "midi/import.h"
+#include "plan/score.h"
+#include "scene.h"
+#include "system/files.h"
+
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { CONFINED, TAKE };
+#define LINE 4096                       // a line of standard input (bytes); chosen
+#define LARGEST_TEXT ((size_t)64 << 20) // as himc_score_load
+
+static const cli_option options[] = {
+    {"confined", 0, NULL, "refuses a score that names other files"},
+    CLI_TAKE_OPTIONS,
+    {0},
+};
+
+typedef struct session {
+    const char *source;
+    himc_take_options take;
+    edit_text *text;
+    edit_play *play, *saver; ///< `saver` while a take is saved
+    char saved[64];          ///< the take's temporary file
+    char name[64];           ///< and the name under which it is wanted
+    char line[LINE];
+    size_t used;
+    bool changed; ///< the last line has changed the text, and it has not been played yet
+    bool over;    ///< no more lines
+} session;
+
+// --- frames out
+
+static void put(const char *kind, const void *bytes, size_t size)
+{
+    uint32_t length = (uint32_t)size;
+    fwrite(kind, 4, 1, stdout);
+    fwrite(&length, sizeof length, 1, stdout);
+    fwrite(bytes, 1, size, stdout);
+}
+
+// a line of JSON about the edit
+static void tell(const char *event, const char *key, const char *text)
+{
+    char *json = NULL;
+    size_t size;
+    FILE *to = open_memstream(&json, &size);
+    if (!to)
+        return;
+    fprintf(to, "{\"event\":\"%s\",\"%s\":", event, key);
+    cli_put_json_text(to, text);
+    fputc('}', to);
+    fclose(to);
+    put("edit", json, size);
+    free(json);
+}
+
+static void tell_text(const session *s)
+{
+    char *json = NULL;
+    size_t size;
+    FILE *to = open_memstream(&json, &size);
+    if (!to)
+        return;
+    fprintf(to, "{\"event\":\"text\",\"take\":%s,\"source\":",
+            cli_is_take(s->source) ? "true" : "false");
+    cli_put_json_text(to, s->source);
+    fputc(',', to);
+    edit_text_print(s->text, to);
+    fputc('}', to);
+    fclose(to);
+    put("edit", json, size);
+    free(json);
+}
+
+// --- the piece
+
+static char *text_of(const char *source, himc_error *error)
+{
+    size_t size;
+    if (cli_is_take(source)) {
+        himc_state_line line = himc_state_begin("take");
+        himc_state_word(&line, source);
+        char *text = malloc(line.used + 3);
+        if (text)
+            sprintf(text, "%.*s;\n", (int)line.used, line.text);
+        return text;
+    }
+    char *bytes = himc_file_load(source, LARGEST_TEXT, &size, error);
+    if (!bytes || size < 4 || memcmp(bytes, "MThd", 4) != 0)
+        return bytes;
+    midi_score made = {0};
+    char *text = NULL;
+    if (himc_midi_import(&made, bytes, size, source, NULL, error))
+        text = strdup(made.text);
+    else
+        himc_error_prefix(error, "%s", source);
+    himc_midi_score_free(&made);
+    free(bytes);
+    return text;
+}
+
+// the score of the text as it is now
+static himc_score *parse(const session *s, himc_error *error)
+{
+    char *text = edit_text_join(s->text);
+    himc_score *score = text ? himc_score_parse(text, s->source, error) : NULL;
+    free(text);
+    return score;
+}
+
+static bool check(const session *s, himc_error *error)
+{
+    himc_score *score = parse(s, error);
+    himc_score_free(score);
+    return score;
+}
+
+// plays the text as it is now; all of it, or from before the last change
+static bool replay(session *s, bool all, himc_error *error)
+{
+    bool nudge = false;
+    char *text = edit_text_join(s->text);
+    himc_score *score = parse(s, error);
+    double from = all ? -1 : edit_text_changed_from(s->text, &nudge);
+    if (from > 0 && !nudge && score)
+        from = himc_score_seconds(score->tempi, score->tempo_count, from);
+    bool good = text && edit_play_start(s->play, text, from, NULL, error);
+    himc_score_free(score);
+    free(text);
+    return good;
+}
+
+// --- lines in
+
+static bool set(session *s, const char *words, himc_error *error)
+{
+    char *end;
+    long index = strtol(words, &end, 10);
+    if (end == words || (*end && *end != ' '))
+        return himc_error_set(error, "set: no number of a statement");
+    if (!edit_text_set(s->text, (int)fmax(-1, fmin(index, 1e9)), end + (*end == ' '), error))
+        return false;
+    if (check(s, error))
+        return true;
+    edit_text_undo(s->text);
+    return false;
+}
+
+static bool save_take(session *s, const char *name, himc_error *error)
+{
+    const char *dot = strrchr(name, '.');
+    if (!dot || (strcmp(dot, ".bvh") && strcmp(dot, ".c3d") && strcmp(dot, ".trc")))
+        return himc_error_set(error, "%.40s: allowed .bvh .c3d .trc", name);
+    if (s->saver)
+        return himc_error_set(error, "a take is being saved");
+    int file = himc_system_temporary(s->saved, sizeof s->saved, dot);
+    if (file < 0)
+        return himc_error_set(error, "%s", strerror(errno));
+    close(file);
+    snprintf(s->name, sizeof s->name, "%s", name);
+    char *text = edit_text_join(s->text);
+    s->saver = text ? edit_play_new(s->source, &s->take, error) : NULL;
+    bool good = s->saver && edit_play_start(s->saver, text, -1, s->saved, error);
+    free(text);
+    return good;
+}
+
+static void put_file(const char *name, const char *bytes, size_t size)
+{
+    char head[64];
+    memset(head, 0, sizeof head);
+    snprintf(head, sizeof head, "%s", name);
+    char *all = malloc(sizeof head + size);
+    if (!all)
+        return;
+    memcpy(all, head, sizeof head);
+    memcpy(all + sizeof head, bytes, size);
+    put("file", all, sizeof head + size);
+    free(all);
+}
+
+static bool save_score(const session *s)
+{
+    char *text = edit_text_join(s->text);
+    if (text)
+        put_file("score.txt", text, strlen(text));
+    free(text);
+    return text;
+}
+
+// one line; false with the reason, and *fatal if nothing can be played any more
+static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
+{
+    bool hello = !strcmp(line, "hello"), changed = false;
+    if (!strcmp(line, "save"))
+        return save_score(s);
+    if (!strncmp(line, "take ", 5))
+        return save_take(s, line + 5, error);
+    if (!strcmp(line, "undo"))
+        changed = edit_text_undo(s->text) || (himc_error_set(error, "nothing to undo"), false);
+    else if (!strcmp(line, "redo"))
+        changed = edit_text_redo(s->text) || (himc_error_set(error, "nothing to redo"), false);
+    else if (!strncmp(line, "set ", 4))
+        changed = set(s, line + 4, error);
+    else if (!hello)
+        himc_error_set(error, "\"%.40s\": allowed hello, set, undo, redo, save, take", line);
+    if (!changed && !hello)
+        return false;
+    tell_text(s);
+    s->changed = changed;
+    *fatal = !replay(s, hello, error);
+    return !*fatal;
+}
+
+static bool read_lines(session *s, bool *fatal, himc_error *error)
+{
+    ssize_t got = read(STDIN_FILENO, s->line + s->used, sizeof s->line - s->used);
+    char *begin = s->line, *end;
+    s->over = got == 0 || (got < 0 && errno != EINTR);
+    s->used += got > 0 ? (size_t)got : 0;
+    for (; (end = memchr(begin, '\n', s->used - (size_t)(begin - s->line))); begin = end + 1) {
+        *end = 0;
+        if (!obey(s, begin, fatal, error)) {
+            if (*fatal)
+                return false;
+            tell("refused", "text", error->text);
+        }
+    }
+    s->used -= (size_t)(begin - s->line);
+    memmove(s->line, begin, s->used);
+    if (s->used == sizeof s->line) {
+        tell("refused", "text", "a line is too long");
+        s->used = 0;
+    }
+    return true;
+}
+
+// --- what is played
+
+// a change that cannot be played is undone
+static bool take_back(session *s, const edit_frame *frame, himc_error *error)
+{
+    char text[sizeof error->text];
+    bool undone = s->changed && edit_text_undo(s->text);
+    snprintf(text, sizeof text, "%.*s", (int)frame->size, (const char *)frame->bytes);
+    tell(undone ? "undone" : "failed", "text", text);
+    s->changed = false;
+    if (!undone)
+        return true;
+    tell_text(s);
+    return replay(s, false, error);
+}
+
+static bool pass_frame(session *s, himc_error *error)
+{
+    edit_frame frame;
+    if (!edit_play_next(s->play, &frame, error))
+        return false;
+    if (!strcmp(frame.kind, "from"))
+        s->changed = false;
+    if (!strcmp(frame.kind, "fail"))
+        return take_back(s, &frame, error);
+    if (strcmp(frame.kind, "late") && strcmp(frame.kind, "bye!"))
+        put(frame.kind, frame.bytes, frame.size);
+    return true;
+}
+
+// of the take that is being saved
+static void take_saved(session *s)
+{
+    edit_frame frame;
+    himc_error error = {""};
+    size_t size;
+    if (edit_play_next(s->saver, &frame, &error) && strcmp(frame.kind, "over") &&
+        strcmp(frame.kind, "fail"))
+        return;
+    char *bytes = himc_file_load(s->saved, LARGEST_TEXT, &size, &error);
+    if (bytes && size)
+        put_file(s->name, bytes, size);
+    else
+        tell("refused", "text", "the take could not be saved");
+    free(bytes);
+    remove(s->saved);
+    edit_play_free(s->saver);
+    s->saver = NULL;
+}
+
+static bool serve(session *s, himc_error *error)
+{
+    bool fatal = false;
+    while (!s->over && !ferror(stdout)) {
+        struct pollfd from[] = {
+            {.fd = STDIN_FILENO, .events = POLLIN},
+            {.fd = edit_play_descriptor(s->play), .events = POLLIN},
+            {.fd = s->saver ? edit_play_descriptor(s->saver) : -1, .events = POLLIN}};
+        if (poll(from, 3, edit_play_holds(s->play) ? 0 : -1) < 0 && errno != EINTR)
+            return himc_error_set(error, "%s", strerror(errno));
+        if (from[0].revents && !read_lines(s, &fatal, error))
+            return false;
+        if (!from[0].revents && (from[1].revents || edit_play_holds(s->play)) &&
+            !pass_frame(s, error))
+            return false;
+        if (from[2].revents && s->saver)
+            take_saved(s);
+        fflush(stdout);
+    }
+    return true;
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error = {""};
+    session s = {.source = arguments->operand};
+    bool good = !cli_is_standard(s.source) ||
+                himc_error_set(&error, "-: allowed is a file, lines come from standard input");
+    good = good && cli_take_options(s.source, arguments->value + TAKE, &s.take, &error);
+    char *text = good ? text_of(s.source, &error) : NULL;
+    s.text = text ? edit_text_new(text, &error) : NULL;
+    good = s.text && check(&s, &error);
+    if (good && arguments->value[CONFINED] && !cli_is_take(s.source) &&
+        edit_text_names_file(s.text))
+        good = himc_error_set(&error, "%s: names other files", s.source);
+    s.play = good ? edit_play_new(s.source, &s.take, &error) : NULL;
+    good = s.play && serve(&s, &error);
+    if (!good) {
+        tell("failed", "text", error.text);
+        fflush(stdout);
+    }
+    edit_play_free(s.play);
+    edit_play_free(s.saver);
+    edit_text_free(s.text);
+    free(text);
+    return good ? 0 : cli_fail(&cli_edit, "%s", error.text);
+}
+
+const cli_call cli_edit = {
+    "edit",
+    "SOURCE",
+    "",
+    "changes a piece while it is shown: for himc-viewer --edit",
+    "Lines of standard input change the score or take, frames on standard output tell how it\n"
+    "is played then (docs/viewer.md). `hello` plays from the start.",
+    options,
+    run,
+};

@@ -1,0 +1,456 @@
+/// edit_play.c: a piece is played by a process that leaves a copy of itself behind every few seconds.
+///
+/// fork() is the checkpoint: the copy holds the whole state of body, drums and plan, costs only the
+/// pages that change, and waits. After a change the last copy before its first effect forks again,
+/// takes the new strokes in place of the old ones, and plays on; copies after it are dismissed. A
+/// copy refuses strokes on which its plan may already rest, and then an earlier one is asked; the
+/// very first process loads the text anew. So the outcome is, bit by bit, that of playing the new
+/// text from the start.
+///
+/// All processes write whole frames into one pipe, but one at a time: a process that plays looks at
+/// a shared number before each frame and ends, with a last frame, once that is no longer its own.
+#define _GNU_SOURCE // MAP_ANONYMOUS
+#include "edit_play.h"
+#include "cli.h"
+#include "performance/research.h"
+#include "plan/score.h"
+#include "scene_record.h"
+
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum {
+    RATE = 48000, // (Hz)
+    EARS = 2,
+    BLOCK = 64,
+    CELL = RATE / 5,  // CLI_CELL, where a piece may end
+    COPIES = 100,     // that wait
+    PATIENCE = 30000, // for a frame of a process that lives (ms); chosen: a loaded machine
+    LARGEST = 1 << 26 // of a frame (bytes)
+};
+// chosen: the piece is played 10 times as fast as it sounds, so a copy is never 0.2 s away
+
+#define APART 2.0    // copies, at least (s)
+#define HEADROOM 2.0 // (s) a piece may begin so much later than its first beat
+
+struct edit_play {
+    const char *name;
+    const himc_take_options *options;
+    atomic_int *turn; // shared: the playing whose process may write
+    int frames[2];    // pipe
+    int order[COPIES][2];
+    bool waits[COPIES]; // a copy reads this pipe
+    bool plays;         // a process writes
+    double apart;       // of the copies (s)
+    unsigned char *bytes;
+    size_t room;
+    edit_frame held; // read before it was asked for, if `holds`
+    bool holds;
+};
+
+/// A process that plays.
+typedef struct player {
+    const edit_play *of;
+    himc_performance *performance;
+    scene_record *record;
+    FILE *to;
+    int turn, copies;
+    cli_ending ending;
+} player;
+
+// --- in the process that plays
+
+static void put_frame(FILE *to, const char *kind, const void *bytes, uint32_t size)
+{
+    fwrite(kind, 4, 1, to);
+    fwrite(&size, sizeof size, 1, to);
+    fwrite(bytes, 1, size, to);
+}
+
+static void put_text(FILE *to, const char *kind, const char *text)
+{
+    put_frame(to, kind, text, (uint32_t)strlen(text));
+}
+
+// the last frame of this process
+static void leave(player *p, const char *kind, const char *text)
+{
+    put_text(p->to, kind, text);
+    fflush(p->to);
+    _exit(0);
+}
+
+static uint64_t hash(uint64_t sum, const void *bytes, size_t size)
+{
+    const unsigned char *b = bytes;
+    for (size_t i = 0; i < size; i++)
+        sum = (sum ^ b[i]) * UINT64_C(0x100000001b3); // FNV-1a
+    return sum;
+}
+
+static void take_events(player *p)
+{
+    himc_event event;
+    while (himc_performance_event(p->performance, &event)) {
+        scene_record_event(p->record, &event);
+        p->ending.done |= event.kind == HIMC_EVENT_DONE;
+    }
+}
+
+// the time of a cell, and all that happens in it, as frames
+static void play_cell(player *p)
+{
+    struct {
+        uint32_t first, sum[2];
+        int16_t sample[EARS * CELL];
+    } sound = {.first = (uint32_t)p->ending.samples};
+    uint64_t sum = UINT64_C(0xcbf29ce484222325);
+    for (int at = 0; at < CELL; at += BLOCK) {
+        float out[EARS * BLOCK];
+        himc_performance_process(p->performance, BLOCK, NULL);
+        p->ending.cell_peak =
+            fmax(p->ending.cell_peak, cli_mix(p->performance, p->ending.samples, BLOCK, EARS, out));
+        p->ending.samples += BLOCK;
+        take_events(p);
+        scene_record_block(p->record, NULL, BLOCK);
+        sum = hash(sum, out, sizeof out);
+        for (int i = 0; i < EARS * BLOCK; i++)
+            sound.sample[EARS * at + i] = (int16_t)lrint(32767 * fmax(-1, fmin(1, out[i])));
+    }
+    sound.sum[0] = (uint32_t)sum, sound.sum[1] = (uint32_t)(sum >> 32);
+    scene_record_flush(p->record);
+    put_frame(p->to, "pcm ", &sound, sizeof sound);
+    fflush(p->to);
+}
+
+static bool read_all(int from, void *to, size_t size)
+{
+    char *at = to;
+    while (size > 0) {
+        ssize_t got = read(from, at, size);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return false;
+        at += got;
+        size -= (size_t)got;
+    }
+    return true;
+}
+
+/// What a waiting copy is told, before the text.
+typedef struct order {
+    int turn;      // -1: leave
+    uint32_t size; // of the text, with its final 0
+} order;
+
+// plays on with another text, or says why not
+static void resume(player *p, const char *text)
+{
+    himc_error error;
+    double time = (double)p->ending.samples / RATE;
+    if (!himc_performance_exchange_strokes(p->performance, text, p->of->name, &error))
+        leave(p, error.text[0] ? "fail" : "late", error.text);
+    put_frame(p->to, "from", &time, sizeof time);
+}
+
+// a copy of this process waits here for ever; returns in its children, with new orders
+static void wait_as_copy(player *p)
+{
+    int me = p->copies;
+    for (order o; read_all(p->of->order[me][0], &o, sizeof o) && o.turn >= 0;) {
+        char *text = malloc(o.size);
+        if (!text || !read_all(p->of->order[me][0], text, o.size))
+            _exit(1);
+        if (fork() == 0) {
+            p->turn = o.turn;
+            resume(p, text);
+            free(text);
+            return;
+        }
+        free(text);
+    }
+    leave(p, "gone", "");
+}
+
+// leaves a copy of this process behind
+static void leave_copy(player *p)
+{
+    uint32_t me = (uint32_t)p->copies;
+    pid_t child = fork();
+    if (child > 0)
+        wait_as_copy(p);
+    else if (child == 0)
+        put_frame(p->to, "copy", &me, sizeof me);
+    p->copies++;
+}
+
+static void play_on(player *p)
+{
+    while (!cli_is_over(&p->ending, RATE)) {
+        if (atomic_load(p->of->turn) != p->turn)
+            leave(p, "bye!", "");
+        double next = p->of->apart * (p->copies + 1);
+        if (p->copies < COPIES && (double)p->ending.samples >= next * RATE)
+            leave_copy(p);
+        play_cell(p);
+    }
+    scene_record_end(p->record, NULL);
+    himc_performance_free(p->performance); // writes a recording
+    leave(p, "over", "");
+}
+
+static bool load(player *p, const char *text, const char *record, himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_score *score = himc_score_parse(text, p->of->name, error);
+    bool drums = score && cli_first_drum(score);
+    himc_score_free(score);
+    p->performance = score ? himc_performance_new(&config, error) : NULL;
+    if (!p->performance)
+        return false;
+    himc_performance_make_drums(p->performance, true);
+    himc_performance_take_options(p->performance, p->of->options);
+    return (drums || cli_add_drum(p->performance, RATE, error)) &&
+           cli_tell(p->performance, CLI_LISTENER, NULL, error) &&
+           himc_performance_load_text(p->performance, text, p->of->name, error) &&
+           cli_tell(p->performance, "loop 0", NULL, error) &&
+           (!record || cli_tell(p->performance, "record", record, error)) &&
+           cli_tell(p->performance, "play", NULL, error);
+}
+
+static void play_from_start(const edit_play *of, int turn, const char *text, const char *record)
+{
+    himc_error error;
+    double start = 0;
+    player p = {.of = of, .turn = turn, .to = fdopen(of->frames[1], "wb")};
+    // copies end when the process that gives orders has gone
+    for (int i = 0; i < COPIES; i++)
+        close(of->order[i][1]);
+    close(of->frames[0]);
+    signal(SIGCHLD, SIG_IGN);
+    signal(SIGPIPE, SIG_DFL); // nobody listens any more
+    if (!p.to)
+        _exit(1);
+    if (!load(&p, text, record, &error))
+        leave(&p, "fail", error.text);
+    put_frame(p.to, "from", &start, sizeof start);
+    scene_record_config config = {.performance = p.performance,
+                                  .stream = p.to,
+                                  .source = of->name,
+                                  .name = "himc",
+                                  .rate = RATE,
+                                  .bare = true};
+    p.record = scene_record_begin(&config, &error);
+    if (!p.record)
+        leave(&p, "fail", error.text);
+    himc_performance_on_tick(p.performance, scene_record_tick, p.record);
+    himc_performance_on_motion(p.performance, scene_record_row, p.record);
+    play_on(&p);
+}
+
+// --- in the process that gives orders
+
+edit_play *edit_play_new(const char *name, const himc_take_options *options, himc_error *error)
+{
+    edit_play *play = calloc(1, sizeof *play);
+    bool good = play && pipe(play->frames) == 0;
+    for (int i = 0; good && i < COPIES; i++)
+        good = pipe(play->order[i]) == 0;
+    void *shared =
+        mmap(NULL, sizeof *play->turn, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (!good || shared == MAP_FAILED) {
+        himc_error_set(error, "%s", strerror(errno));
+        free(play);
+        return NULL;
+    }
+    play->turn = shared;
+    play->name = name;
+    play->options = options;
+    signal(SIGCHLD, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+    return play;
+}
+
+bool edit_play_holds(const edit_play *play)
+{
+    return play->holds;
+}
+
+int edit_play_descriptor(const edit_play *play)
+{
+    return play->frames[0];
+}
+
+static bool lost(himc_error *error)
+{
+    return himc_error_set(error, "the process that plays has ended without a word");
+}
+
+// the next frame, also those for this file alone
+static bool read_frame(edit_play *play, edit_frame *frame, himc_error *error)
+{
+    struct pollfd ready = {.fd = play->frames[0], .events = POLLIN};
+    if (poll(&ready, 1, PATIENCE) <= 0 || !read_all(play->frames[0], frame->kind, 4) ||
+        !read_all(play->frames[0], &frame->size, sizeof frame->size) || frame->size > LARGEST)
+        return lost(error);
+    if (frame->size > play->room) {
+        unsigned char *bytes = realloc(play->bytes, frame->size);
+        if (!bytes)
+            return himc_error_set(error, "out of memory");
+        play->bytes = bytes;
+        play->room = frame->size;
+    }
+    frame->kind[4] = 0;
+    frame->bytes = play->bytes;
+    if (frame->size && !read_all(play->frames[0], play->bytes, frame->size))
+        return lost(error);
+    if (!strcmp(frame->kind, "copy")) {
+        uint32_t copy;
+        memcpy(&copy, frame->bytes, sizeof copy);
+        play->waits[copy] = true;
+    }
+    if (!strcmp(frame->kind, "over") || !strcmp(frame->kind, "fail") ||
+        !strcmp(frame->kind, "bye!") || !strcmp(frame->kind, "late"))
+        play->plays = false;
+    return true;
+}
+
+bool edit_play_next(edit_play *play, edit_frame *frame, himc_error *error)
+{
+    bool good = true;
+    if (play->holds) {
+        play->holds = false;
+        *frame = play->held;
+        return true;
+    }
+    do
+        good = read_frame(play, frame, error);
+    while (good && !strcmp(frame->kind, "copy"));
+    return good;
+}
+
+static bool give(int to, const void *bytes, size_t size)
+{
+    const char *at = bytes;
+    while (size > 0) {
+        ssize_t given = write(to, at, size);
+        if (given < 0 && errno != EINTR)
+            return false;
+        at += given > 0 ? given : 0;
+        size -= given > 0 ? (size_t)given : 0;
+    }
+    return true;
+}
+
+// no process writes any more
+static bool stop_playing(edit_play *play, himc_error *error)
+{
+    edit_frame old;
+    bool good = true;
+    play->holds = false;
+    atomic_fetch_add(play->turn, 1);
+    while (good && play->plays)
+        good = read_frame(play, &old, error);
+    return good;
+}
+
+// the copy has gone, so that another one may read its orders
+static bool dismiss(edit_play *play, int copy, himc_error *error)
+{
+    edit_frame frame = {.kind = ""};
+    order leave = {-1, 0};
+    if (!play->waits[copy])
+        return true;
+    play->waits[copy] = false;
+    bool good = give(play->order[copy][1], &leave, sizeof leave) || lost(error);
+    while (good && strcmp(frame.kind, "gone") != 0)
+        good = read_frame(play, &frame, error);
+    return good;
+}
+
+// has a copy play; *late if its plan rests on what has changed
+static bool ask(edit_play *play, int copy, const char *text, bool *late, himc_error *error)
+{
+    order o = {atomic_load(play->turn), (uint32_t)strlen(text) + 1};
+    play->plays = true;
+    if (!give(play->order[copy][1], &o, sizeof o) || !give(play->order[copy][1], text, o.size))
+        return lost(error);
+    if (!read_frame(play, &play->held, error))
+        return false;
+    *late = !strcmp(play->held.kind, "late");
+    play->holds = !*late;
+    return true;
+}
+
+static bool dismiss_after(edit_play *play, int copy, himc_error *error)
+{
+    bool good = true;
+    for (int i = COPIES - 1; i > copy && good; i--)
+        good = dismiss(play, i, error);
+    return good;
+}
+
+// how long the strokes last
+static double length_of(const char *text)
+{
+    himc_error unused;
+    himc_score *score = himc_score_parse(text, "", &unused);
+    double seconds = 0;
+    if (score && score->stroke_count)
+        seconds = himc_score_seconds(score->tempi, score->tempo_count,
+                                     score->strokes[score->stroke_count - 1].beat);
+    himc_score_free(score);
+    return seconds;
+}
+
+static bool play_anew(edit_play *play, const char *text, const char *record, himc_error *error)
+{
+    if (!dismiss_after(play, -1, error))
+        return false;
+    play->apart = record ? HUGE_VAL : fmax(APART, length_of(text) / COPIES);
+    pid_t child = fork();
+    if (child == 0)
+        play_from_start(play, atomic_load(play->turn), text, record);
+    play->plays = child > 0;
+    return child > 0 || himc_error_set(error, "%s", strerror(errno));
+}
+
+bool edit_play_start(edit_play *play, const char *text, double from, const char *record,
+                     himc_error *error)
+{
+    if (!stop_playing(play, error))
+        return false;
+    int copy = -1;
+    if (from >= 0 && !record)
+        copy = (int)fmin((from + HEADROOM) / play->apart, COPIES) - 1;
+    for (bool late = true; copy >= 0; copy--) {
+        if (!play->waits[copy])
+            continue;
+        if (!dismiss_after(play, copy, error) || !ask(play, copy, text, &late, error))
+            return false;
+        if (!late)
+            return true;
+    }
+    return play_anew(play, text, record, error);
+}
+
+void edit_play_free(edit_play *play)
+{
+    himc_error unused;
+    if (!play)
+        return;
+    if (stop_playing(play, &unused))
+        for (int i = 0; i < COPIES; i++)
+            dismiss(play, i, &unused);
+    free(play->bytes);
+    free(play);
+}

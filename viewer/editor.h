@@ -1,0 +1,39 @@
+/// editor.h: the program `himc edit` beside this one: it changes a piece and plays it.
+#ifndef VIEWER_EDITOR_H
+#define VIEWER_EDITOR_H
+
+#include "himc/base.h"
+
+#include <sys/types.h>
+
+#define EDITOR_KEY 32                    ///< characters of a key
+#define EDITOR_LINE 4000                 ///< of a line to it (bytes); as `himc edit` takes
+#define EDITOR_UPLOAD ((size_t)64 << 20) ///< of a file with its name (bytes); chosen: an hour
+
+/// A piece that is being edited. All zero: none.
+typedef struct editor {
+    char source[512]; ///< its file; "" for none
+    bool confined;    ///< it came from a page
+    char folder[256]; ///< of what came from pages, removed at the end; "" for none
+    pid_t process;    ///< 0: none runs
+    int to, from;     ///< its standard input and output
+} editor;
+
+/// A random key, hexadecimal; false with the reason.
+bool editor_key(char key[EDITOR_KEY + 1], himc_error *error);
+/// Compares in a time that does not depend on where they differ.
+bool editor_is_key(const char *key, const char *given);
+
+/// Starts the program for the source; one that runs is left to itself, which ends it. False with the
+/// reason.
+bool editor_start(editor *e, himc_error *error);
+/// Sends a line, "" to 4000 bytes without a newline; false if it is none, or not taken.
+bool editor_say(const editor *e, const char *line, size_t size);
+/// Keeps a file that came from a page (name, 0, bytes) as the source; false with the reason.
+bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error);
+/// Lets the program end.
+void editor_stop(editor *e);
+/// Ends all and removes the files.
+void editor_close(editor *e);
+
+#endif
