@@ -18,8 +18,9 @@
 #include <zlib.h>
 
 enum {
-    ROWS = 1024, // in a chunk; chosen: 4 s, long against what a chunk costs beside its rows
-    FRAMES = 128 // of heads in a chunk; chosen: the same of one drum
+    ROWS = 1024,     // in a chunk; chosen: 4 s, long against what a chunk costs beside its rows
+    LIVE_ROWS = 250, // chosen: packed within a block of 2 ms
+    FRAMES = 128     // of heads in a chunk; chosen: the same of one drum
 };
 #define VORBIS_QUALITY 0.7 // chosen: about 1 MB for a minute in stereo
 #define STEADY 1e-6        // (s) rows this near to their period belong to one chunk; chosen
@@ -123,7 +124,8 @@ static void write_packed(scene_writer *s, const char kind[4], bytes *from)
     uLongf size = compressBound((uLong)from->size);
     to->size = 0;
     if (from->failed || !grow(to, size) ||
-        compress2(to->data, &size, from->data, (uLong)from->size, Z_BEST_COMPRESSION) != Z_OK)
+        compress2(to->data, &size, from->data, (uLong)from->size,
+                  s->config.live ? Z_BEST_SPEED : Z_BEST_COMPRESSION) != Z_OK)
         to->failed = true;
     to->size = size;
     write_chunk(s, kind, to);
@@ -218,7 +220,8 @@ static int32_t rounded(double value, double step)
 
 void scene_row(scene_writer *s, double time, const double *value)
 {
-    if (s->rows == ROWS || (s->rows > 1 && fabs(time - s->last - s->period) > STEADY))
+    if (s->rows == (s->config.live ? LIVE_ROWS : ROWS) ||
+        (s->rows > 1 && fabs(time - s->last - s->period) > STEADY))
         write_rows(s);
     if (s->rows == 0)
         s->start = time;

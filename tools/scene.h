@@ -26,6 +26,7 @@ typedef struct scene_config {
     const scene_column *column;
     int columns;
     int rate, channels; ///< of the sound (Hz; 0 channels: none, 1 or 2)
+    bool live;          ///< packed little by little and quickly, for a caller who keeps time
     bool bare;          ///< only the chunks after the file's first eight bytes
 } scene_config;
 

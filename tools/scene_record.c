@@ -335,6 +335,7 @@ static scene_writer *open_scene(scene_record *r, const scene_record_config *c, h
                           .columns = COLUMNS,
                           .rate = c->rate,
                           .channels = c->channels,
+                          .live = c->live,
                           .bare = c->bare};
     return scene_open(&scene, error);
 }

@@ -4,11 +4,14 @@ import csv
 import json
 import math
 import os
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 
 import report
+from bridge import osc
 from scene import Scene
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
@@ -158,6 +161,31 @@ def test_others_and_the_take_itself_are_in_the_scene():
     )
     assert worst < 0.04, worst
     return f"within {worst:.4f} rad"
+
+
+def test_what_is_served_is_recorded():
+    """himc serve --scene, driven over OSC and ended: the strikes that were asked for, their sound."""
+    command = [HIMC, "serve", "--port", "0", "--scene", path("live.himc"), path("two.txt")]
+    live = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    port = int(live.stdout.readline().split()[-1])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        udp.bind(("127.0.0.1", 0))
+        udp.settimeout(60)
+        udp.sendto(osc("/himc/subscribe", "127.0.0.1", udp.getsockname()[1], "strikes"), ("127.0.0.1", port))
+        udp.sendto(osc("/himc/play"), ("127.0.0.1", port))
+        for _ in range(2):
+            while b"/himc/strike" not in udp.recv(4096):
+                pass
+    live.send_signal(signal.SIGTERM)
+    told = json.loads(live.communicate(timeout=60)[0].splitlines()[-1])
+    with open(path("live.himc"), "rb") as file:
+        one = Scene(file.read())
+    times = [row[0] for row in one.rows]
+    assert all(abs(b - a - 0.004) < 1e-6 for a, b in zip(times, times[1:])), "rows are missing"
+    assert abs(one.of("end")[0]["time"] - told["blocks"] * 96 / 48000) < 1e-6, told
+    assert [s["hand"] for s in one.of("strike")][:2] == ["left", "right"], one.of("strike")
+    assert one.sound[:4] in (b"OggS", b"RIFF") and len(one.heads) > 5
+    return f"{len(times)} rows, {told['late']} of {told['blocks']} blocks late"
 
 
 def test_a_film_without_a_browser_is_refused_in_one_line():

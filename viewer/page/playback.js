@@ -34,7 +34,12 @@ export class Playback {
     // the sound begins anew where the playback is
     resound() {
         this.sound.stop();
-        if (this.playing) this.sound.play(this.at / 1000, this.speed);
+        if (this.playing) this.sound.play(this.at / 1000, this.speed, this.seconds);
+    }
+
+    // the loop in seconds, or null
+    get seconds() {
+        return this.loop && this.loop.map(t => t / 1000);
     }
 
     play(yes) {
@@ -53,6 +58,7 @@ export class Playback {
             Math.min(this.length, Math.max(0, t)),
         );
         this.loop = to - from >= FRAME ? [from, to] : null;
+        this.sound.setLoop(this.seconds);
         if (this.loop && (this.at < from || this.at > to)) this.seek(from);
     }
 
