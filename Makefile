@@ -147,7 +147,7 @@ check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/ma
 	@tools/macos.sh $(BUILD)/macos/parts
 	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib \
 	    CPPFLAGS="-isystem $(MACOS)/root/include" CFLAGS="-Werror -Wno-unused-command-line-argument $(CFLAGS)"
-	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
+	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/m_imp.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
 	@tests/test_macos.sh $(BUILD)/macos
 macos-here: $(PROGRAM) $(SHARED)
 	@echo "pd   $(BUILD)/externals"

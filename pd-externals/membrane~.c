@@ -24,6 +24,8 @@ take the same commands and are heard with it. */
 #include "layer.h"
 #include "saved-state.h"
 
+#include "m_imp.h" /* obj_starttraverseoutlet */
+
 #define GUESTS 3 /* performers beside the first; chosen: more do not find room around a drum */
 
 static t_class *membrane_class;
@@ -52,6 +54,7 @@ typedef struct t_membrane {
     t_stream x_stream;
     t_sample *x_in[3];
     t_sample *x_out[LAYER_OUTS];
+    bool x_watched; /* the displacement's outlet is connected */
 
     bool x_waiting; /* x_report is to be sent */
     himc_contact_report x_report;
@@ -236,9 +239,21 @@ static t_int *membrane_perform(t_int *w)
     return w + 2;
 }
 
+/* The graph is built anew after each change of a connection. */
+static void membrane_notice_connections(t_membrane *x)
+{
+    t_outlet *outlet;
+    x->x_watched = obj_starttraverseoutlet(&x->x_obj, &outlet, x->x_channels) != NULL;
+    himc_drum_watch(x->x_link.l_drum, x->x_watched);
+    himc_drum_watch(x->x_layer.l_drum, x->x_watched);
+    for (int i = 0; i < x->x_guests; i++)
+        himc_drum_watch(x->x_guest[i], x->x_watched);
+}
+
 static void membrane_dsp(t_membrane *x, t_signal **sp)
 {
     himc_error error;
+    membrane_notice_connections(x);
     bool driven = himc_drum_get_driver(x->x_link.l_drum).performer != NULL;
     if (sp[0]->s_n > HIMC_DRUM_RING) {
         pd_error(x, "membrane~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n,
@@ -480,6 +495,7 @@ static himc_drum *membrane_invite(t_drum_link *link, const void *performer, himc
     if (place < x->x_guests)
         himc_drum_release(x->x_guest[place]);
     x->x_guests = place < x->x_guests ? x->x_guests : place + 1;
+    himc_drum_watch(guest, x->x_watched);
     return x->x_guest[place] = guest;
 }
 

@@ -229,6 +229,37 @@ static void test_bank_kick_adds_velocity(void)
 
 // three readouts of different gains that share a form, and one of the second's weights alone, by
 // one version of the loops and in blocks of `size`
+static void test_bank_oscillators_set_to_rest_are_missed_by_140_dB_at_most(void)
+{
+    enum { MANY = 200, SECONDS = 3 };
+    static _Alignas(64) double p[MANY], s[MANY], ones[MANY];
+    himc_oscillator many[MANY];
+    himc_bank *large = himc_bank_new(MANY, NULL);
+    for (int i = 0; i < MANY; i++) {
+        many[i] = (himc_oscillator){500.0 + 417 * i, 3 + 0.2 * i, 0.01};
+        ones[i] = 1;
+    }
+    himc_bank_set(large, many, MANY, RATE);
+    himc_readout heard = {.p = p, .s = s};
+    himc_bank_readout(large, NULL, ones, NULL, &heard);
+    for (int i = 0; i < MANY; i++)
+        himc_bank_excite(large, i, 0, 1);
+    for (int n = 977; n <= SECONDS * RATE; n += 977) {
+        double expected = 0;
+        himc_bank_run(large, 977, (himc_readout *[]){&heard}, 1, (double *[]){velocities});
+        for (int i = 0; i < MANY; i++) {
+            double q = 0, v = 1;
+            textbook(&many[i], 0, n / RATE, &q, &v);
+            expected += v;
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7 * MANY, expected, velocities[976]);
+    }
+    double q, v;
+    himc_bank_state(large, MANY - 1, &q, &v);
+    TEST_ASSERT_EQUAL_DOUBLE(0, v);
+    himc_bank_free(large);
+}
+
 static void hear_alike(const himc_bank_kernel *kernel, bool film, int size, double out[4][1000])
 {
     enum { MANY = 200, LENGTH = 1000 };
@@ -426,5 +457,6 @@ int main(void)
     RUN_TEST(test_bank_silences_oscillators_that_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);
     RUN_TEST(test_bank_comes_to_exact_rest);
+    RUN_TEST(test_bank_oscillators_set_to_rest_are_missed_by_140_dB_at_most);
     return UNITY_END();
 }

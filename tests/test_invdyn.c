@@ -238,6 +238,39 @@ static void test_tip_acceleration_is_the_difference_of_its_velocity(void)
     }
 }
 
+static void test_a_carried_tip_accelerates_as_with_arms_that_do_not(void)
+{
+    for (int n = 0; n < 200; n++) {
+        himc_body_state s;
+        himc_vec3 relative[HIMC_JOINTS], held[HIMC_JOINTS];
+        random_state(&s, 5);
+        random_accelerations(relative, 50);
+        memcpy(held, relative, sizeof held);
+        for (int i = HIMC_LEFT_UPPER_ARM; i <= HIMC_RIGHT_STICK; i++)
+            held[i - 1] = himc_vec3_make(0, 0, 0);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_vec3 a = himc_tip_carried(&skeleton, &s, (himc_hand)hand, relative);
+            himc_vec3 b = himc_tip_acceleration(&skeleton, &s, (himc_hand)hand, held);
+            TEST_ASSERT_EQUAL_DOUBLE(0, distance(a, b));
+        }
+    }
+}
+
+static void test_an_articulation_spares_work_and_changes_no_torque(void)
+{
+    for (int n = 0; n < 200; n++) {
+        himc_body_state s;
+        himc_articulation art;
+        himc_vec3 relative[HIMC_JOINTS], alone[HIMC_JOINTS], shared[HIMC_JOINTS];
+        random_state(&s, 5);
+        random_accelerations(relative, 50);
+        himc_articulate(&skeleton, &s, &art);
+        himc_inverse_dynamics_of(&skeleton, &s, NULL, relative, 1, HIMC_LEGS, alone);
+        himc_inverse_dynamics_of(&skeleton, &s, &art, relative, 1, HIMC_LEGS, shared);
+        TEST_ASSERT_EQUAL_MEMORY(alone, shared, sizeof *alone * (HIMC_LEGS - 1));
+    }
+}
+
 static void test_effective_mass_is_force_over_tip_acceleration(void)
 {
     for (int n = 0; n < 500; n++) {
@@ -402,6 +435,8 @@ int main(void)
     RUN_TEST(test_still_gives_the_torques_of_gravity_alone);
     RUN_TEST(test_power_of_the_torques_is_the_change_of_energy);
     RUN_TEST(test_tip_acceleration_is_the_difference_of_its_velocity);
+    RUN_TEST(test_a_carried_tip_accelerates_as_with_arms_that_do_not);
+    RUN_TEST(test_an_articulation_spares_work_and_changes_no_torque);
     RUN_TEST(test_effective_mass_is_force_over_tip_acceleration);
     RUN_TEST(test_pivoting_stick_of_45_g_weighs_27_g_at_its_tip);
     RUN_TEST(test_effective_mass_along_the_stick_is_much_larger);

@@ -116,6 +116,9 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
 #define CLI_LISTENER "listener 2.3 0.5 1.3"
 #define CLI_BLOCK 8192 ///< most samples at a time; chosen: the longest block of Pd
 
+/// The displacement of drums is not wanted. cli_load does this.
+void cli_unwatch(himc_performance *performance);
+
 /// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).
 /// Returns the largest magnitude.
 double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out);

@@ -28,10 +28,19 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
     if (!performance)
         return NULL;
     himc_performance_make_drums(performance, true);
-    if (load(performance, source, rate, listener, error))
+    if (load(performance, source, rate, listener, error)) {
+        cli_unwatch(performance);
         return performance;
+    }
     himc_performance_free(performance);
     return NULL;
+}
+
+void cli_unwatch(himc_performance *performance)
+{
+    himc_drum *drum;
+    for (int d = 0; (drum = himc_performance_drum(performance, d)); d++)
+        himc_drum_watch(drum, false);
 }
 
 double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out)

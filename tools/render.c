@@ -358,7 +358,10 @@ static bool open_performance(rendering *r, const job *wanted, himc_error *error)
     if (config.physics_rate > wanted->rate)
         config.physics_rate = wanted->rate;
     r->performance = himc_performance_new(&config, error);
-    return r->performance && prepare(r->performance, wanted, error);
+    if (!r->performance || !prepare(r->performance, wanted, error))
+        return false;
+    cli_unwatch(r->performance);
+    return true;
 }
 
 static bool open_record(rendering *r, const job *wanted, FILE *stream, const char *name,

@@ -20,7 +20,7 @@ cross_libraries -DCMAKE_SYSTEM_NAME=Windows -DCMAKE_C_COMPILER=$machine-gcc -DCM
 {
     echo EXPORTS
     # a declaration is a record; a function's name stands before the first parenthesis, variables have none
-    sed 's|/\*.*\*/||; /^#/d' /usr/include/pd/m_pd.h /usr/include/pd/g_canvas.h | awk -v RS=';' '
+    sed 's|/\*.*\*/||; /^#/d' /usr/include/pd/m_pd.h /usr/include/pd/m_imp.h /usr/include/pd/g_canvas.h | awk -v RS=';' '
         !match($0, /EXTERN /) { next }
         { rest = substr($0, RSTART + 7) }
         match(rest, /[a-z_0-9]+[ \n]*\(/) { print substr(rest, RSTART, RLENGTH - 1); next }

@@ -135,6 +135,8 @@ play_pd signals.pd
 level() { awk -v name="$1:" '$1 == name { print $2 }' "$work/log"; }
 report force_signal_sounds \
     "$(awk -v l="$(level alone)" 'BEGIN { if (!(l > 60 && l < 120)) print l " dB" }')"
+report a_connected_displacement_moves \
+    "$(awk -v l="$(level displaced)" 'BEGIN { if (!(l > 0 && l < 60)) print l " dB" }')"
 report force_signal_sounds_alike_beside_a_performer \
     "$([ "$(level difference) $(level displacement)" = "0 0" ] || echo "$(level difference) dB")"
 report samples_that_are_not_numbers_are_silence_and_said_once \

@@ -1,14 +1,15 @@
-/// interpolate.h: motion of points and joints between two instants with known position, velocity
-/// and acceleration; private.
+/// interpolate.h: motion of joints between two instants with known rotation, angular velocity and
+/// angular acceleration; private.
 #ifndef HIMC_INTERPOLATE_H
 #define HIMC_INTERPOLATE_H
 
 #include "base/quintic.h"
 
-/// Weights of x0 v0 a0 x1 v1 a1 in the value and in its first and second derivative.
-typedef struct himc_interpolation {
+/// Weights of the coefficients of a polynomial of fifth degree in its value and in its first and
+/// second derivative.
+typedef struct himc_powers {
     double weight[3][6];
-} himc_interpolation;
+} himc_powers;
 
 /// Motion of a joint in its parent's frame: rotation, angular velocity (rad/s), angular
 /// acceleration (rad/s^2).
@@ -17,22 +18,29 @@ typedef struct joint_state {
     himc_vec3 rate, acceleration;
 } joint_state;
 
-/// A joint's rotation as a quaternion in four dimensions, and its derivatives.
-typedef struct joint_knot {
-    himc_quat q, rate, second;
-} joint_knot;
+#define HIMC_JOINT_LANES 12 ///< joints at once: those that targets move, and an even number
 
-/// The weights at `time` (s) after the first of two instants `length` (s, above 0) apart.
-himc_interpolation himc_interpolate_make(double time, double length);
-/// A point's motion between `from` and `to`.
-himc_target himc_interpolate_points(const himc_interpolation *b, const himc_target *from,
-                                    const himc_target *to);
-/// The knots of a joint's motion between `from` and `to`.
-void himc_interpolate_knots(const joint_state *from, const joint_state *to, joint_knot knot[2]);
-/// A joint's motion between two knots.
-joint_state himc_interpolate_joint(const himc_interpolation *b, const joint_knot knot[2]);
-/// A joint's motion between `from` and `to`, once.
-joint_state himc_interpolate_joints(const himc_interpolation *b, const joint_state *from,
+/// Rotations of joints as quaternions in four dimensions that move on quintics: of each power of the
+/// time and each component the coefficients of all joints, side by side.
+typedef struct joint_courses {
+    double c[6][4][HIMC_JOINT_LANES];
+} joint_courses;
+
+/// States of joints, side by side: w x y z, x y z, x y z.
+typedef struct joint_states {
+    double q[4][HIMC_JOINT_LANES], rate[3][HIMC_JOINT_LANES], acceleration[3][HIMC_JOINT_LANES];
+} joint_states;
+
+/// The weights at `time` (s) after the start.
+himc_powers himc_powers_at(double time);
+/// Sets the motion of joint `lane` from one state to another, `length` (s, above 0) later.
+void himc_joint_course(const joint_state *from, const joint_state *to, double length,
+                       joint_courses *courses, int lane);
+/// The states of all joints; all courses must have been set.
+void himc_joint_courses_at(const joint_courses *courses, const himc_powers *powers,
+                           joint_states *states);
+/// The state at `time` of the motion between two states, once.
+joint_state himc_interpolate_joints(double time, double length, const joint_state *from,
                                     const joint_state *to);
 
 #endif

@@ -33,6 +33,36 @@ HIMC_RT void himc_articulation_solve(const himc_skeleton *skeleton,
                                      tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS],
                                      himc_vec3 acceleration[HIMC_SEGMENTS]);
 
+/// The product of a symmetric matrix and a vector.
+static inline himc_vec3 himc_symmetric_apply(const himc_symmetric *a, himc_vec3 v)
+{
+    return himc_vec3_make(a->xx * v.x + a->xy * v.y + a->xz * v.z,
+                          a->xy * v.x + a->yy * v.y + a->yz * v.z,
+                          a->xz * v.x + a->yz * v.y + a->zz * v.z);
+}
+
+/// a += scale v v'.
+static inline void himc_add_square(himc_symmetric *a, double scale, himc_vec3 v)
+{
+    himc_vec3 u = himc_vec3_scale(v, scale);
+    a->xx += u.x * v.x;
+    a->xy += u.x * v.y;
+    a->xz += u.x * v.z;
+    a->yy += u.y * v.y;
+    a->yz += u.y * v.z;
+    a->zz += u.z * v.z;
+}
+
+/// A tensor given about a segment's axes, in the world frame: R diag(d) R' = d.z 1 + the excess of
+/// d.x and d.y along their axes.
+static inline himc_symmetric himc_world_tensor(const himc_mat3 *r, himc_vec3 d)
+{
+    himc_symmetric t = {.xx = d.z, .yy = d.z, .zz = d.z};
+    himc_add_square(&t, d.x - d.z, himc_vec3_make(r->m[0][0], r->m[1][0], r->m[2][0]));
+    himc_add_square(&t, d.y - d.z, himc_vec3_make(r->m[0][1], r->m[1][1], r->m[2][1]));
+    return t;
+}
+
 /// Centre of mass of a segment (m).
 static inline himc_vec3 himc_segment_center(const himc_skeleton *skeleton,
                                             const himc_body_state *state, int segment)
@@ -49,8 +79,10 @@ HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state
                             himc_vec3 torque[HIMC_JOINTS]);
 
 /// himc_inverse_dynamics of a moving body, of segments `begin` .. `end` - 1: 1 .. HIMC_LEGS - 1, the
-/// legs, or all. Only their joints' torques are written.
+/// legs, or all. Only their joints' torques are written. `articulation` is of these segments in this
+/// state, or NULL: its centres and inertias need not be found again.
 HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
+                                      const himc_articulation *articulation,
                                       const himc_vec3 *relative, int begin, int end,
                                       himc_vec3 torque[HIMC_JOINTS]);
 
@@ -58,5 +90,8 @@ HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_
 /// (HIMC_JOINTS; NULL for zero).
 HIMC_RT himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *state,
                                         himc_hand hand, const himc_vec3 *relative);
+/// The same while the joints of the arms have none.
+HIMC_RT himc_vec3 himc_tip_carried(const himc_skeleton *skeleton, const himc_body_state *state,
+                                   himc_hand hand, const himc_vec3 *relative);
 
 #endif

@@ -69,7 +69,7 @@ static double numerical_power(const step *s, int i, himc_vec3 joint[HIMC_SEGMENT
     joint[p] = himc_vec3_add(joint[p], joint[i]);
     himc_vec3 here = point_velocity(s, i, himc_vec3_make(0, 0, 0));
     himc_vec3 parting = himc_vec3_sub(here, point_velocity(s, p, s->art->lever[i]));
-    himc_vec3 moment = himc_gyroscopic_moment(segment->inertia, &s->before->joints.rotation[i],
+    himc_vec3 moment = himc_gyroscopic_moment(&s->art->inertia[i], segment->inertia,
                                               s->before->joints.spin[i], s->h);
     return himc_vec3_dot(joint[i], parting) + himc_vec3_dot(s->spin[i], moment) +
            0.5 * segment->mass * HIMC_GRAVITY * gained.z;

@@ -43,25 +43,6 @@ static himc_mat3 full(const himc_symmetric *a)
     return (himc_mat3){{{a->xx, a->xy, a->xz}, {a->xy, a->yy, a->yz}, {a->xz, a->yz, a->zz}}};
 }
 
-static himc_vec3 apply(const himc_symmetric *a, himc_vec3 v)
-{
-    return himc_vec3_make(a->xx * v.x + a->xy * v.y + a->xz * v.z,
-                          a->xy * v.x + a->yy * v.y + a->yz * v.z,
-                          a->xz * v.x + a->yz * v.y + a->zz * v.z);
-}
-
-// a += scale v v'
-static void add_square(himc_symmetric *a, double scale, himc_vec3 v)
-{
-    himc_vec3 u = himc_vec3_scale(v, scale);
-    a->xx += u.x * v.x;
-    a->xy += u.x * v.y;
-    a->xz += u.x * v.z;
-    a->yy += u.y * v.y;
-    a->yz += u.y * v.z;
-    a->zz += u.z * v.z;
-}
-
 static himc_symmetric sum(const himc_symmetric *a, const himc_symmetric *b)
 {
     return (himc_symmetric){a->xx + b->xx, a->xy + b->xy, a->xz + b->xz,
@@ -82,16 +63,6 @@ static himc_symmetric inverse(const himc_symmetric *a)
                             (a->xx * a->yy - a->xy * a->xy) * s};
 }
 
-// a tensor given about a segment's axes, in the world frame: R diag(d) R' = d.z 1 + the excess of
-// d.x and d.y along their axes
-static himc_symmetric world_tensor(const himc_mat3 *rotation, himc_vec3 d)
-{
-    himc_symmetric t = {.xx = d.z, .yy = d.z, .zz = d.z};
-    add_square(&t, d.x - d.z, column(rotation, 0));
-    add_square(&t, d.y - d.z, column(rotation, 1));
-    return t;
-}
-
 // J, H and M of a segment and, later, of its children
 typedef struct block {
     himc_symmetric j, m;
@@ -108,11 +79,11 @@ static void place_segment(const himc_skeleton *skeleton, const himc_body_state *
     double steiner = himc_vec3_dot(c, mc);
     art->center[i] = c;
     art->lever[i] = himc_mat3_apply(&s->rotation[segment->parent], segment->origin);
-    art->inertia[i] = own->j = world_tensor(&s->rotation[i], segment->inertia);
+    art->inertia[i] = own->j = himc_world_tensor(&s->rotation[i], segment->inertia);
     own->j.xx += steiner;
     own->j.yy += steiner;
     own->j.zz += steiner;
-    add_square(&own->j, -m, c);
+    himc_add_square(&own->j, -m, c);
     own->h = (himc_mat3){{{0, -mc.z, mc.y}, {mc.z, 0, -mc.x}, {-mc.y, mc.x, 0}}};
     own->m = (himc_symmetric){.xx = m, .yy = m, .zz = m};
 }
@@ -159,7 +130,8 @@ static void eliminate(himc_articulation *art, int i, const block *own)
 {
     himc_vec3 h0 = column(&own->h, 0), h1 = column(&own->h, 1), h2 = column(&own->h, 2);
     const himc_symmetric *k = &art->inverse[i], *m = &own->m;
-    himc_vec3 k0 = apply(k, h0), k1 = apply(k, h1), k2 = apply(k, h2);
+    himc_vec3 k0 = himc_symmetric_apply(k, h0), k1 = himc_symmetric_apply(k, h1);
+    himc_vec3 k2 = himc_symmetric_apply(k, h2);
     art->response[i] = himc_mat3_from_axes(k0, k1, k2);
     art->mass[i] = (himc_symmetric){m->xx - himc_vec3_dot(h0, k0), m->xy - himc_vec3_dot(h0, k1),
                                     m->xz - himc_vec3_dot(h0, k2), m->yy - himc_vec3_dot(h1, k1),
@@ -195,7 +167,7 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
     for (int i = end - 1; i >= begin; i--) {
         int p = skeleton->segment[i].parent;
         if (resistance) {
-            himc_symmetric d = world_tensor(&s->rotation[i], resistance[i - 1]);
+            himc_symmetric d = himc_world_tensor(&s->rotation[i], resistance[i - 1]);
             add_resistance(art, i, &d, &own[i]);
         } else {
             art->inverse[i] = inverse(&own[i].j);
@@ -234,10 +206,10 @@ static void sum_loads(const himc_skeleton *skeleton, const himc_articulation *ar
     for (int i = art->end - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
         himc_vec3 n = load[i].moment, gap = load[i].gap;
-        alpha[i] = himc_vec3_scale(apply(&art->inverse[i], n), -1);
+        alpha[i] = himc_vec3_scale(himc_symmetric_apply(&art->inverse[i], n), -1);
         if (p == HIMC_PELVIS)
             continue;
-        himc_vec3 force = himc_vec3_add(load[i].force, apply(&art->mass[i], gap));
+        himc_vec3 force = himc_vec3_add(load[i].force, himc_symmetric_apply(&art->mass[i], gap));
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[i], n));
         load[p].force = himc_vec3_add(load[p].force, force);
         load[p].moment = himc_vec3_add(load[p].moment, himc_vec3_cross(art->lever[i], force));
@@ -281,7 +253,7 @@ static tree_load own_load(const himc_skeleton *skeleton, const himc_articulation
                      .gap = centripetal(spin[segment->parent], art->lever[i])};
     own.force.z += HIMC_GRAVITY;
     own.force = himc_vec3_scale(own.force, segment->mass);
-    own.moment = himc_vec3_cross(spin[i], apply(&art->inertia[i], spin[i]));
+    own.moment = himc_vec3_cross(spin[i], himc_symmetric_apply(&art->inertia[i], spin[i]));
     own.moment = himc_vec3_add(own.moment, himc_vec3_cross(art->center[i], own.force));
     return own;
 }
@@ -320,7 +292,7 @@ double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state 
         // `force` acts at `end` and rotates the segment about its joint; the rest acts on the
         // parent
         moment = himc_vec3_cross(himc_vec3_sub(end, s->origin[i]), force);
-        alpha[i] = apply(&art->inverse[i], moment);
+        alpha[i] = himc_symmetric_apply(&art->inverse[i], moment);
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[i], moment));
         end = s->origin[i];
         chain[count++] = i;

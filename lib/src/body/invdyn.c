@@ -33,20 +33,21 @@ static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
 }
 
 static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
-                         const himc_vec3 *relative, const himc_vec3 *spin, int begin, int end,
-                         himc_vec3 torque[HIMC_JOINTS])
+                         const himc_articulation *art, const himc_vec3 *relative,
+                         const himc_vec3 *spin, int begin, int end, himc_vec3 torque[HIMC_JOINTS])
 {
     motion m[HIMC_SEGMENTS];
     himc_vec3 force[HIMC_SEGMENTS] = {{0, 0, 0}}, moment[HIMC_SEGMENTS] = {{0, 0, 0}};
     outwards(skeleton, s, relative, spin, begin, end, m);
     for (int i = end - 1; i >= begin; i--) {
         const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 c = himc_mat3_apply(&s->rotation[i], segment->center);
+        himc_vec3 c = art ? art->center[i] : himc_mat3_apply(&s->rotation[i], segment->center);
+        himc_symmetric inertia =
+            art ? art->inertia[i] : himc_world_tensor(&s->rotation[i], segment->inertia);
         himc_vec3 a = add_centripetal(m[i].linear, m[i].angular, spin[i], c);
         himc_vec3 own = himc_vec3_scale(a, segment->mass);
-        himc_vec3 l = himc_mat3_scale_along(&s->rotation[i], segment->inertia, spin[i]);
-        himc_vec3 rotational =
-            himc_mat3_scale_along(&s->rotation[i], segment->inertia, m[i].angular);
+        himc_vec3 l = himc_symmetric_apply(&inertia, spin[i]);
+        himc_vec3 rotational = himc_symmetric_apply(&inertia, m[i].angular);
         rotational = himc_vec3_add(rotational, himc_vec3_cross(spin[i], l));
         moment[i] = himc_vec3_add(moment[i], himc_vec3_add(rotational, himc_vec3_cross(c, own)));
         force[i] = himc_vec3_add(force[i], own);
@@ -70,18 +71,19 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
                            const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
 {
     static const himc_vec3 no_spin[HIMC_SEGMENTS];
-    find_torques(skeleton, s, relative, still ? no_spin : s->spin, 1, HIMC_SEGMENTS, torque);
+    find_torques(skeleton, s, NULL, relative, still ? no_spin : s->spin, 1, HIMC_SEGMENTS, torque);
 }
 
 void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,
-                              const himc_vec3 *relative, int begin, int end,
-                              himc_vec3 torque[HIMC_JOINTS])
+                              const himc_articulation *art, const himc_vec3 *relative, int begin,
+                              int end, himc_vec3 torque[HIMC_JOINTS])
 {
-    find_torques(skeleton, s, relative, s->spin, begin, end, torque);
+    find_torques(skeleton, s, art, relative, s->spin, begin, end, torque);
 }
 
-himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
-                                himc_hand hand, const himc_vec3 *relative)
+// with the relative accelerations of the joints before segment `end`
+static himc_vec3 tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                  himc_hand hand, const himc_vec3 *relative, int end)
 {
     int chain[HIMC_SEGMENTS], count = 0;
     for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
@@ -89,9 +91,21 @@ himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_s
     himc_vec3 alpha = {0, 0, 0}, a = {0, 0, 0};
     while (count-- > 0) {
         int i = chain[count];
-        himc_vec3 end = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];
-        alpha = relative ? himc_vec3_add(alpha, relative[i - 1]) : alpha;
-        a = add_centripetal(a, alpha, s->spin[i], himc_vec3_sub(end, s->origin[i]));
+        himc_vec3 to = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];
+        alpha = i < end ? himc_vec3_add(alpha, relative[i - 1]) : alpha;
+        a = add_centripetal(a, alpha, s->spin[i], himc_vec3_sub(to, s->origin[i]));
     }
     return a;
+}
+
+himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                himc_hand hand, const himc_vec3 *relative)
+{
+    return tip_acceleration(skeleton, s, hand, relative, relative ? HIMC_SEGMENTS : 0);
+}
+
+himc_vec3 himc_tip_carried(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
+                           const himc_vec3 *relative)
+{
+    return tip_acceleration(skeleton, s, hand, relative, HIMC_LEFT_UPPER_ARM);
 }

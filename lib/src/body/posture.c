@@ -73,6 +73,7 @@
 // A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
 #define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
 #define REACHED_ABOVE 0.1  // above the level of impact (m)
+#define GRIP_STEPS 60      // of himc_posture_tip_of_grip; chosen: to a millimetre in French grip
 #define BISECTIONS 40      // chosen: to 1e-12 of the distance
 
 // thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if the
@@ -418,4 +419,17 @@ himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand, hi
             missed = middle;
     }
     return himc_vec3_madd(from, reached, line);
+}
+
+// the stick turns by less than its length allows the grip to move back, so the tip moves by what the
+// grip misses until that is nothing
+himc_vec3 himc_posture_tip_of_grip(const himc_posture *posture, himc_hand hand, himc_vec3 grip)
+{
+    arm a = arm_of(posture, hand);
+    himc_vec3 tip = grip;
+    for (int i = 0; i < GRIP_STEPS; i++) {
+        solve_wrist(posture, hand, tip, &a);
+        tip = himc_vec3_add(tip, himc_vec3_sub(grip, a.grip));
+    }
+    return tip;
 }

@@ -95,4 +95,8 @@ HIMC_RT double himc_posture_capsules(const himc_posture *posture, const himc_vec
 HIMC_RT himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand,
                                          himc_vec3 tip);
 
+/// The place of the tip (m) with which the natural posture holds the stick at `grip` (m).
+HIMC_RT himc_vec3 himc_posture_tip_of_grip(const himc_posture *posture, himc_hand hand,
+                                           himc_vec3 grip);
+
 #endif

@@ -11,22 +11,20 @@
 ///
 /// The gyroscopic moment is implicit (Lacoursiere, Stabilizing gyroscopic forces in rigid multibody
 /// simulations, 2006): I w+ = L + h L x w+ with the angular momentum L = I w, so the moment is
-/// L x w+. About the segment's axes, with I diagonal,
-///     w+ = (adj(I) L + h (I L) x L + h^2 L |L|^2) / (det I + h^2 L' I L).
+/// L x w+. With adj(I) L = det I w,
+///     w+ = (det I w + h (I L) x L + h^2 L |L|^2) / (det I + h^2 L' I L).
 ///
 /// Then v+ = v + h a, x+ = x + h v+, and q+ = q + h / 2 w+ q, made a unit quaternion.
 #include "body/tree.h"
 
-himc_vec3 himc_gyroscopic_moment(himc_vec3 i, const himc_mat3 *rotation, himc_vec3 spin, double h)
+himc_vec3 himc_gyroscopic_moment(const himc_symmetric *inertia, himc_vec3 own, himc_vec3 w,
+                                 double h)
 {
-    himc_vec3 w = himc_mat3_apply_transposed(rotation, spin);
-    himc_vec3 l = {i.x * w.x, i.y * w.y, i.z * w.z};
-    himc_vec3 il = {i.x * l.x, i.y * l.y, i.z * l.z};
-    himc_vec3 adj = {i.y * i.z * l.x, i.z * i.x * l.y, i.x * i.y * l.z};
-    double det = i.x * i.y * i.z + h * h * himc_vec3_dot(l, il);
+    himc_vec3 l = himc_symmetric_apply(inertia, w), il = himc_symmetric_apply(inertia, l);
+    double det = own.x * own.y * own.z;
     // the part along L has no moment
-    himc_vec3 after = himc_vec3_madd(adj, h, himc_vec3_cross(il, l));
-    return himc_mat3_apply(rotation, himc_vec3_scale(himc_vec3_cross(l, after), 1 / det));
+    himc_vec3 after = himc_vec3_madd(himc_vec3_scale(w, det), h, himc_vec3_cross(il, l));
+    return himc_vec3_scale(himc_vec3_cross(l, after), 1 / (det + h * h * himc_vec3_dot(l, il)));
 }
 
 // velocity of a segment's joint
@@ -56,7 +54,7 @@ static void fill_loads(const himc_skeleton *skeleton, const himc_articulation *a
     for (int i = 1; i < art->end; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 torque =
-            himc_gyroscopic_moment(segment->inertia, &s->joints.rotation[i], s->joints.spin[i], h);
+            himc_gyroscopic_moment(&art->inertia[i], segment->inertia, s->joints.spin[i], h);
         torque = himc_vec3_add(torque, f->torque[i]);
         velocity[i] = joint_velocity(art, s, i);
         load[i].force = himc_vec3_scale(f->force[i], -1);

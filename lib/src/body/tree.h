@@ -18,9 +18,9 @@ typedef struct segment_forces {
     himc_vec3 torque[HIMC_SEGMENTS]; ///< about the centre of mass (N m)
 } segment_forces;
 
-/// Moment of the implicit gyroscopic term of a segment (world frame, N m): of its inertia about its
-/// own axes, rotation and spin, in a step of `h` seconds.
-HIMC_RT himc_vec3 himc_gyroscopic_moment(himc_vec3 inertia, const himc_mat3 *rotation,
+/// Moment of the implicit gyroscopic term of a segment (world frame, N m): of its inertia in the
+/// world and about its own axes, and its spin, in a step of `h` seconds.
+HIMC_RT himc_vec3 himc_gyroscopic_moment(const himc_symmetric *inertia, himc_vec3 own,
                                          himc_vec3 spin, double h);
 
 /// One step of `h` seconds of the segments of the articulation, which belongs to this state. `erp`

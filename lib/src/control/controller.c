@@ -162,7 +162,8 @@ static void wanted_torques(const himc_controller *c, const himc_skeleton *skelet
                            const himc_body_state *s, const himc_vec3 *wanted,
                            himc_vec3 torque[HIMC_JOINTS])
 {
-    himc_inverse_dynamics_of(skeleton, s, wanted, 1, c->legs ? HIMC_LEGS : HIMC_SEGMENTS, torque);
+    himc_inverse_dynamics_of(skeleton, s, c->legs ? c->articulation : NULL, wanted, 1,
+                             c->legs ? HIMC_LEGS : HIMC_SEGMENTS, torque);
     if (c->legs)
         himc_still_legs_torques(c->legs, skeleton, s, wanted, torque);
 }

@@ -67,6 +67,8 @@ typedef struct himc_controller {
     const himc_limits *limits;          ///< borrowed; NULL (default) for none
     himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
     himc_still_legs *legs;              ///< borrowed, of this body and configuration; may be NULL
+    const himc_articulation *articulation; ///< borrowed, of this body without the legs in the state
+                                           ///< of the next call; may be NULL
 } himc_controller;
 
 /// The present targets of the body.

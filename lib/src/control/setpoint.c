@@ -1,6 +1,6 @@
 /// setpoint.c: every channel of the targets moves on a quintic from tick to tick, with one set of
-/// basis values for all (interpolate.c). What stays the same between two ticks is computed once.
-/// Legs keep their posture: only the joints of trunk, neck, head and arms move.
+/// powers of the time for all joints (interpolate.c). What stays the same between two ticks is
+/// computed once. Legs keep their posture: only the joints of trunk, neck, head and arms move.
 #include "control/setpoint.h"
 
 static joint_state state_of(const himc_posture_motion *m, int j)
@@ -16,31 +16,32 @@ void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *posture)
 void himc_setpoint_course_make(himc_setpoint_course *course, const himc_setpoint *from,
                                const himc_setpoint *to)
 {
+    double length = to->time - from->time;
     course->from = from->time;
-    course->length = to->time - from->time;
     course->posture = to->posture;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        course->tip[hand][0] = from->tip[hand];
-        course->tip[hand][1] = to->tip[hand];
-    }
-    for (int j = 0; j < HIMC_MOVING_JOINTS; j++) {
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        course->tip[hand] = himc_quintic_make(&from->tip[hand], &to->tip[hand], length);
+    for (int lane = 0; lane < HIMC_JOINT_LANES; lane++) {
+        int j = lane < HIMC_MOVING_JOINTS ? lane : 0;
         joint_state p = state_of(&from->posture, j), q = state_of(&to->posture, j);
-        himc_interpolate_knots(&p, &q, course->knot[j]);
+        himc_joint_course(&p, &q, length, &course->joints, lane);
     }
 }
 
 void himc_setpoint_at(const himc_setpoint_course *course, double time, himc_reference *reference)
 {
-    himc_interpolation b = himc_interpolate_make(time - course->from, course->length);
+    double t = time - course->from;
+    himc_powers powers = himc_powers_at(t);
     himc_posture_motion *out = &reference->posture;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        reference->tip[hand] =
-            himc_interpolate_points(&b, &course->tip[hand][0], &course->tip[hand][1]);
+        reference->tip[hand] = himc_quintic_at(&course->tip[hand], t);
     *out = course->posture;
+    joint_states now;
+    himc_joint_courses_at(&course->joints, &powers, &now);
     for (int j = 0; j < HIMC_MOVING_JOINTS; j++) {
-        joint_state s = himc_interpolate_joint(&b, course->knot[j]);
-        out->joint[j] = s.q;
-        out->rate[j] = s.rate;
-        out->acceleration[j] = s.acceleration;
+        out->joint[j] = (himc_quat){now.q[0][j], now.q[1][j], now.q[2][j], now.q[3][j]};
+        out->rate[j] = himc_vec3_make(now.rate[0][j], now.rate[1][j], now.rate[2][j]);
+        out->acceleration[j] =
+            himc_vec3_make(now.acceleration[0][j], now.acceleration[1][j], now.acceleration[2][j]);
     }
 }

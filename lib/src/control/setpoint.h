@@ -21,10 +21,10 @@ HIMC_RT void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *pos
 
 /// The motion between two ticks.
 typedef struct himc_setpoint_course {
-    double from, length;            ///< time of the first tick, and to the second (s)
-    himc_target tip[HIMC_HANDS][2]; ///< at both ticks
-    himc_posture_motion posture;    ///< at the second tick, for joints that do not move
-    joint_knot knot[HIMC_MOVING_JOINTS][2];
+    double from; ///< time of the first tick (s)
+    himc_quintic tip[HIMC_HANDS];
+    himc_posture_motion posture; ///< at the second tick, for joints that do not move
+    joint_courses joints;        ///< the first HIMC_MOVING_JOINTS, the rest like the first
 } himc_setpoint_course;
 
 HIMC_RT void himc_setpoint_course_make(himc_setpoint_course *course, const himc_setpoint *from,

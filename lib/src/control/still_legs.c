@@ -56,7 +56,7 @@ void himc_still_legs_torques(himc_still_legs *legs, const himc_skeleton *skeleto
 {
     bool same = keep(legs->wanted, &wanted[FIRST], sizeof legs->wanted) && legs->torque_known;
     if (!same)
-        himc_inverse_dynamics_of(skeleton, state, wanted, HIMC_LEGS, HIMC_SEGMENTS, torque);
+        himc_inverse_dynamics_of(skeleton, state, NULL, wanted, HIMC_LEGS, HIMC_SEGMENTS, torque);
     memcpy(same ? &torque[FIRST] : legs->torque, same ? legs->torque : &torque[FIRST],
            sizeof legs->torque);
     legs->torque_known = true;

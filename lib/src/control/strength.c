@@ -41,21 +41,29 @@ static double left_of(double most, himc_vec3 spin, himc_vec3 torque, double aske
     return most * fmin(fmax(1 - speed / FASTEST, 0), 1);
 }
 
+// shortens a torque that is above the joint's strength; true if it was
+static bool shorten(double strength, himc_vec3 spin, himc_vec3 *torque)
+{
+    double asked = himc_vec3_length(*torque);
+    double most = asked > 0 ? left_of(strength, spin, *torque, asked) : strength;
+    if (asked > most)
+        *torque = himc_vec3_scale(*torque, most / asked);
+    return asked > most;
+}
+
 void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton,
                          const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS])
 {
+    himc_saturation_counts *counts = c->saturation;
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        double asked = himc_vec3_length(torque[j]), most = c->config.strength[j];
-        if (most > 0 && asked > 0)
-            most = left_of(most, himc_relative_spin(skeleton, s, j), torque[j], asked);
-        bool weak = c->config.strength[j] > 0 && asked > most;
-        if (weak)
-            torque[j] = himc_vec3_scale(torque[j], most / asked);
-        if (c->saturation) {
-            c->saturation->torque[j] = fmax(c->saturation->torque[j], asked);
-            c->saturation->weak[j] += weak;
-        }
+        double square = himc_vec3_dot(torque[j], torque[j]), strength = c->config.strength[j];
+        if (counts && square > counts->torque[j] * counts->torque[j])
+            counts->torque[j] = sqrt(square);
+        bool weak =
+            strength > 0 && shorten(strength, himc_relative_spin(skeleton, s, j), &torque[j]);
+        if (counts)
+            counts->weak[j] += weak;
     }
-    if (c->saturation)
-        c->saturation->steps++;
+    if (counts)
+        counts->steps++;
 }

@@ -60,8 +60,9 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
         himc_elbow_task_init(&tasks->elbow, tasks->jacobian, upper_arm, c->damping);
 }
 
-// the demand of the tip through the Jacobian, then the elbow's place and the posture in its null
-// space; the solution is linear in all of them
+// The demand of the tip through the Jacobian, then the elbow's place and the posture in its null
+// space; the solution is linear in all of them. What the posture moves the tip by is taken back with
+// the demand: W J' (inverse demand - (J W J')^-1 J posture) + posture.
 static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
 {
     const himc_controller_config *c = &tasks->controller->config;
@@ -72,8 +73,12 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
         posture[k] = himc_vec3_make(0, 0, 0);
     if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
         inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
-    himc_ik_apply_transposed(tasks->jacobian, himc_mat3_apply(&inverse, demand), solution);
-    himc_ik_add_null(tasks->jacobian, posture, solution);
+    himc_vec3 moved = himc_ik_forward(tasks->jacobian, posture);
+    himc_vec3 f = himc_vec3_sub(himc_mat3_apply(&inverse, demand),
+                                himc_mat3_apply(&tasks->jacobian->inverse, moved));
+    himc_ik_apply_transposed(tasks->jacobian, f, solution);
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        solution[k] = himc_vec3_add(solution[k], posture[k]);
     if (c->elbow)
         himc_ik_add_elbow(tasks->jacobian, &tasks->elbow,
                           himc_vec3_cross(posture[0], tasks->elbow.lever), solution);
@@ -83,12 +88,7 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
 himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
                                  himc_hand hand, const himc_vec3 *relative, himc_vec3 wanted)
 {
-    himc_vec3 others[HIMC_JOINTS];
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        others[j] = relative[j];
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        others[himc_arm_joint(hand, k)] = himc_vec3_make(0, 0, 0);
-    return himc_vec3_sub(wanted, himc_tip_acceleration(skeleton, s, hand, others));
+    return himc_vec3_sub(wanted, himc_tip_carried(skeleton, s, hand, relative));
 }
 
 // The Jacobian is true near the target only: an arm pushed far away would follow it in circles. So
@@ -110,10 +110,13 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
                              const himc_body_state *s, const himc_target *asked, himc_hand hand,
                              const himc_arm_jacobian *jacobian, tracking_error *e)
 {
-    tracking_error joints = *e;
     himc_vec3 shoulder = s->origin[himc_arm_joint(hand, 0) + 1];
     himc_target target = himc_stretch_towards(asked, shoulder, himc_stretch(skeleton, hand));
     himc_vec3 way = himc_vec3_sub(target.x, s->tip[hand]);
+    double away = himc_vec3_length(way);
+    tracking_error joints;
+    if (away > JOINTS_BEGIN)
+        joints = *e;
     himc_vec3 missing = clamp_length(way, LARGEST_TIP_STEP);
     himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
     himc_vec3 a = himc_acceleration_left(skeleton, s, hand, e->acceleration, target.a);
@@ -122,7 +125,6 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     solve_demand(&tasks, missing, e->angle);
     solve_demand(&tasks, slower, e->rate);
     solve_demand(&tasks, a, e->acceleration);
-    double away = himc_vec3_length(way);
     if (away > JOINTS_BEGIN)
         return_by_joints(&joints, away, hand, e);
 }

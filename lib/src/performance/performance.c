@@ -108,6 +108,8 @@ static void watch(himc_performance *p, double t)
 {
     himc_statistics_strokes(&p->statistics, himc_planner_given_up(p->motion->planner), 0);
     tell_planner_notes(p);
+    if (himc_motion_is_calm(p->motion, t))
+        return;
     long beat = himc_motion_beat(p->motion, t);
     if (beat >= 0)
         himc_events_add(&p->events,
@@ -116,6 +118,7 @@ static void watch(himc_performance *p, double t)
         tell_planner_notes(p);
         himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_DONE});
     }
+    himc_motion_foresee(p->motion, himc_clock_next_tick(&p->clock));
 }
 
 static void performance_step(himc_performance *p)
@@ -148,6 +151,7 @@ static void performance_step(himc_performance *p)
 void himc_performance_process(himc_performance *p, int n, double *const force[HIMC_HANDS])
 {
     const performance_contacts *c = &p->contacts;
+    himc_motion_stir(p->motion); // the host may have changed the score
     for (int done = 0; done < n;) {
         if (himc_clock_ahead(&p->clock) == 0)
             performance_step(p);

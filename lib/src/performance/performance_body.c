@@ -64,6 +64,7 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
     b->skeleton = parts->skeleton;
     b->plant = parts->plant;
     b->legs.known = false;
+    b->shares = memcmp(b->skeleton.segment, b->plant.segment, sizeof b->plant.segment) == 0;
 }
 
 bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
@@ -159,6 +160,7 @@ bool himc_body_observe(performance_body *b, bool check)
 void himc_body_control(performance_body *b, const himc_reference *reference, double h)
 {
     b->controller.step = h;
+    b->controller.articulation = b->shares ? himc_character_articulation(b->character) : NULL;
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
 }
 

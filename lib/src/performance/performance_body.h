@@ -17,6 +17,7 @@ typedef struct body_push {
 typedef struct performance_body {
     himc_skeleton skeleton;          ///< assumed by the controller
     himc_skeleton plant;             ///< simulated: masses may differ
+    bool shares;                     ///< they do not: the controller has the plant's articulation
     himc_character *character;       ///< owned
     himc_body_state state;           ///< at the beginning of the last step
     himc_vec3 torque[HIMC_JOINTS];   ///< of the last step (N m)

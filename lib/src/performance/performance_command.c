@@ -578,6 +578,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
 static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
 {
     himc_drums_catch_up(&p->drums);
+    himc_motion_stir(p->motion);
     return actions[command->id](p, command, error);
 }
 

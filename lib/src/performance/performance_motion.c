@@ -302,6 +302,33 @@ static void enliven(performance_motion *m, const performance_drums *drums, doubl
     himc_alive_add(&m->posture, &next, t, &m->course.goal);
 }
 
+// when a hand has nothing to play; never while live targets move it
+static himc_free_hand free_hand(const performance_motion *m, const performance_drums *drums,
+                                himc_hand hand, double t)
+{
+    planned_stroke next = himc_motion_stroke(m, drums, hand, t);
+    himc_free_hand free = {m->answered[hand], next.any ? next.time : INFINITY};
+    if (m->live[hand].time > 0 && m->live[hand].time > free.from)
+        free.until = free.from;
+    return free;
+}
+
+// hands lie on heads that are damped; a take shows its own
+static void damp(performance_motion *m, const performance_drums *drums, double t)
+{
+    himc_free_hand hand[HIMC_HANDS];
+    himc_damped_head head[HIMC_DRUMS];
+    double soon = himc_planner_beat(m->planner, t + HIMC_DAMPING_FORESIGHT);
+    for (int i = 0; i < HIMC_HANDS; i++)
+        hand[i] = free_hand(m, drums, (himc_hand)i, t);
+    for (int i = 0; i < drums->count; i++)
+        head[i] = (himc_damped_head){.frame = himc_drums_frame(drums, i),
+                                     .now = himc_drums_damped(drums, i),
+                                     .soon = himc_drums_will_be_damped(drums, i, soon)};
+    if (himc_damping_move(&m->damping, m->planner, &m->posture, head, drums->count, hand, t))
+        m->replan = true;
+}
+
 // keeps the planned tips of the next half second and the next strokes clear of the body
 static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
 {
@@ -455,6 +482,9 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
                            const performance_drums *drums, double t, double next)
 {
     himc_planner_advance(m->planner, t);
+    himc_motion_stir(m);
+    if (s->alive && !m->track)
+        damp(m, drums, t);
     set_course(m, s, drums, t);
     if (m->replan)
         fill_tick(m, s, &m->from, t);
@@ -653,11 +683,38 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
     return first;
 }
 
-long himc_motion_beat(performance_motion *m, double t)
+static long whole_beat(const performance_motion *m, double t)
 {
     double beat = himc_planner_beat(m->planner, t);
     bool waits = m->track || himc_planner_is_preparing(m->planner, t);
-    long whole = waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    return waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+}
+
+static bool is_over(const performance_motion *m, double t)
+{
+    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
+    return m->playing && t >= end;
+}
+
+bool himc_motion_is_calm(const performance_motion *m, double t)
+{
+    return t < m->calm && !m->replan;
+}
+
+void himc_motion_foresee(performance_motion *m, double next)
+{
+    // beats follow each other in time, so that none begins between two equal ones
+    m->calm = whole_beat(m, next) == m->last_beat && !is_over(m, next) ? next : -INFINITY;
+}
+
+void himc_motion_stir(performance_motion *m)
+{
+    m->calm = -INFINITY;
+}
+
+long himc_motion_beat(performance_motion *m, double t)
+{
+    long whole = whole_beat(m, t);
     bool begun = whole != m->last_beat;
     m->last_beat = whole;
     return begun ? whole : -1;
@@ -665,8 +722,7 @@ long himc_motion_beat(performance_motion *m, double t)
 
 bool himc_motion_done(performance_motion *m, double t)
 {
-    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
-    if (!m->playing || !(t >= end))
+    if (!is_over(m, t))
         return false;
     m->playing = false;
     himc_planner_finish(m->planner, t);

@@ -5,6 +5,7 @@
 
 #include "plan/planner.h"
 #include "control/avoidance.h"
+#include "control/damping.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
@@ -57,6 +58,7 @@ typedef struct performance_motion {
         regression; ///< null-space target; replaces the natural posture in `himc`
     trunk_course course;
     himc_avoidance avoidance;
+    himc_damping damping;
     double avoided;     ///< time of its last update (s)
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
@@ -70,6 +72,7 @@ typedef struct performance_motion {
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
     long last_beat;
+    double calm; ///< no beat begins and no end comes before, if nothing changes (s)
 } performance_motion;
 
 /// Motion from time 0 without a body: himc_motion_build gives it one. NULL without memory.
@@ -171,6 +174,13 @@ HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const him
 /// Refuses a live target, because the take moves the hand. True for the first one.
 HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
 
+/// True if no beat begins and no end comes at `t`: himc_motion_foresee has found it so, and nothing
+/// has changed.
+HIMC_RT bool himc_motion_is_calm(const performance_motion *motion, double t);
+/// Finds out if a beat or the end comes before the time `next` (s).
+HIMC_RT void himc_motion_foresee(performance_motion *motion, double next);
+/// Something may have changed: nothing is foreseen.
+HIMC_RT void himc_motion_stir(performance_motion *motion);
 /// The whole beat that has begun at `t` since the last call, or -1.
 HIMC_RT long himc_motion_beat(performance_motion *motion, double t);
 /// True once everything has been played at `t`.

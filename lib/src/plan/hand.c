@@ -382,12 +382,13 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     return true;
 }
 
-/// Moves to a place in space; a fall that would touch the head on the way is halted first.
-static void move_to(stroke_plan *s, himc_vec3 x, double peak)
+/// Moves to a place in space, not before `at`; a fall that would touch the head on the way is halted
+/// first.
+static void move_to(stroke_plan *s, himc_vec3 x, double peak, double at)
 {
     height_state to = {himc_vec3_dot(s->n, himc_vec3_sub(x, s->plan->last.spot)), 0, 0};
     double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(s->plan, s->plan->end).x));
-    double T = fmax(himc_move_time(distance, peak), LEAST_MOVE_TIME);
+    double T = fmax(fmax(himc_move_time(distance, peak), LEAST_MOVE_TIME), at - s->height_end);
     if (s->height.v < -HIMC_TURNING_SPEED &&
         !himc_height_profile_stays(s, s->height_end + T, to, fmin(to.h, 0.5 * s->height.h),
                                    HUGE_VAL))
@@ -396,10 +397,10 @@ static void move_to(stroke_plan *s, himc_vec3 x, double peak)
     path_to(s, s->height_end, himc_vec3_madd(x, -to.h, s->n));
 }
 
-void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x)
+void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x, double at)
 {
     stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
-    move_to(&s, x, QUICK_MOVE);
+    move_to(&s, x, QUICK_MOVE, at);
     plan_finish(&s);
     plan->home = x;
     plan->at_home = true;
@@ -435,7 +436,7 @@ void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
     } else if (ready) {
         hover(&s);
     } else {
-        move_to(&s, plan->home, HOME_MOVE);
+        move_to(&s, plan->home, HOME_MOVE, 0);
         plan->at_home = true;
     }
     plan_finish(&s);

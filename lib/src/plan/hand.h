@@ -84,7 +84,7 @@ HIMC_RT void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *m
 /// Appends a wait, to `until` (s) at least: over the last spot when `ready`, else at home.
 HIMC_RT void himc_hand_wait(himc_hand_plan *plan, double until, bool ready);
 
-/// Appends the move to x, which becomes home.
-HIMC_RT void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x);
+/// Appends the move to x, which becomes home: there at `at` (s), or as soon as it can.
+HIMC_RT void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x, double at);
 
 #endif

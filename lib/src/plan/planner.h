@@ -146,6 +146,14 @@ HIMC_RT bool himc_planner_correct(himc_planner *planner, himc_hand hand, double 
 /// comes to rest when the stream ends. A stroke less than 0.6 s away is played first.
 HIMC_RT void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x);
 
+/// The hand lays itself down: its tip goes to x, comes to rest there at `at` (s) or as soon as it
+/// can, and stays until its next stroke or target. False, and nothing changed, if a stroke is near,
+/// the place is out of reach, or the hands would meet there.
+HIMC_RT bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x,
+                              double at);
+/// The hand goes from there to where it rests; false if a stroke takes it away anyway.
+HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
+
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);

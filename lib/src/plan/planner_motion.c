@@ -40,7 +40,8 @@
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
-#define TARGET_STROKE 0.6   // a stroke so near is prepared, live targets are not followed (s)
+#define LIFT_TIME 0.5 // of a hand that has lain on a head, to its rest (s); chosen: without haste
+#define TARGET_STROKE 0.6 // a stroke so near is prepared, live targets are not followed (s)
 
 // of the time to the hand's next stroke, at most; chosen: contacts of a double roll are even, and a
 // buzz ends when the other hand has struck
@@ -658,9 +659,37 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
     if (stream && himc_hand_room(&h->plan))
         himc_stream_follow(&h->stream, &h->plan, t);
     else
-        himc_hand_reach(&h->plan, x);
+        himc_hand_reach(&h->plan, x, 0);
     h->targeted = true;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+}
+
+bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
+{
+    const himc_planner_config *c = &planner->config;
+    planner_hand *h = &planner->hand[hand];
+    himc_vec3 tip[HIMC_HANDS];
+    tip[hand] = x;
+    tip[other_hand(hand)] = himc_hand_at(&planner->hand[other_hand(hand)].plan, t).x;
+    if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
+        (c->beyond && c->beyond(c->body, hand, x) > PLANNER_UNREACHED) ||
+        (c->gap && c->gap(c->body, tip) < 0))
+        return false;
+    himc_planner_cut(planner, hand, t);
+    double begin = h->plan.end;
+    himc_hand_reach(&h->plan, x, at);
+    himc_planner_keep_clear(planner, hand, begin, h->plan.end);
+    h->targeted = true;
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    return true;
+}
+
+bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand)
+{
+    bool lifted =
+        himc_planner_lay(planner, t, hand, himc_planner_rest_place(planner, hand), t + LIFT_TIME);
+    planner->hand[hand].targeted = false;
+    return lifted;
 }
 
 /// Drops the strokes that are past but the last, and the motion before `now`.

@@ -194,9 +194,8 @@ static joint_state captured_joint(const himc_track *track, int j, double t, bool
         from = h->built[i].last;
         to = h->built[i].next;
     }
-    himc_interpolation b =
-        himc_interpolate_make((u - from) / track->rate, (to - from) / track->rate);
-    return himc_interpolate_joints(&b, &joint[from], &joint[to]);
+    return himc_interpolate_joints((u - from) / track->rate, (to - from) / track->rate,
+                                   &joint[from], &joint[to]);
 }
 
 static joint_state warped_joint(const himc_track *track, int j, double t, bool cut)
@@ -221,8 +220,7 @@ static joint_state entered_joint(const himc_track *track, int j, double t, bool 
     if (t >= -0.5 * HIMC_TRACK_RAMP || approach <= 0)
         return warped_joint(track, j, t, cut);
     joint_state first = {.q = track->joints.joint[j][0].q};
-    himc_interpolation b = himc_interpolate_make(fmax(since, 0), approach);
-    return himc_interpolate_joints(&b, &track->joints.before[j], &first);
+    return himc_interpolate_joints(fmax(since, 0), approach, &track->joints.before[j], &first);
 }
 
 // and the halt after a stop
@@ -233,9 +231,8 @@ static joint_state played_joint(const himc_track *track, int j, double t, bool c
     joint_state left = entered_joint(track, j, track->stop, cut), rest = {.q = left.q};
     rest.q = himc_quat_mul(
         himc_quat_exp(himc_vec3_scale(left.rate, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT)), left.q);
-    himc_interpolation b =
-        himc_interpolate_make(fmin(t - track->stop, HIMC_TRACK_HALT), HIMC_TRACK_HALT);
-    return himc_interpolate_joints(&b, &left, &rest);
+    return himc_interpolate_joints(fmin(t - track->stop, HIMC_TRACK_HALT), HIMC_TRACK_HALT, &left,
+                                   &rest);
 }
 
 void himc_track_approach_posture(himc_track *track, const himc_posture_motion *now)
