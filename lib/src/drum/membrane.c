@@ -241,15 +241,17 @@ static void find_form(himc_membrane *m)
     himc_bank_readout(c->bank, c->on_q, c->on_v, NULL, &c->rays.form);
 }
 
-// outputs from `first` to `end`; strike points hold responses to them and are computed again when
-// asked for
+// outputs from `first` to `end`, but muted pickups; strike points hold responses to them and are
+// computed again when asked for
 static void find_outputs(himc_membrane *m, int first, int end)
 {
     for (int i = 0; i < STRIKE_POINTS; i++)
         m->points[i].used = false;
     for (int i = first; i < end; i++)
-        if (himc_membrane_has(m, i))
+        if (himc_membrane_wants(m, i))
             find_output(m, i);
+    if (first < HIMC_PICKUPS)
+        m->core.stale = m->muted;
     if (end > HIMC_PICKUPS && himc_membrane_rays(m))
         find_form(m);
 }
@@ -352,7 +354,7 @@ static sounds read_sounds(himc_membrane *m)
 {
     sounds s = {0};
     for (int i = 0; i < HIMC_OUTPUTS; i++) {
-        if (!himc_membrane_has(m, i))
+        if (!himc_membrane_wants(m, i))
             continue;
         himc_readout *readout = &m->core.outputs[i].readout;
         const declick *d = &m->declicks[i];
@@ -610,7 +612,10 @@ void himc_membrane_kick(himc_membrane *membrane, int index, double change)
 
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
 {
+    bool returns = membrane->muted && !mute;
     membrane->muted = mute;
+    if (returns)
+        find_outputs(membrane, 0, HIMC_PICKUPS);
 }
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
@@ -726,6 +731,8 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     take_form(made, &was);
     m->revision++;
     himc_bank_set_step(m->core.bank, m->step);
+    if (m->core.stale && !m->muted)
+        find_outputs(m, 0, HIMC_PICKUPS);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
     made->watch_x = m->watch_x;
