@@ -150,7 +150,7 @@ static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS], int 
     }
 }
 
-// arms off the drums' shells; sticks are the plan's
+// arms off the drums' shells, but a hand may lie on a head; sticks are the plan's
 static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
                            const himc_shells *shells)
 {
@@ -164,6 +164,8 @@ static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
                 away.z > shells->head[i]->radius + half + p->radius + NEAR_BODY)
                 continue;
             himc_capsule_near near = himc_capsule_shell(p, shells->head[i]);
+            if (part >= HIMC_LEFT_HAND && near.n.z > LEVEL)
+                continue;
             push_apart(f, (himc_capsule_pair){(unsigned char)part, HIMC_PELVIS}, &near, NEAR_BODY);
         }
 }
