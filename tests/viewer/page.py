@@ -356,7 +356,7 @@ def test_a_scene_that_is_dropped_is_played_or_refused_in_one_line():
                 } catch (error) {
                     return error.message;
                 }
-                const playback = new Playback(scene, { stop() {}, play() {}, position: () => null });
+                const playback = new Playback(scene, { stop() {}, play() {}, setLoop() {}, position: () => null });
                 const on = { jump() {}, drum() {}, pose() {}, strike() {} };
                 for (let t = 0; t < playback.length; t += 250) (playback.seek(t), playback.show(on, 1000));
                 scene.heights();
@@ -603,7 +603,8 @@ def test_others_are_shown_over_and_beside_the_performer():
     """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
     others = os.path.join(MADE, "others.himc")
     command = [HIMC, "render", FOUR_SCORE, "-o", os.path.join(MADE, "others.wav")]
-    subprocess.run([*command, "--scene", others, "--compare", "ik", "--quiet"], check=True)
+    command += ["--scene", others, "--compare", "ik", "--quiet"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     with open(others, "rb") as file:
         scene = base64.b64encode(file.read()).decode()
     said = browser.run(
@@ -820,6 +821,50 @@ def test_a_shared_page_plays_from_the_disk():
     seconds, size = browser.run("return viewer.playback.length") / 1000, os.path.getsize(html)
     assert size * 60 / seconds < 6e6, size
     return f"{said}, sound {off:.1f} ms off, {size * 60 / seconds / 1e6:.2f} MB a minute"
+
+
+# A sine of which a loop has whole periods, as the audio thread meets it: the largest step between two
+# samples, how many there were, and where the page says that the loop is (samples)
+LOOP_WITHOUT_A_GAP = """
+const { sound } = viewer, rate = sound.context.sampleRate, period = 200, code = `
+registerProcessor("steps", class extends AudioWorkletProcessor {
+    constructor() { super(); this.last = null; this.most = 0; this.count = 0; }
+    process([[samples]]) {
+        if (!samples) return true;
+        for (const x of samples) {
+            if (this.last !== null) this.most = Math.max(this.most, Math.abs(x - this.last));
+            if (this.last !== null || x) { this.last = x; this.count++; }
+        }
+        if (this.count > 40000) this.port.postMessage([this.most, this.count]);
+        return true;
+    }
+})`;
+await sound.context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(code));
+const ear = new AudioWorkletNode(sound.context, "steps"), kept = sound.buffer,
+    buffer = (sound.buffer = sound.context.createBuffer(1, 20 * period, rate)), s = buffer.getChannelData(0);
+for (let i = 0; i < s.length; i++) s[i] = Math.sin((2 * Math.PI * i) / period);
+sound.stop();
+sound.gain.connect(ear);
+sound.play(0, 1, [(4 * period) / rate, (14 * period) / rate]);
+const places = [], told = new Promise(done => (ear.port.onmessage = e => done(e.data)));
+const look = setInterval(() => places.push(sound.place(sound.context.currentTime)), 5);
+const [most, count] = await told;
+clearInterval(look);
+sound.stop(), sound.gain.disconnect(ear);
+sound.buffer = kept;
+return [most, count, Math.min(...places.slice(-20)) * rate, Math.max(...places.slice(-20)) * rate];
+"""
+
+
+def test_a_loop_sounds_without_a_gap():
+    if not browser.run("return viewer.sound.ready"):
+        browser.run("viewer.sound.wake()")
+        assert browser.wait("return viewer.sound.ready"), "no sound device"
+    most, count, low, high = browser.run(f"return (async () => {{{LOOP_WITHOUT_A_GAP}}})()")
+    # the steepest step of that sine is 2 pi / 200
+    assert most < 0.035 and count > 40000, (most, count)
+    assert 799 <= low and high <= 2801, (low, high)
+    return f"largest step {most:.4f} in {count} samples"
 
 
 if __name__ == "__main__":

@@ -88,7 +88,7 @@ const actions = {
         if (end) playback.setLoop(from, playback.at);
         else playback.setLoop(playback.at, to > playback.at ? to : playback.length);
     },
-    unloop: () => playback && (playback.loop = null),
+    unloop: () => playback && playback.setLoop(0, 0),
     speed: by => {
         if (!playback) return;
         const i = SPEEDS.findIndex(s => s >= playback.speed);
