@@ -78,6 +78,16 @@ static inline void session_do(himc_performance *p, const char *format, ...)
     TEST_ASSERT_TRUE_MESSAGE(ok, error.text);
 }
 
+/// Writes that score to a file, and loads it.
+static inline void session_score(himc_performance *p, const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+    session_do(p, "score %s", path);
+}
+
 static inline void session_drum(himc_performance *p, int drum, const char *text)
 {
     himc_command c;

@@ -46,6 +46,28 @@ static void test_head_turns_to_the_drum_of_the_next_stroke_and_to_the_front_afte
     himc_performance_free(p);
 }
 
+/// Angle between the direction of the head and that to a drum's centre (degrees).
+static double away(const himc_performance *p, int drum)
+{
+    const himc_body_state *s = &p->body->state;
+    himc_vec3 ahead = himc_mat3_apply(&s->rotation[HIMC_HEAD], himc_vec3_make(1, 0, 0));
+    himc_vec3 to = himc_vec3_sub(himc_drums_frame(&p->drums, drum)->center, s->origin[HIMC_HEAD]);
+    return acos(himc_vec3_dot(ahead, himc_vec3_unit(to))) * 180 / HIMC_PI;
+}
+
+static void test_before_a_stroke_the_head_looks_at_its_drum_as_near_as_eyes_turn(void)
+{
+    himc_performance *p = with_two_drums(true);
+    for (int i = 0; i < 6; i++) { // strokes at 3 s and every second after
+        session_play(p, i ? 1 : 2.8, NULL);
+        int next = i % 2;
+        printf("%.1f degrees from the next drum, %.1f from the other\n", away(p, next),
+               away(p, !next));
+        TEST_ASSERT_TRUE(away(p, next) < 15 && away(p, !next) > 60);
+    }
+    himc_performance_free(p);
+}
+
 static void test_head_is_lifted_before_the_first_note(void)
 {
     himc_performance *p = with_two_drums(true);
@@ -80,6 +102,100 @@ static void test_trunk_breathes_and_sways_at_rest(void)
     himc_performance_free(p);
 }
 
+/// Two strokes, then the drum is damped from beat 3 to 4.
+static himc_performance *with_damping(bool alive, const char *more)
+{
+    char text[512];
+    himc_performance *p = session_new();
+    snprintf(
+        text, sizeof text,
+        "drum kettle; alive %d; tempo 60; stroke 1 right legato f; stroke 2 left legato mf; stroke 6 right legato mf; "
+        "at 3 kettle damp 1; at 4 kettle damp 0; %s play;",
+        alive, more);
+    session_score(p, "build/alive.txt", text);
+    return p;
+}
+
+/// Height of the lower hand's fingers over the head (m), infinite beside it; its speed (m/s).
+static double fingers(const himc_performance *p, double *speed)
+{
+    const himc_body_state *s = &p->body->state;
+    double least = INFINITY;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const himc_head_frame *head = himc_drums_frame(&p->drums, 0);
+        int stick = himc_stick_segment((himc_hand)hand);
+        himc_vec3 at = himc_head_frame_from_world(head, s->origin[stick]);
+        if (hypot(at.x, at.y) > head->radius || at.z > least)
+            continue;
+        least = at.z;
+        *speed = himc_vec3_length(s->tip_velocity[hand]);
+    }
+    return least;
+}
+
+/// Plays to the time of a beat of with_damping, and on.
+static void play_to_beat(himc_performance *p, double beat, double more, heard *h)
+{
+    for (int i = 0; i < 800 && himc_planner_beat(p->motion->planner, step_time(p)) < beat; i++)
+        session_play(p, 0.01, h);
+    session_play(p, more, h);
+}
+
+static void test_a_free_hand_lies_on_a_damped_head_in_time_and_rises_again(void)
+{
+    himc_performance *p = with_damping(true, "");
+    heard h = {0};
+    double speed = 0;
+    play_to_beat(p, 2.3, 0, &h);
+    TEST_ASSERT_TRUE(fingers(p, &speed) > 0.06);
+    play_to_beat(p, 3, 0.01, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.03, fingers(p, &speed));
+    TEST_ASSERT_TRUE(speed < 0.05);
+    play_to_beat(p, 3.9, 0, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.03, fingers(p, &speed));
+    play_to_beat(p, 4, 1, &h);
+    TEST_ASSERT_TRUE(fingers(p, &speed) > 0.06);
+    himc_performance_stats s = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(2, s.played);
+    TEST_ASSERT_EQUAL_INT(0, s.unplanned_contacts);
+    TEST_ASSERT_TRUE(s.tip_rms < 2e-5);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_a_head_is_damped_in_time_without_a_free_hand(void)
+{
+    himc_performance *p =
+        with_damping(true, "stroke 3.2 right legato mf; stroke 3.3 left legato mf;");
+    heard h = {0};
+    double speed;
+    play_to_beat(p, 2.99, 0, &h);
+    TEST_ASSERT_FALSE(himc_drums_damped(&p->drums, 0));
+    play_to_beat(p, 3, 0.01, &h);
+    TEST_ASSERT_TRUE(himc_drums_damped(&p->drums, 0));
+    TEST_ASSERT_TRUE(fingers(p, &speed) > 0.06);
+    play_to_beat(p, 3.5, 1, &h);
+    TEST_ASSERT_EQUAL_INT(4, himc_performance_measure(p).played);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_a_hand_comes_to_a_damping_that_nobody_foresaw(void)
+{
+    himc_performance *p = session_new();
+    double speed = 0;
+    session_do(p, "drum kettle");
+    session_do(p, "alive 1");
+    session_play(p, 0.5, NULL);
+    session_drum(p, 0, "damp 1");
+    session_play(p, 0.3, NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.03, fingers(p, &speed));
+    session_drum(p, 0, "damp 0");
+    session_play(p, 1, NULL);
+    TEST_ASSERT_TRUE(fingers(p, &speed) > 0.06);
+    himc_performance_free(p);
+}
+
 static void test_tips_strike_as_without_and_0_is_as_never_said(void)
 {
     himc_performance *p[3];
@@ -102,8 +218,12 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_head_turns_to_the_drum_of_the_next_stroke_and_to_the_front_after_the_last);
+    RUN_TEST(test_before_a_stroke_the_head_looks_at_its_drum_as_near_as_eyes_turn);
     RUN_TEST(test_head_is_lifted_before_the_first_note);
     RUN_TEST(test_trunk_breathes_and_sways_at_rest);
+    RUN_TEST(test_a_free_hand_lies_on_a_damped_head_in_time_and_rises_again);
+    RUN_TEST(test_a_head_is_damped_in_time_without_a_free_hand);
+    RUN_TEST(test_a_hand_comes_to_a_damping_that_nobody_foresaw);
     RUN_TEST(test_tips_strike_as_without_and_0_is_as_never_said);
     return UNITY_END();
 }

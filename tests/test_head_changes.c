@@ -10,11 +10,7 @@
 
 static void load(himc_performance *p, const char *text)
 {
-    FILE *file = fopen(SCORE, "w");
-    TEST_ASSERT_NOT_NULL(file);
-    fputs(text, file);
-    fclose(file);
-    session_do(p, "score " SCORE);
+    session_score(p, SCORE, text);
 }
 
 static himc_performance *with_score(const char *text)

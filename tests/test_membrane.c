@@ -1,4 +1,5 @@
 /// test_membrane.c: pitch, decay, energy and pickups of a bare head, and changes while it sounds.
+#include "drum/membrane_form.h"
 #include "drum/membrane_probe.h"
 #include "head/air.h"
 #include "head/bessel.h"
@@ -459,6 +460,41 @@ static void test_membrane_refuses_bad_values_and_does_not_change(void)
     TEST_ASSERT_NULL(himc_membrane_new(&bad, RATE, &error));
 }
 
+// the sound of a head that was struck, tuned while its pickups were muted or not, and by another
+// membrane's head or not
+static void sound_after_tuning(bool mute, bool exchange, double *out, int n)
+{
+    remake(RATE);
+    himc_membrane_push(membrane, 0.1, 0.05, 20);
+    run(500);
+    himc_membrane_mute_pickups(membrane, mute);
+    himc_head higher = head;
+    higher.tension *= 1.3;
+    TEST_ASSERT_TRUE(himc_membrane_set_head(membrane, &higher, &error));
+    if (exchange) {
+        himc_membrane *other = himc_membrane_new(&head, RATE, &error);
+        himc_membrane_exchange(other, membrane);
+        himc_membrane_free(membrane);
+        membrane = other;
+    }
+    himc_membrane_mute_pickups(membrane, false);
+    run(4000); // the declicks end
+    himc_membrane_push(membrane, -0.1, 0.02, 10);
+    run(n);
+    memcpy(out, sound, sizeof *out * (size_t)n);
+}
+
+static void test_muted_pickups_come_back_for_the_modes_of_now(void)
+{
+    static double expected[1000], got[1000];
+    for (int exchange = 0; exchange < 2; exchange++) {
+        sound_after_tuning(false, exchange, expected, 1000);
+        sound_after_tuning(true, exchange, got, 1000);
+        TEST_ASSERT_TRUE(expected[999] != 0);
+        TEST_ASSERT_EQUAL_MEMORY(expected, got, sizeof got);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -476,5 +512,6 @@ int main(void)
     RUN_TEST(test_membrane_point_pickup_beyond_a_smaller_rim_moves_to_it);
     RUN_TEST(test_membrane_point_pickup_reads_the_velocity_there);
     RUN_TEST(test_membrane_refuses_bad_values_and_does_not_change);
+    RUN_TEST(test_muted_pickups_come_back_for_the_modes_of_now);
     return UNITY_END();
 }

@@ -154,8 +154,10 @@ static himc_performance *begin_piece(const bench_piece *b, himc_error *error)
     himc_performance *p = himc_performance_new(&config, error);
     if (p && cli_tell(p, "tempo 120", NULL, error) && add_drums(p, b->drums, error) &&
         cli_tell(p, "limits", b->limits, error) &&
-        (!b->plays || (add_strokes(p, b->drums, error) && cli_tell(p, "play", NULL, error))))
+        (!b->plays || (add_strokes(p, b->drums, error) && cli_tell(p, "play", NULL, error)))) {
+        cli_unwatch(p);
         return p;
+    }
     himc_performance_free(p);
     return NULL;
 }

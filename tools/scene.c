@@ -18,9 +18,9 @@
 #include <zlib.h>
 
 enum {
-    ROWS = 1024,  // in a chunk; chosen: 4 s, long against what a chunk costs beside its rows
-    FRAMES = 128, // of heads in a chunk; chosen: the same of one drum
-    MODES = 64    // of a head, as many as the viewer draws
+    ROWS = 1024,     // in a chunk; chosen: 4 s, long against what a chunk costs beside its rows
+    LIVE_ROWS = 250, // chosen: packed within a block of 2 ms
+    FRAMES = 128     // of heads in a chunk; chosen: the same of one drum
 };
 #define VORBIS_QUALITY 0.7 // chosen: about 1 MB for a minute in stereo
 #define STEADY 1e-6        // (s) rows this near to their period belong to one chunk; chosen
@@ -36,7 +36,7 @@ typedef struct head_frame {
     double time;
     float scale;
     int drum, modes;
-    signed char amplitude[MODES];
+    signed char q[SCENE_MODES], s[SCENE_MODES];
 } head_frame;
 
 struct scene_writer {
@@ -124,7 +124,8 @@ static void write_packed(scene_writer *s, const char kind[4], bytes *from)
     uLongf size = compressBound((uLong)from->size);
     to->size = 0;
     if (from->failed || !grow(to, size) ||
-        compress2(to->data, &size, from->data, (uLong)from->size, Z_BEST_COMPRESSION) != Z_OK)
+        compress2(to->data, &size, from->data, (uLong)from->size,
+                  s->config.live ? Z_BEST_SPEED : Z_BEST_COMPRESSION) != Z_OK)
         to->failed = true;
     to->size = size;
     write_chunk(s, kind, to);
@@ -219,7 +220,8 @@ static int32_t rounded(double value, double step)
 
 void scene_row(scene_writer *s, double time, const double *value)
 {
-    if (s->rows == ROWS || (s->rows > 1 && fabs(time - s->last - s->period) > STEADY))
+    if (s->rows == (s->config.live ? LIVE_ROWS : ROWS) ||
+        (s->rows > 1 && fabs(time - s->last - s->period) > STEADY))
         write_rows(s);
     if (s->rows == 0)
         s->start = time;
@@ -245,24 +247,27 @@ static void write_heads(scene_writer *s)
         put_float(&s->chunk, f->scale);
         put_number(&s->chunk, (uint32_t)f->drum, 2);
         put_number(&s->chunk, (uint32_t)f->modes, 2);
-        put(&s->chunk, f->amplitude, (size_t)f->modes);
+        put(&s->chunk, f->q, (size_t)f->modes);
+        put(&s->chunk, f->s, (size_t)f->modes);
     }
-    write_packed(s, "head", &s->chunk);
+    write_packed(s, "ring", &s->chunk);
     s->heads = 0;
 }
 
-void scene_head(scene_writer *s, int drum, double time, const double *amplitude, int modes)
+void scene_head(scene_writer *s, int drum, double time, const scene_ring *ring)
 {
     double most = 0;
     if (s->heads == FRAMES)
         write_heads(s);
     head_frame *f = &s->head[s->heads++];
-    *f = (head_frame){.time = time, .drum = drum, .modes = modes < MODES ? modes : MODES};
+    *f = (head_frame){.time = time, .drum = drum, .modes = ring->modes};
     for (int i = 0; i < f->modes; i++)
-        most = fmax(most, fabs(amplitude[i]));
+        most = fmax(most, fmax(fabs(ring->q[i]), fabs(ring->s[i])));
     f->scale = (float)(most / 127);
-    for (int i = 0; i < f->modes && most > 0; i++)
-        f->amplitude[i] = (signed char)nearbyint(127 * amplitude[i] / most);
+    for (int i = 0; i < f->modes && most > 0; i++) {
+        f->q[i] = (signed char)nearbyint(127 * ring->q[i] / most);
+        f->s[i] = (signed char)nearbyint(127 * ring->s[i] / most);
+    }
 }
 
 // --- sound

@@ -26,6 +26,7 @@ typedef struct scene_config {
     const scene_column *column;
     int columns;
     int rate, channels; ///< of the sound (Hz; 0 channels: none, 1 or 2)
+    bool live;          ///< packed little by little and quickly, for a caller who keeps time
     bool bare;          ///< only the chunks after the file's first eight bytes
 } scene_config;
 
@@ -42,9 +43,16 @@ void scene_event(scene_writer *scene, const char *format, ...)
 char *scene_text(char *out, size_t size, const char *text);
 /// Adds a row: the value of each column at `time` (s), later than the last.
 void scene_row(scene_writer *scene, double time, const double *value);
-/// Adds the amplitudes (m) of a head's first `modes` (1 .. 64) modes at `time` (s); `drum` is the
-/// number that its event "drum" gives.
-void scene_head(scene_writer *scene, int drum, double time, const double *amplitude, int modes);
+#define SCENE_MODES 64 ///< of a head, as many as the viewer draws
+/// How a head's first `modes` (1 .. SCENE_MODES) modes move.
+typedef struct scene_ring {
+    int modes;
+    double q[SCENE_MODES]; ///< displacement (m)
+    double s[SCENE_MODES]; ///< velocity over angular frequency (m)
+} scene_ring;
+
+/// Adds the motion of a head at `time` (s); `drum` is the number that its event "drum" gives.
+void scene_head(scene_writer *scene, int drum, double time, const scene_ring *ring);
 /// Adds a whole scene without sound, from the beginning of `stream`: the same piece played by others.
 void scene_more(scene_writer *scene, FILE *stream);
 /// Adds `n` (1 .. 8192) frames of sound, channels interleaved.

@@ -2,7 +2,8 @@
 ///
 /// Poses are joint rotations at the task rate; where the segments are follows from them and from
 /// the body's measures, which are taken from the first pose and again when they change. Heads are
-/// looked at 33 times a second, as over OSC, while they move.
+/// looked at 33 times a second, as over OSC, while they move; with velocity, frequency and decay of
+/// each mode a reader has their motion in between.
 #include "scene_record.h"
 #include "drum/drum_performer.h"
 #include "drum/membrane_probe.h"
@@ -12,6 +13,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,8 +21,7 @@ enum {
     TARGET = 3 * HIMC_JOINTS, // columns
     FORCE = TARGET + 3 * HIMC_HANDS,
     TORQUE = FORCE + HIMC_HANDS,
-    COLUMNS = TORQUE + 3 * HIMC_JOINTS,
-    MODES = 64 // of a head, as many as are sent over OSC
+    COLUMNS = TORQUE + 3 * HIMC_JOINTS
 };
 // chosen: at the mallets, 1 m from the joints, well below 0.01 mm; and as fine as anyone looks
 #define ROTATION_STEP 1e-6 // (rad)
@@ -28,6 +29,7 @@ enum {
 #define FORCE_STEP 0.01    // (N)
 #define TORQUE_STEP 0.02   // (N m)
 #define HEAD_HZ 33.0       // as subscriptions have it
+#define LEAST_PART 1e-4    // of a mode in a shape; chosen: less than a byte of an amplitude
 #define STILL 1e-8         // (m) a head that moves less is at rest; chosen: far below a pixel
 // (m) measures this near are those of the same body; chosen: in hard blows joints give way by some
 // micrometres, and poses are to be exact to 10
@@ -42,6 +44,7 @@ struct scene_record {
     scene_column column[COLUMNS];
     himc_vec3 origin[HIMC_SEGMENTS], tip[HIMC_HANDS]; // measures of the body that was told
     unsigned told[HIMC_DRUMS];                        // revision of each drum, plus 1
+    double pitch[HIMC_DRUMS];                         // principal mode that was told (Hz)
     bool moving[HIMC_DRUMS];
     double next_head;
     char *lines; // of the score, JSON
@@ -220,10 +223,51 @@ static const char *listed(const scene_record *r)
     return r->size ? r->lines : "";
 }
 
+// adds text of numbers to a buffer that is large enough
+static size_t put_numbers(char *out, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    int n = vsprintf(out, format, args);
+    va_end(args);
+    return (size_t)n;
+}
+
+static int shown_modes(const himc_membrane *membrane)
+{
+    int modes = himc_membrane_audible(membrane);
+    return modes < SCENE_MODES ? modes : SCENE_MODES;
+}
+
+// frequency and decay of each mode; then what each adds to the bare head's shapes: shape, mode, part
+static void tell_modes(scene_record *r, int index, const himc_membrane *membrane, double time)
+{
+    enum { ROOM = SCENE_MODES * 48 };
+    char modes[ROOM], *parts = malloc(SCENE_MODES * ROOM);
+    int count = shown_modes(membrane);
+    size_t used = 0, more = 0;
+    for (int i = 0; parts && i < count; i++) {
+        himc_mode mode = himc_membrane_mode(membrane, i);
+        double unit[SCENE_MODES] = {0}, shape[SCENE_MODES];
+        unit[i] = 1;
+        himc_membrane_upright(membrane, count, unit, shape);
+        used +=
+            put_numbers(modes + used, "%s[%.8g,%.4g]", i ? "," : "", mode.frequency, mode.decay);
+        for (int k = 0; k < count; k++)
+            if (fabs(shape[k]) > LEAST_PART)
+                more +=
+                    put_numbers(parts + more, "%s[%d,%d,%.5g]", more ? "," : "", k, i, shape[k]);
+    }
+    if (parts && count)
+        scene_event(r->scene,
+                    "\"event\":\"modes\",\"time\":%.6f,\"drum\":%d,\"modes\":[%s],\"shapes\":[%s]",
+                    time, index, modes, parts);
+    free(parts);
+}
+
 static void tell_drum(scene_record *r, int index, const himc_drum *drum, double time)
 {
     const himc_head_frame *f = himc_drum_head_frame(drum);
-    himc_membrane *membrane = himc_drum_membrane((himc_drum *)drum);
     char name[6 * HIMC_NAME_SIZE];
     r->size = 0;
     himc_drum_describe(drum, HIMC_DESCRIBE_STATE, add_line, r);
@@ -231,22 +275,26 @@ static void tell_drum(scene_record *r, int index, const himc_drum *drum, double 
                 "\"event\":\"drum\",\"time\":%.6f,\"drum\":%d,\"name\":\"%s\","
                 "\"place\":[%.9g,%.9g,%.9g,%.9g,%.9g],\"hz\":%.6g,\"settings\":[%s]",
                 time, index, scene_text(name, sizeof name, himc_drum_name(drum)), f->center.x,
-                f->center.y, f->center.z, f->tilt, f->radius,
-                himc_membrane_principal(membrane, himc_membrane_head(membrane)), listed(r));
+                f->center.y, f->center.z, f->tilt, f->radius, himc_drum_pitch(drum), listed(r));
+    tell_modes(r, index, himc_drum_membrane((himc_drum *)drum), time);
+    r->told[index] = himc_drum_revision(drum) + 1;
+    r->pitch[index] = himc_drum_pitch(drum);
 }
 
-static void look_at_head(scene_record *r, int index, himc_drum *drum, double time)
+// the head is as far as the last physics step, so it has a time of its own
+static void look_at_head(scene_record *r, int index, himc_drum *drum)
 {
-    double amplitude[MODES], most = 0;
-    himc_membrane *membrane = himc_drum_membrane(drum);
-    int modes = himc_membrane_audible(membrane);
-    modes = modes < MODES ? modes : MODES;
-    himc_membrane_upright(membrane, modes, amplitude);
-    for (int i = 0; i < modes; i++)
-        most = fmax(most, fabs(amplitude[i]));
+    double most = 0, v, time = (double)himc_drum_time(drum) / himc_drum_rate(drum);
+    const himc_membrane *membrane = himc_drum_membrane(drum);
+    scene_ring ring = {.modes = shown_modes(membrane)};
+    for (int i = 0; i < ring.modes; i++) {
+        himc_membrane_state(membrane, i, &ring.q[i], &v);
+        ring.s[i] = v / (2 * HIMC_PI * himc_membrane_mode(membrane, i).frequency);
+        most = fmax(most, fmax(fabs(ring.q[i]), fabs(ring.s[i])));
+    }
     bool moves = most > STILL;
     if (moves || r->moving[index]) // the last one tells that it is still
-        scene_head(r->scene, index, time, amplitude, modes);
+        scene_head(r->scene, index, time, &ring);
     r->moving[index] = moves;
 }
 
@@ -256,11 +304,11 @@ void scene_record_block(scene_record *r, const float *frames, int n)
     double time = himc_performance_measure(r->performance).seconds;
     bool heads = time >= r->next_head;
     for (int i = 0; (drum = himc_performance_drum(r->performance, i)); i++) {
-        if (r->told[i] != himc_drum_revision(drum) + 1)
+        bool tuned = heads && himc_drum_pitch(drum) != r->pitch[i];
+        if (tuned || r->told[i] != himc_drum_revision(drum) + 1)
             tell_drum(r, i, drum, time);
-        r->told[i] = himc_drum_revision(drum) + 1;
         if (heads)
-            look_at_head(r, i, drum, time);
+            look_at_head(r, i, drum);
     }
     if (heads)
         r->next_head = time + 1 / HEAD_HZ;
@@ -287,6 +335,7 @@ static scene_writer *open_scene(scene_record *r, const scene_record_config *c, h
                           .columns = COLUMNS,
                           .rate = c->rate,
                           .channels = c->channels,
+                          .live = c->live,
                           .bare = c->bare};
     return scene_open(&scene, error);
 }

@@ -16,6 +16,7 @@ typedef struct scene_record_config {
     const char *source; ///< what it plays, for the reader
     const char *name;   ///< who plays it: "himc"
     int rate, channels; ///< of the sound (Hz; 0 channels: none, 1 or 2)
+    bool live;          ///< packed quickly (scene.h)
     bool bare;          ///< only chunks, for a reader that takes them while they are made
     bool captured;      ///< also the take's own joints, if one plays that has any
 } scene_record_config;

@@ -7,6 +7,7 @@
 #define _POSIX_C_SOURCE 200809L // nanosleep
 #include "cli.h"
 #include "himc/osc.h"
+#include "scene_record.h"
 #include "system/thread.h"
 
 #include <math.h>
@@ -19,7 +20,7 @@
 #define GIVE_UP 0.2        // (s); chosen: catching up with more would be seen as a jump
 #define COMMANDS_A_BLOCK 8 // chosen: none makes a block late
 
-enum { PORT, BIND, FILES, ALLOW };
+enum { PORT, BIND, FILES, ALLOW, SCENE };
 
 static const cli_option options[] = {
     {"port", 'p', "P", "UDP port, 0 .. 65535, 0 any free one (9000)"},
@@ -27,6 +28,7 @@ static const cli_option options[] = {
      "numeric address to listen at; 0.0.0.0 is all of this machine's (127.0.0.1)"},
     {"files", 0, "DIR", "folder from which `score` and `take` over the network may read (none)"},
     {"allow", 0, "HOST[,HOST]", "hosts that any host may subscribe (else only itself)"},
+    {"scene", 0, "F.himc", "records all of it, until the end, for himc-viewer --play"},
     {0},
 };
 
@@ -45,22 +47,82 @@ static void sleep_until(double t)
         nanosleep(&(struct timespec){(time_t)rest, (long)((rest - floor(rest)) * 1e9)}, NULL);
 }
 
-static void play_block(himc_performance *performance, himc_osc *osc, himc_loader *loader)
+/// What is served, and where it is recorded.
+typedef struct server {
+    himc_performance *performance;
+    himc_osc *osc;
+    himc_loader *loader;
+    cli_file file;
+    scene_record *record; ///< NULL without --scene
+    uint64_t samples;
+} server;
+
+static void on_tick(void *user, const himc_tick *tick)
+{
+    server *s = user;
+    himc_osc_tick(s->osc, tick);
+    if (s->record)
+        scene_record_tick(s->record, tick);
+}
+
+// both ears, or one pickup for both
+static void record_block(server *s)
+{
+    float out[2 * BLOCK];
+    bool one = true;
+    cli_mix(s->performance, s->samples, BLOCK, 2, out);
+    for (int i = 0; i < BLOCK; i++)
+        one &= out[2 * i + 1] == 0;
+    for (int i = 0; one && i < BLOCK; i++)
+        out[2 * i + 1] = out[2 * i];
+    scene_record_block(s->record, out, BLOCK);
+}
+
+static void play_block(server *s)
 {
     char line[HIMC_OSC_LINE];
     himc_event event;
     double start = cli_now();
-    himc_loader_run(loader);
-    himc_osc_receive(osc, performance, COMMANDS_A_BLOCK);
-    himc_performance_process(performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
-    while (himc_performance_event(performance, &event)) {
-        himc_osc_event(osc, &event);
+    himc_loader_run(s->loader);
+    himc_osc_receive(s->osc, s->performance, COMMANDS_A_BLOCK);
+    himc_performance_process(s->performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
+    while (himc_performance_event(s->performance, &event)) {
+        himc_osc_event(s->osc, &event);
+        if (s->record)
+            scene_record_event(s->record, &event);
         if (event.kind == HIMC_EVENT_NOTE)
             fprintf(stderr, "himc serve: %s\n", event.text);
     }
-    himc_osc_publish(osc, performance, cli_now() - start);
-    while (himc_osc_line(osc, line))
+    if (s->record)
+        record_block(s);
+    s->samples += BLOCK;
+    himc_osc_publish(s->osc, s->performance, cli_now() - start);
+    while (himc_osc_line(s->osc, line))
         fprintf(stderr, "himc serve: %s\n", line);
+}
+
+static bool begin_record(server *s, const char *path, const char *source, himc_error *error)
+{
+    if (!cli_file_open(&s->file, path, error))
+        return false;
+    scene_record_config config = {.performance = s->performance,
+                                  .stream = s->file.stream,
+                                  .source = source ? source : "",
+                                  .name = "himc",
+                                  .rate = RATE,
+                                  .channels = 2,
+                                  .live = true};
+    s->record = scene_record_begin(&config, error);
+    if (s->record)
+        himc_performance_on_motion(s->performance, scene_record_row, s->record);
+    return s->record != NULL;
+}
+
+static bool end_record(server *s, himc_error *error)
+{
+    bool good = scene_record_end(s->record, error);
+    s->record = NULL;
+    return good && cli_file_close(&s->file, error) && cli_file_keep(&s->file, error);
 }
 
 /// Statistics of a run.
@@ -69,13 +131,13 @@ typedef struct punctuality {
     double latest, given_up; ///< (s)
 } punctuality;
 
-static punctuality serve(himc_performance *performance, himc_osc *osc, himc_loader *loader)
+static punctuality serve(server *s)
 {
     punctuality p = {0};
     double period = (double)BLOCK / RATE, due = cli_now();
     while (!stopped) {
         sleep_until(due);
-        play_block(performance, osc, loader);
+        play_block(s);
         due += period;
         double behind = cli_now() - due;
         p.blocks++;
@@ -89,35 +151,50 @@ static punctuality serve(himc_performance *performance, himc_osc *osc, himc_load
     return p;
 }
 
-static int run(const cli_arguments *arguments)
+static bool open_server(server *s, const cli_arguments *arguments, himc_error *error)
 {
-    himc_error error;
     himc_osc_config config = himc_osc_default();
     config.bind = arguments->value[BIND];
     config.files = arguments->value[FILES];
     config.allow = arguments->value[ALLOW];
-    if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, &error))
-        return cli_fail(&cli_serve, "%s", error.text);
-    himc_performance *performance = cli_load(arguments->operand, RATE, NULL, &error);
-    config.loader = performance ? himc_loader_new(&error) : NULL;
-    himc_osc *osc = config.loader ? himc_osc_new(&config, &error) : NULL;
-    if (!osc) {
-        himc_loader_free(config.loader);
-        himc_performance_free(performance);
+    if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, error))
+        return false;
+    s->performance = cli_load(arguments->operand, RATE, NULL, error);
+    s->loader = config.loader = s->performance ? himc_loader_new(error) : NULL;
+    s->osc = config.loader ? himc_osc_new(&config, error) : NULL;
+    return s->osc && (!arguments->value[SCENE] ||
+                      begin_record(s, arguments->value[SCENE], arguments->operand, error));
+}
+
+static void close_server(server *s)
+{
+    himc_osc_free(s->osc);
+    himc_loader_free(s->loader);
+    himc_performance_free(s->performance);
+    cli_file_drop(&s->file);
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    server s = {0};
+    if (!open_server(&s, arguments, &error)) {
+        close_server(&s);
         return cli_fail(&cli_serve, "%s", error.text);
     }
     signal(SIGINT, stop);
     signal(SIGTERM, stop);
     himc_system_go_first();
-    himc_performance_on_tick(performance, himc_osc_tick, osc);
-    printf("listening at %s port %d\n", config.bind ? config.bind : "127.0.0.1",
-           himc_osc_port(osc));
+    himc_performance_on_tick(s.performance, on_tick, &s);
+    printf("listening at %s port %d\n",
+           arguments->value[BIND] ? arguments->value[BIND] : "127.0.0.1", himc_osc_port(s.osc));
     fflush(stdout);
-    punctuality p = serve(performance, osc, config.loader);
-    himc_osc_counts c = himc_osc_count(osc);
-    himc_osc_free(osc);
-    himc_loader_free(config.loader);
-    himc_performance_free(performance);
+    punctuality p = serve(&s);
+    himc_osc_counts c = himc_osc_count(s.osc);
+    bool kept = !s.record || end_record(&s, &error);
+    close_server(&s);
+    if (!kept)
+        return cli_fail(&cli_serve, "%s", error.text);
     printf("{\"blocks\": %ld, \"late\": %ld, \"latest_ms\": %.3f, \"given_up_s\": %.3f, "
            "\"packets\": %ld, \"commands\": %ld, \"malformed\": %ld, \"foreign\": %ld, "
            "\"refused\": %ld, \"frequent\": %ld, \"overrun\": %ld, \"sent\": %ld, \"unsent\": %ld, "

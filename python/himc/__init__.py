@@ -27,6 +27,7 @@ __version__ = ffi.string(lib.himc_version()).decode()
 _HANDS = ("left", "right")
 _LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
 _CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
+_REST = 2.5  # s after the last contact, until the sticks are at rest
 _TAIL = 8.0  # s; a drum rings no longer
 _SILENCE = 1e-4  # of the peak
 
@@ -234,7 +235,8 @@ def _play_to_the_end(p: Performance) -> Rendering:
         if p.done:
             if done_at is None:
                 done_at = p.time
-            if (quiet <= _SILENCE * peak and p.time > done_at) or p.time - done_at >= _TAIL:
+            since = p.time - done_at
+            if (quiet <= _SILENCE * peak and since >= _REST) or since >= _TAIL:
                 break
     s = p._session
     return Rendering(np.concatenate(cells), p.rate, _array(s, s.rows, s.row_count, _ROW),

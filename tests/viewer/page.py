@@ -5,6 +5,7 @@ answers. What the viewer must do in real time is in realtime.py.
 """
 
 import base64
+import contextlib
 import csv
 import json
 import os
@@ -356,7 +357,7 @@ def test_a_scene_that_is_dropped_is_played_or_refused_in_one_line():
                 } catch (error) {
                     return error.message;
                 }
-                const playback = new Playback(scene, { stop() {}, play() {}, position: () => null });
+                const playback = new Playback(scene, { stop() {}, play() {}, setLoop() {}, position: () => null });
                 const on = { jump() {}, drum() {}, pose() {}, strike() {} };
                 for (let t = 0; t < playback.length; t += 250) (playback.seek(t), playback.show(on, 1000));
                 scene.heights();
@@ -603,7 +604,8 @@ def test_others_are_shown_over_and_beside_the_performer():
     """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
     others = os.path.join(MADE, "others.himc")
     command = [HIMC, "render", FOUR_SCORE, "-o", os.path.join(MADE, "others.wav")]
-    subprocess.run([*command, "--scene", others, "--compare", "ik", "--quiet"], check=True)
+    command += ["--scene", others, "--compare", "ik", "--quiet"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     with open(others, "rb") as file:
         scene = base64.b64encode(file.read()).decode()
     said = browser.run(
@@ -797,6 +799,117 @@ return opened.then(async () => {
 """
 
 
+DRAG = """
+    const e = viewer.editor, stage = document.getElementById("stage"),
+        [handle, x, y] = arguments, [left, top] = e.screen(e[handle].position);
+    stage.setPointerCapture = () => {}; // there is no true pointer
+    for (const [name, at] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
+        stage.dispatchEvent(new PointerEvent(name, {
+            clientX: left + at * x, clientY: top + at * y, button: 0, pointerId: 1, bubbles: true, cancelable: true,
+        }));
+"""
+
+
+@contextlib.contextmanager
+def editing(source):
+    """A page that edits; strokes are written, all of it is played, and nothing moves."""
+    # a free port each time: the page of another piece may still try to connect again
+    with Started(VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", source) as started:
+        browser.open(started.process.stdout.readline().split()[0])
+        assert browser.wait("return !!(window.viewer && viewer.playback)"), browser.log()
+        draw(False)
+        assert browser.wait("return viewer.editor.piece.over")
+        browser.run("viewer.sound.wake(); viewer.playback.play(false)")
+        yield
+        trouble = [line for line in browser.log() if "/icon.svg" not in line]
+        assert not trouble, trouble
+
+
+def saved_score():
+    browser.run(
+        "viewer.saved = null;"
+        "viewer.editor.piece.on.saved = (name, bytes) => (viewer.saved = new TextDecoder().decode(bytes));"
+        "document.getElementById('e-save').click()"
+    )
+    return browser.wait("return viewer.saved")
+
+
+def test_a_stroke_is_dragged_heard_and_put_back():
+    with editing("tests/viewer/editable.txt"):
+        with open("tests/viewer/editable.txt") as file:
+            written = file.read()
+        assert saved_score() == written
+        strikes = "return viewer.editor.piece.scene.strikes.map(s => [s.time, s.x, s.y, s.force])"
+        before = browser.run(strikes)
+        # the accent on beat 11, as by a click on the timeline
+        browser.run(
+            "const s = viewer.editor.piece.scene.strikes.find(s => s.beat === 11);"
+            "viewer.actions.seek(1000 * s.time - 200); viewer.actions.pick(s)"
+        )
+        assert browser.wait("return viewer.editor.spot.visible && !viewer.editor.late && viewer.editor.group.visible")
+        words = "return document.getElementById('e-words').value"
+        assert browser.run(words) == "stroke 11 right tenuto mf normal high"
+        browser.run(DRAG, "spot", 5, 0)
+        assert browser.wait("return viewer.editor.heard.length === 1")
+        assert browser.run("return viewer.playback.playing && viewer.editor.ghost.visible")
+        assert browser.wait("return viewer.editor.piece.over")
+        after, from_time = browser.run(strikes), 4.0
+        assert [s for s in after if s[0] < from_time] == [s for s in before if s[0] < from_time]
+        moved = browser.run("const s = viewer.editor.chosen; return [s.statement.x, s.statement.y, s.strike.x, s.strike.y]")
+        old = browser.run("return viewer.editor.piece.scene.strikes.find(s => s.beat === 11).y")
+        assert abs(moved[0] - moved[2]) < 0.02 and abs(moved[1] - moved[3]) < 0.02, (moved, old)
+        # higher is louder
+        browser.run("viewer.playback.play(false)")
+        assert browser.wait("return viewer.editor.group.visible && viewer.editor.top.visible")
+        loud = browser.run("return viewer.editor.chosen.statement.dynamic")
+        browser.run(DRAG, "top", 0, -15)
+        assert browser.wait("return viewer.editor.heard.length === 2")
+        assert browser.run("return viewer.editor.chosen.statement.dynamic") > loud + 0.02
+        for _ in range(2):
+            assert browser.wait("return viewer.editor.piece.over")
+            browser.run(
+                "dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))"
+            )
+            browser.wait("return !viewer.editor.piece.over")
+        assert browser.wait("return viewer.editor.piece.over && !viewer.editor.piece.text.undo")
+        assert saved_score() == written and browser.run(strikes) == before
+        return f"heard after {max(browser.run('return viewer.editor.heard')):.0f} ms without pictures"
+
+
+def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
+    with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
+        browser.run(
+            "const score = [0, 1, 2, 3].map(b => `stroke ${b} right legato mf;`).join('');"
+            "const data = new DataTransfer();"
+            "data.items.add(new File([score], 'dropped.txt'));"
+            "dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }))"
+        )
+        assert browser.wait("return viewer.editor.piece.text.statements.length === 4 && viewer.editor.piece.over")
+        assert browser.wait("return viewer.playback.scene.strikes.length === 4")
+        browser.run(
+            "viewer.saved = null; viewer.editor.piece.on.saved = (name, bytes) => (viewer.saved = new File([bytes], name));"
+            "document.getElementById('e-bvh').click()"
+        )
+        assert browser.wait("return !!viewer.saved")
+        browser.run("viewer.editor.piece.send(viewer.saved)")
+        assert browser.wait("return viewer.editor.piece.text.take && viewer.editor.piece.over")
+        browser.run(
+            "viewer.playback.play(false); viewer.actions.seek(2500);"
+            "viewer.editor.choose({ take: true, hand: 'right', time: 2.5 })"
+        )
+        assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+        place = "return viewer.editor.points('right', 2.5).find(p => Math.abs(p.time - 2.5) < 0.005).toArray()"
+        before = browser.run(place)
+        browser.run(DRAG, "spot", 12, -12)
+        assert browser.wait("return viewer.editor.heard.length === 1 && viewer.editor.piece.over")
+        words = browser.run("return viewer.editor.piece.text.statements[0].words")
+        way = [float(v) for v in words.split()[4:]]
+        assert words.startswith("nudge right 1.5 0.3 ") and max(map(abs, way)) > 0.01, words
+        after = browser.run(place)
+        off = max(abs(b + w - a) for a, b, w in zip(after, before, way))
+        assert off < 0.01, (words, before, after)
+
+
 def test_a_shared_page_plays_from_the_disk():
     """One file, no server: the same scene, with its sound, and nothing on the console."""
     html = os.path.join(MADE, "shared.html")
@@ -820,6 +933,50 @@ def test_a_shared_page_plays_from_the_disk():
     seconds, size = browser.run("return viewer.playback.length") / 1000, os.path.getsize(html)
     assert size * 60 / seconds < 6e6, size
     return f"{said}, sound {off:.1f} ms off, {size * 60 / seconds / 1e6:.2f} MB a minute"
+
+
+# A sine of which a loop has whole periods, as the audio thread meets it: the largest step between two
+# samples, how many there were, and where the page says that the loop is (samples)
+LOOP_WITHOUT_A_GAP = """
+const { sound } = viewer, rate = sound.context.sampleRate, period = 200, code = `
+registerProcessor("steps", class extends AudioWorkletProcessor {
+    constructor() { super(); this.last = null; this.most = 0; this.count = 0; }
+    process([[samples]]) {
+        if (!samples) return true;
+        for (const x of samples) {
+            if (this.last !== null) this.most = Math.max(this.most, Math.abs(x - this.last));
+            if (this.last !== null || x) { this.last = x; this.count++; }
+        }
+        if (this.count > 40000) this.port.postMessage([this.most, this.count]);
+        return true;
+    }
+})`;
+await sound.context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(code));
+const ear = new AudioWorkletNode(sound.context, "steps"), kept = sound.buffer,
+    buffer = (sound.buffer = sound.context.createBuffer(1, 20 * period, rate)), s = buffer.getChannelData(0);
+for (let i = 0; i < s.length; i++) s[i] = Math.sin((2 * Math.PI * i) / period);
+sound.stop();
+sound.gain.connect(ear);
+sound.play(0, 1, [(4 * period) / rate, (14 * period) / rate]);
+const places = [], told = new Promise(done => (ear.port.onmessage = e => done(e.data)));
+const look = setInterval(() => places.push(sound.place(sound.context.currentTime)), 5);
+const [most, count] = await told;
+clearInterval(look);
+sound.stop(), sound.gain.disconnect(ear);
+sound.buffer = kept;
+return [most, count, Math.min(...places.slice(-20)) * rate, Math.max(...places.slice(-20)) * rate];
+"""
+
+
+def test_a_loop_sounds_without_a_gap():
+    if not browser.run("return viewer.sound.ready"):
+        browser.run("viewer.sound.wake()")
+        assert browser.wait("return viewer.sound.ready"), "no sound device"
+    most, count, low, high = browser.run(f"return (async () => {{{LOOP_WITHOUT_A_GAP}}})()")
+    # the steepest step of that sine is 2 pi / 200
+    assert most < 0.035 and count > 40000, (most, count)
+    assert 799 <= low and high <= 2801, (low, high)
+    return f"largest step {most:.4f} in {count} samples"
 
 
 if __name__ == "__main__":

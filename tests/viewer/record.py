@@ -2,12 +2,16 @@
 
 import csv
 import json
+import math
 import os
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 
 import report
+from bridge import osc
 from scene import Scene
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
@@ -79,10 +83,35 @@ def test_the_body_is_that_of_the_player():
 def test_heads_move_most_after_their_strikes():
     one = scene()
     for drum in one.of("drum"):
-        frames = [(max(map(abs, a)), time) for time, number, a in one.heads if number == drum["drum"]]
+        frames = [(max(map(abs, q)), time) for time, number, q, _ in one.heads if number == drum["drum"]]
         most, time = max(frames)
         struck = [s["time"] for s in one.of("strike") if s["drum"] == drum["name"]]
         assert 1e-5 < most < 0.01 and any(0 < time - t < 0.3 for t in struck), (drum["name"], most, time)
+
+
+def test_between_two_frames_a_head_rings_freely():
+    """From one frame to the next, by the frequencies and decays in the scene, to the rounding."""
+    with open(path("two.txt"), "w") as file:
+        file.write("stroke 1 left accent f;\nstroke 2 right legato mf;\n")
+    command = [HIMC, "render", path("two.txt"), "-o", path("two.wav"), "--scene", path("two.himc")]
+    assert subprocess.run(command, capture_output=True).returncode == 0
+    with open(path("two.himc"), "rb") as file:
+        one = Scene(file.read())
+    modes, tried, worst = one.of("modes")[-1]["modes"], 0, 0
+    loud = [s["time"] for s in one.of("strike")]  # a loud head is stiffer
+    for (t, _, q, s), (t1, _, q1, _) in zip(one.heads, one.heads[1:]):
+        if t1 - t > 0.05 or any(t - 0.5 < blow < t1 for blow in loud):
+            continue
+        step = max(map(abs, q + s)) / 127
+        for k, (hz, d) in enumerate(modes):
+            w0 = 2 * math.pi * hz
+            w = math.sqrt(w0 * w0 - d * d)
+            there = math.exp(-d * (t1 - t)) * (
+                q[k] * math.cos(w * (t1 - t)) + (s[k] * w0 + d * q[k]) / w * math.sin(w * (t1 - t))
+            )
+            worst, tried = max(worst, abs(there - q1[k]) / step), tried + 1
+    assert tried > 1000 and worst < 1.5, (tried, worst)
+    return f"{tried} modes within {worst:.2f} of a step"
 
 
 def test_it_ends_with_the_sound_and_is_small():
@@ -132,6 +161,31 @@ def test_others_and_the_take_itself_are_in_the_scene():
     )
     assert worst < 0.04, worst
     return f"within {worst:.4f} rad"
+
+
+def test_what_is_served_is_recorded():
+    """himc serve --scene, driven over OSC and ended: the strikes that were asked for, their sound."""
+    command = [HIMC, "serve", "--port", "0", "--scene", path("live.himc"), path("two.txt")]
+    live = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    port = int(live.stdout.readline().split()[-1])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        udp.bind(("127.0.0.1", 0))
+        udp.settimeout(60)
+        udp.sendto(osc("/himc/subscribe", "127.0.0.1", udp.getsockname()[1], "strikes"), ("127.0.0.1", port))
+        udp.sendto(osc("/himc/play"), ("127.0.0.1", port))
+        for _ in range(2):
+            while b"/himc/strike" not in udp.recv(4096):
+                pass
+    live.send_signal(signal.SIGTERM)
+    told = json.loads(live.communicate(timeout=60)[0].splitlines()[-1])
+    with open(path("live.himc"), "rb") as file:
+        one = Scene(file.read())
+    times = [row[0] for row in one.rows]
+    assert all(abs(b - a - 0.004) < 1e-6 for a, b in zip(times, times[1:])), "rows are missing"
+    assert abs(one.of("end")[0]["time"] - told["blocks"] * 96 / 48000) < 1e-6, told
+    assert [s["hand"] for s in one.of("strike")][:2] == ["left", "right"], one.of("strike")
+    assert one.sound[:4] in (b"OggS", b"RIFF") and len(one.heads) > 5
+    return f"{len(times)} rows, {told['late']} of {told['blocks']} blocks late"
 
 
 def test_a_film_without_a_browser_is_refused_in_one_line():

@@ -19,7 +19,7 @@ class Scene:
                 self.events += json.loads(zlib.decompress(body))
             elif kind == "rows":
                 self.rows += self.read_rows(zlib.decompress(body))
-            elif kind == "head":
+            elif kind == "ring":
                 self.heads += self.read_heads(zlib.decompress(body))
             elif kind == "more":
                 self.more.append(Scene(body))
@@ -50,12 +50,13 @@ class Scene:
 
     @staticmethod
     def read_heads(data):
-        """(time, drum, [amplitude, ...]) of each frame."""
+        """(time, drum, [displacement, ...], [velocity over angular frequency, ...]) of each frame."""
         (count,) = struct.unpack_from("<I", data)
         at, frames = 4, []
         for _ in range(count):
             time, scale, drum, modes = struct.unpack_from("<dfHH", data, at)
-            at += 16 + modes
-            values = struct.unpack_from(f"{modes}b", data, at - modes)
-            frames.append((time, drum, [scale * v for v in values]))
+            values = struct.unpack_from(f"{2 * modes}b", data, at + 16)
+            at += 16 + 2 * modes
+            values = [scale * v for v in values]
+            frames.append((time, drum, values[:modes], values[modes:]))
         return frames

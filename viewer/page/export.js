@@ -52,7 +52,7 @@ export class Exporter {
             this.running = false;
             viewer.lift(lift);
             if (viewer.held && !held) viewer.resume();
-            ((playback.loop = loop), playback.setSpeed(speed), playback.seek(at), playback.play(playing));
+            (playback.setLoop(...(loop ?? [0, 0])), playback.setSpeed(speed), playback.seek(at), playback.play(playing));
         }
     }
 

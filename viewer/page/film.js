@@ -83,7 +83,7 @@ export function prepare(viewer, at) {
     const { playback, view } = viewer,
         from = Math.max(0, at - LEAD);
     viewer.held = true;
-    ((playback.loop = null), playback.setSpeed(1));
+    (playback.setLoop(0, 0), playback.setSpeed(1));
     (playback.seek(from), playback.play(true));
     for (let t = from; t < at; t += 1000 / 60) viewer.step(Math.min(1000 / 60, at - t), false);
     view.settle();

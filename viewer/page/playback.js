@@ -17,6 +17,7 @@ export class Playback {
         this.pose = new Float64Array(7 * segments.length);
         this.target = new Float64Array(6);
         this.amplitude = new Float32Array(64);
+        this.modal = new Float64Array(64);
     }
 
     // [from, to] of what is played: the loop, or all
@@ -33,7 +34,12 @@ export class Playback {
     // the sound begins anew where the playback is
     resound() {
         this.sound.stop();
-        if (this.playing) this.sound.play(this.at / 1000, this.speed);
+        if (this.playing) this.sound.play(this.at / 1000, this.speed, this.seconds);
+    }
+
+    // the loop in seconds, or null
+    get seconds() {
+        return this.loop && this.loop.map(t => t / 1000);
     }
 
     play(yes) {
@@ -52,6 +58,7 @@ export class Playback {
             Math.min(this.length, Math.max(0, t)),
         );
         this.loop = to - from >= FRAME ? [from, to] : null;
+        this.sound.setLoop(this.seconds);
         if (this.loop && (this.at < from || this.at > to)) this.seek(from);
     }
 
@@ -118,16 +125,47 @@ export class Playback {
         return this.compare ? [this.scene, ...this.scene.ghosts] : [this.scene];
     }
 
-    // amplitudes of a head, between two frames in proportion
+    // Amplitudes of a head's shapes. Between two frames the modes ring freely, on from the one before
+    // and back from the one after, which are weighed by how near they are; a blow parts the two.
     head(drum, time) {
         const i = before(drum.frames, time, f => f.time),
             a = drum.frames[i],
             b = drum.frames[i + 1],
-            out = this.amplitude.fill(0);
-        if (!a) return out;
-        const t = b && b.time - a.time < 0.1 ? (time - a.time) / (b.time - a.time) : 0;
-        for (let k = 0; k < a.amplitude.length; k++)
-            out[k] = a.scale * a.amplitude[k] + t * ((b ? b.scale * b.amplitude[k] : 0) - a.scale * a.amplitude[k]);
+            out = this.amplitude.fill(0),
+            known = drum.modes[Math.max(0, before(drum.modes, time, m => m.time))];
+        if (!a || !known) return out;
+        let t = 0;
+        if (b && b.time - a.time < 0.1) {
+            const blow = drum.blows[before(drum.blows, b.time, s => s.time)],
+                parted = blow && blow.time > a.time,
+                [from, last] = parted ? [blow.time, Math.max(1e-3, blow.duration || 0)] : [a.time, b.time - a.time];
+            t = Math.min(1, Math.max(0, (time - from) / last));
+        }
+        const modal = this.modal.fill(0);
+        if (t < 1) ring(a, known.modes, time, 1 - t, modal);
+        if (t > 0) ring(b, known.modes, time, t, modal);
+        for (const [shape, mode, part] of known.shapes) out[shape] += part * modal[mode];
         return out;
+    }
+}
+
+const MOST = 3; // (1) a mode that has decayed by more is not followed back; chosen: beyond it a byte is noise
+
+// adds `weight` times the displacements at `time` of modes that ring freely since, or until, a frame:
+// q(t) = e^(-d t) (q cos wt + (s w0 + d q) / w sin wt), with w^2 = w0^2 - d^2
+function ring(frame, modes, time, weight, out) {
+    const dt = time - frame.time,
+        n = Math.min(frame.q.length, modes.length);
+    for (let k = 0; k < n; k++) {
+        const q = frame.q[k],
+            s = frame.s[k];
+        if (!q && !s) continue;
+        const [hz, d] = modes[k],
+            w0 = 2 * Math.PI * hz,
+            w = Math.sqrt(Math.max(0.01 * w0 * w0, w0 * w0 - d * d)),
+            fall = -d * dt;
+        if (fall > MOST) continue;
+        out[k] +=
+            weight * frame.scale * Math.exp(fall) * (q * Math.cos(w * dt) + ((s * w0 + d * q) / w) * Math.sin(w * dt));
     }
 }

@@ -6,7 +6,7 @@ import { segments } from "./skeleton.js";
 const MAGIC = "himcscn",
     VERSION = 1;
 
-async function inflate(bytes) {
+export async function inflate(bytes) {
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -32,6 +32,9 @@ const wanted = {
         e.tips.length === HANDS.length &&
         finite(...e.tips.flat()),
     drum: e => finite(e.drum, ...e.place) && typeof e.name === "string" && e.place.length === 5 && e.place[4] > 0.02 && e.place[4] < 2,
+    modes: e =>
+        e.modes.every(([hz, decay]) => hz > 0 && decay >= 0 && decay < 7 * hz) &&
+        e.shapes.every(([shape, mode, part]) => shape >= 0 && shape < 64 && mode in e.modes && finite(part)),
     strike: e => HANDS.includes(e.hand) && finite(e.x, e.y, e.force),
     beat: e => finite(e.beat),
 };
@@ -57,6 +60,7 @@ export class Scene {
             event.columns.forEach(([name], i) => this.column.set(name, i));
         } else if (event.event === "body") this.bodies.push(event);
         else if (event.event === "drum") this.drum(event.drum, event).changes.push(event);
+        else if (event.event === "modes") this.drum(event.drum).modes.push(event);
         else if (event.event === "strike") this.strikes.push({ ...event, from: this.name });
         else if (event.event === "beat") this.beats.push(event);
         else if (event.event === "note") this.notes.push(event);
@@ -65,7 +69,7 @@ export class Scene {
     }
 
     drum(number, event) {
-        if (!this.drums.has(number)) this.drums.set(number, { changes: [], frames: [] });
+        if (!this.drums.has(number)) this.drums.set(number, { changes: [], modes: [], frames: [] });
         return Object.assign(this.drums.get(number), event && { name: event.name });
     }
 
@@ -97,6 +101,7 @@ export class Scene {
         this.blocks.push(block);
     }
 
+    // motion of heads: displacements of the modes, velocities over angular frequencies
     heads(bytes) {
         const view = new DataView(bytes.buffer);
         for (let i = view.getUint32(0, true), at = 4; i > 0; i--) {
@@ -105,10 +110,27 @@ export class Scene {
             this.drum(view.getUint16(at + 12, true)).frames.push({
                 time: view.getFloat64(at, true),
                 scale,
-                amplitude: new Int8Array(bytes.buffer, at + 16, modes),
+                q: new Int8Array(bytes.buffer, at + 16, modes),
+                s: new Int8Array(bytes.buffer, at + 16 + modes, modes),
             });
-            at += 16 + modes;
+            at += 16 + 2 * modes;
         }
+    }
+
+    // forgets all from `time` on
+    cut(time) {
+        const past = e => e.time < time - 1e-9;
+        this.times.length = before(this.times, time - 1e-6) + 1;
+        this.blocks = this.blocks.filter(b => b.first < this.times.length);
+        for (const name of ["bodies", "strikes", "beats", "notes"]) this[name] = this[name].filter(past);
+        for (const drum of this.drums.values())
+            ((drum.changes = drum.changes.filter(past)), (drum.frames = drum.frames.filter(past)));
+        ((this.end = 0), (this.tipHeights = null));
+    }
+
+    // whether that contact, which a cut has halved, is there
+    has(strike) {
+        return this.strikes.some(s => s.hand === strike.hand && Math.abs(s.time - strike.time) < 1e-6);
     }
 
     // once all is read
@@ -120,6 +142,8 @@ export class Scene {
         for (const body of this.bodies)
             body.origin = Float64Array.from(body.segments.flatMap(s => s.origin));
         this.strikes.sort((a, b) => a.time - b.time);
+        for (const drum of this.drums.values())
+            drum.blows = this.strikes.filter(s => s.drum === drum.name);
         this.joints = segments.map(s => this.column.get(`${s.joint}_x_rad`));
     }
 
@@ -233,7 +257,7 @@ export async function readScene(bytes, name, depth = 0) {
             if (at > bytes.length) break; // a recording that was cut short is good up to here
             if (kind === "json") JSON.parse(text.decode(await inflate(body))).forEach(e => scene.add(e));
             else if (kind === "rows") scene.rows(await inflate(body));
-            else if (kind === "head") scene.heads(await inflate(body));
+            else if (kind === "ring") scene.heads(await inflate(body));
             else if (kind === "snd ") scene.sounds.push(body);
             else if (kind === "more" && !depth)
                 scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, 1));

@@ -46,17 +46,36 @@ export class Sound {
         return !!this.buffer && !!this.context && this.context.state === "running";
     }
 
-    // from `at` (s) at `rate` times the speed
-    play(at, rate) {
+    // from `at` (s) at `rate` times the speed, round and round in `loop` [from, to] (s) if it is given
+    play(at, rate, loop = null) {
         this.stop();
         if (!this.ready || at >= this.buffer.duration) return;
         const source = (this.source = this.context.createBufferSource());
         source.buffer = this.buffer;
         source.playbackRate.value = rate;
         source.connect(this.gain);
-        ((this.begun = this.context.currentTime), (this.from = at), (this.rate = rate));
+        ((this.begun = this.context.currentTime), (this.from = at), (this.rate = rate), (this.loop = null));
         source.onended = () => source === this.source && (this.source = null);
+        this.setLoop(loop);
         source.start(this.begun, at);
+    }
+
+    // from now on; what sounds goes on without a gap
+    setLoop(loop) {
+        const { source, context } = this;
+        if (!source) return;
+        ((this.from = this.place(context.currentTime)), (this.begun = context.currentTime));
+        this.loop = loop && [loop[0], Math.min(loop[1], this.buffer.duration)];
+        source.loop = !!loop && this.loop[1] > this.loop[0];
+        if (!source.loop) this.loop = null;
+        else [source.loopStart, source.loopEnd] = this.loop;
+    }
+
+    // what the source plays at that time of the context's clock (s of the scene)
+    place(time) {
+        const at = this.from + (time - this.begun) * this.rate,
+            [from, to] = this.loop ?? [0, Infinity];
+        return at < to ? at : from + ((at - from) % (to - from));
     }
 
     stop() {
@@ -69,7 +88,7 @@ export class Sound {
     // what is heard now (s of the scene); null while nothing sounds
     position() {
         if (!this.source || !this.ready) return null;
-        return this.from + (this.heard() - this.begun) * this.rate;
+        return this.place(this.heard());
     }
 
     // the time of the context's clock that is at the loudspeaker now

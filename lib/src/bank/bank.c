@@ -601,7 +601,10 @@ void himc_bank_excite(himc_bank *bank, int index, double q, double v)
     settle(bank);
     bank->p[index] = bank->damped[index] * q;
     bank->s[index] = v + bank->decay[index] * q;
-    wake(bank);
+    if (bank->p[index] == 0 && bank->s[index] == 0)
+        wake(bank);
+    else if (index >= bank->live)
+        bank->live = (int)round_up((size_t)index + 1, LANES);
     bank->forced = true;
 }
 

@@ -440,6 +440,13 @@ bool himc_drum_heads_due(const himc_drum_heads *heads, double beat)
                    : change_at(heads, beat) != heads->now;
 }
 
+double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
+{
+    while (heads->before && beat < heads->from)
+        heads = heads->before;
+    return head_of(heads, change_at(heads, beat))->damp;
+}
+
 void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat)
 {
     for (; heads->before && beat < heads->from; heads = heads->before)

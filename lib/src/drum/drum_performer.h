@@ -102,6 +102,8 @@ bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command
 bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error);
 /// True if the head at that beat is not the one that was last given.
 HIMC_RT bool himc_drum_heads_due(const himc_drum_heads *heads, double beat);
+/// The damping of the head at that beat (himc_head.damp).
+HIMC_RT double himc_drum_heads_damp(const himc_drum_heads *heads, double beat);
 /// Gives the drum the head that it has at that beat: that of the form before the first change. Quick
 /// where the drum has still the pickups and the listener of the form, else the head is computed
 /// now. Between two samples.

@@ -241,15 +241,17 @@ static void find_form(himc_membrane *m)
     himc_bank_readout(c->bank, c->on_q, c->on_v, NULL, &c->rays.form);
 }
 
-// outputs from `first` to `end`; strike points hold responses to them and are computed again when
-// asked for
+// outputs from `first` to `end`, but muted pickups; strike points hold responses to them and are
+// computed again when asked for
 static void find_outputs(himc_membrane *m, int first, int end)
 {
     for (int i = 0; i < STRIKE_POINTS; i++)
         m->points[i].used = false;
     for (int i = first; i < end; i++)
-        if (himc_membrane_has(m, i))
+        if (himc_membrane_wants(m, i))
             find_output(m, i);
+    if (first < HIMC_PICKUPS)
+        m->core.stale = m->muted;
     if (end > HIMC_PICKUPS && himc_membrane_rays(m))
         find_form(m);
 }
@@ -352,7 +354,7 @@ static sounds read_sounds(himc_membrane *m)
 {
     sounds s = {0};
     for (int i = 0; i < HIMC_OUTPUTS; i++) {
-        if (!himc_membrane_has(m, i))
+        if (!himc_membrane_wants(m, i))
             continue;
         himc_readout *readout = &m->core.outputs[i].readout;
         const declick *d = &m->declicks[i];
@@ -610,7 +612,10 @@ void himc_membrane_kick(himc_membrane *membrane, int index, double change)
 
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
 {
+    bool returns = membrane->muted && !mute;
     membrane->muted = mute;
+    if (returns)
+        find_outputs(membrane, 0, HIMC_PICKUPS);
 }
 
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
@@ -726,6 +731,8 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     take_form(made, &was);
     m->revision++;
     himc_bank_set_step(m->core.bank, m->step);
+    if (m->core.stale && !m->muted)
+        find_outputs(m, 0, HIMC_PICKUPS);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
         find_watched(m);
     made->watch_x = m->watch_x;
@@ -827,27 +834,37 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
     himc_bank_state(membrane->core.bank, index, q, v);
 }
 
+// a mode's displacement: that of `modal`, which has `count`, or if that is NULL its own
+static double coordinate(const himc_membrane *membrane, int count, const double *modal, int index)
+{
+    double q, v;
+    if (modal)
+        return index < count ? modal[index] : 0;
+    himc_membrane_state(membrane, index, &q, &v);
+    return q;
+}
+
 // displacements of the bare shapes of order 0, from those of what a kettle makes of them
-static void unmix(const himc_membrane *membrane, int count, double *displacement)
+static void unmix(const himc_membrane *membrane, int count, const double *modal,
+                  double *displacement)
 {
     const himc_mixture *mix = himc_modes_mixture(membrane->core.modes);
     for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
-        double sum = 0, q, v;
-        for (int n = 0; n < mix->count; n++) {
-            himc_membrane_state(membrane, mix->index[n], &q, &v);
-            sum += mix->part[n][k] * q;
-        }
+        double sum = 0;
+        for (int n = 0; n < mix->count; n++)
+            sum += mix->part[n][k] * coordinate(membrane, count, modal, mix->index[n]);
         displacement[mix->index[k]] = sum;
     }
 }
 
-void himc_membrane_upright(const himc_membrane *membrane, int count, double *displacement)
+void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
+                           double *displacement)
 {
     const himc_modes *modes = membrane->core.modes;
-    double v, pair[2] = {0, 0};
+    double pair[2] = {0, 0};
     for (int i = 0; i < count; i++) {
         himc_mode mode = himc_modes_get(modes, &membrane->head, i);
-        himc_membrane_state(membrane, i, &displacement[i], &v);
+        displacement[i] = coordinate(membrane, count, modal, i);
         if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
             continue;
         const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
@@ -855,14 +872,12 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, double *dis
             i + 1 < himc_modes_count(modes) && himc_modes_get(modes, &membrane->head, i + 1).sine;
         if (!mode.sine) {
             pair[0] = displacement[i];
-            pair[1] = 0;
-            if (whole)
-                himc_membrane_state(membrane, i + 1, &pair[1], &v);
+            pair[1] = whole ? coordinate(membrane, count, modal, i + 1) : 0;
         }
         displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
                                     : pair[0] * axis->cosine - pair[1] * axis->sine;
     }
-    unmix(membrane, count, displacement);
+    unmix(membrane, count, modal, displacement);
 }
 
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)

@@ -40,6 +40,7 @@ typedef struct core {
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     patch patches[PATCHES];
     output outputs[HIMC_OUTPUTS];
+    bool stale;      ///< the pickups' outputs are not of these modes: they were muted
     himc_alike rays; ///< of a round head
     himc_readout watched;
 } core;
@@ -116,6 +117,12 @@ struct himc_membrane {
 static inline bool himc_membrane_has(const himc_membrane *m, int k)
 {
     return k < m->pickup_count || (m->rays && k >= HIMC_PICKUPS);
+}
+
+/// Whether its sound is wanted, too.
+static inline bool himc_membrane_wants(const himc_membrane *m, int k)
+{
+    return himc_membrane_has(m, k) && !(m->muted && k < HIMC_PICKUPS);
 }
 
 /// What a newton at the point does in a step of that length, found when first asked for.

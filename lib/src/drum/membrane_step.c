@@ -100,7 +100,7 @@ const unit_response *himc_strike_point_response(himc_membrane *m, strike_point *
     himc_bank_set_step(c->bank, k);
     e->compliance = himc_bank_response(c->bank, s->shape, &s->readout);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
-        if (himc_membrane_has(m, i))
+        if (himc_membrane_wants(m, i))
             e->sound[i] = himc_bank_sum(c->bank, s->shape, c->outputs[i].response[k]);
     himc_bank_set_step(c->bank, m->step);
     return e;
@@ -151,12 +151,6 @@ double himc_strike_point_compliance(himc_membrane *membrane, strike_point *a, st
                   : himc_bank_response(membrane->core.bank, b->shape, &a->readout);
 }
 
-// whether the sound of output k is read in samples with contact
-static bool is_wanted(const himc_membrane *m, int k)
-{
-    return himc_membrane_has(m, k) && !(m->muted && k < HIMC_PICKUPS);
-}
-
 void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double force)
 {
     if (force == 0)
@@ -164,7 +158,7 @@ void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double fo
     himc_bank_push(membrane->core.bank, s->shape, force);
     const unit_response *e = himc_strike_point_response(membrane, s, membrane->step);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
-        if (is_wanted(membrane, i))
+        if (himc_membrane_wants(membrane, i))
             membrane->sound[i] += e->sound[i] * force;
     if (membrane->applied_count < STRIKE_POINTS)
         membrane->applied[membrane->applied_count++] = (push){s->x, s->y, s->b, force};
@@ -226,7 +220,7 @@ void himc_membrane_free_step(himc_membrane *membrane)
 {
     double sound[HIMC_OUTPUTS], *into[HIMC_OUTPUTS];
     for (int k = 0; k < HIMC_OUTPUTS; k++)
-        into[k] = is_wanted(membrane, k) ? &sound[k] : NULL;
+        into[k] = himc_membrane_wants(membrane, k) ? &sound[k] : NULL;
     run_free(membrane, 1, into, NULL);
     for (int i = 0; i < membrane->push_count; i++) {
         const push *p = &membrane->pushes[i];

@@ -232,7 +232,7 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
     put_name(state->head.name, drum);
     state->head.count = modes < HEAD_MODES ? modes : HEAD_MODES;
     double displacement[HEAD_MODES];
-    himc_membrane_upright(membrane, state->head.count, displacement);
+    himc_membrane_upright(membrane, state->head.count, NULL, displacement);
     for (int i = 0; i < state->head.count; i++)
         state->head.amplitude[i] = (float)displacement[i];
     end(osc);

@@ -239,6 +239,17 @@ void himc_drums_turn_heads(performance_drums *d, double beat)
     }
 }
 
+bool himc_drums_damped(const performance_drums *d, int index)
+{
+    return himc_membrane_head(himc_drum_membrane(d->slot[index].drum))->damp > 0;
+}
+
+bool himc_drums_will_be_damped(const performance_drums *d, int index, double beat)
+{
+    const himc_drum_heads *heads = d->slot[index].heads;
+    return heads && beat >= 0 ? himc_drum_heads_damp(heads, beat) > 0 : himc_drums_damped(d, index);
+}
+
 void himc_drums_release(performance_drums *d)
 {
     himc_drums_drop_heads(d);

@@ -87,6 +87,11 @@ void himc_drums_drop_heads(performance_drums *drums);
 /// Gives the drums the heads that they have at that beat; nothing if it is negative.
 HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat);
 
+/// True if the head of a drum is damped.
+HIMC_RT bool himc_drums_damped(const performance_drums *drums, int index);
+/// True if it is, or will be at that beat.
+HIMC_RT bool himc_drums_will_be_damped(const performance_drums *drums, int index, double beat);
+
 /// A drum that no stick is near makes its samples later, many at a time: they are the same. Now all
 /// drums make theirs; before anything looks at them, or changes them.
 HIMC_RT void himc_drums_catch_up(performance_drums *drums);

@@ -21,8 +21,7 @@
 #define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
 
 // over the other hand; chosen: as a wrist lifts a stick in a hurry, and sooner than any new touch
-#define HARDEST_LIFT 120.0 // peak acceleration (m/s^2)
-#define LIFT_FADE 0.1      // of a lift that is broken off (s)
+#define LIFT_FADE 0.1 // of a lift that is broken off (s)
 
 // habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
@@ -197,7 +196,7 @@ bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, 
                     himc_vec3 way)
 {
     himc_spline *lift = &plan->lift;
-    double up = himc_move_time(himc_vec3_length(way), HARDEST_LIFT);
+    double up = himc_move_time(himc_vec3_length(way), HIMC_HARDEST_LIFT);
     himc_target nothing = {0}, raised = himc_target_at_rest(way);
     bool busy = lift->count > 0 && lift->segment[lift->count - 1].t1 > begin;
     if (busy || lift->count + 3 > HIMC_SPLINE_SEGMENTS || from - begin < up || end - to < up)
@@ -382,12 +381,13 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     return true;
 }
 
-/// Moves to a place in space; a fall that would touch the head on the way is halted first.
-static void move_to(stroke_plan *s, himc_vec3 x, double peak)
+/// Moves to a place in space, not before `at`; a fall that would touch the head on the way is halted
+/// first.
+static void move_to(stroke_plan *s, himc_vec3 x, double peak, double at)
 {
     height_state to = {himc_vec3_dot(s->n, himc_vec3_sub(x, s->plan->last.spot)), 0, 0};
     double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(s->plan, s->plan->end).x));
-    double T = fmax(himc_move_time(distance, peak), LEAST_MOVE_TIME);
+    double T = fmax(fmax(himc_move_time(distance, peak), LEAST_MOVE_TIME), at - s->height_end);
     if (s->height.v < -HIMC_TURNING_SPEED &&
         !himc_height_profile_stays(s, s->height_end + T, to, fmin(to.h, 0.5 * s->height.h),
                                    HUGE_VAL))
@@ -396,10 +396,10 @@ static void move_to(stroke_plan *s, himc_vec3 x, double peak)
     path_to(s, s->height_end, himc_vec3_madd(x, -to.h, s->n));
 }
 
-void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x)
+void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x, double at)
 {
     stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
-    move_to(&s, x, QUICK_MOVE);
+    move_to(&s, x, QUICK_MOVE, at);
     plan_finish(&s);
     plan->home = x;
     plan->at_home = true;
@@ -435,7 +435,7 @@ void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
     } else if (ready) {
         hover(&s);
     } else {
-        move_to(&s, plan->home, HOME_MOVE);
+        move_to(&s, plan->home, HOME_MOVE, 0);
         plan->at_home = true;
     }
     plan_finish(&s);

@@ -37,6 +37,9 @@ static inline double himc_goal_end(const himc_goal *goal)
     return goal->time + HIMC_CONTACT_TIME + goal->hold;
 }
 
+/// Peak acceleration of a lift, at most (m/s^2). Chosen: an arm that is in a hurry.
+#define HIMC_HARDEST_LIFT 120.0
+
 /// At rest at `home` from time t on.
 HIMC_RT void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home);
 
@@ -84,7 +87,7 @@ HIMC_RT void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *m
 /// Appends a wait, to `until` (s) at least: over the last spot when `ready`, else at home.
 HIMC_RT void himc_hand_wait(himc_hand_plan *plan, double until, bool ready);
 
-/// Appends the move to x, which becomes home.
-HIMC_RT void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x);
+/// Appends the move to x, which becomes home: there at `at` (s), or as soon as it can.
+HIMC_RT void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x, double at);
 
 #endif

@@ -218,7 +218,10 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     if (count == 0 || strcmp(atom[0].symbol, "comment") == 0)
         return true;
     if (s->overflow)
-        return himc_error_set(r->error, "more than %zu characters without a ;", s->size);
+        return himc_error_set(r->error,
+                              "more than %zu characters without a ;, allowed: a score, commands "
+                              "that each end with one",
+                              s->size);
     if (strcmp(atom[0].symbol, "at") == 0)
         return read_timed_line(r, atom, count);
     bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
