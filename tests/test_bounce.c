@@ -253,6 +253,21 @@ static void test_grace_notes_come_before_the_beat_by_their_hands_and_softer(void
     heard_free(&h);
 }
 
+static void test_between_their_bounces_tips_are_on_their_targets(void)
+{
+    static const char *const roll[] = {"press f", "double f"};
+    for (int i = 0; i < 2; i++) {
+        himc_performance *p = session_new();
+        session_do(p, "roll 1 2 %s", roll[i]);
+        session_do(p, "play");
+        session_play(p, 2.5, NULL);
+        double percent = himc_performance_measure(p).tip_rms_percent;
+        printf("%s: %.4f %% off\n", roll[i], percent);
+        TEST_ASSERT_TRUE(percent < 0.005);
+        himc_performance_free(p);
+    }
+}
+
 static void test_with_the_servo_grip_nothing_bounces(void)
 {
     static const char *const lines[] = {"grip servo", "drag 1 right legato f", NULL};
@@ -415,6 +430,7 @@ int main(void)
     RUN_TEST(test_doubles_have_two_contacts_a_quarter_period_apart_at_4_to_12_Hz);
     RUN_TEST(test_each_stroke_of_a_press_roll_has_five_contacts_or_more_that_get_softer);
     RUN_TEST(test_grace_notes_come_before_the_beat_by_their_hands_and_softer);
+    RUN_TEST(test_between_their_bounces_tips_are_on_their_targets);
     RUN_TEST(test_with_the_servo_grip_nothing_bounces);
     RUN_TEST(test_info_tells_the_servo_grip);
     RUN_TEST(test_ornaments_do_not_depend_on_the_block_size);

@@ -487,6 +487,11 @@ static void test_units_may_be_filled_with_nul(void)
     free(m.bytes);
 }
 
+static void find_analog(void *user, const char *line)
+{
+    *(bool *)user |= strcmp(line, "analog: 2 channels of 4 samples at 500 Hz") == 0;
+}
+
 // two frames of three points and two channels of two samples: (raw - offset) scale general
 static void test_analog_samples_are_scaled_and_named(void)
 {
@@ -524,6 +529,9 @@ static void test_analog_samples_are_scaled_and_named(void)
         TEST_ASSERT_EQUAL_STRING("Fz", take->analog_names[1]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, (300 - 10) * 0.05, take->analog[6]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 201 * 0.1, take->analog[5]);
+        bool told = false;
+        himc_take_describe(take, NULL, find_analog, &told);
+        TEST_ASSERT_TRUE(told);
         himc_take_free(take);
         free(m.bytes);
     }

@@ -36,6 +36,21 @@ static void find_contacts(void *user, const char *line)
         *(int *)user = unplanned;
 }
 
+static void find_human(void *user, const char *line)
+{
+    *(bool *)user |= strcmp(line, "human 0.5, seed 7") == 0;
+}
+
+static void test_info_tells_how_human_the_player_is(void)
+{
+    himc_performance *p = session_new();
+    bool told = false;
+    session_do(p, "human 0.5 7");
+    himc_performance_describe(p, HIMC_DESCRIBE_INFO, find_human, &told);
+    TEST_ASSERT_TRUE(told);
+    himc_performance_free(p);
+}
+
 static void test_a_stick_laid_on_the_head_is_one_long_unplanned_contact(void)
 {
     himc_performance *p = session_new();
@@ -115,6 +130,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_strokes_are_planned_and_leave_the_head_at_once);
+    RUN_TEST(test_info_tells_how_human_the_player_is);
     RUN_TEST(test_a_stick_laid_on_the_head_is_one_long_unplanned_contact);
     RUN_TEST(test_the_peak_rate_is_that_of_the_fastest_joint_in_any_step);
     RUN_TEST(test_the_peak_torque_is_within_the_strength_that_limits_it);

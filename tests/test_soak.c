@@ -4,7 +4,8 @@
 /// in all modes and laws, while the drums are retuned; offline, as fast as it goes. Before, between
 /// and after them it plays a reference passage of 8 strokes with the default settings, whose tip
 /// error, forces and memory are compared. `make soak` plays 24 hours: HIMC_HOURS is their number,
-/// HIMC_SEED the seed, HIMC_PHYSICS the physics rate (Hz).
+/// HIMC_SEED the seed, HIMC_PHYSICS the physics rate (Hz), HIMC_PIECE the piece to begin with: one
+/// with a fault prints them.
 #define _GNU_SOURCE
 #include "sound_scale.h"
 #include "take_players.h"
@@ -243,12 +244,19 @@ static void change_control(soak *s)
         session_do(s->p, "%s", changes[choose(&s->seed, 8)]);
 }
 
+static long faults_of(const soak *s)
+{
+    return s->steady.missed + s->free.missed + s->steady.recoveries + s->free.recoveries;
+}
+
 // one piece of some kind: every second one steady, one of eight with joint limits
 static void play_piece(soak *s)
 {
+    unsigned seed = s->seed;
     long piece = s->pieces++ % 8;
     bool steady = piece % 2 == 0;
     double kind = chance(&s->seed);
+    long faults = faults_of(s);
     s->now = steady ? &s->steady : piece == 7 ? &s->bound : &s->free;
     for (int i = choose(&s->seed, 3); i > 0; i--)
         retune(s);
@@ -266,6 +274,11 @@ static void play_piece(soak *s)
         play_score(s);
     set_defaults(s);
     play_for(s, 2, false);
+    if (faults_of(s) > faults)
+        printf(
+            "piece %ld missed a stroke or a body flew apart: HIMC_SEED=%u HIMC_PIECE=%ld plays it "
+            "first\n",
+            s->pieces, seed, s->pieces);
 }
 
 static void add_row(void *user, const himc_motion_row *row)
@@ -362,6 +375,7 @@ static soak begin(void)
     soak s = {.p = session_new(), .finite = true};
     session_do(s.p, "rate physics %g", from_environment("HIMC_PHYSICS", 10000));
     s.seed = (unsigned)from_environment("HIMC_SEED", 1);
+    s.pieces = (long)from_environment("HIMC_PIECE", 1) - 1;
     s.now = &s.steady;
     session_do(s.p, "drum kettle");
     session_do(s.p, "drum tom 23");

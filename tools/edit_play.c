@@ -4,7 +4,7 @@
 /// pages that change, and waits. After a change the last copy before its first effect forks again,
 /// takes the new strokes in place of the old ones, and plays on; copies after it are dismissed. A
 /// copy refuses strokes on which its plan may already rest, and then an earlier one is asked; the
-/// very first process loads the text anew. So the outcome is, bit by bit, that of playing the new
+/// first one has not begun to play. If other lines have changed, a new process loads the text. So the outcome is, bit by bit, that of playing the new
 /// text from the start.
 ///
 /// All processes write whole frames into one pipe, but one at a time: a process that plays looks at
@@ -38,7 +38,7 @@ enum {
 };
 // chosen: the piece is played 10 times as fast as it sounds, so a copy is never 0.2 s away
 
-#define APART 2.0    // copies, at least (s)
+#define APART 1.0    // copies, at least (s)
 #define HEADROOM 2.0 // (s) a piece may begin so much later than its first beat
 
 struct edit_play {
@@ -198,7 +198,7 @@ static void play_on(player *p)
     while (!cli_is_over(&p->ending, RATE)) {
         if (atomic_load(p->of->turn) != p->turn)
             leave(p, "bye!", "");
-        double next = p->of->apart * (p->copies + 1);
+        double next = p->of->apart * p->copies; // the first one waits before `play`
         if (p->copies < COPIES && (double)p->ending.samples >= next * RATE)
             leave_copy(p);
         play_cell(p);
@@ -223,8 +223,7 @@ static bool load(player *p, const char *text, const char *record, himc_error *er
            cli_tell(p->performance, CLI_LISTENER, NULL, error) &&
            himc_performance_load_text(p->performance, text, p->of->name, error) &&
            cli_tell(p->performance, "loop 0", NULL, error) &&
-           (!record || cli_tell(p->performance, "record", record, error)) &&
-           cli_tell(p->performance, "play", NULL, error);
+           (!record || cli_tell(p->performance, "record", record, error));
 }
 
 static void play_from_start(const edit_play *of, int turn, const char *text, const char *record)
@@ -254,6 +253,12 @@ static void play_from_start(const edit_play *of, int turn, const char *text, con
         leave(&p, "fail", error.text);
     himc_performance_on_tick(p.performance, scene_record_tick, p.record);
     himc_performance_on_motion(p.performance, scene_record_row, p.record);
+    scene_record_flush(p.record);
+    fflush(p.to);
+    if (!record)
+        leave_copy(&p);
+    if (!cli_tell(p.performance, "play", NULL, &error))
+        leave(&p, "fail", error.text);
     play_on(&p);
 }
 
@@ -431,7 +436,7 @@ bool edit_play_start(edit_play *play, const char *text, double from, const char 
         return false;
     int copy = -1;
     if (from >= 0 && !record)
-        copy = (int)fmin((from + HEADROOM) / play->apart, COPIES) - 1;
+        copy = (int)fmin((from + HEADROOM) / play->apart, COPIES - 1);
     for (bool late = true; copy >= 0; copy--) {
         if (!play->waits[copy])
             continue;

@@ -37,6 +37,8 @@
     SCRIPT(FILE, sound)                                                    \
     SCRIPT(FILE, worklet)                                                  \
     SCRIPT(FILE, spectrum)                                                 \
+    SCRIPT(FILE, piece)                                                    \
+    SCRIPT(FILE, edit)                                                     \
     SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \

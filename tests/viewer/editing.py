@@ -3,6 +3,7 @@
 import json
 import struct
 import subprocess
+import zlib
 
 
 class Piece:
@@ -43,6 +44,8 @@ class Piece:
             self.parts[struct.unpack_from("<I", data)[0]] = data[4:]
         elif kind in ("rows", "json", "head"):
             at = max(self.parts, default=-9600) / 48000 + 0.2
+            if kind == "json" and b'"event":"scene"' in zlib.decompress(data):
+                at = -1  # it comes once, and stays
             self.chunks.append((at, kind, data))
         elif kind == "file":
             self.files[data[:64].rstrip(b"\0").decode()] = data[64:]

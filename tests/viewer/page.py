@@ -5,6 +5,7 @@ answers. What the viewer must do in real time is in realtime.py.
 """
 
 import base64
+import contextlib
 import csv
 import json
 import os
@@ -833,6 +834,117 @@ return opened.then(async () => {
     return off;
 });
 """
+
+
+DRAG = """
+    const e = viewer.editor, stage = document.getElementById("stage"),
+        [handle, x, y] = arguments, [left, top] = e.screen(e[handle].position);
+    stage.setPointerCapture = () => {}; // there is no true pointer
+    for (const [name, at] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
+        stage.dispatchEvent(new PointerEvent(name, {
+            clientX: left + at * x, clientY: top + at * y, button: 0, pointerId: 1, bubbles: true, cancelable: true,
+        }));
+"""
+
+
+@contextlib.contextmanager
+def editing(source):
+    """A page that edits; strokes are written, all of it is played, and nothing moves."""
+    # a free port each time: the page of another piece may still try to connect again
+    with Started(VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", source) as started:
+        browser.open(started.process.stdout.readline().split()[0])
+        assert browser.wait("return !!(window.viewer && viewer.playback)"), browser.log()
+        draw(False)
+        assert browser.wait("return viewer.editor.piece.over")
+        browser.run("viewer.sound.wake(); viewer.playback.play(false)")
+        yield
+        trouble = [line for line in browser.log() if "/icon.svg" not in line]
+        assert not trouble, trouble
+
+
+def saved_score():
+    browser.run(
+        "viewer.saved = null;"
+        "viewer.editor.piece.on.saved = (name, bytes) => (viewer.saved = new TextDecoder().decode(bytes));"
+        "document.getElementById('e-save').click()"
+    )
+    return browser.wait("return viewer.saved")
+
+
+def test_a_stroke_is_dragged_heard_and_put_back():
+    with editing("tests/viewer/editable.txt"):
+        with open("tests/viewer/editable.txt") as file:
+            written = file.read()
+        assert saved_score() == written
+        strikes = "return viewer.editor.piece.scene.strikes.map(s => [s.time, s.x, s.y, s.force])"
+        before = browser.run(strikes)
+        # the accent on beat 11, as by a click on the timeline
+        browser.run(
+            "const s = viewer.editor.piece.scene.strikes.find(s => s.beat === 11);"
+            "viewer.actions.seek(1000 * s.time - 200); viewer.actions.pick(s)"
+        )
+        assert browser.wait("return viewer.editor.spot.visible && !viewer.editor.late && viewer.editor.group.visible")
+        words = "return document.getElementById('e-words').value"
+        assert browser.run(words) == "stroke 11 right tenuto mf normal high"
+        browser.run(DRAG, "spot", 5, 0)
+        assert browser.wait("return viewer.editor.heard.length === 1")
+        assert browser.run("return viewer.playback.playing && viewer.editor.ghost.visible")
+        assert browser.wait("return viewer.editor.piece.over")
+        after, from_time = browser.run(strikes), 4.0
+        assert [s for s in after if s[0] < from_time] == [s for s in before if s[0] < from_time]
+        moved = browser.run("const s = viewer.editor.chosen; return [s.statement.x, s.statement.y, s.strike.x, s.strike.y]")
+        old = browser.run("return viewer.editor.piece.scene.strikes.find(s => s.beat === 11).y")
+        assert abs(moved[0] - moved[2]) < 0.02 and abs(moved[1] - moved[3]) < 0.02, (moved, old)
+        # higher is louder
+        browser.run("viewer.playback.play(false)")
+        assert browser.wait("return viewer.editor.group.visible && viewer.editor.top.visible")
+        loud = browser.run("return viewer.editor.chosen.statement.dynamic")
+        browser.run(DRAG, "top", 0, -15)
+        assert browser.wait("return viewer.editor.heard.length === 2")
+        assert browser.run("return viewer.editor.chosen.statement.dynamic") > loud + 0.02
+        for _ in range(2):
+            assert browser.wait("return viewer.editor.piece.over")
+            browser.run(
+                "dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))"
+            )
+            browser.wait("return !viewer.editor.piece.over")
+        assert browser.wait("return viewer.editor.piece.over && !viewer.editor.piece.text.undo")
+        assert saved_score() == written and browser.run(strikes) == before
+        return f"heard after {max(browser.run('return viewer.editor.heard')):.0f} ms without pictures"
+
+
+def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
+    with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
+        browser.run(
+            "const score = [0, 1, 2, 3].map(b => `stroke ${b} right legato mf;`).join('');"
+            "const data = new DataTransfer();"
+            "data.items.add(new File([score], 'dropped.txt'));"
+            "dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }))"
+        )
+        assert browser.wait("return viewer.editor.piece.text.statements.length === 4 && viewer.editor.piece.over")
+        assert browser.wait("return viewer.playback.scene.strikes.length === 4")
+        browser.run(
+            "viewer.saved = null; viewer.editor.piece.on.saved = (name, bytes) => (viewer.saved = new File([bytes], name));"
+            "document.getElementById('e-bvh').click()"
+        )
+        assert browser.wait("return !!viewer.saved")
+        browser.run("viewer.editor.piece.send(viewer.saved)")
+        assert browser.wait("return viewer.editor.piece.text.take && viewer.editor.piece.over")
+        browser.run(
+            "viewer.playback.play(false); viewer.actions.seek(2500);"
+            "viewer.editor.choose({ take: true, hand: 'right', time: 2.5 })"
+        )
+        assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+        place = "return viewer.editor.points('right', 2.5).find(p => Math.abs(p.time - 2.5) < 0.005).toArray()"
+        before = browser.run(place)
+        browser.run(DRAG, "spot", 12, -12)
+        assert browser.wait("return viewer.editor.heard.length === 1 && viewer.editor.piece.over")
+        words = browser.run("return viewer.editor.piece.text.statements[0].words")
+        way = [float(v) for v in words.split()[4:]]
+        assert words.startswith("nudge right 1.5 0.3 ") and max(map(abs, way)) > 0.01, words
+        after = browser.run(place)
+        off = max(abs(b + w - a) for a, b, w in zip(after, before, way))
+        assert off < 0.01, (words, before, after)
 
 
 def test_a_shared_page_plays_from_the_disk():

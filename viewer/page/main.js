@@ -12,6 +12,7 @@ import { readScene } from "./scene.js";
 import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
+import { Editor } from "./edit.js";
 import { Exporter } from "./export.js";
 import { HANDS, bone } from "./body.js";
 import { segments } from "./skeleton.js";
@@ -42,6 +43,7 @@ const latencies = [],
 let exaggeration = 8, // of a head's motion; chosen: seen from the stage, and no wilder than a film's
     playback = null,
     stream = null,
+    editor = null, // on a page that knows the key
     waiting = [];
 
 const actions = {
@@ -80,6 +82,7 @@ const actions = {
     },
     pause: () => playback && playback.play(!playback.playing),
     seek: ms => playback && playback.seek(ms),
+    pick: strike => editor?.pick(strike),
     step: (by, strikes) => playback && playback.step(by, strikes),
     loop: (a, b) => playback && playback.setLoop(a, b),
     loopEnd: end => {
@@ -299,6 +302,7 @@ function frame(_, now = clock(), draw = true) {
         view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
     );
     view.update(Math.min(200, dt), first);
+    editor?.update();
     stage.haze(view.now.distance);
     const drawn = performance.now();
     if (draw) stage.renderer.render(stage.scene, view.camera);
@@ -321,7 +325,7 @@ function frame(_, now = clock(), draw = true) {
     if (now - written > 250) {
         written = now;
         panel.write([...performers.values()], numbers, now, playback);
-        panel.silent(playback ? !!sound.buffer : now - liveSound.heard < 1000, sound);
+        panel.silent(playback ? !!playback.sound.buffer : now - liveSound.heard < 1000, sound);
         panel.filming(recorder.filming);
     }
     if (!virtual) stage.adapt(dt, view);
@@ -352,6 +356,7 @@ function setLift(lift) {
 // forgets the performer and the drums of the playback, or of the stream
 function close() {
     sound.stop();
+    playback?.sound.stop();
     liveSound.close();
     forget();
 }
@@ -390,10 +395,11 @@ async function drop(files) {
     const [first, ...more] = files,
         capture = files.find(file => /\.(bvh|c3d|trc|txt|mid)$/i.test(file.name)),
         bytes = async file => new Uint8Array(await file.arrayBuffer());
-    if (capture)
+    if (capture && !editor)
         throw new Error(
-            `${capture.name}: make a scene of it with "himc render ${capture.name} -o sound.wav --scene scene.himc", and drop scene.himc`,
+            `${capture.name}: open the page by the address that himc-viewer prints, or make a scene of it with "himc render ${capture.name} -o sound.wav --scene scene.himc", and drop scene.himc`,
         );
+    if (capture) return editor.piece.send(capture);
     const others = [];
     for (const file of more) others.push(await readScene(await bytes(file), file.name));
     for (const scene of others) scene.head.name = scene.name.replace(/\.himc$/, "");
@@ -493,13 +499,39 @@ const exporter = new Exporter((window.viewer = {
     get playback() {
         return playback;
     },
+    get editor() {
+        return editor;
+    },
 }));
+
+// a piece that is played while it is computed
+function open(piece) {
+    close();
+    playback = new Playback(piece.scene, piece.sound);
+    panel.open(playback);
+    panel.loading(null);
+    setLift(panel.timeline.all ? TALL : LIFT);
+}
+
+function edit(key) {
+    editor = new Editor(key, sound, view, stage, {
+        opened: open,
+        playback: () => playback,
+        note: text => panel.note(text),
+        changed: () => panel.timeline.grown(),
+        finished: piece => panel.timeline.heard(piece.sound.whole()),
+        radius: name => [...drums.values()].find(d => d.name === name).place[4],
+        drum: name => [...drums.values()].find(d => d.name === name && d.group.visible)?.tilted,
+    });
+}
 
 // a page of `himc share` brings its scene; any other asks the program that serves it
 if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
 } else {
+    const key = location.hash.slice(1);
+    if (/^[0-9a-f]{32}$/.test(key)) edit(key);
     stream = new Stream(live);
     fetch("/session.json")
         .then(answer => answer.json())

@@ -32,6 +32,7 @@ const KEYS = [
     ["\\", "no loop", a => a.unloop()],
     ["home end", "the beginning, the end", null],
     ["l", "more lanes: angles, torques, spectrum", a => a.lanes()],
+    ["ctrl z, ctrl y", "undo, redo a change", null],
     ["m", "sound on, off", a => a.mute()],
     ["?", "these keys", null],
 ];
@@ -100,7 +101,7 @@ export class Panel {
             camera = cameras[Number(e.key) - 1];
         if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT") return;
         if (e.key === " " && e.target.tagName === "BUTTON") return;
-        if (e.target.type === "range") return;
+        if (e.target.tagName === "INPUT") return;
         const known = KEYS.find(([key, , act]) => act && key === e.key)?.[2] ?? more[e.key];
         if (camera) actions.camera(camera);
         else if (known) known(actions);

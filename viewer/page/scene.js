@@ -6,7 +6,7 @@ import { segments } from "./skeleton.js";
 const MAGIC = "himcscn",
     VERSION = 1;
 
-async function inflate(bytes) {
+export async function inflate(bytes) {
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -115,6 +115,22 @@ export class Scene {
             });
             at += 16 + 2 * modes;
         }
+    }
+
+    // forgets all from `time` on
+    cut(time) {
+        const past = e => e.time < time - 1e-9;
+        this.times.length = before(this.times, time - 1e-6) + 1;
+        this.blocks = this.blocks.filter(b => b.first < this.times.length);
+        for (const name of ["bodies", "strikes", "beats", "notes"]) this[name] = this[name].filter(past);
+        for (const drum of this.drums.values())
+            ((drum.changes = drum.changes.filter(past)), (drum.frames = drum.frames.filter(past)));
+        ((this.end = 0), (this.tipHeights = null));
+    }
+
+    // whether that contact, which a cut has halved, is there
+    has(strike) {
+        return this.strikes.some(s => s.hand === strike.hand && Math.abs(s.time - strike.time) < 1e-6);
     }
 
     // once all is read

@@ -89,6 +89,16 @@ export class Timeline {
         this.stale = true;
     }
 
+    // more of the piece has come, or other
+    grown() {
+        const { playback } = this,
+            all = this.view[0] === 0 && this.view[1] >= (this.length ?? 0);
+        ((this.range = undefined), (this.extent = new Map()), (playback.scene.tipHeights = null));
+        this.length = playback.length;
+        if (all) this.show(0, playback.length);
+        this.stale = true;
+    }
+
     // shows angles, torques and spectrum as well, or not
     more() {
         this.all = !this.all;
@@ -181,6 +191,7 @@ export class Timeline {
     scrub(e) {
         const strike = this.near(e);
         this.actions.seek(strike ? 1000 * strike.time : this.time(e));
+        if (strike) this.actions.pick(strike);
     }
 
     // --- the lanes

@@ -521,6 +521,7 @@ static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand
     if (!near && (presses || !himc_bounce_is_over(&c->bounce, t, velocity_of(c, s, hand))))
         return;
     c->bounce.on = false;
+    himc_motion_release(s->motion, hand, true, 0); // the plan begins without their acceleration
     go_on_from_here(c, s, hand, t);
     c->pressed = true; // a contact that goes on is no stroke
 }

@@ -240,7 +240,7 @@ static bool may_exchange(const himc_planner *planner, himc_hand hand, const plan
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
 {
     planner_score *score = &planner->score, *fresh = &other->score;
-    if (!score->playing || score->loop || score->past > 0 || fresh->playing ||
+    if (score->loop || score->past > 0 || fresh->playing ||
         score->tempo_count != fresh->tempo_count)
         return false;
     for (int i = 0; i < score->tempo_count; i++)
@@ -248,7 +248,7 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
             score->tempi[i].bpm != fresh->tempi[i].bpm)
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (!may_exchange(planner, (himc_hand)hand, &fresh->part[hand]))
+        if (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand]))
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_planner_score_exchange(&score->part[hand], &fresh->part[hand]);

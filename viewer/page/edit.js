@@ -1,0 +1,408 @@
+// Editing in space. A stroke is chosen on the timeline or by its dot on a head; its place on the
+// head, its height (the dynamic) and what else is written of it are changed, and it is heard from
+// shortly before. In a take a point of a stick's path is dragged. Sizes and colours: chosen by eye.
+import * as THREE from "./three.js";
+import { rgb } from "./color.js";
+import { HANDS, bone, place } from "./body.js";
+import { Piece } from "./piece.js";
+import { before } from "./scene.js";
+import { segments } from "./skeleton.js";
+import { handColor } from "./timeline.js";
+
+const $ = id => document.getElementById(id);
+const GRAB = 16, // a press this near takes a handle (pixels)
+    PATH = [0.7, 0.4], // of a stick's path, before and after (s)
+    STEP = 0.008, // between its points (s)
+    STROKES = 1.5, // dots of strokes so near in time (s)
+    BEFORE = 0.7, // a changed stroke is heard from so much before (s)
+    SOON = 0.25, // once so much after it has come (s)
+    INSIDE = 0.95, // of a head's radius: nothing is struck further out
+    RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
+    FAMILY = ["legato", "tenuto", "accent", "vertical-accent", "staccato"];
+const round = (v, digits = 4) => +v.toFixed(digits);
+
+// 0 .. 1 .. 0 over a span, as the library's nudge
+const bump = s => (s <= 0 ? 0 : s * s * s * (10 + s * (-15 + 6 * s)));
+
+function dot(color, size) {
+    const mesh = new THREE.Mesh(
+        new THREE.SphereBufferGeometry(size, 20, 14),
+        new THREE.MeshBasicMaterial({ color: rgb(color), transparent: true, opacity: 0.9, depthTest: false }),
+    );
+    mesh.renderOrder = 9;
+    return mesh;
+}
+
+function line(color, opacity) {
+    const made = new THREE.Line(
+        new THREE.BufferGeometry(),
+        new THREE.LineBasicMaterial({ color: rgb(color), transparent: true, opacity, depthTest: false }),
+    );
+    made.renderOrder = 8;
+    made.frustumCulled = false;
+    return made;
+}
+
+const draw = (made, points) => {
+    made.geometry.dispose();
+    made.geometry = new THREE.BufferGeometry().setFromPoints(points);
+    made.visible = points.length > 1;
+};
+
+export class Editor {
+    // `on`: opened(piece), playback(), note(line), drum(name), its tilted group, and radius(name)
+    constructor(key, sound, view, stage, on) {
+        Object.assign(this, { view, on, chosen: null, drag: null, waiting: null, heard: [] });
+        this.piece = new Piece(key, sound, {
+            begun: piece => on.opened(piece),
+            grown: piece => this.grown(piece),
+            over: piece => this.over(piece),
+            text: event => this.written(event),
+            trouble: text => on.note(text),
+            saved: (name, bytes) => save(name, bytes),
+        });
+        this.group = new THREE.Group();
+        ((this.spot = dot("#ffd21f", 0.02)), (this.top = dot("#ff8f5c", 0.02)));
+        ((this.path = line("#ffffff", 0.95)), (this.ghost = line("#ffffff", 0.4)));
+        this.dots = Array.from({ length: 24 }, () => dot("#ffffff", 0.008));
+        this.group.add(this.path, this.ghost, ...this.dots, this.spot, this.top);
+        stage.scene.add(this.group);
+        this.hide();
+        const canvas = $("stage");
+        canvas.addEventListener("pointerdown", e => this.press(e), { capture: true });
+        canvas.addEventListener("pointermove", e => this.move(e), { capture: true });
+        for (const name of ["pointerup", "pointercancel"])
+            canvas.addEventListener(name, e => this.release(e), { capture: true });
+        this.inspector();
+    }
+
+    // --- what is written beside the stage
+
+    inspector() {
+        const say = line => this.piece.say(line),
+            change = () => this.commit(this.fields());
+        for (const nuance of FAMILY) $("e-nuance").add(new Option(nuance.replace("-", " "), nuance));
+        for (const hand of HANDS) $("e-hand").add(new Option(hand, hand));
+        for (const id of ["e-hand", "e-nuance", "e-beat", "e-x", "e-y", "e-dynamic", "e-span"]) $(id).onchange = change;
+        $("e-dynamic").oninput = () => ($("e-loud").textContent = Number($("e-dynamic").value).toFixed(2));
+        $("e-words").onchange = e => this.send(this.chosen?.statement?.index, e.target.value);
+        $("e-delete").onclick = () => this.send(this.chosen?.statement?.index, "");
+        $("e-undo").onclick = () => this.step("undo");
+        $("e-redo").onclick = () => this.step("redo");
+        $("e-save").onclick = () => say("save");
+        for (const ending of ["bvh", "trc"]) $(`e-${ending}`).onclick = () => (say(`take take.${ending}`), this.on.note("The take is being played and saved …"));
+        addEventListener("keydown", e => {
+            if (!(e.ctrlKey || e.metaKey) || e.target.tagName === "INPUT") return;
+            const name = e.key === "z" && !e.shiftKey ? "undo" : e.key === "y" || (e.key === "Z" && e.shiftKey) ? "redo" : null;
+            if (name) (e.preventDefault(), this.step(name));
+        });
+    }
+
+    step(name) {
+        this.from = this.on.playback()?.at ?? 0;
+        this.piece.say(name);
+    }
+
+    written(event) {
+        document.body.classList.add("editing");
+        document.body.classList.toggle("take", event.take);
+        $("e-undo").disabled = !event.undo;
+        $("e-redo").disabled = !event.redo;
+        const old = this.chosen?.statement;
+        if (old) this.chosen.statement = event.statements.find(s => s.index === old.index);
+        if (old && !this.chosen.statement) this.choose(null);
+        else this.show();
+    }
+
+    fields() {
+        const number = id => Number($(id).value);
+        return {
+            hand: $("e-hand").value,
+            nuance: $("e-nuance").value,
+            beat: number("e-beat"),
+            dynamic: number("e-dynamic"),
+            x: number("e-x"),
+            y: number("e-y"),
+        };
+    }
+
+    show() {
+        const c = this.chosen,
+            s = c?.statement;
+        $("e-none").hidden = !!c;
+        $("e-chosen").hidden = !c;
+        if (!c) return;
+        $("e-words").value = s?.words ?? "";
+        $("e-words").disabled = $("e-delete").disabled = !s;
+        $("e-stroke").hidden = s?.beat === undefined || c.take;
+        $("e-way").hidden = !c.take;
+        if (s?.beat === undefined) return;
+        const [x, y] = [s.x ?? c.strike.x, s.y ?? c.strike.y];
+        ($("e-hand").value = s.hand), ($("e-nuance").value = s.nuance);
+        ($("e-beat").value = round(s.beat)), ($("e-dynamic").value = s.dynamic);
+        $("e-loud").textContent = s.dynamic.toFixed(2);
+        ($("e-x").value = round(x, 3)), ($("e-y").value = round(y, 3));
+    }
+
+    // --- choosing
+
+    // a strike of the scene, or a point of a path: { take, hand, time }
+    choose(what) {
+        const { scene, text } = this.piece;
+        this.chosen = null;
+        if (what?.take) this.chosen = { ...what, way: new THREE.Vector3() };
+        else if (what) {
+            const near = text.statements.filter(s => s.hand === what.hand && Math.abs(s.beat - what.beat) < 1e-4);
+            this.chosen = { strike: what, hand: what.hand, time: what.time, statement: near[0] };
+            if (!near[0]) this.on.note("This stroke is not written by itself: it is part of an ornament, or of a take.");
+        }
+        draw(this.ghost, []);
+        this.show();
+        if (this.chosen && scene) this.trace();
+    }
+
+    // a click of the timeline
+    pick(strike) {
+        if (this.piece.scene && !this.piece.text?.take) this.choose(strike);
+    }
+
+    // the path of the hand's tip around a time
+    points(hand, time) {
+        const { scene } = this.piece,
+            pose = new Float64Array(7 * segments.length),
+            at = new Float64Array(3),
+            h = HANDS.indexOf(hand),
+            stick = 7 * bone(`${hand}-stick`),
+            out = [];
+        for (let t = Math.max(0, time - PATH[0]); t < Math.min(scene.end, time + PATH[1]); t += STEP) {
+            scene.pose(t, pose);
+            place(pose, stick + 3, ...scene.body(t).tips[h], pose, stick, at, 0);
+            out.push(Object.assign(new THREE.Vector3(...at), { time: t }));
+        }
+        return out;
+    }
+
+    trace() {
+        const c = this.chosen;
+        c.points = this.points(c.hand, c.time);
+        this.path.material.color = rgb(handColor[HANDS.indexOf(c.hand)]);
+        draw(this.path, c.points);
+        const nearest = c.points.reduce((a, p) => (Math.abs(p.time - c.time) < Math.abs(a.time - c.time) ? p : a), c.points[0]);
+        if (!nearest) return this.hide();
+        if (c.take) this.spot.position.copy(nearest);
+        else {
+            const head = this.head(c.strike.drum);
+            this.spot.position.set(c.strike.x, c.strike.y, 0.012);
+            this.late = !head;
+            head?.localToWorld(this.spot.position);
+            const rise = c.points.filter(p => p.time < c.time);
+            this.top.position.copy(rise.reduce((a, p) => (p.z > a.z ? p : a), nearest));
+        }
+        this.spot.visible = true;
+        this.top.visible = !c.take && !!c.statement;
+    }
+
+    hide() {
+        for (const part of this.group.children) part.visible = false;
+    }
+
+    head(name) {
+        return this.on.drum(name);
+    }
+
+    // --- dragging
+
+    screen(position) {
+        const q = position.clone().project(this.view.camera);
+        return [((q.x + 1) * innerWidth) / 2, ((1 - q.y) * innerHeight) / 2, q.z];
+    }
+
+    off(position, e) {
+        const [x, y, z] = this.screen(position);
+        return z > 1 ? Infinity : Math.hypot(x - e.clientX, y - e.clientY);
+    }
+
+    ray(e) {
+        const caster = new THREE.Raycaster();
+        caster.setFromCamera(
+            { x: (2 * e.clientX) / innerWidth - 1, y: 1 - (2 * e.clientY) / innerHeight },
+            this.view.camera,
+        );
+        return caster.ray;
+    }
+
+    press(e) {
+        if (e.button || !this.piece.text || !this.piece.scene) return;
+        const c = this.chosen,
+            handle = [this.spot, this.top].find(h => h.visible && this.off(h.position, e) < GRAB);
+        if (handle && (c.take || c.statement)) {
+            this.drag = { handle, begun: handle.position.clone() };
+            draw(this.ghost, c.points);
+            $("stage").setPointerCapture(e.pointerId);
+        } else if (this.piece.text.take) {
+            if (!this.grab(e)) return;
+        } else {
+            const hit = this.dots.find(d => d.visible && this.off(d.position, e) < GRAB);
+            if (!hit) return;
+            this.choose(hit.strike);
+        }
+        this.on.playback()?.play(false);
+        e.stopImmediatePropagation();
+    }
+
+    // a point of a path of the take; false if none is near
+    grab(e) {
+        const at = (this.on.playback()?.at ?? 0) / 1000;
+        let best = { off: GRAB };
+        for (const hand of HANDS)
+            for (const p of this.points(hand, at)) {
+                const off = this.off(p, e);
+                if (off < best.off) best = { off, hand, time: p.time };
+            }
+        if (best.hand) this.choose({ take: true, hand: best.hand, time: best.time });
+        return !!best.hand;
+    }
+
+    move(e) {
+        if (!this.drag) return;
+        e.stopImmediatePropagation();
+        const { handle, begun } = this.drag,
+            c = this.chosen,
+            ray = this.ray(e),
+            plane = new THREE.Plane(),
+            to = new THREE.Vector3();
+        if (handle === this.top || c.take) plane.setFromNormalAndCoplanarPoint(ray.direction.clone().setZ(c.take ? ray.direction.z : 0).normalize(), begun);
+        else {
+            const head = this.head(c.strike.drum);
+            plane.setFromNormalAndCoplanarPoint(new THREE.Vector3(0, 0, 1).transformDirection(head.matrixWorld), begun);
+        }
+        if (!ray.intersectPlane(plane, to)) return;
+        if (handle === this.top) to.set(begun.x, begun.y, to.z);
+        handle.position.copy(to);
+        const way = to.clone().sub(begun),
+            span = c.take ? Number($("e-span").value) : PATH[1],
+            middle = c.take ? c.time : handle === this.top ? c.time - 0.2 : c.time;
+        this.drag.way = way;
+        draw(
+            this.path,
+            c.points.map(p => p.clone().addScaledVector(way, bump(1 - Math.abs(p.time - middle) / span))),
+        );
+    }
+
+    release(e) {
+        if (!this.drag) return;
+        e.stopImmediatePropagation();
+        const { handle, way, begun } = this.drag,
+            c = this.chosen;
+        this.drag = null;
+        if (!way || way.length() < 1e-3) return void handle.position.copy(begun);
+        if (c.take) return this.nudge(way);
+        const fields = this.fields();
+        if (handle === this.top) fields.dynamic = Math.min(1, Math.max(0, fields.dynamic + way.z / RANGE));
+        else {
+            const at = this.head(c.strike.drum).worldToLocal(this.spot.position.clone()),
+                out = Math.hypot(at.x, at.y) / (INSIDE * this.on.radius(c.strike.drum));
+            ((fields.x = at.x / Math.max(1, out)), (fields.y = at.y / Math.max(1, out)));
+        }
+        this.commit(fields);
+    }
+
+    // --- changes
+
+    commit(f) {
+        const c = this.chosen;
+        if (c?.take) return;
+        const s = c?.statement;
+        if (s?.beat === undefined) return;
+        if (!this.ghost.visible) draw(this.ghost, c.points);
+        this.send(
+            s.index,
+            `${s.words.split(" ")[0]} ${round(f.beat)} ${f.hand} ${f.nuance} ${round(f.dynamic)} ${round(f.x)} ${round(f.y)} ${s.drum}`.trim(),
+            { beat: f.beat, hand: f.hand },
+        );
+    }
+
+    nudge(way) {
+        const c = this.chosen,
+            time = round(Piece.takeTime(c.time), 3),
+            span = Number($("e-span").value);
+        this.send(
+            this.piece.text.count,
+            `nudge ${c.hand} ${time} ${span} ${[way.x, way.y, way.z].map(v => round(Math.min(0.5, Math.max(-0.5, v)))).join(" ")}`,
+        );
+    }
+
+    send(index, words, moved = null) {
+        if (index === undefined) return;
+        const c = this.chosen;
+        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, time: c.time, moved };
+        this.piece.say(`set ${index} ${words}`);
+    }
+
+    // --- what comes
+
+    grown(piece) {
+        const p = this.on.playback();
+        if (!p || p.scene !== piece.scene) return;
+        p.length = Math.max(piece.over ? 0 : p.length, 1000 * piece.scene.end);
+        this.on.changed(piece);
+        const w = this.waiting;
+        if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.time + SOON && !piece.over)) return;
+        this.waiting = null;
+        p.seek(1000 * Math.max(0, w.time - BEFORE));
+        p.play(true);
+        this.heard.push(performance.now() - w.begun);
+        this.follow(w);
+    }
+
+    // the chosen stroke as it is played now
+    follow({ time, moved }) {
+        const c = this.chosen,
+            { scene } = this.piece;
+        if (!c) return;
+        if (!c.take) {
+            const wanted = moved ?? c.strike,
+                found = scene.strikes.filter(s => s.hand === wanted.hand && Math.abs(s.beat - wanted.beat) < 1e-3)[0];
+            if (!found) return;
+            Object.assign(c, { strike: found, hand: found.hand, time: found.time });
+        } else c.time = time;
+        this.trace();
+        this.show();
+    }
+
+    over(piece) {
+        const p = this.on.playback();
+        if (p?.scene === piece.scene) p.length = 1000 * piece.scene.end;
+        this.on.finished(piece);
+        this.grown(piece);
+    }
+
+    // a frame: the dots of the strokes around, while nothing moves
+    update() {
+        const p = this.on.playback(),
+            here = p && p.scene === this.piece.scene;
+        this.group.visible = !!here && !p.playing;
+        if (this.late) this.trace();
+        if (!this.group.visible || this.piece.text?.take) return;
+        const list = p.scene.strikes,
+            first = before(list, p.at / 1000 - STROKES, s => s.time) + 1;
+        this.dots.forEach((mesh, i) => {
+            const s = list[first + i],
+                head = s && s.time < p.at / 1000 + STROKES && this.head(s.drum);
+            mesh.visible = !!head;
+            if (!head || mesh.strike === s) return;
+            mesh.strike = s;
+            mesh.position.set(s.x, s.y, 0.006);
+            head.localToWorld(mesh.position);
+            mesh.material.color = rgb(handColor[HANDS.indexOf(s.hand)]);
+        });
+    }
+}
+
+function save(name, bytes) {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([bytes]));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
