@@ -1,0 +1,84 @@
+/// test_beats.c: beats and the end are told in the step in which they come, whatever the host does.
+#include "session.h"
+
+#define CHUNK 6000 // samples between two places where the host gives commands
+#define CHUNKS 32
+#define MOST 64
+
+typedef struct told {
+    himc_event_kind kind;
+    double beat, time;
+    int chunk; // in which it came
+} told;
+
+// a command in the midst of a chunk
+static void later(himc_performance *p, const char *text, int delay)
+{
+    himc_command c;
+    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_PERFORMER, text, &error));
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_command(p, &c, delay, &error), error.text);
+}
+
+static void change(himc_performance *p, int chunk)
+{
+    if (chunk == 7)
+        later(p, "tempo 260", 2345);
+    if (chunk == 11)
+        later(p, "seek 1", 3001);
+    if (chunk == 15)
+        session_do(p, "loop 0");
+}
+
+// A host that asks for one sample at a time has each step looked at, as something may have changed.
+static int listen(int block, told events[MOST])
+{
+    himc_performance *p = session_new();
+    himc_event event;
+    int count = 0;
+    session_do(p, "drum kettle 26");
+    session_do(p, "tempo 190");
+    for (int i = 0; i < 4; i++)
+        session_do(p, "stroke %g %s legato mf normal", 0.5 + 0.75 * i, i % 2 ? "left" : "right");
+    session_do(p, "loop 1");
+    session_do(p, "play");
+    for (int chunk = 0; chunk < CHUNKS; chunk++) {
+        change(p, chunk);
+        for (int left = CHUNK, n; left > 0; left -= n) {
+            n = left < block ? left : block;
+            himc_performance_process(p, n, NULL);
+            while (himc_performance_event(p, &event))
+                if ((event.kind == HIMC_EVENT_BEAT || event.kind == HIMC_EVENT_DONE) &&
+                    count < MOST)
+                    events[count++] = (told){event.kind, event.beat, event.time, chunk};
+        }
+    }
+    himc_performance_free(p);
+    return count;
+}
+
+static void test_beats_and_the_end_come_in_the_same_steps_at_any_block_size(void)
+{
+    static told expected[MOST], got[MOST];
+    int count = listen(1, expected), dones = 0;
+    for (int i = 0; i < count; i++)
+        dones += expected[i].kind == HIMC_EVENT_DONE;
+    TEST_ASSERT_EQUAL_INT(1, dones);
+    TEST_ASSERT_GREATER_THAN_INT(6, count);
+    for (int block = 64; block <= CHUNK; block *= 9) {
+        memset(got, 0, sizeof got);
+        TEST_ASSERT_EQUAL_INT(count, listen(block, got));
+        for (int i = 0; i < count; i++) {
+            TEST_ASSERT_EQUAL_INT(expected[i].kind, got[i].kind);
+            TEST_ASSERT_EQUAL_DOUBLE(expected[i].beat, got[i].beat);
+            TEST_ASSERT_EQUAL_DOUBLE(expected[i].time, got[i].time);
+            TEST_ASSERT_EQUAL_INT(expected[i].chunk, got[i].chunk);
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_beats_and_the_end_come_in_the_same_steps_at_any_block_size);
+    return UNITY_END();
+}
