@@ -113,6 +113,34 @@ static void test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand(v
                                  w.heard.note);
 }
 
+/// Leaps with a change of tempo and a jump, in blocks of so many samples.
+static watched play_in_blocks(int block)
+{
+    watched w = begin_score(four_drums, 4, 60);
+    add_leaps(&w, 0.225, "cdcdaccdccbdbcbd");
+    himc_performance_on_motion(w.p, watch, &w);
+    session_do(w.p, "play");
+    for (int k = 0; k < 144000; k += block) {
+        if (k == 72000)
+            session_do(w.p, "tempo 75");
+        if (k == 96000)
+            session_do(w.p, "seek 1.5");
+        himc_performance_process(w.p, block, NULL);
+    }
+    return w;
+}
+
+static void test_planning_is_spread_over_ticks_and_the_same_in_all_blocks(void)
+{
+    watched a = play_in_blocks(48), b = play_in_blocks(2400);
+    TEST_ASSERT_TRUE(a.most > 100 && a.most <= MOST_WORK);
+    TEST_ASSERT_EQUAL_INT64(a.work, b.work);
+    TEST_ASSERT_EQUAL_MEMORY(a.p->body->state.tip, b.p->body->state.tip,
+                             sizeof a.p->body->state.tip);
+    himc_performance_free(a.p);
+    himc_performance_free(b.p);
+}
+
 static void test_strokes_that_no_hand_has_room_for_are_played_with_one_line(void)
 {
     static const char *const drum[] = {"place 0.35 0.75 0.82", "place 0.35 -0.80 0.82"};
@@ -248,6 +276,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_hands_crossed_over_two_drums_pass_each_other);
     RUN_TEST(test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand);
+    RUN_TEST(test_planning_is_spread_over_ticks_and_the_same_in_all_blocks);
     RUN_TEST(test_strokes_that_no_hand_has_room_for_are_played_with_one_line);
     RUN_TEST(test_a_tip_passes_its_shoulder_at_a_distance);
     RUN_TEST(test_hands_on_four_drums_pass_each_other);

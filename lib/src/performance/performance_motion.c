@@ -21,7 +21,7 @@
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
 #define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
-// postures a second of the planner's rehearsal; chosen: 5 % of a core, and next to nothing in the
+// postures a second of the planner's rehearsal; chosen: 5 % of a core, and a fifth of that in the
 // steps of a contact, which cost most
 #define WORK 50000.0
 #define BUSY_WORK 10000.0
