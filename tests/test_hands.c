@@ -132,7 +132,7 @@ static void test_stroke_out_of_reach_of_both_is_missed_and_a_note_says_by_how_mu
 // in a loop with a tempo that always changes, each reassigned stroke sounds once
 static void test_reassigned_strokes_are_played_once_however_often_they_are_planned(void)
 {
-    himc_performance *p = with_two_drums(0.2, 0.9);
+    himc_performance *p = with_two_drums(0.2, -0.9);
     heard h = {0};
     session_do(p, "stroke 0 left legato f");
     session_do(p, "stroke 0.06 left legato f side");

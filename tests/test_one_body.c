@@ -4,12 +4,20 @@
 
 #include "performance/performance_state.h"
 
+/// Postures that a tick of 4 ms may rehearse: 50 000 a second, what is left of the tick before, and one
+/// moment more.
+#define MOST_WORK (200 + 16 + 30)
+
 /// A simulated body, and its least gap so far.
 typedef struct watched {
     himc_performance *p;
     double least; ///< (m)
     const himc_capsule_pair *pair;
+    double shell; ///< least gap of a forearm or hand from a drum's shell (m)
     bool avoided; ///< elbows or wrists have been moved
+    long work;    ///< of the planner so far ...
+    long most;    ///< ... and in one tick, at most
+    heard heard;
 } watched;
 
 static void watch(void *user, const himc_motion_row *row)
@@ -24,20 +32,28 @@ static void watch(void *user, const himc_motion_row *row)
         w->least = gap;
         w->pair = pair;
     }
+    for (int part = HIMC_LEFT_FOREARM; part <= HIMC_RIGHT_HAND; part++)
+        for (int i = 0; i < w->p->drums.count; i++) {
+            const himc_head_frame *head = himc_drums_frame(&w->p->drums, i);
+            w->shell = fmin(w->shell, himc_capsule_shell(&capsule[part], head).gap);
+        }
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
         w->avoided = w->avoided || w->p->motion->avoidance.goal[i] != 0;
+    long work = himc_planner_work(w->p->motion->planner);
+    w->most = work - w->work > w->most ? work - w->work : w->most;
+    w->work = work;
 }
 
 /// Drum a is to the left, b to the right.
-static watched begin_score(const char *const *drum, int drums)
+static watched begin_score(const char *const *drum, int drums, double tempo)
 {
-    watched w = {.p = session_new(), .least = INFINITY};
+    watched w = {.p = session_new(), .least = INFINITY, .shell = INFINITY};
     for (int i = 0; i < drums; i++) {
         char name[2] = {(char)('a' + i), 0};
         session_do(w.p, "drum %s", name);
         session_drum(w.p, i, drum[i]);
     }
-    session_do(w.p, "tempo 50");
+    session_do(w.p, "tempo %g", tempo);
     return w;
 }
 
@@ -46,11 +62,15 @@ static void play_score(watched *w, double seconds, int strokes)
     char text[120];
     himc_performance_on_motion(w->p, watch, w);
     session_do(w->p, "play");
-    session_play(w->p, seconds, NULL);
-    TEST_ASSERT_EQUAL_INT(strokes, himc_performance_measure(w->p).played);
+    session_play(w->p, seconds, &w->heard);
+    free(w->heard.strike);
+    if (strokes > 0)
+        TEST_ASSERT_EQUAL_INT(strokes, himc_performance_measure(w->p).played);
     snprintf(text, sizeof text, "%s - %s: %.1f mm", himc_segment_name(w->pair->part),
              himc_segment_name(w->pair->other), 1e3 * w->least);
     TEST_ASSERT_TRUE_MESSAGE(w->least >= 0, text);
+    TEST_ASSERT_TRUE(w->shell >= 0);
+    TEST_ASSERT_TRUE(w->most <= MOST_WORK);
     TEST_ASSERT_TRUE(himc_performance_measure(w->p).tip_rms < 3e-5);
     himc_performance_free(w->p);
 }
@@ -58,23 +78,100 @@ static void play_score(watched *w, double seconds, int strokes)
 static void test_hands_crossed_over_two_drums_pass_each_other(void)
 {
     static const char *const drum[] = {"place 0.55 0.4 0.85", "place 0.55 -0.4 0.85"};
-    watched w = begin_score(drum, 2);
-    for (int i = 0; i < 6; i++) {
-        session_do(w.p, "stroke %g left legato mf normal %s", 1 + 2.0 * i, i % 2 ? "b" : "a");
-        session_do(w.p, "stroke %g right legato mf normal %s", 1.5 + 2 * i, i % 2 ? "a" : "b");
+    static const double tempo[] = {50, 85};
+    for (int k = 0; k < 2; k++) {
+        watched w = begin_score(drum, 2, tempo[k]);
+        for (int i = 0; i < 6; i++) {
+            session_do(w.p, "stroke %g left legato mf normal %s", 1 + 2.0 * i, i % 2 ? "b" : "a");
+            session_do(w.p, "stroke %g right legato mf normal %s", 1.5 + 2 * i, i % 2 ? "a" : "b");
+        }
+        session_do(w.p, "stroke 13 left legato f normal b");
+        session_do(w.p, "stroke 13 right legato f normal a");
+        play_score(&w, 13.5 * 60 / tempo[k] + 2.5, 14);
+        TEST_ASSERT_TRUE(w.avoided);
+        TEST_ASSERT_TRUE(k > 0 || w.heard.notes == 0);
     }
-    session_do(w.p, "stroke 13 left legato f normal b");
-    session_do(w.p, "stroke 13 right legato f normal a");
-    play_score(&w, 19, 14);
-    TEST_ASSERT_TRUE(w.avoided);
+}
+
+static const char *const four_drums[] = {"place 0.35 0.75 0.82", "place 0.72 0.30 0.82",
+                                         "place 0.72 -0.38 0.82", "place 0.35 -0.80 0.82"};
+
+/// Strokes in turn, left and right, on these drums.
+static void add_leaps(const watched *w, double apart, const char *drum)
+{
+    for (int i = 0; drum[i]; i++)
+        session_do(w->p, "stroke %g %s legato mf normal %c", 1 + apart * i,
+                   i % 2 ? "right" : "left", drum[i]);
+}
+
+static void test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand(void)
+{
+    watched w = begin_score(four_drums, 4, 60);
+    add_leaps(&w, 0.225, "cdcdaccd");
+    play_score(&w, 5, 8);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(w.heard.note, "1 by the other hand, 0 given up"),
+                                 w.heard.note);
+}
+
+/// Leaps with a change of tempo and a jump, in blocks of so many samples.
+static watched play_in_blocks(int block)
+{
+    watched w = begin_score(four_drums, 4, 60);
+    add_leaps(&w, 0.225, "cdcdaccdccbdbcbd");
+    himc_performance_on_motion(w.p, watch, &w);
+    session_do(w.p, "play");
+    for (int k = 0; k < 144000; k += block) {
+        if (k == 72000)
+            session_do(w.p, "tempo 75");
+        if (k == 96000)
+            session_do(w.p, "seek 1.5");
+        himc_performance_process(w.p, block, NULL);
+    }
+    return w;
+}
+
+static void test_planning_is_spread_over_ticks_and_the_same_in_all_blocks(void)
+{
+    watched a = play_in_blocks(48), b = play_in_blocks(2400);
+    TEST_ASSERT_TRUE(a.most > 100 && a.most <= MOST_WORK);
+    TEST_ASSERT_EQUAL_INT64(a.work, b.work);
+    TEST_ASSERT_EQUAL_MEMORY(a.p->body->state.tip, b.p->body->state.tip,
+                             sizeof a.p->body->state.tip);
+    himc_performance_free(a.p);
+    himc_performance_free(b.p);
+}
+
+static void test_strokes_that_no_hand_has_room_for_are_played_with_one_line(void)
+{
+    static const char *const drum[] = {"place 0.35 0.75 0.82", "place 0.35 -0.80 0.82"};
+    watched w = begin_score(drum, 2, 60);
+    for (int i = 0; i < 2; i++) {
+        session_do(w.p, "stroke %g right legato mf normal %c", 1.5 + 1.5 * i, i ? 'b' : 'a');
+        session_do(w.p, "stroke %g left legato mf normal %c", 1.5 + 1.5 * i, i ? 'a' : 'b');
+    }
+    session_do(w.p, "play");
+    session_play(w.p, 5.5, &w.heard);
+    free(w.heard.strike);
+    TEST_ASSERT_EQUAL_INT(4, himc_performance_measure(w.p).played);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(w.heard.note, "the hands come too near on the way"),
+                                 w.heard.note);
+    TEST_ASSERT_EQUAL_INT(1, w.heard.notes);
+    himc_performance_free(w.p);
+}
+
+/// From the right to the far left, past the left shoulder, while the right hand is far on the right.
+static void test_a_tip_passes_its_shoulder_at_a_distance(void)
+{
+    watched w = begin_score(NULL, 0, 60);
+    session_do(w.p, "score patches/pieces/tide.txt");
+    session_do(w.p, "seek 84");
+    play_score(&w, 5, 0);
 }
 
 static void test_hands_on_four_drums_pass_each_other(void)
 {
-    static const char *const drum[] = {"place 0.35 0.75 0.82", "place 0.72 0.30 0.82",
-                                       "place 0.72 -0.38 0.82", "place 0.35 -0.80 0.82"};
     static const char left[] = "ababbabcab", right[] = "dcbdcbcddc";
-    watched w = begin_score(drum, 4);
+    watched w = begin_score(four_drums, 4, 50);
     for (int i = 0; i < 10; i++) {
         session_do(w.p, "stroke %g left legato mf normal %c", 2 + 2.0 * i, left[i]);
         session_do(w.p, "stroke %g right accent f normal %c", 3 + 2.0 * i, right[i]);
@@ -86,8 +183,7 @@ static void test_no_joint_whips_where_a_leap_passes_under_the_shoulder(void)
 {
     static const char *const drum[] = {"place 0.251 0.843 0.85", "place 0.832 0.287 0.85",
                                        "place 0.763 -0.439 0.85"};
-    watched w = begin_score(drum, 3);
-    session_do(w.p, "tempo 126");
+    watched w = begin_score(drum, 3, 126);
     session_do(w.p, "stroke 1.5 left legato mf normal b");
     session_do(w.p, "stroke 2 left accent f normal a");
     session_do(w.p, "stroke 2 right accent f normal c");
@@ -105,7 +201,7 @@ static void test_forearms_do_not_pass_through_the_back_for_drums_behind(void)
 {
     static const char *const drum[] = {"place -0.35 0.606 0.85", "place -0.35 -0.606 0.85"};
     for (int side = 0; side < 2; side++) {
-        watched w = begin_score(&drum[side], 1);
+        watched w = begin_score(&drum[side], 1, 50);
         for (int i = 0; i < 4; i++)
             session_do(w.p, "stroke %d %s legato mf", 2 + i, i % 2 ? "right" : "left");
         play_score(&w, 7, 4);
@@ -116,7 +212,7 @@ static void test_forearms_do_not_pass_through_the_back_for_drums_behind(void)
 static void test_where_nothing_is_near_nothing_is_avoided(void)
 {
     static const char *const drum[] = {"place 0.70 0 0.85"};
-    watched w = begin_score(drum, 1);
+    watched w = begin_score(drum, 1, 50);
     for (int i = 0; i < 8; i++)
         session_do(w.p, "stroke %d %s legato mf", 1 + i, i % 2 ? "right" : "left");
     play_score(&w, 11, 8);
@@ -179,6 +275,10 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_hands_crossed_over_two_drums_pass_each_other);
+    RUN_TEST(test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand);
+    RUN_TEST(test_planning_is_spread_over_ticks_and_the_same_in_all_blocks);
+    RUN_TEST(test_strokes_that_no_hand_has_room_for_are_played_with_one_line);
+    RUN_TEST(test_a_tip_passes_its_shoulder_at_a_distance);
     RUN_TEST(test_hands_on_four_drums_pass_each_other);
     RUN_TEST(test_no_joint_whips_where_a_leap_passes_under_the_shoulder);
     RUN_TEST(test_forearms_do_not_pass_through_the_back_for_drums_behind);

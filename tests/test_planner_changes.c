@@ -95,7 +95,7 @@ static void test_hits_at_once_are_played_one_after_the_other(void)
 static void test_stroke_added_before_the_present_beat_is_given_up_once(void)
 {
     add(planner, 4.5, HIMC_LEFT, HIMC_LEGATO, 0.5);
-    add(planner, 5, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    add(planner, 6, HIMC_LEFT, HIMC_LEGATO, 0.5);
     himc_planner_play(planner, 0);
     advance_to(1.95);
     add(planner, 3.2, HIMC_LEFT, HIMC_LEGATO, 0.5);

@@ -15,7 +15,7 @@ static double clamp01(double x)
     return fmin(fmax(x, 0), 1);
 }
 
-double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q)
+himc_capsule_near himc_capsule_nearest(const himc_capsule *p, const himc_capsule *q)
 {
     himc_vec3 d1 = himc_vec3_sub(p->b, p->a), d2 = himc_vec3_sub(q->b, q->a);
     himc_vec3 r = himc_vec3_sub(p->a, q->a);
@@ -29,20 +29,49 @@ double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q)
         s = clamp01((b - c) / a);
     t = clamp01(t);
     himc_vec3 apart = himc_vec3_madd(himc_vec3_madd(r, s, d1), -t, d2);
-    return himc_vec3_length(apart) - p->radius - q->radius;
+    double distance = himc_vec3_length(apart);
+    return (himc_capsule_near){distance - p->radius - q->radius, s, t,
+                               himc_vec3_scale(apart, distance > 0 ? 1 / distance : 0)};
 }
 
-double himc_capsule_shell_gap(const himc_capsule *p, const himc_head_frame *head)
+double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q)
 {
-    double least = INFINITY;
+    return himc_capsule_nearest(p, q).gap;
+}
+
+bool himc_capsule_is_far(const himc_capsule *p, const himc_capsule *q, double gap)
+{
+    himc_vec3 d1 = himc_vec3_sub(p->b, p->a), d2 = himc_vec3_sub(q->b, q->a);
+    himc_vec3 r = himc_vec3_add(himc_vec3_sub(p->a, q->a), himc_vec3_sub(p->b, q->b));
+    double long1 = himc_vec3_dot(d1, d1), long2 = himc_vec3_dot(d2, d2);
+    double reach = 2 * (gap + p->radius + q->radius);
+    // |r| > |d1| + |d2| + reach, the squares bounded by 3 times the sum of squares
+    return himc_vec3_dot(r, r) > 3 * (long1 + long2 + reach * reach);
+}
+
+himc_capsule_near himc_capsule_shell(const himc_capsule *p, const himc_head_frame *head)
+{
+    himc_capsule_near least = {.gap = INFINITY};
+    himc_vec3 up = himc_head_frame_normal(head);
     for (int i = 0; i < SHELL_POINTS; i++) {
         double share = (double)i / (SHELL_POINTS - 1);
         himc_vec3 at = himc_vec3_madd(p->a, share, himc_vec3_sub(p->b, p->a));
-        himc_vec3 local = himc_head_frame_from_world(head, at);
-        double beside = hypot(local.x, local.y) - head->radius, over = local.z;
-        least = fmin(least, beside > 0 && over > 0 ? hypot(beside, over) : fmax(beside, over));
+        himc_vec3 from = himc_vec3_sub(at, head->center);
+        double over = himc_vec3_dot(from, up);
+        himc_vec3 out = himc_vec3_madd(from, -over, up);
+        double far = himc_vec3_length(out), beside = far - head->radius;
+        bool corner = beside > 0 && over > 0;
+        double gap = corner ? hypot(beside, over) : fmax(beside, over);
+        if (gap >= least.gap)
+            continue;
+        least.gap = gap;
+        least.s = share;
+        least.n = himc_vec3_add(
+            himc_vec3_scale(up, corner ? over / gap : over >= beside),
+            himc_vec3_scale(out, (corner ? beside / gap : beside > over) / fmax(far, 1e-9)));
     }
-    return least - p->radius;
+    least.gap -= p->radius;
+    return least;
 }
 
 void himc_capsules_of(const himc_skeleton *skeleton, const himc_body_state *s,

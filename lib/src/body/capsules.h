@@ -19,9 +19,21 @@ typedef struct himc_capsule {
 /// segments after Ericson 2005, section 5.1.9.
 HIMC_RT double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q);
 
-/// Distance of a capsule from a drum's shell (m), the cylinder under its head; exact at eight points
-/// along the capsule.
-HIMC_RT double himc_capsule_shell_gap(const himc_capsule *p, const himc_head_frame *head);
+/// Where a capsule comes nearest to something.
+typedef struct himc_capsule_near {
+    double gap;  ///< of the surfaces (m), negative if they overlap
+    double s, t; ///< of the nearest points, from a to b of the one and of the other (0 .. 1)
+    himc_vec3 n; ///< unit vector from the other to the one
+} himc_capsule_near;
+
+HIMC_RT himc_capsule_near himc_capsule_nearest(const himc_capsule *p, const himc_capsule *q);
+
+/// True only if the gap is larger (m); cheaper, and often false where it is, too.
+HIMC_RT bool himc_capsule_is_far(const himc_capsule *p, const himc_capsule *q, double gap);
+
+/// A capsule and a drum's shell, the cylinder under its head; exact at eight points along the
+/// capsule.
+HIMC_RT himc_capsule_near himc_capsule_shell(const himc_capsule *p, const himc_head_frame *head);
 
 /// The capsules of the segments of a state; a stick ends at its mallet's centre.
 HIMC_RT void himc_capsules_of(const himc_skeleton *skeleton, const himc_body_state *state,
@@ -37,6 +49,16 @@ typedef struct himc_capsule_pair {
 #define HIMC_CAPSULE_PAIRS 46
 #define HIMC_CAPSULE_ARM_PAIRS 16 ///< the first ones: of the two arms
 extern const himc_capsule_pair himc_capsule_pairs[HIMC_CAPSULE_PAIRS];
+
+/// Least gaps of a posture (m); far parts are not counted.
+typedef struct himc_clearance {
+    double sticks;             ///< between a stick and the other arm or its stick
+    double body;               ///< of all other pairs
+    double beyond;             ///< distance of a tip out of reach
+    double folded[HIMC_HANDS]; ///< horizontal distance of each tip from its shoulder
+    int order;                 ///< of crossed arms: 1 the left one is above, -1 below, 0 none
+    int work;                  ///< postures that were looked at
+} himc_clearance;
 
 /// The least gap of all pairs (m), and the pair.
 HIMC_RT double himc_capsules_least(const himc_capsule capsule[HIMC_SEGMENTS],

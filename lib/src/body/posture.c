@@ -59,6 +59,7 @@
 #define TURN_LIMIT 1.05         // (rad)
 #define ARM_POSTURE_RATE 40.0   // chosen: a quarter of a second for elbow and wrist (rad/s)
 #define TRUNK_POSTURE_RATE 11.0 // chosen: half a second from drum to drum (rad/s)
+#define FORESEEN_LONGEST 6.0    // after so long the trunk is at its goal (s)
 // Rest of the body. Chosen: looks at a head half a metre ahead, sits with the feet flat.
 #define LOOK_DOWN 0.22     // of neck and head together (rad)
 #define ANKLE_HEIGHT 0.075 // (m)
@@ -73,6 +74,7 @@
 // A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
 #define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
 #define REACHED_ABOVE 0.1  // above the level of impact (m)
+#define PROBE 1e-4         // of the moves of an arm (rad)
 #define GRIP_STEPS 60      // of himc_posture_tip_of_grip; chosen: to a millimetre in French grip
 #define BISECTIONS 40      // chosen: to 1e-12 of the distance
 
@@ -157,11 +159,17 @@ himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
 himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
                                                const himc_trunk_posture *goal, double time)
 {
-    // the step response of critically damped motion of third order; beyond 60 / w it is over
-    double wt = fmin(TRUNK_POSTURE_RATE * time, 60), left = exp(-wt) * (1 + wt + 0.5 * wt * wt);
+    // e = x - goal = (e + (v + w e) t + (a + 2 w v + w^2 e) t^2 / 2) exp(-w t); in the end it is 0
+    double w = TRUNK_POSTURE_RATE, t = fmin(time, FORESEEN_LONGEST), fade = exp(-w * t);
     himc_trunk_posture then = *goal;
-    for (int i = 0; i < HIMC_TRUNK_POSTURE_ELBOW; i++)
-        then.value[i] += left * (now->value[i] - goal->value[i]);
+    for (int i = 0; i < HIMC_TRUNK_POSTURE_ELBOW; i++) {
+        double e = now->value[i] - goal->value[i], b = now->rate[i] + w * e,
+               c = now->acceleration[i] + 2 * w * now->rate[i] + w * w * e;
+        double p = e + t * (b + 0.5 * t * c), v = b + t * c;
+        then.value[i] += fade * p;
+        then.rate[i] = fade * (v - w * p);
+        then.acceleration[i] = fade * (c + w * (w * p - 2 * v));
+    }
     return then;
 }
 
@@ -176,7 +184,12 @@ typedef struct arm {
     double turn, french; // of the trunk (rad); share of the French grip
     double out, raise;   // of elbow and wrist beyond the usual (rad)
     double aside;        // wrist to the left about the tip (rad)
-    himc_vec3 shoulder, elbow, wrist, grip, tip;
+    union {
+        himc_vec3 point[HIMC_ARM_POINTS];
+        struct {
+            himc_vec3 shoulder, elbow, wrist, grip, tip;
+        };
+    };
     himc_vec3 stick, hand, side; // unit vectors; side is the flexion axis of wrist and grip
 } arm;
 
@@ -330,20 +343,42 @@ static himc_capsule reach_to(const himc_posture *posture, int segment, himc_vec3
     return (himc_capsule){from, to, posture->skeleton.segment[segment].radius};
 }
 
+static double solve_arm(const himc_posture *posture, himc_hand hand, himc_vec3 tip, arm *a)
+{
+    solve_wrist(posture, hand, tip, a);
+    himc_vec3 wrist = a->wrist;
+    double missing = solve_elbow(posture, hand, a);
+    a->wrist = wrist; // the hand's own, in reach or not
+    return missing;
+}
+
 static double arm_capsules(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
                            himc_capsule *capsule)
 {
     arm a = arm_of(posture, hand);
-    solve_wrist(posture, hand, tip, &a);
-    himc_vec3 wrist = a.wrist;
-    double missing = solve_elbow(posture, hand, &a);
-    himc_vec3 joint[] = {a.shoulder, a.elbow, wrist, a.grip, tip};
+    double missing = solve_arm(posture, hand, tip, &a);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int i = himc_arm_joint(hand, k) + 1;
-        capsule[i] = reach_to(posture, i, joint[k], joint[k + 1]);
+        capsule[i] = reach_to(posture, i, a.point[k], a.point[k + 1]);
     }
     capsule[himc_stick_segment(hand)].radius = HIMC_ROD_RADIUS;
     return missing;
+}
+
+himc_arm_moves himc_posture_arm_moves(const himc_posture *posture, himc_hand hand, himc_vec3 tip)
+{
+    himc_arm_moves moves;
+    arm here = arm_of(posture, hand), a = here;
+    moves.beyond = solve_arm(posture, hand, tip, &a);
+    for (int i = 0; i < HIMC_ARM_ANGLES; i++) {
+        arm b = here;
+        double probe = i == 2 && hand == HIMC_RIGHT ? -PROBE : PROBE;
+        *(i == 0 ? &b.out : i == 1 ? &b.raise : &b.aside) += probe;
+        moves.missing[i] = (solve_arm(posture, hand, tip, &b) - moves.beyond) / PROBE;
+        for (int k = 0; k < HIMC_ARM_POINTS; k++)
+            moves.by[i][k] = himc_vec3_scale(himc_vec3_sub(b.point[k], a.point[k]), 1 / PROBE);
+    }
+    return moves;
 }
 
 double himc_posture_capsules(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],

@@ -69,8 +69,8 @@ HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS]
 HIMC_RT himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
                                                        const himc_trunk_posture *goal, double dt);
 
-/// Where that motion will be after `time` (s, may be infinite) from rest; elbows and wrists are at
-/// the goal.
+/// Where the trunk will be in that motion after `time` (s, may be infinite); elbows and wrists are
+/// at the goal.
 HIMC_RT himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
                                                        const himc_trunk_posture *goal, double time);
 
@@ -89,6 +89,22 @@ HIMC_RT void himc_posture_moving(const himc_posture *posture, const himc_target 
 /// Returns the larger distance of a tip out of reach (m).
 HIMC_RT double himc_posture_capsules(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],
                                      himc_capsule capsule[HIMC_SEGMENTS]);
+
+/// Shoulder, elbow, wrist, grip and tip of an arm.
+#define HIMC_ARM_POINTS (HIMC_ARM_JOINTS + 1)
+/// The angles that move an arm while its tip stays: elbow, wrist and aside of the trunk posture.
+#define HIMC_ARM_ANGLES 3
+
+/// How the points of an arm move with those angles.
+typedef struct himc_arm_moves {
+    himc_vec3 by[HIMC_ARM_ANGLES][HIMC_ARM_POINTS]; ///< (m/rad)
+    double beyond;                                  ///< distance of the tip out of reach (m) ...
+    double missing[HIMC_ARM_ANGLES];                ///< ... and how it grows (m/rad)
+} himc_arm_moves;
+
+/// The moves of one arm, by differences.
+HIMC_RT himc_arm_moves himc_posture_arm_moves(const himc_posture *posture, himc_hand hand,
+                                              himc_vec3 tip);
 
 /// A point near `tip` (m) that the arm of `hand` reaches when the trunk is turned towards it: `tip`
 /// itself if it is in reach, else the farthest reachable point on the line to it.

@@ -2,8 +2,10 @@
 ///
 /// With the tip held, an arm still turns about the line from shoulder to wrist, and hand and stick
 /// turn about the tip, up and aside. These six angles g of both arms descend the potential
-///     F(g) = sum over pairs (D - gap)+^2 / (2 D)
-/// of the gaps below D, summed over the postures foreseen: dg/dt = -K dF/dg - g / T. So they are
+///     F(g) = sum over pairs (D - gap)+^3 / (3 D^2)
+/// of the gaps below D, summed over the postures foreseen: dg/dt = -K dF/dg - g / T. Each gap below
+/// D pushes on the joints beside its nearest points, along the line between these; dF/dg is the
+/// work of all pushes (virtual work). So the angles are
 /// constant zero while nothing is nearer than D, and the posture has the same bits as without. The
 /// body follows by a motion of third order (posture.h), so accelerations have no jumps. The tips'
 /// errors do not change: all of this is the null-space target. The sticks themselves are kept apart
@@ -21,16 +23,26 @@
 #define FOLDED \
     0.20 // wrist from shoulder (m); chosen: nearer, a small way of the wrist swings the elbow
 #define LARGEST_LACK (-0.08) // of crossed parts in the wrong order (m); chosen: all is pushed alike
+#define LEVEL 0.5            // of the vertical: parts beside each other are in no order
 #define DESCENT 20.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second
 #define RETURN_TIME 2.0 // T (s); chosen: long, so that the goal rests 5 mm inside D
 #define LEAST_GOAL 1e-3 // a smaller goal of a clear body is 0 (rad)
-#define PROBE 1e-3      // of the gradient (rad)
-#define LONGEST_STEP 0.012 // (s); chosen: K dt stays below 1 / |F''|
-#define FASTEST 8.0        // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
+#define LONGEST_STEP 0.012   // (s); chosen: K dt stays below 1 / |F''|
+#define FASTEST 8.0          // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
+#define REHEARSED 200.0      // steps a second of a rehearsal; chosen: the body then is as quick
+#define FIRST_REHEARSED 5    // at its beginning
+#define REHEARSED_STEP 0.024 // of a single posture (s); chosen: as LONGEST_STEP, of fewer postures
+#define DESCENT_WORK (1 + HIMC_ARM_ANGLES) // postures of a descent
 // limits of the three angles of an arm; chosen: what shoulders and wrists allow
-static const double least[HIMC_AVOIDANCE_PARTS / HIMC_HANDS] = {-0.5, -0.4, -0.6},
-                                                 most[HIMC_AVOIDANCE_PARTS / HIMC_HANDS] = {
-                                                     1.5, 1.0, 1.0};
+static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.4, -0.6},
+                    most[HIMC_ARM_ANGLES] = {1.5, 1.0, 1.0};
+
+/// What is near in one posture: its pushes on the points of the arms, and the least gaps.
+typedef struct field {
+    himc_vec3 push[HIMC_HANDS][HIMC_ARM_POINTS]; // -dF/dx
+    bool pushed;
+    himc_clearance clear;
+} field;
 
 static void put(const double *angle, himc_trunk_posture *trunk)
 {
@@ -42,51 +54,120 @@ void himc_avoidance_apply(const himc_avoidance *a, himc_trunk_posture *goal)
     put(a->goal, goal);
 }
 
-static double cost_of(double gap, double near)
-{
-    double lack = fmax(near - gap, 0);
-    return lack * lack / (2 * near);
-}
-
-static double foreseen_capsules(const himc_posture *posture, const himc_foreseen *f,
-                                const double *angle, himc_capsule capsule[HIMC_SEGMENTS])
+static himc_posture foreseen_posture(const himc_avoidance *a, const himc_posture *posture,
+                                     const himc_foreseen *f)
 {
     himc_posture then = *posture;
     then.trunk_posture = f->trunk;
-    put(angle, &then.trunk_posture);
-    return himc_posture_capsules(&then, f->tip, capsule);
+    put(a->goal, &then.trunk_posture);
+    return then;
 }
 
-// true if two parts cross as seen from above; `over` is the height of the first over the second (m)
-static bool crosses(const himc_capsule *p, const himc_capsule *q, double *over)
+// true if two parts cross as seen from above; then n is the vertical
+static bool crosses(const himc_capsule *p, const himc_capsule *q, himc_capsule_near *near)
 {
     himc_vec3 d = himc_vec3_sub(p->b, p->a), e = himc_vec3_sub(q->b, q->a);
     himc_vec3 r = himc_vec3_sub(q->a, p->a);
     double across = d.x * e.y - d.y * e.x;
     double s = (r.x * e.y - r.y * e.x) / across, t = (r.x * d.y - r.y * d.x) / across;
-    *over = p->a.z + s * d.z - q->a.z - t * e.z;
+    double over = p->a.z + s * d.z - q->a.z - t * e.z;
+    *near = (himc_capsule_near){over, s, t, {0, 0, 1}};
     return s >= 0 && s <= 1 && t >= 0 && t <= 1; // false where they are parallel
 }
 
 // the order of two arms that cross beyond the elbows, 0 if they do not
 static int order_of(const himc_capsule capsule[HIMC_SEGMENTS])
 {
-    double over;
+    himc_capsule_near near;
     for (int i = HIMC_ARM_JOINTS; i < HIMC_CAPSULE_ARM_PAIRS; i++) {
         himc_capsule_pair p = himc_capsule_pairs[i];
-        if (p.other > HIMC_RIGHT_UPPER_ARM && crosses(&capsule[p.part], &capsule[p.other], &over))
-            return over > 0 ? 1 : -1;
+        if (p.other > HIMC_RIGHT_UPPER_ARM && crosses(&capsule[p.part], &capsule[p.other], &near))
+            return near.gap > 0 ? 1 : -1;
     }
     return 0;
 }
 
-// the gap of two parts of the arms, counted downwards from the right order if they cross
-static double arm_gap(const himc_capsule *p, const himc_capsule *q, int order)
+// pushes a part of an arm at a share of its length; other parts do not give way
+static void push(field *f, int part, double share, double size, himc_vec3 n)
 {
-    double over;
-    if (order != 0 && crosses(p, q, &over))
-        return fmax(order * over - p->radius - q->radius, LARGEST_LACK);
-    return himc_capsule_gap(p, q);
+    int k = part - HIMC_LEFT_UPPER_ARM;
+    if (k < 0 || k >= HIMC_HANDS * HIMC_ARM_JOINTS)
+        return;
+    himc_vec3 *at = &f->push[k % HIMC_HANDS][k / HIMC_HANDS];
+    at[0] = himc_vec3_madd(at[0], size * (1 - share), n);
+    at[1] = himc_vec3_madd(at[1], size * share, n);
+    f->pushed = true;
+}
+
+static void push_apart(field *f, himc_capsule_pair pair, const himc_capsule_near *near, double D)
+{
+    double size = (D - near->gap) / D;
+    if (size <= 0)
+        return;
+    size *= size;
+    push(f, pair.part, near->s, size, near->n);
+    push(f, pair.other, near->t, -size, near->n);
+}
+
+// of crossed parts the gap is counted downwards from the right order
+static void push_arms(field *f, himc_capsule_pair pair, const himc_capsule *p,
+                      const himc_capsule *q, himc_capsule_near near, int order)
+{
+    himc_capsule_near crossed;
+    if (order != 0 && crosses(p, q, &crossed)) {
+        crossed.gap = fmax(order * crossed.gap - p->radius - q->radius, LARGEST_LACK);
+        crossed.n.z = order;
+        near = crossed;
+    }
+    push_apart(f, pair, &near, NEAR_ARM);
+}
+
+static bool is_stick(int part)
+{
+    return part == HIMC_LEFT_STICK || part == HIMC_RIGHT_STICK;
+}
+
+static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS], int order)
+{
+    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
+        himc_capsule_pair pair = himc_capsule_pairs[i];
+        const himc_capsule *p = &capsule[pair.part], *q = &capsule[pair.other];
+        bool arms = i < HIMC_CAPSULE_ARM_PAIRS,
+             sticks = is_stick(pair.part) || is_stick(pair.other);
+        if (himc_capsule_is_far(p, q, arms ? NEAR_ARM : NEAR_BODY) && (!arms || order == 0))
+            continue;
+        himc_capsule_near near = himc_capsule_nearest(p, q);
+        if (!arms || !sticks)
+            f->clear.body = fmin(f->clear.body, near.gap);
+        else if (near.gap < f->clear.sticks) {
+            f->clear.sticks = near.gap;
+            f->clear.order = fabs(near.n.z) > LEVEL ? (near.n.z > 0 ? 1 : -1) : 0;
+        }
+        if (!arms)
+            push_apart(f, pair, &near, NEAR_BODY);
+        else if (!(is_stick(pair.part) && is_stick(pair.other)))
+            push_arms(f, pair, p, q, near, order);
+    }
+}
+
+// arms off the drums' shells, but a hand may lie on a head; sticks are the plan's
+static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
+                           const himc_shells *shells)
+{
+    for (int i = 0; i < shells->count; i++)
+        for (int part = HIMC_LEFT_FOREARM; part <= HIMC_RIGHT_HAND; part++) {
+            const himc_capsule *p = &capsule[part];
+            himc_vec3 middle = himc_vec3_madd(p->b, 0.5, himc_vec3_sub(p->a, p->b));
+            himc_vec3 away = himc_vec3_sub(middle, shells->head[i]->center);
+            double half = 0.5 * himc_vec3_length(himc_vec3_sub(p->a, p->b));
+            if (hypot(away.x, away.y) > shells->head[i]->radius + half + p->radius + NEAR_BODY ||
+                away.z > shells->head[i]->radius + half + p->radius + NEAR_BODY)
+                continue;
+            himc_capsule_near near = himc_capsule_shell(p, shells->head[i]);
+            if (part >= HIMC_LEFT_HAND && near.n.z > LEVEL)
+                continue;
+            push_apart(f, (himc_capsule_pair){(unsigned char)part, HIMC_PELVIS}, &near, NEAR_BODY);
+        }
 }
 
 static bool is_active(const himc_avoidance *a)
@@ -97,39 +178,54 @@ static bool is_active(const himc_avoidance *a)
     return active;
 }
 
-// F of a posture
-static double potential(const himc_avoidance *a, const himc_capsule capsule[HIMC_SEGMENTS],
-                        double missing)
+// arms that avoid something are not folded up
+static void unfold(field *f, const himc_capsule capsule[HIMC_SEGMENTS], bool active)
 {
-    double sum = cost_of(NEAR_BODY - missing, NEAR_BODY);
-    for (int hand = 0; is_active(a) && hand < HIMC_HANDS; hand++) {
-        himc_vec3 shoulder = capsule[HIMC_LEFT_UPPER_ARM + hand].a;
-        himc_vec3 wrist = capsule[HIMC_LEFT_HAND + hand].a;
-        sum += cost_of(himc_vec3_length(himc_vec3_sub(wrist, shoulder)) - FOLDED, NEAR_ARM);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 way =
+            himc_vec3_sub(capsule[HIMC_LEFT_HAND + hand].a, capsule[HIMC_LEFT_UPPER_ARM + hand].a);
+        double gap = himc_vec3_length(way) - FOLDED, lack = NEAR_ARM - gap;
+        himc_vec3 to_tip =
+            himc_vec3_sub(capsule[HIMC_LEFT_STICK + hand].b, capsule[HIMC_LEFT_UPPER_ARM + hand].a);
+        f->clear.folded[hand] = hypot(to_tip.x, to_tip.y);
+        if (lack > 0 && active)
+            push(f, HIMC_LEFT_HAND + hand, 0, lack / NEAR_ARM, himc_vec3_unit(way));
     }
-    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
-        himc_capsule_pair pair = himc_capsule_pairs[i];
-        const himc_capsule *p = &capsule[pair.part], *q = &capsule[pair.other];
-        bool sticks = pair.part == HIMC_LEFT_STICK && pair.other == HIMC_RIGHT_STICK;
-        if (i >= HIMC_CAPSULE_ARM_PAIRS)
-            sum += cost_of(himc_capsule_gap(p, q), NEAR_BODY);
-        else if (!sticks)
-            sum += cost_of(arm_gap(p, q, a->order), NEAR_ARM);
-    }
-    return sum;
 }
 
-static void add_descent(const himc_avoidance *a, const himc_posture *posture,
-                        const himc_foreseen *f, double here, double rate[HIMC_AVOIDANCE_PARTS])
+static field field_of(const himc_avoidance *a, const himc_capsule capsule[HIMC_SEGMENTS],
+                      const himc_shells *shells)
 {
-    himc_capsule capsule[HIMC_SEGMENTS];
-    double angle[HIMC_AVOIDANCE_PARTS];
-    memcpy(angle, a->goal, sizeof angle);
+    field f = {.clear = {.sticks = INFINITY, .body = INFINITY}};
+    unfold(&f, capsule, is_active(a));
+    push_pairs(&f, capsule, a->order);
+    push_off_drums(&f, capsule, shells);
+    return f;
+}
+
+// -K dF/dg of a posture
+static void add_descent(const himc_posture *then, const himc_foreseen *foreseen, const field *f,
+                        double rate[HIMC_AVOIDANCE_PARTS])
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_arm_moves moves = himc_posture_arm_moves(then, (himc_hand)hand, foreseen->tip[hand]);
+        for (int i = 0; i < HIMC_ARM_ANGLES; i++) {
+            double work = -moves.beyond * moves.missing[i] / NEAR_BODY;
+            for (int k = 0; k < HIMC_ARM_POINTS; k++)
+                work += himc_vec3_dot(f->push[hand][k], moves.by[i][k]);
+            rate[i * HIMC_HANDS + hand] += DESCENT * work;
+        }
+    }
+}
+
+static void step(himc_avoidance *a, const double rate[HIMC_AVOIDANCE_PARTS], double dt)
+{
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++) {
-        angle[i] += PROBE;
-        double missing = foreseen_capsules(posture, f, angle, capsule);
-        rate[i] -= DESCENT * (potential(a, capsule, missing) - here) / PROBE;
-        angle[i] = a->goal[i];
+        bool clear = rate[i] == 0;
+        double more = fmin(fmax(rate[i], -FASTEST), FASTEST) - a->goal[i] / RETURN_TIME;
+        double goal = a->goal[i] + dt * more;
+        goal = fmin(fmax(goal, least[i / HIMC_HANDS]), most[i / HIMC_HANDS]);
+        a->goal[i] = clear && fabs(goal) < LEAST_GOAL ? 0 : goal;
     }
 }
 
@@ -138,31 +234,53 @@ static void add_descent(const himc_avoidance *a, const himc_posture *posture,
 static void foresee_order(himc_avoidance *a, himc_capsule capsule[HIMC_FORESEEN][HIMC_SEGMENTS])
 {
     int order = 0;
-    for (int i = 0; i < HIMC_FORESEEN - 1 && order == 0; i++)
+    for (int i = 0; i < HIMC_FORESEEN && order == 0; i++)
         order = order_of(capsule[i]);
     if (order == 0 || a->order == 0)
         a->order = order;
 }
 
 void himc_avoidance_update(himc_avoidance *a, const himc_posture *posture,
-                           const himc_foreseen foreseen[HIMC_FORESEEN], double dt)
+                           const himc_shells *shells, const himc_foreseen foreseen[HIMC_FORESEEN],
+                           double dt)
 {
     himc_capsule capsule[HIMC_FORESEEN][HIMC_SEGMENTS];
     double rate[HIMC_AVOIDANCE_PARTS] = {0}, missing[HIMC_FORESEEN];
-    dt = fmin(dt, LONGEST_STEP);
-    for (int k = 0; k < HIMC_FORESEEN; k++)
-        missing[k] = foreseen_capsules(posture, &foreseen[k], a->goal, capsule[k]);
+    himc_posture then;
+    for (int k = 0; k < HIMC_FORESEEN; k++) {
+        then = foreseen_posture(a, posture, &foreseen[k]);
+        missing[k] = himc_posture_capsules(&then, foreseen[k].tip, capsule[k]);
+    }
     foresee_order(a, capsule);
     for (int k = 0; k < HIMC_FORESEEN; k++) {
-        double here = potential(a, capsule[k], missing[k]);
-        if (here > 0)
-            add_descent(a, posture, &foreseen[k], here, rate);
+        field f = field_of(a, capsule[k], shells);
+        if (!f.pushed && missing[k] == 0)
+            continue;
+        then = foreseen_posture(a, posture, &foreseen[k]);
+        add_descent(&then, &foreseen[k], &f, rate);
     }
-    for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++) {
-        bool clear = rate[i] == 0;
-        double more = fmin(fmax(rate[i], -FASTEST), FASTEST) - a->goal[i] / RETURN_TIME;
-        double goal = a->goal[i] + dt * more;
-        goal = fmin(fmax(goal, least[i / HIMC_HANDS]), most[i / HIMC_HANDS]);
-        a->goal[i] = clear && fabs(goal) < LEAST_GOAL ? 0 : goal;
+    step(a, rate, fmin(dt, LONGEST_STEP));
+}
+
+himc_clearance himc_avoidance_rehearse(himc_avoidance *a, const himc_posture *posture,
+                                       const himc_shells *shells, const himc_foreseen *foreseen,
+                                       double dt)
+{
+    himc_capsule capsule[HIMC_SEGMENTS];
+    int steps = dt < 0 ? FIRST_REHEARSED : (int)ceil(REHEARSED * dt), work = 1;
+    for (int i = 0;; i++, work += 1 + DESCENT_WORK) {
+        himc_posture then = foreseen_posture(a, posture, foreseen);
+        double missing = himc_posture_capsules(&then, foreseen->tip, capsule),
+               rate[HIMC_AVOIDANCE_PARTS] = {0};
+        int order = order_of(capsule);
+        if (order == 0 || a->order == 0)
+            a->order = order;
+        field f = field_of(a, capsule, shells);
+        f.clear.beyond = missing;
+        f.clear.work = work;
+        if (i == steps || (!f.pushed && missing == 0))
+            return f.clear;
+        add_descent(&then, foreseen, &f, rate);
+        step(a, rate, REHEARSED_STEP);
     }
 }

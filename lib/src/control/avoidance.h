@@ -5,7 +5,7 @@
 #include "body/posture.h"
 
 /// Elbow out, wrist up and wrist aside of each hand: the parts of the posture that make room.
-#define HIMC_AVOIDANCE_PARTS (3 * HIMC_HANDS)
+#define HIMC_AVOIDANCE_PARTS (HIMC_ARM_ANGLES * HIMC_HANDS)
 
 typedef struct himc_avoidance {
     double goal[HIMC_AVOIDANCE_PARTS]; ///< beyond the usual posture (rad); all 0: nothing is near
@@ -18,12 +18,26 @@ typedef struct himc_foreseen {
     himc_trunk_posture trunk;
 } himc_foreseen;
 
-#define HIMC_FORESEEN 6 ///< postures looked at; chosen: half a second in steps of a tenth
+#define HIMC_FORESEEN 4 ///< postures looked at; chosen: half a second in steps of a tenth
+
+/// The drums.
+typedef struct himc_shells {
+    const himc_head_frame *head[HIMC_DRUMS];
+    int count;
+} himc_shells;
 
 /// Moves the goal during `dt` (s) so that the foreseen postures come clear, or back to 0 when they
 /// are. All are in the order of time but the last, which has none: the next strokes.
 HIMC_RT void himc_avoidance_update(himc_avoidance *avoidance, const himc_posture *posture,
+                                   const himc_shells *shells,
                                    const himc_foreseen foreseen[HIMC_FORESEEN], double dt);
+
+/// Moves the goal as it will be when that posture has come `dt` after the one before (s; negative:
+/// it is the first), and returns the gaps then.
+HIMC_RT himc_clearance himc_avoidance_rehearse(himc_avoidance *avoidance,
+                                               const himc_posture *posture,
+                                               const himc_shells *shells,
+                                               const himc_foreseen *foreseen, double dt);
 
 /// Puts the goal into a trunk posture's values.
 HIMC_RT void himc_avoidance_apply(const himc_avoidance *avoidance, himc_trunk_posture *goal);

@@ -136,6 +136,7 @@ static void performance_step(himc_performance *p)
     }
     if (tick)
         himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t));
+    himc_motion_think(p->motion, h, himc_contacts_any(&p->contacts));
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
     if (p->settings.control.mode == HIMC_PIPELINE_IK)

@@ -21,6 +21,10 @@
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
 #define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
+// postures a second of the planner's rehearsal; chosen: 5 % of a core, and a fifth of that in the
+// steps of a contact, which cost most
+#define WORK 50000.0
+#define BUSY_WORK 10000.0
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8   // postures in that mean
@@ -49,30 +53,34 @@ static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
     return himc_vec3_length(himc_vec3_sub(place, himc_posture_reachable(posture, hand, place)));
 }
 
-// least gap of each stick from the other arm and its stick
-static double sticks_gap(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS])
-{
-    himc_capsule capsule[HIMC_SEGMENTS];
-    double least = INFINITY;
-    himc_posture_capsules(posture, tip, capsule);
-    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
-        himc_capsule_pair p = himc_capsule_pairs[i];
-        bool arms = p.other >= HIMC_LEFT_UPPER_ARM && p.other <= HIMC_RIGHT_STICK;
-        if (arms && (p.part == HIMC_LEFT_STICK || p.other == HIMC_RIGHT_STICK))
-            least = fmin(least, himc_capsule_gap(&capsule[p.part], &capsule[p.other]));
-    }
-    return least;
-}
+// what a rehearsal remembers
+typedef struct rehearsed {
+    himc_avoidance avoidance;
+    himc_trunk_posture trunk;
+} rehearsed;
 
-// the same whether the trunk is still as now or has turned to the tips
-static double hands_gap(const void *body, const himc_vec3 tip[HIMC_HANDS])
+_Static_assert(sizeof(rehearsed) <= sizeof(himc_rehearsed), "himc_rehearsed has no room");
+
+// Gaps at a moment of the plan, with trunk, elbows and wrists where they will have moved by then.
+static himc_clearance rehearse(const void *motion, const himc_moment *at, himc_rehearsed *state)
 {
-    himc_posture posture = *(const himc_posture *)body;
-    himc_trunk_posture towards = himc_posture_trunk(tip, HIMC_GRIP_GERMAN);
-    double now = sticks_gap(&posture, tip);
-    for (int i = 0; i <= HIMC_TRUNK_POSTURE_LEAN; i++)
-        posture.trunk_posture.value[i] = towards.value[i];
-    return fmin(now, sticks_gap(&posture, tip));
+    const performance_motion *m = motion;
+    rehearsed r;
+    himc_foreseen then = {.tip = {at->tip[HIMC_LEFT], at->tip[HIMC_RIGHT]}};
+    memcpy(&r, state, sizeof r);
+    if (at->after < 0) {
+        r.avoidance = m->avoidance;
+        r.trunk = himc_trunk_posture_foreseen(&m->course.from, &m->course.goal,
+                                              fmax(at->time - m->course.time, 0));
+    }
+    himc_trunk_posture goal = himc_posture_trunk(at->place, m->grip);
+    if (at->after > 0)
+        r.trunk = himc_trunk_posture_approach(&r.trunk, &goal, fmin(at->after, TRUNK_STEP));
+    then.trunk = r.trunk;
+    himc_clearance clear =
+        himc_avoidance_rehearse(&r.avoidance, &m->posture, &m->shells, &then, at->after);
+    memcpy(state, &r, sizeof r);
+    return clear;
 }
 
 performance_motion *himc_motion_new(himc_error *error)
@@ -85,8 +93,9 @@ performance_motion *himc_motion_new(himc_error *error)
     }
     planning.mallet_radius = himc_skeleton_default().mallet_radius;
     planning.beyond = beyond_reach;
-    planning.gap = hands_gap;
     planning.body = &m->posture;
+    planning.rehearse = rehearse;
+    planning.motion = m;
     m->planner = himc_planner_new(&planning, error);
     if (!m->planner) {
         free(m);
@@ -332,17 +341,17 @@ static void damp(performance_motion *m, const performance_drums *drums, double t
 // keeps the planned tips of the next half second and the next strokes clear of the body
 static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
 {
-    static const double ahead[HIMC_FORESEEN] = {0.06, 0.13, 0.21, 0.3, 0.4, INFINITY};
+    static const double ahead[HIMC_FORESEEN] = {0.045, 0.08, 0.12, 0.17};
     himc_foreseen f[HIMC_FORESEEN];
     if (t - m->avoided >= AVOIDANCE_PERIOD) {
         for (int k = 0; k < HIMC_FORESEEN; k++) {
             f[k].trunk = himc_trunk_posture_foreseen(&m->course.from, &m->course.goal, ahead[k]);
             for (int hand = 0; hand < HIMC_HANDS; hand++)
-                f[k].tip[hand] = k < HIMC_FORESEEN - 1
+                f[k].tip[hand] = isfinite(ahead[k])
                                      ? himc_motion_planned(m, (himc_hand)hand, t + ahead[k]).x
                                      : place[hand];
         }
-        himc_avoidance_update(&m->avoidance, &m->posture, f, t - m->avoided);
+        himc_avoidance_update(&m->avoidance, &m->posture, &m->shells, f, t - m->avoided);
         m->avoided = t;
     }
     himc_avoidance_apply(&m->avoidance, &m->course.goal);
@@ -481,6 +490,10 @@ static void fill_tick(performance_motion *m, const performance_settings *s, himc
 void himc_motion_read_task(performance_motion *m, const performance_settings *s,
                            const performance_drums *drums, double t, double next)
 {
+    m->grip = s->grip;
+    m->shells.count = drums->count;
+    for (int i = 0; i < drums->count; i++)
+        m->shells.head[i] = himc_drums_frame(drums, i);
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
     if (s->alive && !m->track)
@@ -493,6 +506,11 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
     fill_tick(m, s, &m->to, next);
     himc_setpoint_course_make(&m->between, &m->from, &m->to);
     m->replan = false;
+}
+
+void himc_motion_think(performance_motion *m, double h, bool busy)
+{
+    himc_planner_think(m->planner, h * (busy ? BUSY_WORK : WORK));
 }
 
 void himc_motion_interpolate(performance_motion *m, double t)
@@ -520,7 +538,7 @@ static void begin_clear(performance_motion *m, const performance_settings *s, do
         f[k] = f[0];
     m->avoidance = (himc_avoidance){{0}, 0};
     for (int i = 0; i < CLEARING_STEPS; i++)
-        himc_avoidance_update(&m->avoidance, &m->posture, f, AVOIDANCE_PERIOD);
+        himc_avoidance_update(&m->avoidance, &m->posture, &m->shells, f, AVOIDANCE_PERIOD);
     m->course.goal = f[0].trunk;
     himc_avoidance_apply(&m->avoidance, &m->course.goal);
     m->course.from = m->course.goal;

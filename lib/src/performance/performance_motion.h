@@ -60,6 +60,8 @@ typedef struct performance_motion {
     himc_avoidance avoidance;
     himc_damping damping;
     double avoided;     ///< time of its last update (s)
+    himc_shells shells; ///< the drums at the last tick
+    himc_grip grip;     ///< at the last tick
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;            ///< of the ticks before and after
@@ -100,6 +102,8 @@ HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
 /// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
 HIMC_RT void himc_motion_read_task(performance_motion *motion, const performance_settings *settings,
                                    const performance_drums *drums, double t, double next);
+/// Lets the planner rehearse its plan, for a step of `h` (s), less if a stick is `busy` with a head.
+HIMC_RT void himc_motion_think(performance_motion *motion, double h, bool busy);
 /// The reference at `t` between the ticks.
 HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
 

@@ -21,8 +21,7 @@
 #define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
 
 // over the other hand; chosen: as a wrist lifts a stick in a hurry, and sooner than any new touch
-#define HARDEST_LIFT 120.0 // peak acceleration (m/s^2)
-#define LIFT_FADE 0.1      // of a lift that is broken off (s)
+#define LIFT_FADE 0.1 // of a lift that is broken off (s)
 
 // habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
@@ -197,7 +196,7 @@ bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, 
                     himc_vec3 way)
 {
     himc_spline *lift = &plan->lift;
-    double up = himc_move_time(himc_vec3_length(way), HARDEST_LIFT);
+    double up = himc_move_time(himc_vec3_length(way), HIMC_HARDEST_LIFT);
     himc_target nothing = {0}, raised = himc_target_at_rest(way);
     bool busy = lift->count > 0 && lift->segment[lift->count - 1].t1 > begin;
     if (busy || lift->count + 3 > HIMC_SPLINE_SEGMENTS || from - begin < up || end - to < up)

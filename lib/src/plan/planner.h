@@ -9,9 +9,23 @@
 #define HIMC_PLANNER_H
 
 #include "base/quintic.h"
+#include "body/capsules.h"
 #include "himc/score.h"
 #include "capture/units.h"
 #include "plan/human.h"
+
+/// Both hands at a moment of their plans.
+typedef struct himc_moment {
+    double time;                 ///< (s)
+    double after;                ///< the moment before (s); negative: it is the first
+    himc_vec3 tip[HIMC_HANDS];   ///< (m)
+    himc_vec3 place[HIMC_HANDS]; ///< of the next touch, or the tip (m)
+} himc_moment;
+
+/// What a rehearsal remembers from moment to moment; its contents are of `rehearse` alone.
+typedef struct himc_rehearsed {
+    double state[64];
+} himc_rehearsed;
 
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
@@ -19,9 +33,12 @@ typedef struct himc_planner_config {
     /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
     /// NULL: all is in reach.
     double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
-    /// Least gap between hands and sticks with the tips there (m); HIMC_RT. NULL: they never meet.
-    double (*gap)(const void *body, const himc_vec3 tip[HIMC_HANDS]);
-    const void *body; ///< given to `beyond` and `gap`; borrowed
+    const void *body; ///< given to `beyond`; borrowed
+    /// Gaps of the body at a moment of the plan, one moment after the other; HIMC_RT. NULL: the
+    /// hands never meet.
+    himc_clearance (*rehearse)(const void *motion, const himc_moment *moment,
+                               himc_rehearsed *rehearsed);
+    const void *motion; ///< given to `rehearse`; borrowed
 } himc_planner_config;
 
 himc_planner_config himc_planner_default(void);
@@ -157,6 +174,12 @@ HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);
+/// Rehearses what is planned with the whole body, and lets the hands pass each other where they would
+/// meet, for so much `work`, counted in postures of the body, and one moment more. What is left is done
+/// at the next calls. Changes begin at least 12 ms after the last advance.
+HIMC_RT void himc_planner_think(himc_planner *planner, double work);
+/// The work that has been done by himc_planner_think.
+HIMC_RT long himc_planner_work(const himc_planner *planner);
 /// The planned state of a tip at `t` (s), between the last advance and 30 ms after it. Pure.
 HIMC_RT himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, double t);
 /// The tip left the head at `t` in this measured state: the plan goes on from there, C2. A stroke

@@ -1,111 +1,412 @@
-/// planner_clear.c: hands that would meet pass each other: one is lifted over the other.
+/// planner_clear.c: hands that would meet pass each other: the search for a way, a little at a time.
 ///
-/// The gap of both sticks and arms is looked at in steps along what has just been planned. Where it
-/// is too small, lifts of several lengths and directions are tried, and the one that lacks least is
-/// kept.
+/// What is planned stands at once and is rehearsed afterwards (rehearsal.c): a walk goes through both
+/// plans, ahead of the time at which they can still be changed, as far as both are known. Where the
+/// hands come near, changes are tried in a fixed order: the upper hand is lifted over the other one,
+/// or over and outwards, then the other hand is; if the body still meets itself, the spot of the
+/// next stroke is moved aside, or its hand waits, or the other hand plays it. The one that lacks least
+/// is made, and the walk goes on through it. What no change makes clear is told in one line.
+///
+/// All of this is work that is counted in postures of the body and paid for by the time that passes
+/// (himc_planner_think), so no step carries more than a few of them, and the result does not depend on
+/// the speed of the machine. A plan that changes before the walk's place lets the walk begin anew;
+/// lifts and other ways that have been found stay with their stroke.
 #include "plan/planner_motion.h"
 
-// hands that pass each other; chosen: sticks that play one head side by side are 14 mm apart
-#define NEAR_SPAN \
-    10.0 // (s) of a plan that is searched; chosen: longer than any motion, a wait may be endless
-#define NEAR_STEP 0.01   // between two looks (s)
-#define NEAR_GAP 0.003   // hands nearer than this are kept apart (m) ...
-#define CROSSED_GAP 0.05 // ... and crossed ones nearer by this
-#define CROSSED 0.02     // one tip is so far on the other's side (m)
-#define FAR_APART 0.6    // tips so far apart are not looked at (m); two sticks' and hands' lengths
-#define NEAR_BESIDE 0.2  // a way past is tried so long before and after, too (s)
-#define WAYS 2           // directions of a way past ...
-#define LIFT 0.08        // ... its length in these steps (m) ...
-#define LIFTS 4          // ... and up to so many
-#define QUICK_LIFT 60.0  // peak acceleration of a lift with time (m/s^2)
-#define STILL 0.03       // no lift so near before a touch (s)
+// the walk; chosen
+#define MOST_CREDIT 16.0   // work that is not done is not owed
+#define KEPT_TIME 0.2      // between moments that are kept (s): longer than the beginning of a lift
+#define WAIT_FOR_MORE 0.36 // what is near later than this may go on beyond what is known (s)
+#define BESIDE 0.2         // a change is looked at for so long after what was near (s)
 
-/// A time in which the hands come near.
-typedef struct near_time {
-    double lack;     ///< what gaps lack of NEAR_GAP, over the time (m s)
-    double gap;      ///< least (m)
-    double from, to; ///< first and last time of a gap below NEAR_GAP (s)
-} near_time;
+// lifts; chosen
+#define LIFT 0.08         // their length in these steps (m) ...
+#define LIFTS 4           // ... and up to so many
+#define WAYS 3            // directions
+#define QUICK_LIFT 60.0   // peak acceleration with time (m/s^2)
+#define LIFT_MARGIN 1.001 // of the quickest lift's time: it is possible in spite of rounding
+#define SAME_TOUCH 1e-6   // (s)
+#define STILL 0.03        // no lift so near before a touch (s)
+#define LEAST_AHEAD \
+    0.012 // changes begin after now (s); more than the longest period of advance, 10 ms
 
-static bool is_crossed(const himc_vec3 tip[HIMC_HANDS])
+// strokes that make way; chosen
+#define CHANGEABLE 0.14 // a stroke nearer than this is left as it is (s)
+#define AT_TOUCH 0.03   // what is near so long after a touch is near at the touch (s)
+#define SAME_PLACE 0.25 // spots are moved away from tips so near (m)
+#define LEAST_SIDE 0.01 // with less each hand goes to its own side (m)
+#define BOTH_ROOM 0.12  // between strokes of the hand that takes one over (s)
+#define LIFT_TRIES (LIFTS * WAYS)
+
+/// What is tried with a stroke, in this order.
+static const planner_way stroke_way[] = {
+    {.aside = 0.03}, {.aside = 0.06}, {.waits = true}, {.other = true}};
+#define STROKE_WAYS (int)(sizeof stroke_way / sizeof stroke_way[0])
+
+static himc_hand other_hand(himc_hand hand)
 {
-    himc_vec3 left = tip[HIMC_LEFT], right = tip[HIMC_RIGHT];
-    return left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
+    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
 }
 
-static void tips_at(const himc_planner *planner, double t, himc_vec3 tip[HIMC_HANDS])
+static void try_nothing(planner_clear *c)
 {
-    for (int i = 0; i < HIMC_HANDS; i++)
-        tip[i] = himc_hand_at(&planner->hand[i].plan, t).x;
+    c->lift.end = 0;
+    c->trial[HIMC_LEFT].on = c->trial[HIMC_RIGHT].on = false;
+    c->way.touch = -HUGE_VAL;
 }
 
-static near_time find_near(const himc_planner *planner, double begin, double end, double step)
+static void walk_from(planner_clear *c, planner_rehearsal from)
 {
-    near_time n = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL};
-    for (double t = begin; t < end; t += step) {
-        himc_vec3 tip[HIMC_HANDS];
-        tips_at(planner, t, tip);
-        if (himc_vec3_length(himc_vec3_sub(tip[HIMC_LEFT], tip[HIMC_RIGHT])) > FAR_APART)
-            continue;
-        double gap = planner->config.gap(planner->config.body, tip);
-        double lack = NEAR_GAP - gap + (is_crossed(tip) ? CROSSED_GAP : 0);
-        n.gap = fmin(n.gap, gap);
-        if (lack < 0)
-            continue;
-        n.lack += step * lack;
-        n.from = fmin(n.from, t);
-        n.to = t;
-    }
-    return n;
+    try_nothing(c);
+    c->walk = c->kept[0] = c->kept[1] = from;
+    c->searching = c->trying = false;
 }
 
-/// Ways past the other hand, in the order in which they are tried: over it, outside it, before it.
+static void walk_anew(himc_planner *planner)
+{
+    walk_from(&planner->clear, himc_rehearsal_begin(planner->now + PLANNER_AHEAD));
+    planner->clear.searched = -HUGE_VAL;
+}
+
+void himc_planner_changed(himc_planner *planner, double t)
+{
+    if (t < planner->clear.walk.t - fmax(planner->clear.walk.after, 0))
+        walk_anew(planner);
+}
+
+/// Index of the hand's first planned stroke after t; the count if there is none.
+static int next_planned(const planner_hand *h, double t)
+{
+    int k = 0;
+    while (k < h->planned_count && h->planned[k].goal.time <= t)
+        k++;
+    return k;
+}
+
+/// Time of the hand's next planned touch after t (s).
+static double touch_after(const planner_hand *h, double t)
+{
+    int k = next_planned(h, t);
+    return k < h->planned_count ? h->planned[k].goal.time : HUGE_VAL;
+}
+
+/// The hand that has more time after the time near.
+static himc_hand later_hand(const himc_planner *planner, const near_time *n)
+{
+    return touch_after(&planner->hand[HIMC_LEFT], n->from - AT_TOUCH) >
+                   touch_after(&planner->hand[HIMC_RIGHT], n->from - AT_TOUCH)
+               ? HIMC_LEFT
+               : HIMC_RIGHT;
+}
+
+/// Of hands over each other the upper one is lifted; else the one with more time.
+static himc_hand upper_hand(const himc_planner *planner, const near_time *n)
+{
+    if (n->order != 0)
+        return n->order > 0 ? HIMC_LEFT : HIMC_RIGHT;
+    return later_hand(planner, n);
+}
+
+/// Ways past the other hand: over it, over and outwards.
 static himc_vec3 way_past(himc_vec3 tip, int k)
 {
-    static const double share[WAYS][2] = {{1, 0}, {1, 0.7}};
+    static const double share[WAYS][2] = {{1, 0}, {1, 0.7}, {0.3, 1}};
     double size = LIFT * (1 + k / WAYS), distance = hypot(tip.x, tip.y);
     const double *s = share[k % WAYS];
     return himc_vec3_make(size * s[1] * tip.x / distance, size * s[1] * tip.y / distance,
                           size * s[0]);
 }
 
-static bool lift_past(himc_hand_plan *plan, double begin, double touch, const near_time *n,
-                      himc_vec3 way)
+/// The least time in which a hand can be lifted so (s).
+static double lift_time(const planner_lift *l)
 {
-    double up = himc_move_time(himc_vec3_length(way), QUICK_LIFT);
-    double down = fmin(n->to, touch - STILL - up);
-    return himc_hand_lift(plan, fmax(begin, n->from - up), n->from, fmax(down, n->from), down + up,
-                          way);
+    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_HARDEST_LIFT);
 }
 
-bool himc_planner_keep_clear(himc_planner *planner, himc_hand hand, double begin, double touch)
+/// The k-th lift of a hand where it is near; false if there is no time for it.
+static bool make_lift(himc_planner *planner, himc_hand hand, int k)
 {
-    himc_hand_plan *plan = &planner->hand[hand].plan;
-    double end = fmin(touch, planner->hand[hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT].plan.end);
-    himc_vec3 tips[HIMC_HANDS], best = {0, 0, 0};
-    if (!planner->config.gap)
-        return true;
-    begin = fmax(begin, end - NEAR_SPAN);
-    near_time n = find_near(planner, begin, end, NEAR_STEP), least = n;
-    tips_at(planner, begin, tips);
-    if (n.lack == 0 || (is_crossed(tips) && planner->above != hand))
-        return n.gap >= 0;
-    himc_vec3 tip = himc_hand_at(plan, n.from).x;
-    double from = fmax(begin, n.from - NEAR_BESIDE), to = fmin(end, n.to + NEAR_BESIDE);
-    for (int k = 0; k < LIFTS * WAYS && least.lack > 0; k++) {
-        himc_vec3 way = way_past(tip, k);
-        int lifts = plan->lift.count;
-        if (!lift_past(plan, begin, touch, &n, way))
-            continue;
-        near_time now = find_near(planner, from, to, 2 * NEAR_STEP);
-        plan->lift.count = lifts;
-        if (now.lack >= least.lack)
-            continue;
-        least = now;
-        best = way;
+    planner_clear *c = &planner->clear;
+    const planner_hand *h = &planner->hand[hand];
+    const himc_spline *lifts = &h->plan.lift;
+    const near_time *n = &c->plain;
+    int next = next_planned(h, n->from);
+    double begin = planner->now + PLANNER_AHEAD, end = h->plan.end;
+    if (next > 0)
+        begin = fmax(begin, himc_goal_end(&h->planned[next - 1].goal));
+    if (lifts->count > 0)
+        begin = fmax(begin, lifts->segment[lifts->count - 1].t1);
+    planner_lift l = {.hand = hand, .touch = touch_after(h, n->from)};
+    end = fmin(end, l.touch);
+    l.way = way_past(himc_hand_at(&h->plan, n->from).x, k);
+    double size = himc_vec3_length(l.way), up = himc_move_time(size, QUICK_LIFT);
+    l.from = fmax(n->from, begin + lift_time(&l));
+    l.begin = fmax(begin, l.from - up);
+    l.to = fmax(l.from, fmin(n->to, end - STILL - up));
+    l.end = l.to + up;
+    c->lift = l;
+    return l.from <= n->to && l.end <= end - STILL;
+}
+
+/// The hand's stroke at the time near, or after it, if it can still be changed; else NULL.
+static const timed_stroke *yielding(const himc_planner *planner, const near_time *n, himc_hand hand)
+{
+    const planner_hand *h = &planner->hand[hand];
+    int k = next_planned(h, n->from - AT_TOUCH);
+    const timed_stroke *s = &h->planned[k];
+    bool changeable = k < h->planned_count && (s->index >= 0 || s->reassigned) &&
+                      s->goal.time > planner->now + CHANGEABLE;
+    return changeable ? s : NULL;
+}
+
+/// To which side a stroke's spot is moved: away from the other hand; 0 if that is far.
+static double side_of(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
+{
+    const himc_head_frame *head = &planner->drum[s->drum];
+    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
+    himc_target other = himc_hand_at(&planner->hand[other_hand(hand)].plan, s->goal.time);
+    himc_vec3 tip = himc_head_frame_from_world(head, other.x);
+    double side = at.y - tip.y;
+    if (hypot(at.x - tip.x, side) > SAME_PLACE)
+        return 0;
+    if (fabs(side) < LEAST_SIDE)
+        return hand == HIMC_LEFT ? 1 : -1;
+    return copysign(1, side);
+}
+
+/// A copy of the hand's plan that ends before its stroke `k`, where it can still be changed.
+static planner_trial *begin_trial(himc_planner *planner, himc_hand hand, int k)
+{
+    const planner_hand *h = &planner->hand[hand];
+    planner_trial *trial = &planner->clear.trial[hand];
+    double t = planner->now + PLANNER_AHEAD;
+    const timed_stroke *before = k > 0 ? &h->planned[k - 1] : NULL;
+    if (before && !before->separated)
+        t = fmax(t, himc_goal_end(&before->goal));
+    trial->plan = h->plan;
+    himc_hand_cut(&trial->plan, t);
+    if (before)
+        trial->plan.last = before->goal;
+    trial->on = true;
+    trial->strikes = false;
+    return trial;
+}
+
+static bool strike_trial(planner_trial *trial, const timed_stroke *s, himc_vec3 spot, bool waits)
+{
+    himc_goal goal = s->goal;
+    goal.gesture = s->written.gesture;
+    goal.spot = spot;
+    if (waits) {
+        himc_hand_wait(&trial->plan, trial->plan.end, true);
+        if (trial->plan.end + himc_hand_time(&trial->plan, &goal) > goal.time)
+            return false;
     }
-    if (himc_vec3_length(best) == 0)
-        return n.gap >= 0;
-    planner->above = hand;
-    return lift_past(plan, begin, touch, &n, best) && least.gap >= 0;
+    trial->strikes = himc_hand_strike(&trial->plan, &goal);
+    trial->spot = spot;
+    trial->touch = goal.time;
+    return trial->strikes;
+}
+
+/// The other hand plays the stroke, its own hand waits.
+static bool try_other(himc_planner *planner, himc_hand hand, const timed_stroke *s)
+{
+    himc_hand other = other_hand(hand);
+    const planner_hand *h = &planner->hand[other];
+    double t = s->goal.time;
+    int next = next_planned(h, t);
+    bool room = (next == h->planned_count || h->planned[next].goal.time > t + BOTH_ROOM) &&
+                (next == 0 || h->planned[next - 1].goal.time < t - BOTH_ROOM);
+    if (s->reassigned || s->index < 0 || !room || planner->clear.least.gap >= 0 ||
+        !himc_planner_reaches(planner, other, &s->written))
+        return false;
+    planner_trial *own = begin_trial(planner, hand, next_planned(&planner->hand[hand], t - 1e-9));
+    himc_hand_wait(&own->plan, planner->clear.walk.t, true);
+    return strike_trial(begin_trial(planner, other, next), s, s->written.spot, false);
+}
+
+/// The k-th way for the hand's stroke; false if it cannot be tried, or has been.
+static bool make_way(himc_planner *planner, himc_hand hand, int k)
+{
+    planner_clear *c = &planner->clear;
+    const timed_stroke *s = yielding(planner, &c->plain, hand);
+    if (!s)
+        return false;
+    const planner_hand *h = &planner->hand[hand];
+    c->way = stroke_way[k];
+    c->way.hand = hand;
+    c->way.touch = s->written.time;
+    c->way.tried = k + 1;
+    c->way.aside *= side_of(planner, hand, s);
+    bool aside = c->way.aside != 0, known = h->way.touch == c->way.touch;
+    if ((known && k < h->way.tried) || !(aside || c->way.waits || c->way.other))
+        return false;
+    if (c->way.other)
+        return try_other(planner, hand, s);
+    himc_vec3 spot = himc_planner_aside(planner, s, c->way.aside);
+    return strike_trial(begin_trial(planner, hand, (int)(s - h->planned)), s, spot, c->way.waits);
+}
+
+/// First the lifts of either hand, then the ways of a stroke of either hand.
+static bool make_candidate(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    int k = c->candidate, way = k - 2 * LIFT_TRIES;
+    himc_hand upper = upper_hand(planner, &c->plain), later = later_hand(planner, &c->plain);
+    try_nothing(c);
+    if (way < 0)
+        return make_lift(planner, k < LIFT_TRIES ? upper : other_hand(upper), k % LIFT_TRIES);
+    return make_way(planner, way < STROKE_WAYS ? later : other_hand(later), way % STROKE_WAYS);
+}
+
+/// Whether it is worth while to try the next candidate.
+static bool goes_on(const planner_clear *c)
+{
+    return c->least.lack > 0 && c->candidate < 2 * (LIFT_TRIES + STROKE_WAYS) &&
+           (c->least.gap < 0 || c->candidate < LIFT_TRIES);
+}
+
+static void begin_search(planner_clear *c)
+{
+    c->searching = true;
+    c->trying = false;
+    c->plain = c->least = c->walk.near;
+    c->candidate = 0;
+    c->best_lift.end = 0;
+    c->best_way.touch = -HUGE_VAL;
+}
+
+static void say_meet(himc_planner *planner)
+{
+    const near_time *n = &planner->clear.plain;
+    himc_hand later = later_hand(planner, n);
+    int k = next_planned(&planner->hand[later], n->from - AT_TOUCH);
+    const timed_stroke *s = &planner->hand[later].planned[k];
+    if (k < planner->hand[later].planned_count)
+        himc_planner_say(&planner->notes, PLANNER_MEET,
+                         "stroke at beat %g %s: the hands come too near on the way", s->stroke.beat,
+                         himc_hand_name(later));
+    else
+        himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
+}
+
+static bool lift_now(himc_planner *planner)
+{
+    planner_lift *l = &planner->clear.best_lift;
+    planner_hand *h = &planner->hand[l->hand];
+    double begin = fmax(l->begin, planner->now + LEAST_AHEAD);
+    l->from = fmax(l->from, begin + lift_time(l));
+    if (!(l->end > 0) || l->from > l->to ||
+        !himc_hand_lift(&h->plan, begin, l->from, l->to, l->end, l->way))
+        return false;
+    h->lift = *l;
+    return true;
+}
+
+/// Makes the best change. True if a stroke is played in another way, so that its hand has to be
+/// planned again.
+static bool end_search(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    try_nothing(c);
+    c->searching = false;
+    c->searched = c->plain.to;
+    if (c->least.gap < 0)
+        say_meet(planner);
+    c->walk.near = himc_rehearsal_begin(0).near;
+    if (c->best_way.touch > -HUGE_VAL) {
+        planner->hand[c->best_way.hand].way = c->best_way;
+        return true;
+    }
+    if (lift_now(planner))
+        walk_from(c, c->kept[1]);
+    return false;
+}
+
+static void judge(planner_clear *c)
+{
+    c->trying = false;
+    c->candidate++;
+    if (!himc_rehearsal_is_better(&c->trial_walk.near, &c->least))
+        return;
+    c->least = c->trial_walk.near;
+    c->best_lift = c->lift;
+    c->best_way = c->way;
+}
+
+/// Begins to try the next candidate; one that cannot be tried costs little.
+static int try_next(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    c->trying = make_candidate(planner);
+    if (!c->trying) {
+        c->candidate++;
+        return 1;
+    }
+    c->trial_walk =
+        c->lift.end > 0 ? c->kept[1] : himc_rehearsal_begin(planner->now + PLANNER_AHEAD);
+    return 2;
+}
+
+static int try_on(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    planner_rehearsal *walk = &c->trial_walk;
+    double end = fmin(c->plain.to + BESIDE, c->walk.t);
+    int work = himc_rehearsal_step(planner, walk, &c->lift, c->trial, c->searched);
+    if (walk->t >= end || !himc_rehearsal_is_better(&walk->near, &c->least))
+        judge(c);
+    return work;
+}
+
+/// The next moment of the walk, as far as both plans are known; 0 at its end.
+static int walk_on(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    if (c->walk.t < planner->now)
+        walk_anew(planner);
+    bool over =
+        c->walk.t >= fmin(planner->hand[HIMC_LEFT].plan.end, planner->hand[HIMC_RIGHT].plan.end);
+    bool near = c->walk.near.lack > 0;
+    bool late = over && c->walk.near.from < planner->now + WAIT_FOR_MORE;
+    if (near && (late || c->walk.t > c->walk.near.to + BESIDE)) {
+        begin_search(c);
+        return 1;
+    }
+    if (over)
+        return 0;
+    if (!near && c->walk.t > c->kept[0].t + KEPT_TIME) {
+        c->kept[1] = c->kept[0];
+        c->kept[0] = c->walk;
+    }
+    return himc_rehearsal_step(planner, &c->walk, &c->lift, c->trial, c->searched);
+}
+
+bool himc_planner_search(himc_planner *planner, double work)
+{
+    planner_clear *c = &planner->clear;
+    if (!planner->config.rehearse)
+        return false;
+    c->credit = fmin(c->credit + work, MOST_CREDIT);
+    while (c->credit > 0) {
+        bool ends = c->searching && !c->trying && !goes_on(c);
+        if (ends && end_search(planner))
+            return true;
+        int done = !c->searching ? walk_on(planner)
+                   : c->trying   ? try_on(planner)
+                                 : try_next(planner);
+        if (done == 0)
+            c->credit = 0;
+        c->credit -= done;
+        c->work += done;
+    }
+    return false;
+}
+
+void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t)
+{
+    planner_hand *h = &planner->hand[hand];
+    const planner_lift *l = &h->lift;
+    if (l->end > 0 && fabs(touch_after(h, t) - l->touch) < SAME_TOUCH && l->end <= h->plan.end)
+        himc_hand_lift(&h->plan, fmax(l->begin, t), l->from, l->to, l->end, l->way);
 }

@@ -234,6 +234,7 @@ bool himc_planner_correct(himc_planner *planner, himc_hand hand, double t,
         return false;
     himc_planner_unplan(planner, hand, goal.time, 0);
     himc_hand_land(&h->plan, t, &from, &goal);
+    himc_planner_changed(planner, t);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     return true;
 }

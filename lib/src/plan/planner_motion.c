@@ -48,23 +48,23 @@
 #define DOUBLE_SHARE 0.25
 #define BUZZ_SHARE 0.55
 
-// the goal; chosen: half a mallet's radius, a mallet that does not touch the rim of a usual head,
-// and a unit of another spot further off than any of another speed, of another grip further still
-#define STRUCK_SHARE 0.97 // of the head's radius: nothing is struck outside it
-#define OTHER_SPOT 10     // as a difference of log speed
-#define OTHER_GRIP 20     // as a difference of log speed
+// the goal; chosen: a unit of another spot further off than any of another speed, of another grip further still
+#define OTHER_SPOT 10 // as a difference of log speed
+#define OTHER_GRIP 20 // as a difference of log speed
 
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
-typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME } plan_result;
+typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS } plan_result;
 
 void himc_planner_motion_init(himc_planner *planner)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_hand_place(&planner->hand[hand].plan, 0, planner->config.rest[hand]);
         himc_stream_init(&planner->hand[hand].stream);
+        planner->hand[hand].way.touch = -HUGE_VAL;
     }
+    himc_planner_changed(planner, -HUGE_VAL);
 }
 
 static himc_hand other_hand(himc_hand hand)
@@ -116,7 +116,7 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
 /// Moves a place into the part of a head that is struck; true if it was beyond.
 static bool keep_inside(const himc_head_frame *head, double *x, double *y)
 {
-    double r = hypot(*x, *y), limit = STRUCK_SHARE * head->radius;
+    double r = hypot(*x, *y), limit = PLANNER_STRUCK * head->radius;
     if (r <= limit)
         return false;
     *x *= limit / r;
@@ -261,18 +261,6 @@ static void settle(himc_planner *planner, const timed_stroke *s)
         himc_planner_score_settle(&planner->score, s->stroke.hand, s->index, s->round);
 }
 
-/// How far out of a hand's reach the goal is (m).
-static double beyond(const himc_planner *planner, himc_hand hand, const himc_goal *goal)
-{
-    const himc_planner_config *c = &planner->config;
-    return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
-}
-
-bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, const himc_goal *goal)
-{
-    return beyond(planner, hand, goal) <= PLANNER_UNREACHED;
-}
-
 static void renew_home(himc_planner *planner, himc_hand hand)
 {
     planner_hand *h = &planner->hand[hand];
@@ -308,9 +296,9 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
 {
     if (result == TOO_FAR)
         himc_format(text, 48, "out of reach by %.2f m",
-                    beyond(planner, s->stroke.hand, &s->written));
+                    himc_planner_beyond(planner, s->stroke.hand, &s->written));
     else
-        himc_format(text, 48, "no time to prepare it");
+        himc_format(text, 48, result == MEETS ? "the hands would meet" : "no time to prepare it");
     return text;
 }
 
@@ -341,19 +329,38 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
            !himc_hand_can_follow(&s->written, &after.written);
 }
 
-/// Appends a stroke to its hand's plan, if the hand can play it.
+/// Appends a wait over the last spot, if it leaves the stroke all its time.
+static void wait_first(himc_hand_plan *plan, const himc_goal *goal)
+{
+    himc_hand_plan before = *plan;
+    himc_hand_wait(plan, plan->end, true);
+    if (plan->end + himc_hand_time(plan, goal) > goal->time)
+        *plan = before;
+}
+
+/// Appends a stroke to its hand's plan, if the hand can play it; in the way found for it, if there is
+/// one.
 static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
+    static const planner_way as_written;
     planner_hand *h = &planner->hand[s->stroke.hand];
     int n = h->planned_count;
     if (s->varied && !can_vary(planner, s)) {
         s->goal = s->written;
         s->varied = false;
     }
-    double begin = h->plan.end;
+    const planner_way *way = h->way.touch == s->written.time ? &h->way : &as_written;
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
     if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
+    if (way->other && s->index >= 0)
+        return MEETS;
+    if (way->aside != 0) {
+        s->goal.spot = himc_planner_aside(planner, s, way->aside);
+        s->varied = true;
+    }
+    if (way->waits)
+        wait_first(&h->plan, &s->goal);
     if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
         return NO_TIME;
     timed_stroke *planned = &h->planned[h->planned_count++];
@@ -362,11 +369,6 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     planned->small = is_small(planner, s, since);
     h->drum = s->drum;
     h->targeted = false;
-    if (!himc_planner_keep_clear(planner, s->stroke.hand, begin, s->goal.time)) {
-        char name[64];
-        himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
-                         name_of(s, name));
-    }
     return PLANNED;
 }
 
@@ -393,9 +395,7 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
         if (!more)
             renew_home(planner, hand);
-        double begin = h->plan.end;
         himc_hand_wait(&h->plan, until, more);
-        himc_planner_keep_clear(planner, hand, begin, h->plan.end);
         return PLANNED;
     }
     take(planner, &next);
@@ -411,9 +411,15 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
 }
 
+/// No hand can play it: a line says so. If only the hands would meet it is played all the same: to a
+/// listener a stroke left out is worse.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
     char name[64], reason[48];
+    timed_stroke anyway = *s;
+    planner->hand[s->stroke.hand].way.other = false;
+    if (result == MEETS && plan_stroke(planner, &anyway) == PLANNED)
+        return;
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     settle(planner, s);
@@ -449,6 +455,7 @@ static void cut_plan(himc_planner *planner, himc_hand hand, double t)
     if (last && !last->separated)
         t = fmax(t, himc_goal_end(&last->goal));
     himc_hand_cut(&h->plan, t);
+    himc_planner_changed(planner, t);
     if (!last)
         return;
     h->plan.last = last->goal;
@@ -477,14 +484,32 @@ bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *
     return false;
 }
 
+/// Whether the hand gets from its own strokes to another one at its time, and on to the next.
+static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal)
+{
+    planner_due due = {.time = -HUGE_VAL};
+    for (int i = 0; i < MOST_TRIES && due.time <= goal->time; i++) {
+        if (!himc_planner_score_next(&planner->score, hand, i, &due))
+            break;
+        if (himc_planner_score_is_settled(&planner->score, hand, due.index, due.round))
+            continue;
+        himc_goal own = himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
+        bool first = due.time <= goal->time;
+        if (!himc_hand_can_follow(first ? &own : goal, first ? goal : &own))
+            return false;
+    }
+    return true;
+}
+
 /// Whether the hand can play a stroke beside its own; its plan ends as early as it can.
-static bool can_take(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
+static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
     const planner_hand *h = &planner->hand[hand];
     double t = s->goal.time, gap = t;
     return h->waiting_count < PLANNER_WAITING && himc_planner_reaches(planner, hand, &s->goal) &&
            himc_planner_find_gap(planner, hand, &gap) && gap == t &&
-           t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
+           t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal) &&
+           fits_in(planner, hand, &s->goal);
 }
 
 /// The other hand takes a stroke of the score, if it has nothing to do and is near enough.
@@ -553,6 +578,21 @@ void himc_planner_replan(himc_planner *planner, double t)
         himc_planner_cut(planner, (himc_hand)hand, t);
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
+}
+
+void himc_planner_think(himc_planner *planner, double work)
+{
+    double t = planner->now + PLANNER_AHEAD;
+    if (!himc_planner_search(planner, work))
+        return;
+    himc_hand hand = planner->clear.best_way.hand;
+    himc_planner_cut(planner, hand, t);
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+}
+
+long himc_planner_work(const himc_planner *planner)
+{
+    return planner->clear.work;
 }
 
 void himc_planner_rebase(himc_planner *planner, double t)
@@ -664,21 +704,27 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
+/// Whether the sticks meet with one tip there.
+static bool meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    const himc_planner_config *c = &planner->config;
+    himc_rehearsed rehearsed = {{0}};
+    himc_moment m = {.time = t, .after = -1};
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    return c->rehearse && c->rehearse(c->motion, &m, &rehearsed).sticks < 0;
+}
+
 bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
 {
     const himc_planner_config *c = &planner->config;
     planner_hand *h = &planner->hand[hand];
-    himc_vec3 tip[HIMC_HANDS];
-    tip[hand] = x;
-    tip[other_hand(hand)] = himc_hand_at(&planner->hand[other_hand(hand)].plan, t).x;
     if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
         (c->beyond && c->beyond(c->body, hand, x) > PLANNER_UNREACHED) ||
-        (c->gap && c->gap(c->body, tip) < 0))
+        meets_at(planner, t, hand, x))
         return false;
     himc_planner_cut(planner, hand, t);
-    double begin = h->plan.end;
     himc_hand_reach(&h->plan, x, at);
-    himc_planner_keep_clear(planner, hand, begin, h->plan.end);
     h->targeted = true;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     return true;
@@ -731,6 +777,7 @@ void himc_planner_resume(himc_planner *planner, double t, himc_hand hand, const 
     himc_planner_unplan(planner, hand, t, 0);
     h->planned_count = 0;
     himc_hand_restart(&h->plan, t, state, HUGE_VAL);
+    himc_planner_changed(planner, t);
     h->plan.rebounding = false;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
@@ -753,7 +800,10 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
         h->plan.last = last->goal;
         h->plan.rebounding = t - last->goal.time < BOUNCE_TIME;
     }
+    himc_planner_changed(planner, t);
+    double from = h->plan.end;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    himc_planner_lift_again(planner, hand, from);
 }
 
 /// A stroke is the current one until this time, `next` the time of the one after it.

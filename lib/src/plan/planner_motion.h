@@ -13,16 +13,20 @@
 #include "plan/planner.h"
 #include "plan/planner_notes.h"
 #include "plan/planner_score.h"
+#include "plan/rehearsal.h"
 
 /// Strokes that wait for a hand; chosen: as many as can be planned, so that all can be put back.
 #define PLANNER_WAITING 16
 #define PLANNER_PLANNED 16 ///< strokes planned ahead; chosen: never reached at 40 ms a stroke
 /// Motion is planned so far beyond the last advance at least (s); chosen: twice PLANNER_COMMIT.
-#define PLANNER_HORIZON 0.15
+#define PLANNER_HORIZON 0.45
 /// Calls that carry no time change the plan from this long after the last advance (s); chosen: more
 /// than the longest period of advance, 10 ms.
 #define PLANNER_AHEAD 0.03
 
+/// Nothing is struck outside this share of a head's radius; chosen: a mallet that does not touch the
+/// rim of a usual head.
+#define PLANNER_STRUCK 0.97
 #define PLANNER_UNREACHED 0.01 ///< a goal so far out of reach is not tried (m); chosen
 
 /// A stroke with its time and gesture, waiting to be planned or planned.
@@ -41,6 +45,33 @@ typedef struct timed_stroke {
     himc_goal goal; ///< varied; once planned, with the gesture as it will be played
 } timed_stroke;
 
+/// What is tried with a stroke when its hand cannot be lifted past the other one.
+typedef struct planner_way {
+    himc_hand hand;
+    double touch; ///< written time of that stroke (s); of another stroke this does not hold
+    double aside; ///< its spot is moved to the left by so much, in the head's frame (m)
+    bool waits;   ///< the hand first waits over its last spot
+    bool other;   ///< the other hand plays it
+    int tried;    ///< so many ways
+} planner_way;
+
+/// The search; owned by planner_clear.c.
+typedef struct planner_clear {
+    double credit;             ///< work that has been paid for
+    long work;                 ///< done so far
+    planner_rehearsal walk;    ///< of the plans
+    planner_rehearsal kept[2]; ///< earlier moments of it, the later one first
+    double searched;           ///< ways past what is near before this have been tried (s)
+    bool searching;
+    int candidate;          ///< number of the one that is tried
+    near_time plain, least; ///< without a change, and of the best one so far
+    bool trying;            ///< ... walks
+    planner_rehearsal trial_walk;
+    planner_trial trial[HIMC_HANDS];
+    planner_lift lift, best_lift;
+    planner_way way, best_way; ///< touch -infinity: none
+} planner_clear;
+
 typedef struct planner_hand {
     timed_stroke waiting[PLANNER_WAITING]; ///< hits and reassigned strokes, sorted by time
     int waiting_count;
@@ -50,6 +81,8 @@ typedef struct planner_hand {
     bool targeted; ///< it rests at its last live target, not over a drum
     himc_stream stream;
     himc_hand_plan plan;
+    planner_way way;   ///< found for one of its strokes
+    planner_lift lift; ///< found for one of its strokes
 } planner_hand;
 
 struct himc_planner {
@@ -63,10 +96,10 @@ struct himc_planner {
     planner_score score;
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
-    himc_hand above; ///< of the hands that passed each other last, the one that was lifted
-    int hits;        ///< since the last `clear` or change of `human`
-    double now;      ///< of the last advance (s)
-    bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
+    planner_clear clear;
+    int hits;   ///< since the last `clear` or change of `human`
+    double now; ///< of the last advance (s)
+    bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 /// The tip's position when it touches a head at (x, y) (m). HIMC_RT.
@@ -75,6 +108,32 @@ static inline himc_vec3 himc_planner_tip_at(const himc_planner *p, const himc_he
 {
     return himc_vec3_madd(himc_head_frame_to_world(head, x, y), p->config.mallet_radius,
                           himc_head_frame_normal(head));
+}
+
+/// How far out of a hand's reach the goal is (m). HIMC_RT.
+static inline double himc_planner_beyond(const himc_planner *p, himc_hand hand,
+                                         const himc_goal *goal)
+{
+    const himc_planner_config *c = &p->config;
+    return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
+}
+
+/// True if the hand reaches a stroke's spot. HIMC_RT.
+static inline bool himc_planner_reaches(const himc_planner *p, himc_hand hand,
+                                        const himc_goal *goal)
+{
+    return himc_planner_beyond(p, hand, goal) <= PLANNER_UNREACHED;
+}
+
+/// A stroke's spot moved to the left on its head, not over the rim (m). HIMC_RT.
+static inline himc_vec3 himc_planner_aside(const himc_planner *p, const timed_stroke *s, double by)
+{
+    const himc_head_frame *head = &p->drum[s->drum];
+    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
+    double most =
+        sqrt(fmax(PLANNER_STRUCK * head->radius * PLANNER_STRUCK * head->radius - at.x * at.x, 0));
+    at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
+    return himc_planner_tip_at(p, head, at.x, at.y);
 }
 
 /// Both hands wait at rest.
@@ -87,14 +146,13 @@ HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *st
 /// planner_rest.c: where a hand rests (m): over its drum or, out of its reach, over the first one in
 /// reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
-/// planner_clear.c: moves the hand past the other one where they would meet in what has just been
-/// planned, from `begin` (s) to the plan's end; the next touch is at `touch` (s). Of crossed hands
-/// the one that was lifted stays above. False if they meet nevertheless.
-HIMC_RT bool himc_planner_keep_clear(himc_planner *planner, himc_hand hand, double begin,
-                                     double touch);
-/// True if the hand reaches a stroke's spot.
-HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand,
-                                  const himc_goal *goal);
+/// planner_clear.c: the plan of a hand is another one from t (s) on.
+HIMC_RT void himc_planner_changed(himc_planner *planner, double t);
+/// Rehearses what is planned, for as much work, and lifts a hand over the other where they would
+/// meet. True if the stroke of `clear.best_way` is to be planned again, in that way.
+HIMC_RT bool himc_planner_search(himc_planner *planner, double work);
+/// The hand's plan, made anew from t (s) on, keeps the lift found for its next stroke.
+HIMC_RT void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t);
 /// Time of a waiting stroke (s): a reassigned one keeps its beat, a hit its time.
 HIMC_RT double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets a stroke wait for its hand, in the order of time; there must be room.

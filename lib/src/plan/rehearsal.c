@@ -1,0 +1,117 @@
+/// rehearsal.c: the gaps of the body along both plans, with trunk, elbows and wrists as they will have
+/// moved by then. What is tried in place of a plan, a lift or another motion, is walked through in
+/// the same way, from a moment before it begins.
+#include "plan/rehearsal.h"
+#include "plan/planner_motion.h"
+#include "plan/stroke_plan.h"
+
+// moments; chosen: sticks that play one head side by side are 14 mm apart
+#define STEP 0.02          // between two looks (s)
+#define PASSING_GAP 0.1    // sticks nearer than this (m) ...
+#define PASSING_STEP 0.005 // ... are looked at so often (s): they pass at up to 6 m/s
+#define NEAR_GAP 0.008     // hands nearer than this are kept apart (m) ...
+#define CROSSED_GAP 0.05   // ... and crossed ones nearer by this
+#define CROSSED 0.02       // one tip is so far on the other's side (m)
+#define OVERREACH 0.04     // no motion so far out of reach of the usual posture (m)
+#define FOLDED 0.25        // no way of a tip so near to its shoulder (m): the arm would whip
+#define UNREACHED 0.1      // and no stroke so far (m): the arm would not find back
+#define PLACE_AHEAD 1.2    // the trunk turns to a touch within this time (s)
+
+planner_rehearsal himc_rehearsal_begin(double t)
+{
+    return (planner_rehearsal){
+        .t = t, .after = -1, .met = true, .near = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0}};
+}
+
+static bool is_crossed(const himc_vec3 tip[HIMC_HANDS])
+{
+    himc_vec3 left = tip[HIMC_LEFT], right = tip[HIMC_RIGHT];
+    return left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
+}
+
+/// The part of a lift at t that is done (0 .. 1), as himc_hand_lift has it.
+static double lifted(const planner_lift *l, double t)
+{
+    double u =
+        t < l->from ? (t - l->begin) / (l->from - l->begin) : (l->end - t) / (l->end - l->to);
+    u = fmin(fmax(u, 0), 1);
+    return u * u * u * (10 - u * (15 - 6 * u));
+}
+
+/// Where the hand touches next, if that is soon; else its tip.
+static himc_vec3 next_place(const planner_hand *h, const planner_trial *trial, double t,
+                            himc_vec3 tip)
+{
+    if (trial->on)
+        return trial->strikes && trial->touch >= t && trial->touch < t + PLACE_AHEAD ? trial->spot
+                                                                                     : tip;
+    for (int i = 0; i < h->planned_count; i++)
+        if (h->planned[i].goal.time >= t && h->planned[i].goal.time < t + PLACE_AHEAD)
+            return h->planned[i].goal.spot;
+    return tip;
+}
+
+static himc_moment moment_at(const himc_planner *planner, const planner_rehearsal *walk,
+                             const planner_lift *lift, const planner_trial trial[HIMC_HANDS])
+{
+    himc_moment m = {.time = walk->t, .after = walk->after};
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        const planner_hand *h = &planner->hand[i];
+        const himc_hand_plan *plan = trial[i].on ? &trial[i].plan : &h->plan;
+        m.tip[i] = himc_hand_at(plan, walk->t).x;
+        if (lift->end > 0 && (int)lift->hand == i)
+            m.tip[i] = himc_vec3_madd(m.tip[i], lifted(lift, walk->t), lift->way);
+        m.place[i] = next_place(h, &trial[i], walk->t, m.tip[i]);
+    }
+    return m;
+}
+
+/// What the gaps lack at a moment (m), and the hand that should give way: `order` of himc_clearance.
+static double lack_of(const himc_clearance *clear, const himc_moment *at, int *order)
+{
+    double lack = NEAR_GAP - clear->sticks + (is_crossed(at->tip) ? CROSSED_GAP : 0);
+    lack = fmax(lack, -fmin(clear->body, OVERREACH - clear->beyond));
+    *order = clear->order;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (FOLDED - clear->folded[hand] > lack) {
+            lack = FOLDED - clear->folded[hand];
+            *order = hand == HIMC_LEFT ? 1 : -1;
+        }
+    return lack;
+}
+
+/// Notes what is near at a moment, for the time until the next one.
+static void note(near_time *n, double t, double after, double lack, int order)
+{
+    if (n->lack == 0)
+        n->from = t;
+    if (n->lack == 0 || n->order == 0)
+        n->order = order;
+    n->lack += after * lack;
+    n->to = t;
+}
+
+int himc_rehearsal_step(const himc_planner *planner, planner_rehearsal *walk,
+                        const planner_lift *lift, const planner_trial trial[HIMC_HANDS],
+                        double ignored)
+{
+    int order;
+    himc_moment at = moment_at(planner, walk, lift, trial);
+    himc_clearance clear = planner->config.rehearse(planner->config.motion, &at, &walk->state);
+    double gap = fmin(fmin(clear.body, clear.sticks), UNREACHED - clear.beyond);
+    double lack = lack_of(&clear, &at, &order);
+    walk->after = clear.sticks < PASSING_GAP ? PASSING_STEP : STEP;
+    walk->met = walk->met && gap < 0;
+    if (at.time > ignored) {
+        walk->near.gap = walk->met ? walk->near.gap : fmin(walk->near.gap, gap);
+        if (lack > 0)
+            note(&walk->near, at.time, walk->after, lack, order);
+    }
+    walk->t += walk->after;
+    return clear.work;
+}
+
+bool himc_rehearsal_is_better(const near_time *a, const near_time *b)
+{
+    return (a->gap >= 0) == (b->gap >= 0) ? a->lack < b->lack : a->gap >= 0;
+}

@@ -1,0 +1,55 @@
+/// rehearsal.h: both plans are walked through ahead of time, moment by moment, and the body is asked
+/// for its gaps there; private to the planner.
+#ifndef HIMC_REHEARSAL_H
+#define HIMC_REHEARSAL_H
+
+#include "plan/hand.h"
+#include "plan/planner.h"
+
+/// A time in which the hands come near.
+typedef struct near_time {
+    double lack;     ///< what gaps lack, over the time (m s)
+    double gap;      ///< least of all (m)
+    double from, to; ///< first and last time of a lack (s)
+    int order;       ///< of the arms then: 1 the left one is above, -1 below, 0 not crossed
+} near_time;
+
+/// A hand is moved by `way` (m) from `from` to `to` (s), not at all before `begin` and after `end`; no
+/// lift if `end` is 0.
+typedef struct planner_lift {
+    himc_hand hand;
+    double begin, from, to, end;
+    double touch; ///< the next one of the hand (s)
+    himc_vec3 way;
+} planner_lift;
+
+/// What a hand tries in place of its plan.
+typedef struct planner_trial {
+    bool on;
+    himc_hand_plan plan;
+    bool strikes; ///< it strikes `spot` at `touch` (s)
+    himc_vec3 spot;
+    double touch;
+} planner_trial;
+
+/// A walk through both plans.
+typedef struct planner_rehearsal {
+    double t;     ///< the next moment (s) ...
+    double after; ///< ... after the last one (s), negative: it is the first
+    bool met;     ///< the body has met itself since the first moment: no plan parts it
+    near_time near;
+    himc_rehearsed state;
+} planner_rehearsal;
+
+/// A walk that begins at t (s).
+planner_rehearsal himc_rehearsal_begin(double t);
+
+/// One moment of the walk; what is near before `ignored` (s) is not noted. Returns the work.
+HIMC_RT int himc_rehearsal_step(const himc_planner *planner, planner_rehearsal *walk,
+                                const planner_lift *lift, const planner_trial trial[HIMC_HANDS],
+                                double ignored);
+
+/// True if `a` is the better way: nothing meets, then less is lacking.
+bool himc_rehearsal_is_better(const near_time *a, const near_time *b);
+
+#endif
