@@ -113,13 +113,14 @@ ARM64 = $(BUILD)/arm64/debian/root/usr/lib/aarch64-linux-gnu
 arm64: deps ## program and externals for Linux on arm64, crossed, in build/arm64
 	@tools/deps.sh tools/deps-arm64.txt
 	@tools/arm64.sh $(BUILD)/arm64/debian
+	@$(MAKE) $(TABLE)
 	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 CC=aarch64-linux-gnu-gcc LDFLAGS="-L$(abspath $(ARM64)) -Wl,-rpath-link,$(abspath $(ARM64))" \
-	    ARM64=$(abspath $(ARM64))
+	    ARM64=$(abspath $(ARM64)) TABLE=$(TABLE)
 arm64-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=linux-arm64-32.so ARCHIVES=$(ARM64) OBJCOPY=aarch64-linux-gnu-objcopy LDFLAGS=-L$(ARM64))
 # the vectorizer of GCC 12 for arm64 ends with an internal error here
-$(BUILD)/tools/render.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
+$(BUILD)/tools/live.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
 
 test-arm64: all ## the same, run by qemu: its strikes and its sound are those of this machine
 	@$(MAKE) arm64
@@ -145,7 +146,8 @@ MACOS = $(abspath $(BUILD)/macos/parts)
 check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/macos; none of it has been run
 	@tools/deps.sh tools/deps-macos.txt
 	@tools/macos.sh $(BUILD)/macos/parts
-	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib \
+	@$(MAKE) $(TABLE)
+	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib TABLE=$(TABLE) PORTAUDIO= \
 	    CPPFLAGS="-isystem $(MACOS)/root/include" CFLAGS="-Werror -Wno-unused-command-line-argument $(CFLAGS)"
 	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/m_imp.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
 	@tests/test_macos.sh $(BUILD)/macos
@@ -433,15 +435,17 @@ $(BUILD)/viewer/%.o: viewer/%.c
 # names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
 # room base, the skeleton and no other package, so that `make viewer` needs none either
 SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
+# of this machine: what is crossed for another does not run here
+TABLE = $(BUILD)/tools/skeleton/table
 $(BUILD)/tools/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
 
-$(BUILD)/viewer/skeleton.h: $(BUILD)/tools/skeleton/table
+$(BUILD)/viewer/skeleton.h: $(TABLE)
 	$(call say,make)
 	$(Q)$< c >$@
 
-$(BUILD)/viewer/skeleton.js: $(BUILD)/tools/skeleton/table
+$(BUILD)/viewer/skeleton.js: $(TABLE)
 	$(call say,make)
 	$(Q)$< js >$@
 

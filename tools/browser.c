@@ -5,6 +5,7 @@
 /// Scripts answer with text that needs no escape (words, numbers, base64), so an answer is read
 /// without a parser.
 #define _XOPEN_SOURCE 700 // mkdtemp, nftw
+#define _DARWIN_C_SOURCE  // mkdtemp of macOS
 #include "browser.h"
 
 #include <errno.h>

@@ -318,7 +318,9 @@ static bool open_sound(scene_writer *s, himc_error *error)
                     .channels = s->config.channels,
                     .format = SF_FORMAT_OGG | SF_FORMAT_VORBIS};
     double quality = VORBIS_QUALITY;
-    if (!sf_format_check(&info)) // a libsndfile without Vorbis
+    SF_FORMAT_INFO ogg = {.format = SF_FORMAT_OGG};
+    // a libsndfile without Ogg does not list it; sf_format_check allows it all the same
+    if (sf_command(NULL, SFC_GET_FORMAT_INFO, &ogg, sizeof ogg) != 0)
         info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
     s->file = sf_open_virtual(&memory, SFM_WRITE, &info, &s->sound);
     if (!s->file)

@@ -49,10 +49,16 @@
     FILE(skeleton, "/skeleton.js", "text/javascript", MADE "/skeleton.js") \
     FILE(three, "/three.js", "text/javascript", THREE_JS "/three.module.js")
 
-#define EMBED(name, path, type, file)                                             \
-    __asm__(".section .rodata\n.global page_" #name "\n.global page_" #name       \
-            "_end\n.balign 8\npage_" #name ":\n.incbin \"" file "\"\npage_" #name \
-            "_end:\n.byte 0\n.previous\n");                                       \
+#ifdef __APPLE__
+#define SECTION ".section __TEXT,__const"
+#define SYMBOL(name) "_page_" #name
+#else
+#define SECTION ".section .rodata"
+#define SYMBOL(name) "page_" #name
+#endif
+#define EMBED(name, path, type, file)                                                             \
+    __asm__(SECTION "\n.globl " SYMBOL(name) "\n.globl " SYMBOL(name) "_end\n.balign 8\n" SYMBOL( \
+        name) ":\n.incbin \"" file "\"\n" SYMBOL(name) "_end:\n.byte 0\n.previous\n");            \
     extern const char page_##name[], page_##name##_end[];
 FILES(EMBED)
 

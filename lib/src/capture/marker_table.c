@@ -104,7 +104,7 @@ static bool nexus_names(plan *p, himc_span line)
 
 static bool nexus_units(plan *p, himc_span line)
 {
-    for (int column = 0; line.at; column++) {
+    while (line.at) {
         himc_span cell = himc_span_cell(&line, ',');
         double unit = unit_of(cell);
         if (unit == 0)

@@ -103,7 +103,7 @@ void himc_take_drop_spikes(himc_take *take)
     int points = 0, frames = 0, frame = 0;
     const char *name = "";
     for (int i = 0; i < take->points; i++) {
-        int first, count = spikes(take, i, false, &first);
+        int first = 0, count = spikes(take, i, false, &first);
         if (count == 0 || count > MOST_SPIKES * take->frames)
             continue;
         spikes(take, i, true, &first);
