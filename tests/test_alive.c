@@ -107,11 +107,11 @@ static himc_performance *with_damping(bool alive, const char *more)
 {
     char text[512];
     himc_performance *p = session_new();
-    snprintf(
-        text, sizeof text,
-        "drum kettle; alive %d; tempo 60; stroke 1 right legato f; stroke 2 left legato mf; stroke 6 right legato mf; "
-        "at 3 kettle damp 1; at 4 kettle damp 0; %s play;",
-        alive, more);
+    snprintf(text, sizeof text,
+             "drum kettle; alive %d; tempo 60; stroke 1 right legato f; stroke 2 left legato mf; "
+             "stroke 6 right legato mf; "
+             "at 3 kettle damp 1; at 4 kettle damp 0; %s play;",
+             alive, more);
     session_score(p, "build/alive.txt", text);
     return p;
 }

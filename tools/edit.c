@@ -201,8 +201,9 @@ static bool save_score(const session *s)
     char *text = edit_text_join(s->text);
     if (text)
         put_file("score.txt", text, strlen(text));
+    bool good = text != NULL;
     free(text);
-    return text;
+    return good;
 }
 
 // one line; false with the reason, and *fatal if nothing can be played any more

@@ -146,6 +146,17 @@ def test_scores_changed_at_random_play_as_if_written_so():
     return edit_at_random(SCORE, random_stroke)
 
 
+def test_the_last_stroke_is_changed_after_the_end():
+    path = os.path.join(folder.name, "two.txt")
+    with open(path, "w") as file:
+        file.write("stroke 0 right legato mf; stroke 1 left accent mf;")
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        before = dict(piece.parts)
+        assert piece.play("set 1 stroke 1 left accent pp") is None
+        assert from_start(piece).parts == piece.parts != before
+
+
 def test_takes_changed_at_random_play_as_if_written_so():
     path, score = (os.path.join(folder.name, name) for name in ("take.bvh", "one.txt"))
     with open(score, "w") as file:

@@ -650,6 +650,43 @@ def test_others_are_shown_over_and_beside_the_performer():
     return f"{1000 * said['apart']:.1f} mm apart"
 
 
+def test_lanes_follow_the_limb_that_is_clicked():
+    """A click on the left elbow: its angles and torques; a tone stands in its row of the spectrum."""
+    said = browser.run(
+        """
+        const { playback: p, panel, actions, view, performers } = viewer, told = {}, { timeline } = panel;
+        viewer.held = true;
+        actions.camera("front"), p.play(false), p.seek(2600), viewer.step(0, false);
+        view.settle(), viewer.step(0, false), view.camera.updateMatrixWorld();
+        actions.lanes(), view.settle(), viewer.step(0, false), view.camera.updateMatrixWorld();
+        return import("/body.js").then(({ bone }) => {
+            const q = performers.get(p.scene.name).points()[bone("left-forearm")].project(view.camera),
+                at = { clientX: ((q.x + 1) / 2) * innerWidth, clientY: ((1 - 2 * view.lift - q.y) / 2) * innerHeight, pointerId: 1, bubbles: true };
+            for (const what of ["pointerdown", "pointerup"])
+                document.getElementById("stage").dispatchEvent(new PointerEvent(what, at));
+            told.joint = timeline.joint;
+            told.most = ["angle", "torque"].map(kind => timeline.curve(kind).most);
+            timeline.draw();
+            actions.lanes();
+            viewer.resume();
+            return import("/spectrum.js");
+        }).then(({ spectrogram }) => {
+            const rate = 48000, tone = Float32Array.from({ length: 24000 }, (_, i) => Math.sin((2 * Math.PI * 440 * i) / rate));
+            return spectrogram({ getChannelData: () => tone, sampleRate: rate }, () => true);
+        }).then(picture => {
+            const { data } = picture.getContext("2d").getImageData(picture.width >> 1, 0, 1, picture.height),
+                light = Array.from({ length: picture.height }, (_, r) => data[4 * r] + data[4 * r + 1] + data[4 * r + 2]),
+                row = picture.height - 1 - light.indexOf(Math.max(...light));
+            told.hz = [row, row + 1].map(r => 50 * (4000 / 50) ** (r / picture.height));
+            return told;
+        });
+        """
+    )
+    assert said["joint"] == "left-elbow" and 0.1 < said["most"][0] < 3.2, said
+    assert 0.5 < said["most"][1] < 2000, said
+    assert said["hz"][0] * 0.97 < 440 < said["hz"][1] * 1.03, said
+
+
 def made_by_film(ending, *options):
     out = os.path.join(MADE, "made." + ending)
     command = [HIMC, "film", FOUR, "-o", out, "--size", "96x64", *options]

@@ -4,6 +4,7 @@
 import socket
 import statistics
 import sys
+import tempfile
 import time
 
 import page
@@ -85,6 +86,68 @@ def test_eight_performers_take_less_than_4_ms_of_script_a_frame():
         script = statistics.median(page.browser.run("return viewer.scripts"))
     assert script < 4, f"{script:.2f} ms"
     return f"{script:.2f} ms, the median of frames"
+
+
+# Notes the heights of both tips as they are drawn, and the beginnings of strokes as they leave the
+# loudspeaker, by one clock (ms)
+PROBE = """
+const { sound, performers } = viewer, { context } = sound, ear = context.createAnalyser(),
+    samples = new Float32Array((ear.fftSize = 16384)), rate = context.sampleRate,
+    probe = (window.probe = { picture: [], sound: [] });
+sound.gain.connect(ear);
+const look = () => {
+    const p = [...performers.values()].find(q => q.group.visible);
+    if (p) probe.picture.push([performance.now(), ...p.points().slice(-2).map(v => v.z)]);
+    requestAnimationFrame(look);
+};
+requestAnimationFrame(look);
+let last = 0;
+setInterval(() => {
+    ear.getFloatTimeDomainData(samples);
+    const stamp = context.getOutputTimestamp(), end = context.currentTime, energy = [];
+    for (let i = 0; i + 48 <= samples.length; i += 48)
+        energy.push(samples.subarray(i, i + 48).reduce((sum, x) => sum + x * x, 1e-7));
+    for (let k = 20; k < energy.length; k++) {
+        const before = energy.slice(k - 20, k).reduce((a, b) => a + b) / 20,
+            at = end - (samples.length - 48 * k) / rate;
+        if (energy[k] < 20 * before || at < last + 0.2) continue;
+        last = at;
+        probe.sound.push(stamp.performanceTime + 1000 * (at - stamp.contextTime));
+    }
+}, 80);
+"""
+
+
+def test_live_sound_and_picture_meet_within_20_ms():
+    page.draw(False)
+    page.gone()
+    with tempfile.NamedTemporaryFile("w", suffix=".txt") as score:
+        score.write("tempo 97;\n")
+        for beat in range(1, 25):
+            score.write(f"stroke {beat} {('left', 'right')[beat % 2]} accent f;\n")
+        score.flush()
+        command = [page.HIMC, "serve", score.name, "--port", str(page.SERVE)]
+        with page.Started(*command) as serve:
+            serve.process.stdout.readline()
+            page.browser.run("viewer.sound.wake()")
+            for what in ("pose", "strikes", "sound"):
+                page.say(page.SERVE, osc("/himc/subscribe", "127.0.0.1", page.OSC, what))
+            assert page.browser.wait("return viewer.sound.context.state === 'running' && viewer.joints()")
+            page.browser.run(PROBE)
+            page.say(page.SERVE, osc("/himc/play"))
+            assert page.browser.wait("return probe.sound.length > 20", 60), page.browser.run("return probe.sound")
+            probe = page.browser.run("return probe")
+            missed = page.browser.run("return [...viewer.liveSound.nodes.values()].map(n => n.told.missed)")
+    apart = []
+    for heard in probe["sound"]:
+        near = [(min(tips), at) for at, *tips in probe["picture"] if abs(at - heard) < 150]
+        if near:
+            apart.append(heard - min(near)[1])
+    # poses come each 30 ms, so that the lowest one is up to half of that beside the stroke
+    median = statistics.median(apart)
+    said = f"sound {median:.1f} ms after the picture, the median of {len(apart)} strokes, missed {missed}"
+    assert len(apart) > 15 and abs(median) < 20, (said, apart)
+    return said
 
 
 if __name__ == "__main__":

@@ -133,7 +133,7 @@ export class Editor {
         $("e-chosen").hidden = !c;
         if (!c) return;
         $("e-words").value = s?.words ?? "";
-        $("e-words").disabled = $("e-delete").disabled = !s;
+        $("e-words").parentElement.hidden = !s;
         $("e-stroke").hidden = s?.beat === undefined || c.take;
         $("e-way").hidden = !c.take;
         if (s?.beat === undefined) return;

@@ -93,7 +93,7 @@ function upperArm(side) {
 function forearm(side) {
     const f = bone(side + "-forearm");
     return part(0.0095, 0.04, [
-        cone(f, [0, 0, -0.045], 0.0375, [0, 0, -0.225], 0.0245),
+        cone(f, [0, 0, -0.045], 0.0375, [0, 0, -0.237], 0.024),
         ellipsoid(f, [0.004, 0, -0.095], [0.041, 0.043, 0.075]),
     ]);
 }

@@ -231,8 +231,11 @@ function arrange(now) {
             .filter(p => p.present(now) && !p.ghostly)
             .sort((a, b) => a.index - b.index),
         n = here.length;
-    const radius = Math.max(2.6, n * 0.62),
-        step = n > 1 ? Math.min(0.75, 2.6 / (n - 1)) : 0;
+    const drumsReach = [...drums.values()]
+        .filter(d => d.group.visible)
+        .reduce((most, d) => Math.max(most, Math.abs(d.place[1]) + d.place[4]), 0);
+    const step = n > 1 ? Math.min(0.75, 2.6 / (n - 1)) : 0,
+        radius = Math.max(2.6, n * 0.62, step && (2 * drumsReach) / step); // no drum reaches its neighbour's
     here.forEach((p, i) => {
         const angle = n > 1 ? (i - (n - 1) / 2) * step : 0;
         p.group.rotation.z = -angle;
@@ -241,9 +244,6 @@ function arrange(now) {
     for (const p of performers.values())
         if (p.ghostly && here.length)
             (p.group.position.copy(here[0].group.position), (p.group.rotation.z = here[0].group.rotation.z));
-    const drumsReach = [...drums.values()]
-        .filter(d => d.group.visible)
-        .reduce((most, d) => Math.max(most, Math.abs(d.place[1]) + d.place[4]), 0);
     const wide = n > 1 ? radius * Math.sin(Math.min(Math.PI / 2, ((n - 1) / 2) * step)) : 0,
         spread = Math.max(wide, Math.round(20 * Math.max(0, drumsReach - ALONE)) / 20);
     stage.cover(0.35 * spread, spread + 1);

@@ -241,6 +241,7 @@ export class Stage {
             this.key.shadow.map.dispose();
             this.key.shadow.map = null;
             this.key.shadow.mapSize.set(1024, 1024);
+            this.key.shadow.bias = -0.001; // coarser points, deeper into the surface
         }
         if (step < 3) return;
         this.key.castShadow = false;

@@ -3,6 +3,9 @@
 // the amount that waits.
 const MOST = 0.2, // (s) more is left out
     SIZE = 1 << 16, // of the ring (samples)
+    SPARE = 0.01, // (s) more than wanted, and never needed within a LOOK, is left out, under a
+    LOOK = 0.5, // crossfade: the speed alone would take a minute, and the sound be late meanwhile
+    FADE = 256, // (samples)
     PULL = 0.02, // how much of the speed follows (1/s)
     TOLD = 0.25; // (s) between two reports
 
@@ -13,6 +16,7 @@ class Live extends AudioWorkletProcessor {
         this.behind = processorOptions.behind;
         this.ring = [new Float32Array(SIZE), new Float32Array(SIZE)];
         ((this.written = 0), (this.read = 0), (this.next = null), (this.rate = 48000));
+        ((this.least = Infinity), (this.looked = 0), (this.old = 0), (this.fade = 0));
         ((this.begun = false), (this.missed = 0), (this.peak = 0), (this.told = 0));
         this.port.onmessage = e => this.push(e.data);
     }
@@ -39,23 +43,41 @@ class Live extends AudioWorkletProcessor {
             this.read = Math.max(0, this.written - this.behind * this.rate);
             this.begun = this.written - this.read >= this.behind * this.rate;
         }
+        this.catchUp(waits);
         const step = (this.rate / sampleRate) * (1 + PULL * (waits - this.behind));
         for (let i = 0; this.begun && i < output[0].length; i++) {
-            const whole = Math.floor(this.read),
-                t = this.read - whole;
-            if (whole + 1 >= this.written) {
+            if (Math.floor(this.read) + 1 >= this.written) {
                 this.begun = false;
                 this.missed++;
                 break;
             }
+            const old = this.fade > 0 ? this.fade-- / FADE : 0;
             output.forEach((out, channel) => {
-                const ring = this.ring[channel];
-                out[i] = (1 - t) * ring[whole % SIZE] + t * ring[(whole + 1) % SIZE];
+                out[i] = this.sample(channel, this.read);
+                if (old) out[i] += old * (this.sample(channel, this.old) - out[i]);
             });
             this.read += step;
+            this.old += step;
         }
         this.tell(waits);
         return true;
+    }
+
+    sample(channel, place) {
+        const ring = this.ring[channel],
+            whole = Math.floor(place),
+            t = place - whole;
+        return (1 - t) * ring[whole % SIZE] + t * ring[(whole + 1) % SIZE];
+    }
+
+    // leaves out what waits for nothing
+    catchUp(waits) {
+        this.least = Math.min(this.least, waits);
+        if (currentTime < this.looked + LOOK) return;
+        const spare = this.least - this.behind;
+        if (this.begun && spare > SPARE)
+            ((this.old = this.read), (this.fade = FADE), (this.read += spare * this.rate));
+        ((this.looked = currentTime), (this.least = Infinity));
     }
 
     tell(waits) {

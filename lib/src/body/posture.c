@@ -41,8 +41,8 @@
 #define BACK_BEGINS 0.5   // forward part of the unit vector from shoulder to wrist: begins here ...
 #define BACK_ENDS (-0.35) // ... and is complete here
 #define BACK_MOST 2.0     // backward part of the hanging direction, relative to its downward part
-// The forearm's roll. Chosen: the hand's while their axes of flexion agree, in every usual stroke; where
-// hand and forearm would part, the elbow's has the larger share, so no axis is lost.
+// The forearm's roll. Chosen: it follows the hand while the flexion axes of hand and elbow agree,
+// as in every usual stroke, and more and more the elbow where they do not: it is always defined.
 #define ROLL_AGREES 0.5 // cosine between these axes: the elbow's share begins below it ...
 #define ROLL_PARTS 1.0  // ... grows while it falls by this ...
 #define ELBOW_SHARE 1.2 // ... to this
@@ -456,8 +456,8 @@ himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand, hi
     return himc_vec3_madd(from, reached, line);
 }
 
-// the stick turns by less than its length allows the grip to move back, so the tip moves by what the
-// grip misses until that is nothing
+// the tip moves by what the grip misses, again and again; the stick rises by less than one with the
+// tip, so this converges
 himc_vec3 himc_posture_tip_of_grip(const himc_posture *posture, himc_hand hand, himc_vec3 grip)
 {
     arm a = arm_of(posture, hand);

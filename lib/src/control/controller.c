@@ -8,8 +8,8 @@
 /// Joint limits have priority over all of this (limit_torque.c).
 ///
 /// The engine moves with the velocity at a step's end, so its velocities are those of half a step
-/// before their positions: computed torque wants q'_t - h/2 q''_t. Without it a tip lags by h a / w,
-/// 0.01 mm in a roll.
+/// before their positions: computed torque wants q'_t - h/2 q''_t. Without it a tip lags by
+/// h a / w, 0.01 mm in a roll.
 ///
 /// A servo that reads the state at the step's beginning is unstable as soon as kd h exceeds twice
 /// the inertia, and the inertia about a joint's long axis is small. So servos act on the state at

@@ -38,7 +38,7 @@ static inline double himc_goal_end(const himc_goal *goal)
 }
 
 /// Peak acceleration of a lift, at most (m/s^2). Chosen: an arm that is in a hurry.
-#define HIMC_HARDEST_LIFT 120.0
+#define HIMC_HARDEST_LIFT 80.0
 
 /// At rest at `home` from time t on.
 HIMC_RT void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home);

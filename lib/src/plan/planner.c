@@ -240,7 +240,8 @@ static bool may_exchange(const himc_planner *planner, himc_hand hand, const plan
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
 {
     planner_score *score = &planner->score, *fresh = &other->score;
-    if (score->loop || score->past > 0 || fresh->playing ||
+    bool over = score->starts > 0 && !score->playing;
+    if (over || score->loop || score->past > 0 || fresh->playing ||
         score->tempo_count != fresh->tempo_count)
         return false;
     for (int i = 0; i < score->tempo_count; i++)

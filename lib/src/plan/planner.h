@@ -107,7 +107,8 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
                             himc_error *error);
 /// Exchanges the strokes with those of `other`, which does not play. The plan so far stays, and goes
 /// on as it would if these strokes had been there from the start. False, and nothing changed, if a
-/// stroke differs on which the plan so far may rest, if the tempo maps differ, or while looping.
+/// stroke differs on which the plan so far may rest, if the tempo maps differ, while looping, or
+/// after the end.
 /// Before `play` the plan rests on none.
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
 /// Stops, drops all strokes and goes to beat 0; moving sticks come to rest.
