@@ -211,6 +211,26 @@ static void test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_b
 
 // half a newton that control does not know of carries the stick 1 mm away; the last 10 ms of the
 // plan begin where it is
+// the left hand is at the right; the right one would be there 10 ms sooner, but reach across for it
+static void test_a_late_hit_stays_with_the_hand_that_was_asked_for(void)
+{
+    heard h = {0};
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "drum tom 23");
+    session_do(p, "drum tam 23");
+    session_do(p, "target right 0.447 -0.227 1.165");
+    session_do(p, "target left 0.45 -0.25 0.878");
+    session_play(p, 2, NULL);
+    session_do(p, "hit left legato mf normal tam");
+    session_play(p, 1, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.strikes);
+    TEST_ASSERT_EQUAL_INT(HIMC_LEFT, h.strike[0].hand);
+    TEST_ASSERT_EQUAL_INT(1, himc_performance_measure(p).played);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 static void test_a_stick_that_drifts_is_brought_back_before_it_lands(void)
 {
     himc_performance *p = with_kettle("150");
@@ -296,6 +316,7 @@ int main(void)
     RUN_TEST(test_the_sample_of_the_message_counts_in_blocks_of_any_size);
     RUN_TEST(test_hits_leave_the_strokes_of_a_score_alone);
     RUN_TEST(test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_by_how_much);
+    RUN_TEST(test_a_late_hit_stays_with_the_hand_that_was_asked_for);
     RUN_TEST(test_a_stick_that_drifts_is_brought_back_before_it_lands);
     RUN_TEST(test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may);
     RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);

@@ -136,7 +136,8 @@ static double cost_of(himc_hand hand, const chance *c, const chance *other)
     return himc_sticking_cost(&s);
 }
 
-/// The hand that plays a hit: the one asked for if it is on time, else the earlier one.
+/// The hand that plays a hit: the one asked for if it is on time, else the other if that one is, or if
+/// it alone can come. When both are late a change gains little, and the other has to reach across.
 static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hit, chance *chosen)
 {
     chance c[HIMC_HANDS];
@@ -149,7 +150,7 @@ static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hi
                    ? HIMC_LEFT
                    : HIMC_RIGHT;
     himc_hand other = (himc_hand)(HIMC_HANDS - 1 - (int)best);
-    if (c[other].late < c[best].late && !hit->alone)
+    if (c[other].late < c[best].late && (c[other].late == 0 || isinf(c[best].late)) && !hit->alone)
         best = other;
     *chosen = c[best];
     return best;
