@@ -153,7 +153,7 @@ static himc_performance *random_state(unsigned *seed, const himc_performance_con
         if (choose(seed, 10) == 0)
             himc_performance_realign(p);
     }
-    if (choose(seed, 5) == 0) // up to a contact, if one comes
+    if (choose(seed, 4) == 0) // up to a contact, if one comes
         for (int i = 0; i < 400 && !himc_contacts_any(&p->contacts); i++)
             himc_performance_process(p, 1 + choose(seed, 40), NULL);
     return p;

@@ -1,5 +1,6 @@
 /* embed.c: a program that contains Pure Data (libpd) and both objects, and prints what a patch prints while it
-plays as fast as it can. With a third argument, that many instances play at once, a thread each.
+plays as fast as it can. With a third argument, that many instances play at once, a thread each. Classes are made and
+patches are opened by one thread: Pd keeps lists for both that all its instances share without a lock.
     embed PATCH SECONDS [INSTANCES] */
 #include "z_libpd.h"
 #include "z_print_util.h"
@@ -30,20 +31,28 @@ static void print(const char *line)
     fprintf(out, "%s", line);
 }
 
-static void *play(void *object)
+static void choose(const player *p)
 {
-    player *p = object;
-    float sound[BLOCK];
     out = p->out;
     if (p->instance)
         libpd_set_instance(p->instance);
+}
+
+static void prepare(const player *p)
+{
+    choose(p);
     libpd_set_printhook(print);
     libpd_init_audio(0, 1, RATE);
-    himc_setup();
     if (!libpd_openfile(patch, ".")) {
         fprintf(stderr, "%s: cannot be opened\n", patch);
         exit(1);
     }
+}
+
+static void *play(void *object)
+{
+    float sound[BLOCK];
+    choose(object);
     for (long n = 0; n < (long)(seconds * RATE); n += BLOCK)
         libpd_process_float(1, NULL, sound);
     return NULL;
@@ -62,6 +71,9 @@ int main(int argc, char **argv)
         players[i].out = count > 1 ? tmpfile() : stdout;
         players[i].instance = count > 1 ? libpd_new_instance() : NULL;
     }
+    himc_setup();
+    for (int i = 0; i < count; i++)
+        prepare(&players[i]);
     if (count == 1) {
         play(&players[0]);
         return 0;

@@ -6,6 +6,7 @@
 #include "performance/performance_body.h"
 #include "base/format.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,6 +54,18 @@ static double energy(const himc_character *c)
     return himc_character_kinetic(c) + himc_character_potential(c);
 }
 
+// of all but the bytes between the fields
+static bool same_segments(const himc_skeleton *a, const himc_skeleton *b)
+{
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *s = &a->segment[i], *t = &b->segment[i];
+        if (s->parent != t->parent ||
+            memcmp(&s->mass, &t->mass, sizeof *s - offsetof(himc_segment, mass)) != 0)
+            return false;
+    }
+    return true;
+}
+
 void himc_body_adopt(performance_body *b, const body_parts *parts)
 {
     if (b->accounting) {
@@ -64,7 +77,7 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
     b->skeleton = parts->skeleton;
     b->plant = parts->plant;
     b->legs.known = false;
-    b->shares = memcmp(b->skeleton.segment, b->plant.segment, sizeof b->plant.segment) == 0;
+    b->shares = same_segments(&b->skeleton, &b->plant);
 }
 
 bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
