@@ -58,6 +58,7 @@
 #define STIFF_POINT 100.0     // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
 #define STIFF_PATCH 5e3       // the same for a mallet that has a patch; wood has 9487
 #define CLOSE 0.001         // (m) nearer than this and two steps, a stick's patch is found; chosen
+#define SAME_PATCH 0.005    // relative; chosen: less than the formula of the radius is worth
 #define REACH_ROUNDING 1e-6 // (m) allowance in an estimate of future heights
 #define HEIGHT_ROUNDING 1e-12 // (m) of a height that is computed again by the caller
 #define REGULAR 1e-12         // of a compliance, added for a one-way stick, ...
@@ -436,6 +437,15 @@ static void keep_compression(himc_stick *s, double before)
         s->height = surface - most;
 }
 
+// Kept while it hardly changes: a stick that follows a head on its way down is in its last two steps
+// for a long time, and weighing all modes anew in each of them would take a block's time.
+static void foresee_patch(const himc_membrane *m, himc_stick *s, double distance, double speed)
+{
+    double radius = himc_patch_radius(himc_membrane_head(m), &s->head, s->mass, distance, speed);
+    if (s->patch == 0 || fabs(radius - s->patch) > SAME_PATCH * s->patch)
+        s->patch = radius;
+}
+
 // The strike point under a stick. Until a blow has begun, its patch is that of a blow as fast as
 // the stick comes down; it is found anew in the last two steps.
 static strike_point *point_under(himc_membrane *m, himc_stick *s, double h)
@@ -449,7 +459,7 @@ static strike_point *point_under(himc_membrane *m, himc_stick *s, double h)
     if (gap > CLOSE + last)
         s->patch = 0;
     else if (s->patch == 0 || !(gap > last))
-        s->patch = himc_patch_radius(himc_membrane_head(m), &s->head, s->mass, hypot(x, y), speed);
+        foresee_patch(m, s, hypot(x, y), speed);
     point = himc_membrane_strike_point(m, x, y, s->patch);
     himc_residual residual = himc_strike_point_residual(point);
     s->residual_root = residual.root;
