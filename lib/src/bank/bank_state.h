@@ -11,17 +11,17 @@
 #define POWERS 7  ///< coefficients are kept for 1, 2, 4, .. 64 samples
 #define BLOCK 128 ///< oscillators whose waves are in the cache together; chosen
 
-/// coefficients for a number of samples, or for a substep
+/// Coefficients for a number of samples, or for a substep
 typedef struct bank_rotation {
     double *c, *s; ///< C, S
 } bank_rotation;
 
-/// effect of a force during one step
+/// Effect of a force during one step
 typedef struct bank_effect {
     double *p, *s; ///< added to p and s by 1 N
 } bank_effect;
 
-/// lengths of the film's steps (samples)
+/// Lengths of the film's steps (samples)
 static const int bank_steps[LEVELS] = {1, 4, 8, 16};
 
 /// The film: see the head of bank.c for the letters.
