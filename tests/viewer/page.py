@@ -8,6 +8,7 @@ import base64
 import contextlib
 import csv
 import json
+import math
 import os
 import random
 import shutil
@@ -35,6 +36,7 @@ FOUR_SCORE = "tests/viewer/four.txt"
 # fixed, because the page must find a restarted viewer again; different for each run of this file
 HTTP = 20000 + os.getpid() % 20000
 OSC, SERVE = HTTP + 1, HTTP + 2
+RECOVERED = 10  # of a body that was pushed, a second later (mm); tests/pushes.h
 MARKS = 7  # layer of the marks of strikes
 browser = bridge = None
 
@@ -838,11 +840,12 @@ return opened.then(async () => {
 
 DRAG = """
     const e = viewer.editor, stage = document.getElementById("stage"),
-        [handle, x, y] = arguments, [left, top] = e.screen(e[handle].position);
+        [handle, x, y] = arguments, push = typeof handle === "number", // a handle, or a segment
+        [left, top] = e.screen(push ? e.on.performer().figure.center(handle) : e[handle].position);
     stage.setPointerCapture = () => {}; // there is no true pointer
     for (const [name, at] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
         stage.dispatchEvent(new PointerEvent(name, {
-            clientX: left + at * x, clientY: top + at * y, button: 0, pointerId: 1, bubbles: true, cancelable: true,
+            clientX: left + at * x, clientY: top + at * y, button: 0, pointerId: 1, altKey: push, bubbles: true, cancelable: true,
         }));
 """
 
@@ -911,6 +914,56 @@ def test_a_stroke_is_dragged_heard_and_put_back():
         assert browser.wait("return viewer.editor.piece.over && !viewer.editor.piece.text.undo")
         assert saved_score() == written and browser.run(strikes) == before
         return f"heard after {max(browser.run('return viewer.editor.heard')):.0f} ms without pictures"
+
+
+# time and places of the right forearm and of both tips, as the piece is now (s, mm)
+PATHS = """
+const e = viewer.editor, out = [];
+for (let t = 0.7; t < 7; t += 1.096) {
+    const paths = [e.points(null, t, 7), e.points("left", t), e.points("right", t)];
+    paths[0].forEach((p, i) => out.push([p.time, ...paths.map(path => path[i].toArray().map(v => 1000 * v))]));
+}
+return out;
+"""
+
+
+def farthest(before, after, first, last):
+    """By how much the forearm and each tip are elsewhere between two times (mm)."""
+    now = [(x, y) for x, y in zip(before, after, strict=True) if first <= x[0] < last]
+    return [max(math.dist(x[k], y[k]) for x, y in now) for k in (1, 2, 3)]
+
+
+def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
+    with editing("tests/viewer/editable.txt"):
+        written, before = saved_score(), browser.run(PATHS)
+        browser.run("viewer.actions.seek(3000); viewer.actions.camera('side')")
+        assert browser.wait("return Math.abs(viewer.view.now.azimuth - viewer.view.goal.azimuth) < 1e-3")
+        browser.run(DRAG, 7, 25, -30)
+        assert browser.wait("return viewer.editor.heard.length === 1 && viewer.editor.piece.over")
+        s = browser.run("return viewer.editor.chosen.statement")
+        assert s["push"] == "right-forearm" and s["force"][0] > 100 and s["force"][2] > 100, s
+        assert math.hypot(*s["force"]) <= 1000.1 and s["words"] in saved_score(), s
+        # the push begins at most a tick before 3 s; a second after its end the body has recovered
+        after = browser.run(PATHS)
+        assert farthest(before, after, 0, 2.99) == [0, 0, 0]
+        pushed = farthest(before, after, 3, 4)
+        left = farthest(before, after, 3 + s["seconds"] + 1, 3 + s["seconds"] + 1.5)
+        assert pushed[0] > 5 and max(left) < RECOVERED, (pushed, left)
+        # its arrow is there while it acts; the fields change it
+        browser.run("viewer.playback.play(false); viewer.playback.seek(3050)")
+        assert browser.wait("return viewer.editor.pushes.arrows[0].group.visible")
+        browser.run("viewer.playback.seek(3500)")
+        assert browser.wait("return !viewer.editor.pushes.arrows[0].group.visible")
+        browser.run("const x = document.getElementById('e-fx'); x.value = 0; x.onchange()")
+        assert browser.wait("return viewer.editor.heard.length === 2 && viewer.editor.piece.over")
+        assert browser.run("return viewer.editor.chosen.statement.force[0]") == 0
+        browser.run("for (const _ of [1, 2]) document.getElementById('e-undo').click()")
+        assert browser.wait("return !viewer.editor.piece.text.undo && viewer.editor.piece.over")
+        assert saved_score().strip() == written.strip() and browser.run(PATHS) == before
+        return (
+            f"{math.hypot(*s['force']):.0f} N: forearm {pushed[0]:.0f} mm off, tips"
+            f" {max(pushed[1:]):.0f} mm; a second later {max(left):.1f} mm"
+        )
 
 
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():

@@ -296,11 +296,7 @@ function frame(_, now = clock(), draw = true) {
         first = arrange(now);
     for (const p of performers.values()) p.update(now, time, view.camera, shown);
     const excursion = updateDrums(now);
-    marks.update(
-        time,
-        shown,
-        view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
-    );
+    marks.update(time, shown, view.near());
     view.update(Math.min(200, dt), first);
     editor?.update();
     stage.haze(view.now.distance);
@@ -517,6 +513,7 @@ function edit(key) {
     editor = new Editor(key, sound, view, stage, {
         opened: open,
         playback: () => playback,
+        performer: () => [...performers.values()].find(p => p.group.visible && !p.ghostly),
         note: text => panel.note(text),
         changed: () => panel.timeline.grown(),
         finished: piece => panel.timeline.heard(piece.sound.whole()),

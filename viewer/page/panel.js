@@ -32,6 +32,7 @@ const KEYS = [
     ["\\", "no loop", a => a.unloop()],
     ["home end", "the beginning, the end", null],
     ["l", "more lanes: angles, torques, spectrum", a => a.lanes()],
+    ["alt and drag", "push the body, in an edit", null],
     ["ctrl z, ctrl y", "undo, redo a change", null],
     ["m", "sound on, off", a => a.mute()],
     ["?", "these keys", null],
