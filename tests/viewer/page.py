@@ -20,7 +20,7 @@ import time
 import zlib
 
 import report
-from bridge import WAIT, osc
+from bridge import WAIT, bundle, osc, pose, sound
 from browser import Browser
 
 BUILD = os.environ["HIMC_BUILD"]
@@ -263,8 +263,31 @@ def test_himc_serve_is_shown_and_heard_with_drum_strikes_and_status():
         assert counts["malformed"] == 0 and counts["unknown"] == 0, counts
         live = "[...viewer.liveSound.nodes.values()].map(n => n.told)"
         assert browser.wait(f"return {live}.some(t => t && t.peak > 0.001)"), "no sound"
-        rate = "Math.max(...[...viewer.performers.values()].map(p => p.rate))"
+        rate = "Math.max(...[...viewer.performers.values()].map(p => p.clock.rate))"
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
+
+
+def test_the_picture_shows_the_moment_that_is_heard():
+    """A sound that its sender tells to be of a moment 0.15 s before that of the poses sent with it."""
+    gone()
+    browser.run("viewer.sound.wake()")
+    late, block, begin, first = 0.15, 240 / 48000, time.time(), 0
+    apart = """
+        const p = [...viewer.performers.values()].find(q => q.group.visible && q.clock.sounds),
+            heard = p && viewer.liveSound.moment(p.key), c = p && p.clock;
+        return heard && [performance.timeOrigin + performance.now() - c.late - heard, c.late - c.lag];"""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        said = None
+        while not said or abs(said[0]) > 1 or said[1] < 1000 * late:
+            assert time.time() < begin + WAIT, said
+            while begin + block * first < time.time():
+                told = begin + block * first
+                udp.sendto(bundle(sound(240 * first, [0] * 240), told=told - late), ("127.0.0.1", OSC))
+                if first % 6 == 0:
+                    udp.sendto(bundle(*pose(), told=told), ("127.0.0.1", OSC))
+                first += 1
+            said = browser.run(apart)
+    return f"{said[0]:.2f} ms apart, {said[1]:.0f} ms late"
 
 
 def test_hostile_senders_leave_the_page_as_it_was():
