@@ -324,9 +324,6 @@ function frame(_, now = clock(), draw = true) {
     }
     if (latencies.length > 200) latencies.splice(0, 100);
     countFrames(now);
-    numbers.script += 0.05 * (drawn - begin - numbers.script);
-    scripts.push(drawn - begin);
-    if (scripts.length > 200) scripts.splice(0, 100);
     numbers.render += 0.05 * (end - drawn - numbers.render);
     numbers.latency = latencies.length
         ? [...latencies].sort((a, b) => a - b)[latencies.length >> 1]
@@ -339,6 +336,10 @@ function frame(_, now = clock(), draw = true) {
         panel.filming(recorder.filming);
     }
     if (!virtual) stage.adapt(dt, view);
+    const script = drawn - begin + performance.now() - end; // all but the drawing
+    numbers.script += 0.05 * (script - numbers.script);
+    scripts.push(script);
+    if (scripts.length > 200) scripts.splice(0, 100);
 }
 
 function next() {
