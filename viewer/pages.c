@@ -22,6 +22,7 @@
     SCRIPT(FILE, main)                                                     \
     SCRIPT(FILE, boot)                                                     \
     SCRIPT(FILE, stream)                                                   \
+    SCRIPT(FILE, clock)                                                    \
     SCRIPT(FILE, performer)                                                \
     SCRIPT(FILE, body)                                                     \
     SCRIPT(FILE, figure)                                                   \

@@ -20,7 +20,7 @@ import time
 import zlib
 
 import report
-from bridge import WAIT, osc
+from bridge import WAIT, bundle, osc, pose, sound
 from browser import Browser
 
 BUILD = os.environ["HIMC_BUILD"]
@@ -263,8 +263,31 @@ def test_himc_serve_is_shown_and_heard_with_drum_strikes_and_status():
         assert counts["malformed"] == 0 and counts["unknown"] == 0, counts
         live = "[...viewer.liveSound.nodes.values()].map(n => n.told)"
         assert browser.wait(f"return {live}.some(t => t && t.peak > 0.001)"), "no sound"
-        rate = "Math.max(...[...viewer.performers.values()].map(p => p.rate))"
+        rate = "Math.max(...[...viewer.performers.values()].map(p => p.clock.rate))"
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
+
+
+def test_the_picture_shows_the_moment_that_is_heard():
+    """A sound that its sender tells to be of a moment 0.15 s before that of the poses sent with it."""
+    gone()
+    browser.run("viewer.sound.wake()")
+    late, block, begin, first = 0.15, 240 / 48000, time.time(), 0
+    apart = """
+        const p = [...viewer.performers.values()].find(q => q.group.visible && q.clock.sounds),
+            heard = p && viewer.liveSound.moment(p.key), c = p && p.clock;
+        return heard && [performance.timeOrigin + performance.now() - c.late - heard, c.late - c.lag];"""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        said = None
+        while not said or abs(said[0]) > 1 or said[1] < 1000 * late:
+            assert time.time() < begin + WAIT, said
+            while begin + block * first < time.time():
+                told = begin + block * first
+                udp.sendto(bundle(sound(240 * first, [0] * 240), told=told - late), ("127.0.0.1", OSC))
+                if first % 6 == 0:
+                    udp.sendto(bundle(*pose(), told=told), ("127.0.0.1", OSC))
+                first += 1
+            said = browser.run(apart)
+    return f"{said[0]:.2f} ms apart, {said[1]:.0f} ms late"
 
 
 def test_hostile_senders_leave_the_page_as_it_was():
@@ -600,45 +623,53 @@ def test_sound_is_the_clock_of_a_playback():
     return f"{off:.2f} ms"
 
 
-def test_others_are_shown_over_and_beside_the_performer():
-    """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
-    others = os.path.join(MADE, "others.himc")
+def play_compared(others):
+    """Plays the four drums, with the scenes of other pipelines to compare."""
+    path = os.path.join(MADE, "others.himc")
     command = [HIMC, "render", FOUR_SCORE, "-o", os.path.join(MADE, "others.wav")]
-    command += ["--scene", others, "--compare", "ik", "--quiet"]
+    command += ["--scene", path, "--compare", others, "--quiet"]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    with open(others, "rb") as file:
+    with open(path, "rb") as file:
         scene = base64.b64encode(file.read()).decode()
-    said = browser.run(
+    browser.run(
         """
-        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0)), done = arguments[1];
-        return viewer.play(bytes, "others.himc").then(() => {
-            const { playback: p, performers, drums, actions } = viewer, told = {};
-            viewer.held = true;
-            const far = (a, b) => Math.max(...a.map((v, i) => Math.hypot(...v.map((x, k) => x - b[i][k]))));
-            p.play(false), p.seek(2600), viewer.step(0, false);
-            const here = () => [...performers.values()].filter(q => q.group.visible);
-            const own = q => {
-                const scene = p.scenes.find(s => s.name === q.key), pose = scene.pose(p.at / 1000, new Float64Array(140));
-                return Array.from({ length: 20 }, (_, i) => [...pose.subarray(7 * i, 7 * i + 3)]);
-            };
-            const off = q => far(own(q), q.points().slice(0, 20).map(v => q.group.worldToLocal(v).toArray()));
-            told.over = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
-            told.apart = far(own(here()[0]), own(here()[1]));
-            told.drums = drums.size;
-            p.play(true);
-            for (let i = 0; i < 12; i++) viewer.step(20, false);
-            p.play(false);
-            told.colors = here().map(q => q.trails[1].points.at(-1).color.getHexString());
-            actions.compare("side"), viewer.step(0, false), viewer.step(0, false);
-            told.beside = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
-            told.both = drums.size;
-            actions.compare(""), viewer.step(0, false);
-            told.alone = here().length;
-            viewer.resume();
-            return told;
-        });
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
+        return viewer.play(bytes, "others.himc")
         """,
         scene,
+    )
+
+
+def test_others_are_shown_over_and_beside_the_performer():
+    """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
+    play_compared("ik")
+    said = browser.run(
+        """
+        const { playback: p, performers, drums, actions } = viewer, told = {};
+        viewer.held = true;
+        const far = (a, b) => Math.max(...a.map((v, i) => Math.hypot(...v.map((x, k) => x - b[i][k]))));
+        p.play(false), p.seek(2600), viewer.step(0, false);
+        const here = () => [...performers.values()].filter(q => q.group.visible);
+        const own = q => {
+            const scene = p.scenes.find(s => s.name === q.key), pose = scene.pose(p.at / 1000, new Float64Array(140));
+            return Array.from({ length: 20 }, (_, i) => [...pose.subarray(7 * i, 7 * i + 3)]);
+        };
+        const off = q => far(own(q), q.points().slice(0, 20).map(v => q.group.worldToLocal(v).toArray()));
+        told.over = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
+        told.apart = far(own(here()[0]), own(here()[1]));
+        told.drums = drums.size;
+        p.play(true);
+        for (let i = 0; i < 12; i++) viewer.step(20, false);
+        p.play(false);
+        told.colors = here().map(q => q.trails[1].points.at(-1).color.getHexString());
+        actions.compare("side"), viewer.step(0, false), viewer.step(0, false);
+        told.beside = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
+        told.both = drums.size;
+        actions.compare(""), viewer.step(0, false);
+        told.alone = here().length;
+        viewer.resume();
+        return told;
+        """
     )
     for how in ("over", "beside"):
         assert [p[0] for p in said[how]] == ["himc", "ik"], said
