@@ -215,6 +215,9 @@ static void test_a_score_that_is_refused_names_its_line_and_changes_nothing(void
                   {"record " RECORD "; record stop;", "record stop", "nothing is being recorded"},
                   {"record " RECORD "; reset;", "record stop", "nothing is being recorded"},
                   {"", "push nose 1 0 0 0.1", "push: SEGMENT: nose, allowed"},
+                  {"", "at 2 push nose 1 0 0 0.1", "push: SEGMENT: nose, allowed"},
+                  {"", "at 2 push head 1 0 0", "push: SECONDS"},
+                  {"", "at 2 tempo 100", "at"},
                   {"", "roll 4 755 single f", "roll: LENGTH: 588.3 s at this tempo, allowed 180 s"},
                   {"", "take " TRC, "are left and right exchanged?"},
                   {"", "units " BVH " legato", "allowed 256 in all"},
@@ -284,9 +287,90 @@ static void test_strokes_as_close_as_allowed_may_follow_at_any_beat(void)
     himc_performance_free(p);
 }
 
+typedef struct push_seen {
+    double begun[20]; ///< beginnings of pushes (s)
+    double last;      ///< force in the row before (N)
+    int count;
+} push_seen;
+
+static void see_push(void *user, const himc_motion_row *row)
+{
+    push_seen *seen = user;
+    double now = row->push[HIMC_LEFT_FOREARM].z;
+    if (now != 0 && seen->last == 0)
+        seen->begun[seen->count++ % 20] = row->time;
+    TEST_ASSERT_TRUE(now == 0 || now == 5);
+    seen->last = now;
+}
+
+// when that performer's left forearm is pushed in that time
+static push_seen pushes_in(himc_performance *p, double seconds)
+{
+    push_seen seen = {.count = 0};
+    himc_performance_on_motion(p, see_push, &seen);
+    session_play(p, seconds, NULL);
+    return seen;
+}
+
+// beats of 0.25 s; the music begins at `play`, for its first stroke is late enough
+static void test_pushes_of_a_score_begin_at_their_beats(void)
+{
+    static const struct {
+        const char *more;
+        int count;
+        double at[6]; ///< (beats after `play`)
+    } cases[] = {{"", 3, {0, 2, 3.5}},
+                 {"seek 3;", 1, {0.5}},
+                 {"seek 2;", 2, {0, 1.5}},
+                 {"loop 1;", 5, {0, 2, 3.5, 7, 9}},
+                 {"clear;", 0, {0}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[400];
+        himc_performance *p = session_new();
+        snprintf(
+            text, sizeof text,
+            "drum kettle; tempo 240; at 3.5 push left-forearm 0 0 5 0.02; stroke 6 left legato p;"
+            "at 2 push left-forearm 0 0 5 0.02; at 0 push left-forearm 0 0 5 0.02; %s play;",
+            cases[i].more);
+        write_text(text);
+        session_do(p, "score " SCORE);
+        push_seen seen = pushes_in(p, 2.4);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].count, seen.count, cases[i].more);
+        for (int k = 0; k < seen.count; k++)
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.0041, 0.25 * cases[i].at[k], seen.begun[k],
+                                              cases[i].more);
+        himc_performance_free(p);
+    }
+}
+
+// of a take at their seconds; a score that follows brings its own; dump tells them
+static void test_pushes_of_a_take_and_of_the_next_score_are_played_and_told(void)
+{
+    char all[STATE];
+    save(made_take(BVH), BVH);
+    himc_performance *p = session_new();
+    write_text("drum kettle; at 0.5 push left-forearm 0 0 5 0.02; take " BVH "; play;");
+    session_do(p, "score " SCORE);
+    TEST_ASSERT_NOT_NULL(strstr(state_of(p, all), "\nat 0.5 push left-forearm 0 0 5 0.02\n"));
+    push_seen seen = pushes_in(p, 2);
+    TEST_ASSERT_EQUAL_INT(1, seen.count);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0041, 1.5, seen.begun[0]); // it comes to the first frame in 1 s
+    session_do(p, "stop");
+    write_text("tempo 240; at 1 push left-forearm 0 0 5 0.02; stroke 3 left legato p; play;");
+    session_do(p, "score " SCORE);
+    session_do(p, "score " SCORE);
+    TEST_ASSERT_NOT_NULL(strstr(state_of(p, all), "\nat 5 push left-forearm 0 0 5 0.02"));
+    TEST_ASSERT_EQUAL_INT(2, pushes_in(p, 2).count);
+    session_do(p, "reset");
+    TEST_ASSERT_NULL(strstr(state_of(p, all), "push"));
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_pushes_of_a_score_begin_at_their_beats);
+    RUN_TEST(test_pushes_of_a_take_and_of_the_next_score_are_played_and_told);
     RUN_TEST(test_a_hit_in_a_score_is_played_when_it_is_loaded);
     RUN_TEST(test_a_score_begins_at_its_seek);
     RUN_TEST(test_a_take_in_a_score_without_strokes_is_played);

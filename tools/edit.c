@@ -132,14 +132,22 @@ static bool check(const session *s, himc_error *error)
     return score;
 }
 
+// its beats are then seconds
+static bool has_take(const himc_score *score)
+{
+    for (int i = 0; i < score->line_count; i++)
+        if (score->lines[i].command.id == HIMC_COMMAND_TAKE)
+            return true;
+    return false;
+}
+
 // plays the text as it is now; all of it, or from before the last change
 static bool replay(session *s, bool all, himc_error *error)
 {
-    bool nudge = false;
     char *text = edit_text_join(s->text);
     himc_score *score = parse(s, error);
-    double from = all ? -1 : edit_text_changed_from(s->text, &nudge);
-    if (from > 0 && !nudge && score)
+    double from = all ? -1 : edit_text_changed_from(s->text);
+    if (from > 0 && score && !has_take(score))
         from = himc_score_seconds(score->tempi, score->tempo_count, from);
     bool good = text && edit_play_start(s->play, text, from, NULL, error);
     himc_score_free(score);
@@ -215,9 +223,9 @@ static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
     if (!strncmp(line, "take ", 5))
         return save_take(s, line + 5, error);
     if (!strcmp(line, "undo"))
-        changed = edit_text_undo(s->text) || (himc_error_set(error, "nothing to undo"), false);
+        changed = edit_text_undo(s->text) || himc_error_set(error, "nothing to undo");
     else if (!strcmp(line, "redo"))
-        changed = edit_text_redo(s->text) || (himc_error_set(error, "nothing to redo"), false);
+        changed = edit_text_redo(s->text) || himc_error_set(error, "nothing to redo");
     else if (!strncmp(line, "set ", 4))
         changed = set(s, line + 4, error);
     else if (!hello)

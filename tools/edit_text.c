@@ -22,7 +22,6 @@ struct edit_text {
     change *changes; ///< (made)
     int made, done, changes_room;
     double from; ///< of the last change
-    bool nudge;
 };
 
 static bool grow(void *array, int count, int *room, size_t size)
@@ -99,11 +98,16 @@ static size_t space(const char *bytes)
     return strspn(bytes, " \t\r\n");
 }
 
-// the command of a statement, `;` or not; false if it is none for the performer
-static bool command_of(const char *bytes, himc_command *out, himc_error *error)
+// the command of a statement, `;` or not, and the beat of its `at`, else -1; false if it is none for
+// the performer
+static bool command_of(const char *bytes, himc_command *out, double *beat, himc_error *error)
 {
     const char *begin = bytes + space(bytes), *end = end_of(begin);
-    size_t length = (size_t)(end - begin);
+    int used = 0;
+    *beat = -1;
+    if (sscanf(begin, "at %lf %n", beat, &used) == 1)
+        begin += used;
+    size_t length = end > begin ? (size_t)(end - begin) : 0;
     if (length && end[-1] == ';')
         length--;
     char *words = strndup(begin, length);
@@ -118,13 +122,21 @@ static bool is_stroke(const himc_command *c)
            c->id == HIMC_COMMAND_FLAM || c->id == HIMC_COMMAND_DRAG || c->id == HIMC_COMMAND_RUFF;
 }
 
+// strokes, nudges, pushes at a beat
+static bool can_change(const himc_command *c, double beat)
+{
+    return is_stroke(c) || c->id == HIMC_COMMAND_NUDGE || (c->id == HIMC_COMMAND_PUSH && beat >= 0);
+}
+
 bool edit_text_names_file(const edit_text *t)
 {
     himc_command c;
     himc_error unused;
+    double beat;
     int atom;
     for (int i = 0; i < t->count; i++)
-        if (command_of(t->at[i], &c, &unused) && himc_command_file(&c, &atom) != HIMC_FILE_NONE)
+        if (command_of(t->at[i], &c, &beat, &unused) &&
+            himc_command_file(&c, &atom) != HIMC_FILE_NONE)
             return true;
     return false;
 }
@@ -133,21 +145,24 @@ bool edit_text_names_file(const edit_text *t)
 static bool may_change(const char *bytes, himc_error *error)
 {
     himc_command c;
+    double beat;
     return !bytes[space(bytes)] ||
-           (command_of(bytes, &c, error) &&
-            (c.id == HIMC_COMMAND_NUDGE || is_stroke(&c) ||
-             himc_error_set(error, "allowed in an edit: strokes, ornaments, nudge")));
+           (command_of(bytes, &c, &beat, error) &&
+            (can_change(&c, beat) ||
+             himc_error_set(error, "allowed in an edit: strokes, ornaments, nudge, at BEAT push")));
 }
 
 // where a statement begins to act, with its grace notes
-static double acts_from(const char *bytes, bool *nudge)
+static double acts_from(const char *bytes)
 {
     himc_command c;
     himc_error unused;
-    if (!command_of(bytes, &c, &unused))
+    double beat;
+    if (!command_of(bytes, &c, &beat, &unused))
         return HUGE_VAL;
-    *nudge = c.id == HIMC_COMMAND_NUDGE;
-    return *nudge ? c.atom[1].number - c.atom[2].number : fmax(c.stroke.beat - 1, 0);
+    return c.id == HIMC_COMMAND_PUSH    ? beat
+           : c.id == HIMC_COMMAND_NUDGE ? c.atom[1].number - c.atom[2].number
+                                        : fmax(c.stroke.beat - 1, 0);
 }
 
 // the place of the change at `changes[i]` gets its bytes, and that gets those of the place
@@ -155,7 +170,7 @@ static void exchange(edit_text *t, int i)
 {
     change *c = &t->changes[i];
     char *now = t->at[c->index];
-    t->from = fmin(acts_from(now, &t->nudge), acts_from(c->bytes, &t->nudge));
+    t->from = fmin(acts_from(now), acts_from(c->bytes));
     t->at[c->index] = c->bytes;
     c->bytes = now;
 }
@@ -209,9 +224,8 @@ bool edit_text_redo(edit_text *t)
     return true;
 }
 
-double edit_text_changed_from(const edit_text *t, bool *nudge)
+double edit_text_changed_from(const edit_text *t)
 {
-    *nudge = t->nudge;
     return t->from;
 }
 
@@ -230,21 +244,31 @@ static void print_statement(FILE *to, int index, const char *bytes, const himc_c
         if (s->spot == HIMC_SPOT_XY)
             fprintf(to, ",\"x\":%.17g,\"y\":%.17g", s->x, s->y);
     }
-    fprintf(to, "}");
+}
+
+static void print_push(FILE *to, const himc_command *c, double at)
+{
+    const himc_atom *a = c->atom;
+    if (c->id == HIMC_COMMAND_PUSH)
+        fprintf(to, ",\"at\":%.17g,\"push\":\"%s\",\"force\":[%.9g,%.9g,%.9g],\"seconds\":%.9g", at,
+                a[0].symbol, a[1].number, a[2].number, a[3].number, a[4].number);
 }
 
 void edit_text_print(const edit_text *t, FILE *to)
 {
     himc_command c;
     himc_error unused;
+    double at;
     bool first = true;
     fprintf(to, "\"undo\":%d,\"redo\":%d,\"count\":%d,\"statements\":[", t->done, t->made - t->done,
             t->count);
     for (int i = 0; i < t->count; i++) {
-        if (!command_of(t->at[i], &c, &unused) || !(is_stroke(&c) || c.id == HIMC_COMMAND_NUDGE))
+        if (!command_of(t->at[i], &c, &at, &unused) || !can_change(&c, at))
             continue;
         fputs(first ? "" : ",", to);
         print_statement(to, i, t->at[i], &c);
+        print_push(to, &c, at);
+        fprintf(to, "}");
         first = false;
     }
     fprintf(to, "]");

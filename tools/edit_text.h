@@ -19,15 +19,14 @@ char *edit_text_join(const edit_text *text);
 bool edit_text_names_file(const edit_text *text);
 
 /// Replaces statement `index` by `words` (without `;`; "" removes it); one past the last adds it.
-/// Old and new must be a stroke, an ornament or a `nudge`. False, and nothing changed, with the
+/// Old and new must be a stroke, an ornament, a `nudge` or a `push` at a beat. False, and nothing changed, with the
 /// reason.
 bool edit_text_set(edit_text *text, int index, const char *words, himc_error *error);
 /// Takes the last change back, or makes it again; false if there is none.
 bool edit_text_undo(edit_text *text);
 bool edit_text_redo(edit_text *text);
-/// What the last of these three calls has changed begins here: a beat, or if *nudge, a time of the
-/// take (s).
-double edit_text_changed_from(const edit_text *text, bool *nudge);
+/// What the last of these three calls has changed begins here: a beat, or a time of the take (s).
+double edit_text_changed_from(const edit_text *text);
 
 /// Prints, as JSON fields: can_undo, can_redo, count, and the list `statements` of those that can
 /// be edited.

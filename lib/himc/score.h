@@ -2,8 +2,8 @@
 ///
 /// Strokes and tempo changes have beats; all other lines act once, in order, when the score is
 /// loaded. A line that begins with a drum's name is for that drum. `tempo BPM [BEAT]` holds from
-/// that beat on (0 when not given); `at BEAT DRUM COMMAND ...` changes a drum's head at that beat
-/// (commands marked HIMC_AT_BEAT: pedals, damping). At most 200000 strokes, 10000 other lines, 64
+/// that beat on (0 when not given); `at BEAT DRUM COMMAND ...` changes a drum's head at that beat,
+/// `at BEAT push ...` pushes the performer (commands marked HIMC_AT_BEAT). At most 200000 strokes, 10000 other lines, 64
 /// MiB; strokes of one hand at least 40 ms apart; a score cannot load a score.
 #ifndef HIMC_SCORE_H
 #define HIMC_SCORE_H
@@ -21,12 +21,13 @@ typedef struct himc_tempo_change {
     double bpm;  ///< HIMC_BPM_MIN .. HIMC_BPM_MAX; the nuances are made for 40 .. 200
 } himc_tempo_change;
 
-/// A line that is neither stroke nor tempo, or a change of a head.
+/// A line that is neither stroke nor tempo, or what a score has at a beat: a change of a head, a
+/// push.
 typedef struct himc_score_line {
     char drum[HIMC_NAME_SIZE]; ///< the drum it is for; "" for the performer
     himc_command command;      ///< of that drum, or of the performer
     int line;                  ///< in the file, from 1
-    double beat;               ///< of a change (beats), 0 or more; of other lines 0
+    double beat;               ///< of `at` (beats), 0 or more; of other lines 0
 } himc_score_line;
 
 /// A score with its arrays, which it owns. Strokes are sorted by beat (stable).
@@ -37,7 +38,7 @@ typedef struct himc_score {
     int tempo_count;          ///< 1 or more
     himc_score_line *lines;   ///< as in the file (line_count), owned; NULL if there are none
     int line_count;           ///< 0 .. 10000
-    himc_score_line *changes; ///< sorted by beat (change_count), owned; NULL if there are none
+    himc_score_line *changes; ///< `at` lines by beat (change_count), owned; NULL if there are none
     int change_count;         ///< 0 .. 10000, with the lines
     char *report; ///< of a MIDI file: what is played and what not, lines that end with \n, owned;
                   ///< else NULL

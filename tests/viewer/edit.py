@@ -157,7 +157,23 @@ def test_the_last_stroke_is_changed_after_the_end():
         assert from_start(piece).parts == piece.parts != before
 
 
-def test_takes_changed_at_random_play_as_if_written_so():
+def test_saved_takes_leave_no_open_file():
+    path = os.path.join(folder.name, "short.txt")
+    with open(path, "w") as file:
+        file.write("stroke 0 right legato mf;")
+
+    with Piece(HIMC, path) as piece:
+        open_files = []
+        assert piece.play("hello") is None
+        for _ in range(3):
+            piece.say("take take.trc")
+            piece.until("file")
+            assert piece.play("nothing") is not None  # all has been put away by then
+            open_files.append(len(os.listdir(f"/proc/{piece.process.pid}/fd")))
+        assert len(set(open_files)) == 1, open_files
+
+
+def made_take():
     path, score = (os.path.join(folder.name, name) for name in ("take.bvh", "one.txt"))
     with open(score, "w") as file:
         for i in range(10):
@@ -168,7 +184,38 @@ def test_takes_changed_at_random_play_as_if_written_so():
         piece.until("file")
     with open(path, "wb") as file:
         file.write(piece.files["take.bvh"])
-    return edit_at_random(path, random_nudge)
+    return path
+
+
+def test_takes_changed_at_random_play_as_if_written_so():
+    return edit_at_random(made_take(), random_nudge)
+
+
+def test_a_push_acts_at_its_beat_and_is_taken_back():
+    score = os.path.join(folder.name, "three.txt")
+    with open(score, "w") as file:
+        file.write("tempo 120; stroke 1 right legato mf; roll 2 1 single p mf; stroke 4 left legato mf;")
+    # beats; of a take seconds, and its first frame comes 1 s after `play`
+    cases = [(score, 3.2, 1.6)]
+    if os.environ.get("HIMC_LONG"):
+        cases.append((made_take(), 0.4, 1.4))
+    for source, at, time in cases:
+        with Piece(HIMC, source) as piece:
+            assert piece.play("hello") is None
+            before, unpushed, count = dict(piece.parts), piece.score(), piece.text["count"]
+            strikes = targets(piece)[1]
+            assert piece.play(f"set {count} at {at} push left-forearm 60 0 40 0.15") is None
+            last = piece.text["statements"][-1]
+            assert (last["push"], last["at"], last["force"]) == ("left-forearm", at, [60, 0, 40])
+            assert 0 < piece.came_from <= time
+            changed = [k / 48000 for k in before if piece.parts.get(k) != before[k]]
+            assert changed and time - 0.2 < min(changed) < time + 1, (time, changed[:3])
+            assert abs(len(targets(piece)[1]) - len(strikes)) <= 1  # it plays on
+            assert from_start(piece).parts == piece.parts
+            assert piece.play(f"set {count} at {at} push left-forearm 0 0 0 0.15") is None
+            assert piece.parts == before  # nothing but the force has changed the piece
+            assert piece.play("undo") is None and piece.play("undo") is None
+            assert piece.score().rstrip() == unpushed.rstrip() and piece.parts == before
 
 
 def test_what_is_no_change_is_refused_in_a_line():
@@ -186,6 +233,10 @@ def test_what_is_no_change_is_refused_in_a_line():
             "set 5 stroke 1 right accent f; record /tmp/x.bvh",
             "set 5 stroke 1 right boing f",
             "set 5 stroke nan right accent f",
+            "set 5 push head 1 0 0 0.1",
+            "set 5 at 1 push pelvis 1 0 0 0.1",
+            "set 5 at nan push head 1 0 0 0.1",
+            "set 5 at 1 low tune 60",
             "take ../x.txt",
             "x" * 10000,
         ):

@@ -52,163 +52,22 @@
 /// until the next force: high modes die first, and denormal numbers never arise. That takes energy,
 /// and of a sound at most 1e-8 m/s times the sum of its weights: 200 modes of one stroke, which
 /// began with 1 m/s, lack 160 dB of its peak.
-#include "bank/bank.h"
-#include "system/aligned.h"
+#include "bank/bank_state.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define LANES HIMC_BANK_LANES
-#define PASS HIMC_BANK_PASS
-#define LEVELS 4           // of the film's strength
-#define REACH 1.0          // w t up to which the film acts on a mode; chosen: well below pi
-#define LOWEST 0.35        // w t of the lowest mode at most, in steps of several samples; chosen
-#define ACCURACY 1e-3      // rise of stiffness times the square of that; chosen: 0.1 cent
-#define BLOCK 128          // oscillators whose waves are in the cache together; chosen
-#define POWERS 7           // coefficients are kept for 1, 2, 4, .. 64 samples
 #define QUIET 1e-8         // (m/s) of p and s; chosen: 160 dB below a stroke
 #define TIDY_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
-#define HIGHEST 0.49       // of the sample rate; chosen: just below half, where aliasing begins
 #define SWING_TIME 256     // samples between two searches for the swing; chosen: they cost nothing
 #define FILM_SWING 2.0     // growth of a swing by what the film gives back; the comment there
 
-// coefficients for a number of samples, or for a substep
-typedef struct rotation {
-    double *c, *s; // C, S
-} rotation;
-
-// effect of a force during one step
-typedef struct effect {
-    double *p, *s; // added to p and s by 1 N
-} effect;
-
-// lengths of the film's steps (samples)
-static const int steps[LEVELS] = {1, 4, 8, 16};
-
-typedef struct film {
-    bool set, on;
-    double s;                       // (J^1/2)
-    double mean;                    // s + u/2 of the last exchange
-    bool moved;                     // a force has acted since s was last anchored
-    double power;                   // g . v, the rate of s, at the last exchange
-    double lead;                    // samples that the film is ahead of the oscillators
-    double least;                   // (J) it goes off below this energy of the oscillators
-    double most[LEVELS];            // s up to which the steps may be so long
-    int reach[LEVELS];              // oscillators on which it acts (a multiple of LANES)
-    int level;                      // of the last exchange
-    double *on_p, *per_mass, *damp; // a/w_d, 1/m, d/w_d
-    double *kick;                   // g/m at the last exchange
-    double due;                     // integral of s since the others were turned (J^1/2 s)
-    double *rate;                   // a/(2 m w): their rise of w per s
-    double *tight, *slack;          // w/w_d, w_d/w
-} film;
-
-struct himc_bank {
-    const himc_bank_kernel *loops;
-    int capacity;   // a multiple of LANES
-    int count;      // oscillators that are not silent
-    int live;       // of these, the first `live` (a multiple of LANES) are not at rest
-    int age;        // samples since the last search for quiet oscillators
-    uint64_t pass;  // number of the present pass
-    int at;         // samples that have passed in it
-    int length;     // of the present pass; 0 before it begins
-    int whole_pass; // length of a pass that no force ends
-    uint64_t part;  // number of the film's present step
-    int low;        // the first `low` oscillators make the film's steps, the others the pass
-    int step_at;    // samples that have passed in the film's step
-    int step;       // its length
-    bool forced;    // a force has acted: the next step is a single sample
-    double *memory;
-    double *p, *s;          // state at the start of the pass
-    rotation power[POWERS]; // of 2^k samples
-    rotation sub;           // of a substep
-    effect whole, parted;   // in a sample, in a substep
-    rotation present;       // of a step of the present length
-    effect push;            // in it
-    himc_step_length kind;
-    int substeps;   // of a sample
-    double h;       // a sample (s)
-    double swing;   // of himc_bank_swing, found ...
-    int swing_left; // ... so that it holds for this number of samples
-    film film;
-    double *omega, *decay, *mass, *damped;              // w, d, m, w_d
-    double *q_per_p;                                    // 1/w_d
-    double *table, *twice, *fall;                       // of himc_bank_waves
-    _Alignas(HIMC_ALIGNMENT) double a[BLOCK], b[BLOCK]; // of himc_bank_waves
-};
-
-#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + HIMC_BANK_TABLE)
-
-static size_t round_up(size_t n, size_t multiple)
-{
-    return (n + multiple - 1) / multiple * multiple;
-}
-
-// from now on only the oscillators at the top that are at rest count as such
-static void wake(himc_bank *bank)
+void himc_bank_wake(himc_bank *bank)
 {
     int live = bank->count;
     while (live > 0 && bank->p[live - 1] == 0 && bank->s[live - 1] == 0)
         live--;
-    bank->live = (int)round_up((size_t)live, LANES);
-}
-
-// takes the next array from the block
-static double *take(himc_bank *bank, double **free_memory)
-{
-    double *array = *free_memory;
-    *free_memory += bank->capacity;
-    return array;
-}
-
-static void share_memory(himc_bank *bank)
-{
-    double *rest = bank->memory;
-    film *f = &bank->film;
-    double **single[] = {&bank->p,       &bank->s,        &bank->omega,    &bank->decay,
-                         &bank->mass,    &bank->damped,   &bank->q_per_p,  &bank->twice,
-                         &bank->fall,    &bank->sub.c,    &bank->sub.s,    &bank->whole.p,
-                         &bank->whole.s, &bank->parted.p, &bank->parted.s, &f->on_p,
-                         &f->per_mass,   &f->damp,        &f->kick,        &f->rate,
-                         &f->tight,      &f->slack};
-    for (size_t i = 0; i < sizeof single / sizeof *single; i++)
-        *single[i] = take(bank, &rest);
-    for (int k = 0; k < POWERS; k++)
-        bank->power[k] = (rotation){take(bank, &rest), take(bank, &rest)};
-    bank->table = rest;
-}
-
-himc_bank *himc_bank_new(int capacity, himc_error *error)
-{
-    capacity = (int)round_up((size_t)capacity, LANES);
-    size_t length = (size_t)capacity, bytes = ARRAYS * length * sizeof(double);
-    himc_bank *bank = himc_aligned_new(sizeof *bank);
-    double *memory = himc_aligned_new(bytes);
-    if (!bank || !memory) {
-        himc_aligned_free(bank);
-        himc_aligned_free(memory);
-        himc_error_set(error, "modes: no memory for %d modes", capacity);
-        return NULL;
-    }
-    memset(memory, 0, bytes);
-    *bank = (himc_bank){.loops = himc_bank_kernel_fastest(),
-                        .capacity = capacity,
-                        .pass = 1,
-                        .whole_pass = PASS,
-                        .memory = memory,
-                        .substeps = 1};
-    share_memory(bank);
-    himc_bank_set_step(bank, HIMC_STEP_SAMPLE);
-    return bank;
-}
-
-void himc_bank_free(himc_bank *bank)
-{
-    if (!bank)
-        return;
-    himc_aligned_free(bank->memory);
-    himc_aligned_free(bank);
+    bank->live = bank_round_up(live);
 }
 
 void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel)
@@ -268,7 +127,7 @@ static int coupled(const himc_bank *bank)
 // the film's exchange with the velocities, after which it is `lead` samples ahead
 static void exchange(himc_bank *bank, double lead)
 {
-    film *f = &bank->film;
+    bank_film *f = &bank->film;
     double t = (lead - f->lead) * bank->h, sum[2];
     int count = coupled(bank);
     f->lead = lead;
@@ -285,14 +144,13 @@ static void exchange(himc_bank *bank, double lead)
 // the film is off, and its energy lost
 static void slacken(himc_bank *bank)
 {
-    film *f = &bank->film;
+    bank_film *f = &bank->film;
     f->on = false;
     f->s = f->power = f->lead = f->due = 0;
     f->level = 0;
 }
 
-// brings state and film to the present sample, before a change
-static void settle(himc_bank *bank)
+void himc_bank_settle(himc_bank *bank)
 {
     arrive(bank);
     exchange(bank, 0);
@@ -300,7 +158,7 @@ static void settle(himc_bank *bank)
 
 // s as a readout hears it: at most twice the pull of the last exchange, which a film stiffer than
 // the modes themselves has not had in full
-static double audible(const film *f)
+static double audible(const bank_film *f)
 {
     return copysign(fmin(fabs(f->s), 2 * fabs(f->mean)), f->s);
 }
@@ -309,7 +167,7 @@ static double audible(const film *f)
 // readout's weights `film` on the state. The rate of s counts at most so that s doubles in a step.
 static double film_slope(const himc_bank *bank, const himc_readout *readout, double sum)
 {
-    const film *f = &bank->film;
+    const bank_film *f = &bank->film;
     double s = audible(f), most = fabs(s) / (LANES * bank->h);
     return bank->h * sum * (readout->direct ? fmin(fmax(f->power, -most), most) : s);
 }
@@ -329,210 +187,12 @@ static void present_state(const himc_bank *bank, int i, double *p, double *s)
     }
 }
 
-// coefficients of one oscillator for a step of length h, and the effect of 1 N during it
-static void find_step(const rotation *by, const effect *push, int i, const himc_oscillator *o,
-                      double damped, double h)
-{
-    double shrink = exp(-o->decay * h), half = sin(0.5 * damped * h);
-    double c = shrink * cos(damped * h), s = shrink * sin(damped * h);
-    // 1 - a11 = (1 - C) - d S/w_d without the cancellation in 1 - C
-    double fall = -expm1(-o->decay * h) + 2 * shrink * half * half - o->decay / damped * s;
-    double b1 = fall / (o->mass * o->omega * o->omega), b2 = s / (o->mass * damped);
-    by->c[i] = c;
-    by->s[i] = s;
-    push->p[i] = damped * b1;
-    push->s[i] = b2 + o->decay * b1;
-}
-
-// C_n, S_n of a pass from those of one sample
-static void find_powers(himc_bank *bank, int i)
-{
-    double c1 = bank->power[0].c[i], s1 = bank->power[0].s[i], c = c1, s = s1;
-    double *table = bank->table + (size_t)i * HIMC_BANK_TABLE;
-    for (int n = 1; n <= 2 * LANES; n++) {
-        double *t = table + n - 1 + (n > LANES ? LANES : 0);
-        t[0] = c;
-        t[LANES] = s;
-        double next = c * c1 - s * s1;
-        s = s * c1 + c * s1;
-        c = next;
-    }
-    for (int k = 1; k < POWERS; k++) {
-        int n = 1 << k; // up to 16 from the table, then by squaring
-        const double *t = table + n - 1 + (n > LANES ? LANES : 0);
-        c = n <= 2 * LANES ? t[0] : bank->power[k - 1].c[i];
-        s = n <= 2 * LANES ? t[LANES] : bank->power[k - 1].s[i];
-        bank->power[k].c[i] = n <= 2 * LANES ? c : c * c - s * s;
-        bank->power[k].s[i] = n <= 2 * LANES ? s : 2 * c * s;
-    }
-    double c8 = bank->power[3].c[i], s8 = bank->power[3].s[i];
-    bank->twice[i] = 2 * c8;
-    bank->fall[i] = c8 * c8 + s8 * s8;
-}
-
-static void set_oscillator(himc_bank *bank, int i, const himc_oscillator *o, double h)
-{
-    double damped = sqrt((o->omega - o->decay) * (o->omega + o->decay));
-    bank->omega[i] = o->omega;
-    bank->decay[i] = o->decay;
-    bank->mass[i] = o->mass;
-    bank->damped[i] = damped;
-    bank->q_per_p[i] = 1 / damped;
-    bank->film.per_mass[i] = 1 / o->mass;
-    bank->film.damp[i] = o->decay / damped;
-    bank->film.tight[i] = o->omega / damped;
-    bank->film.slack[i] = damped / o->omega;
-    find_step(&bank->power[0], &bank->whole, i, o, damped, h);
-    find_powers(bank, i);
-    if (bank->substeps > 1)
-        find_step(&bank->sub, &bank->parted, i, o, damped, h / bank->substeps);
-}
-
-// brings oscillator i to rest, for good: it has no coefficients
-static void silence(himc_bank *bank, int i)
-{
-    for (int k = 0; k < ARRAYS - HIMC_BANK_TABLE; k++)
-        bank->memory[k * bank->capacity + i] = 0;
-    memset(bank->table + (size_t)i * HIMC_BANK_TABLE, 0, sizeof(double) * HIMC_BANK_TABLE);
-}
-
-// sets a state that an oscillator of that mass and omega had: q sqrt(K) and v sqrt(m) are kept, so
-// that energy and phase are the same
-static void inherit(himc_bank *bank, int i, double q, double v, double mass, double omega)
-{
-    double mass_ratio = sqrt(mass / bank->mass[i]), omega_ratio = omega / bank->omega[i];
-    if (q != 0 || v != 0)
-        himc_bank_excite(bank, i, q * mass_ratio * omega_ratio, v * mass_ratio);
-}
-
-static void carry_over(himc_bank *bank, int i, const himc_oscillator *to, double h)
-{
-    double q, v, mass = bank->mass[i], omega = bank->omega[i];
-    himc_bank_state(bank, i, &q, &v);
-    set_oscillator(bank, i, to, h);
-    inherit(bank, i, q, v, mass, omega);
-}
-
-// the constants of both are the same
-static bool same_constants(const himc_bank *a, const himc_bank *b)
-{
-    size_t bytes = sizeof(double) * (size_t)a->capacity;
-    return a->count == b->count && a->capacity == b->capacity && a->h == b->h &&
-           memcmp(a->omega, b->omega, bytes) == 0 && memcmp(a->decay, b->decay, bytes) == 0 &&
-           memcmp(a->mass, b->mass, bytes) == 0 && memcmp(a->film.on_p, b->film.on_p, bytes) == 0;
-}
-
-// goes on in the middle of the other's pass, to the last bit
-static void go_on_as(himc_bank *bank, const himc_bank *from)
-{
-    size_t bytes = sizeof(double) * (size_t)bank->capacity;
-    const film *g = &from->film;
-    film *f = &bank->film;
-    memcpy(bank->p, from->p, bytes);
-    memcpy(bank->s, from->s, bytes);
-    bank->live = from->live;
-    bank->age = from->age;
-    bank->at = from->at;
-    bank->length = from->length;
-    bank->low = from->low;
-    bank->step_at = from->step_at;
-    bank->step = from->step;
-    bank->forced = from->forced;
-    f->on = g->on;
-    f->s = g->s;
-    f->mean = g->mean;
-    f->moved = g->moved;
-    f->power = g->power;
-    f->lead = g->lead;
-    f->level = g->level;
-    f->due = g->due;
-    bank->swing_left = 0;
-    bank->pass++;
-    bank->part++;
-}
-
-void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
-{
-    if (same_constants(bank, from)) {
-        go_on_as(bank, from);
-        return;
-    }
-    settle(from);
-    bank->age = from->age;
-    bank->film.power = from->film.power;
-    for (int i = 0; i < count && i < bank->count && i < from->count; i++) {
-        double q, v;
-        himc_bank_state(from, i, &q, &v);
-        inherit(bank, i, q, v, from->mass[i], from->omega[i]);
-    }
-    himc_bank_find_film(bank);
-}
-
-void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count, double rate)
-{
-    int i = 0;
-    settle(bank);
-    bank->h = 1 / rate;
-    for (; i < count && oscillators[i].omega < 2 * HIMC_PI * HIGHEST * rate; i++) {
-        if (i < bank->count)
-            carry_over(bank, i, &oscillators[i], 1 / rate);
-        else
-            set_oscillator(bank, i, &oscillators[i], 1 / rate);
-    }
-    bank->count = i;
-    for (; i < bank->capacity; i++)
-        silence(bank, i);
-    wake(bank);
-    bank->forced = true;
-}
-
-void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
-                       const double *on_force, himc_readout *readout)
-{
-    readout->direct = on_force != NULL;
-    readout->pass = readout->read_pass = 0;
-    for (int i = 0; i < bank->capacity; i++) {
-        double q = on_q && i < bank->count ? on_q[i] / bank->damped[i] : 0;
-        double v = on_v && i < bank->count ? on_v[i] : 0;
-        readout->p[i] = q - (v != 0 ? v * bank->decay[i] / bank->damped[i] : 0);
-        readout->s[i] = v;
-        if (readout->film)
-            readout->film[i] =
-                bank->film.on_p[i] * (on_force ? on_force[i] : v * bank->film.per_mass[i]);
-    }
-}
-
-void himc_bank_set_film(himc_bank *bank, const double *on_square, double least)
-{
-    film *f = &bank->film;
-    settle(bank);
-    f->set = on_square != NULL;
-    f->least = least;
-    f->due = 0;
-    memset(f->reach, 0, sizeof f->reach);
-    double rise = 0; // the largest of a mode's stiffness per s
-    for (int i = 0; i < bank->count; i++) {
-        double a = on_square ? on_square[i] : 0, omega = bank->omega[i];
-        f->on_p[i] = a * bank->q_per_p[i];
-        f->rate[i] = 0.5 * a * f->per_mass[i] / omega;
-        rise = fmax(rise, a * f->per_mass[i] / (omega * omega));
-        for (int k = 0; k < LEVELS; k++)
-            if (omega * steps[k] * bank->h < REACH)
-                f->reach[k] = (int)round_up((size_t)i + 1, LANES);
-    }
-    for (int k = 0; k < LEVELS; k++) {
-        double angle = bank->omega[0] * steps[k] * bank->h; // of the lowest mode
-        f->most[k] = rise > 0 && angle < LOWEST ? ACCURACY / (rise * angle * angle) : 0;
-    }
-    himc_bank_find_film(bank);
-}
-
 // What s is to be in the present state, so that its mean in coming steps of length t is right:
 // sum a q^2/2, but of each oscillation of s only x/tan x, x = w t, since the exchanges make of it
 // x/sin x, half a step away.
 static double film_of(const himc_bank *bank, double t)
 {
-    const film *f = &bank->film;
+    const bank_film *f = &bank->film;
     double sum = 0;
     for (int i = 0, count = coupled(bank); i < count; i++) {
         double x = bank->omega[i] * t, y = x * x;
@@ -547,7 +207,7 @@ static double film_of(const himc_bank *bank, double t)
 // the highest s that the oscillators could make together
 static double highest(const himc_bank *bank)
 {
-    const film *f = &bank->film;
+    const bank_film *f = &bank->film;
     double sum = 0;
     for (int i = 0; i < bank->live; i++) {
         double q = bank->p[i] * bank->q_per_p[i];
@@ -559,8 +219,8 @@ static double highest(const himc_bank *bank)
 
 void himc_bank_find_film(himc_bank *bank)
 {
-    film *f = &bank->film;
-    settle(bank);
+    bank_film *f = &bank->film;
+    himc_bank_settle(bank);
     f->level = 0;
     f->s = f->mean = film_of(bank, 0);
     f->on = f->moved = f->s > 0;
@@ -598,13 +258,13 @@ void himc_bank_excite(himc_bank *bank, int index, double q, double v)
 {
     if (index >= bank->count)
         return;
-    settle(bank);
+    himc_bank_settle(bank);
     bank->p[index] = bank->damped[index] * q;
     bank->s[index] = v + bank->decay[index] * q;
     if (bank->p[index] == 0 && bank->s[index] == 0)
-        wake(bank);
+        himc_bank_wake(bank);
     else if (index >= bank->live)
-        bank->live = (int)round_up((size_t)index + 1, LANES);
+        bank->live = bank_round_up(index + 1);
     bank->forced = true;
 }
 
@@ -613,7 +273,7 @@ void himc_bank_rest(himc_bank *bank)
     memset(bank->p, 0, sizeof(double) * (size_t)bank->capacity);
     memset(bank->s, 0, sizeof(double) * (size_t)bank->capacity);
     bank->live = bank->age = 0;
-    settle(bank);
+    himc_bank_settle(bank);
     slacken(bank);
     bank->forced = true;
 }
@@ -668,7 +328,7 @@ static void add_alike(himc_bank *bank, const himc_alike *alike)
 // adds the film's present step to readout->ahead
 static void add_step(himc_bank *bank, himc_readout *readout)
 {
-    const film *f = &bank->film;
+    const bank_film *f = &bank->film;
     double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
     bool stretched = readout->film != NULL;
     double sum =
@@ -697,7 +357,7 @@ static void look_ahead(himc_bank *bank, himc_readout *readout)
 
 double himc_bank_read(himc_bank *bank, himc_readout *readout)
 {
-    const film *f = &bank->film;
+    const bank_film *f = &bank->film;
     if (bank->at > 0) {
         look_ahead(bank, readout);
         return readout->ahead[bank->at - 1];
@@ -717,7 +377,7 @@ double himc_bank_read(himc_bank *bank, himc_readout *readout)
 
 double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
 {
-    const film *f = &bank->film;
+    const bank_film *f = &bank->film;
     double value = 0, sum = 0;
     for (int i = 0; i < bank->live; i++) {
         double p, s, c = bank->present.c[i], w = bank->present.s[i];
@@ -745,7 +405,7 @@ double himc_bank_swing(himc_bank *bank, const double *most)
 // the energy stays. Ends the film when the oscillators' energy has become small.
 static void anchor(himc_bank *bank)
 {
-    film *f = &bank->film;
+    bank_film *f = &bank->film;
     double kinetic = 0, potential = 0, most = highest(bank);
     exchange(bank, 0);
     for (f->level = LEVELS - 1; f->level > 0 && most > f->most[f->level];)
@@ -762,7 +422,7 @@ static void anchor(himc_bank *bank)
         return;
     }
     // at most half of the velocities' energy is taken, and they are given as much as they have
-    double s = film_of(bank, steps[f->level] * bank->h),
+    double s = film_of(bank, bank_steps[f->level] * bank->h),
            gain = fmin(0.5 * (f->s * f->s - s * s), kinetic);
     if (gain < -0.5 * kinetic) {
         gain = -0.5 * kinetic;
@@ -784,7 +444,7 @@ static void tidy(himc_bank *bank)
         live--;
         bank->p[live] = bank->s[live] = 0;
     }
-    bank->live = (int)round_up((size_t)live, LANES);
+    bank->live = bank_round_up(live);
     bank->age = 0;
 }
 
@@ -807,7 +467,7 @@ static void single_step(himc_bank *bank)
 // turns the oscillators on which the film does not act by what its pull has been
 static void turn(himc_bank *bank)
 {
-    film *f = &bank->film;
+    bank_film *f = &bank->film;
     int i = coupled(bank);
     if (f->on && f->due != 0)
         bank->loops->turn(bank->p + i, bank->s + i, f->rate + i, f->tight + i, f->slack + i,
@@ -825,14 +485,14 @@ void himc_bank_ready(himc_bank *bank)
 
 static void begin_pass(himc_bank *bank)
 {
-    film *f = &bank->film;
+    bank_film *f = &bank->film;
     bool due = bank->age >= TIDY_INTERVAL;
     if (due)
         tidy(bank);
     if (f->on && (due || f->moved))
         anchor(bank);
     bank->length = bank->whole_pass;
-    bank->step = f->on && steps[f->level] < bank->length ? steps[f->level] : bank->length;
+    bank->step = f->on && bank_steps[f->level] < bank->length ? bank_steps[f->level] : bank->length;
     bank->low = f->on ? coupled(bank) : 0;
 }
 
@@ -891,7 +551,7 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
 void himc_bank_push(himc_bank *bank, const double *shape, double force)
 {
     arrive(bank);
-    bank->live = (int)round_up((size_t)bank->count, LANES);
+    bank->live = bank_round_up(bank->count);
     bank->age = 0;
     bank->forced = true;
     if (!bank->film.on)
@@ -913,7 +573,7 @@ void himc_bank_kick(himc_bank *bank, int index, double change)
     bank->s[index] += change;
     bank->swing += HIMC_BANK_MOST * fabs(change) * bank->q_per_p[index];
     if (index >= bank->live)
-        bank->live = (int)round_up((size_t)index + 1, LANES);
+        bank->live = bank_round_up(index + 1);
 }
 
 void himc_bank_step_response(const himc_bank *bank, const himc_readout *readout, double *response)

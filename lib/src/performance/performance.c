@@ -121,6 +121,14 @@ static void watch(himc_performance *p, double t)
     himc_motion_foresee(p->motion, himc_clock_next_tick(&p->clock));
 }
 
+// what the score has at a beat
+static void keep_to_score(himc_performance *p, double t)
+{
+    himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t));
+    himc_body_begin_pushes(p->body, himc_motion_score_beat(p->motion, t),
+                           himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
+}
+
 static void performance_step(himc_performance *p)
 {
     himc_performance_run_due_commands(p);
@@ -135,7 +143,7 @@ static void performance_step(himc_performance *p)
         himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
     }
     if (tick)
-        himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t));
+        keep_to_score(p, t);
     himc_motion_think(p->motion, h, himc_contacts_any(&p->contacts));
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);

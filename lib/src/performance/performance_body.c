@@ -13,6 +13,9 @@
 
 // chosen: the engine keeps joints together to a micrometre
 #define JOINT_GAP 0.01 // a joint further apart has come apart (m)
+// the beat has jumped if it is farther from that foreseen at the last tick (beats); chosen: more than
+// a change of tempo between two ticks makes
+#define SAME_COURSE 0.25
 
 performance_body *himc_body_new(himc_error *error)
 {
@@ -150,6 +153,50 @@ void himc_body_push(performance_body *b, int segment, himc_vec3 force, double un
     b->push_end = fmax(b->push_end, until);
 }
 
+bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int count, bool after)
+{
+    int kept = 0, first = 0;
+    while (first < b->planned_count && b->planned[first].beat < b->pushed_to)
+        first++;
+    if (after)
+        kept = b->planned_count - first;
+    if (kept + count > HIMC_PUSHES)
+        return false;
+    memmove(b->planned, b->planned + first, (size_t)kept * sizeof *b->planned);
+    for (int i = 0; i < count; i++)
+        b->planned[kept + i] = list[i];
+    b->planned_count = kept + count;
+    return true;
+}
+
+static bool same_push(const planned_push *a, const planned_push *b)
+{
+    return a->beat == b->beat && a->segment == b->segment && a->seconds == b->seconds &&
+           a->force.x == b->force.x && a->force.y == b->force.y && a->force.z == b->force.z;
+}
+
+bool himc_body_may_exchange_pushes(const performance_body *b, const planned_push *list, int count)
+{
+    int same = 0;
+    while (same < count && same < b->planned_count && same_push(&list[same], &b->planned[same]))
+        same++;
+    return (same == count || list[same].beat >= b->pushed_to) &&
+           (same == b->planned_count || b->planned[same].beat >= b->pushed_to);
+}
+
+void himc_body_begin_pushes(performance_body *b, double now, double next, double t)
+{
+    double from = fabs(b->pushed_to - now) < SAME_COURSE ? b->pushed_to : now;
+    bool round = next < now; // a loop ends on a whole beat
+    double to = round ? floor(now) + 1 : next;
+    for (int i = 0; i < b->planned_count; i++) {
+        const planned_push *push = &b->planned[i];
+        if ((push->beat >= from && push->beat < to) || (round && push->beat < next))
+            himc_body_push(b, push->segment, push->force, t + push->seconds);
+    }
+    b->pushed_to = next;
+}
+
 // the numbers may be finite although the body has come apart
 static bool is_whole(const performance_body *b)
 {
@@ -248,10 +295,14 @@ bool himc_body_find_joint(const char *name, const char *command, int *joint, him
     return false;
 }
 
-bool himc_body_find_segment(const char *name, int *segment, himc_error *error)
+bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *error)
 {
-    for (*segment = HIMC_PELVIS + 1; *segment < HIMC_SEGMENTS; ++*segment)
-        if (strcmp(name, himc_segment_name(*segment)) == 0)
+    const himc_atom *atom = c->atom;
+    const char *name = atom[0].symbol;
+    *out = (planned_push){.force = {atom[1].number, atom[2].number, atom[3].number},
+                          .seconds = atom[4].number};
+    for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
+        if (strcmp(name, himc_segment_name(out->segment)) == 0)
             return true;
     himc_error_set(error, "push: SEGMENT: %s, allowed", name);
     size_t used = error ? strlen(error->text) : 0;

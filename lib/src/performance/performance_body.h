@@ -14,6 +14,16 @@ typedef struct body_push {
     double until;    ///< (s)
 } body_push;
 
+/// A push of a score.
+typedef struct planned_push {
+    double beat; ///< (beats; of a take s)
+    int segment;
+    himc_vec3 force; ///< (N)
+    double seconds;
+} planned_push;
+
+#define HIMC_PUSHES 256 ///< of a score; chosen: more than anyone drags
+
 typedef struct performance_body {
     himc_skeleton skeleton;          ///< assumed by the controller
     himc_skeleton plant;             ///< simulated: masses may differ
@@ -29,7 +39,10 @@ typedef struct performance_body {
     himc_limits limits; ///< in force
     himc_saturation_counts saturation;
     body_push push[HIMC_SEGMENTS];
-    double push_end; ///< of all pushes (s)
+    double push_end;                   ///< of all pushes (s)
+    planned_push planned[HIMC_PUSHES]; ///< by beat
+    int planned_count;
+    double pushed_to; ///< beat; earlier planned pushes have begun
 } performance_body;
 
 /// Memory for a body; himc_body_build fills it.
@@ -65,6 +78,15 @@ HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *lim
 /// Sets the counts of limits to zero.
 HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
 HIMC_RT void himc_body_push(performance_body *body, int segment, himc_vec3 force, double until);
+/// Plans the pushes of a score (count), sorted by beat, after those that have not begun, or in their place. False, and
+/// nothing changed, if they are too many.
+HIMC_RT bool himc_body_plan_pushes(performance_body *body, const planned_push *list, int count,
+                                   bool after);
+/// True if these pushes may take the place of the planned ones: all that differ are to come.
+HIMC_RT bool himc_body_may_exchange_pushes(const performance_body *body, const planned_push *list,
+                                           int count);
+/// Begins the planned pushes of this tick at `t` (s): from beat `now` to that of the next tick.
+HIMC_RT void himc_body_begin_pushes(performance_body *body, double now, double next, double t);
 
 /// Reads the simulated body's state. With `check`, false if joints have come apart.
 HIMC_RT bool himc_body_observe(performance_body *body, bool check);
@@ -87,7 +109,7 @@ HIMC_RT long himc_body_limit_hits(const performance_body *body);
 
 /// The joint of that name; false if there is none, `command` begins the error.
 bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error);
-/// Finds a segment that can be pushed; false with the names allowed.
-bool himc_body_find_segment(const char *name, int *segment, himc_error *error);
+/// Reads the command `push` but for its beat; false with the names of segments allowed.
+bool himc_body_read_push(const himc_command *command, planned_push *out, himc_error *error);
 
 #endif

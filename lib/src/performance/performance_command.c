@@ -71,6 +71,7 @@ static bool do_clear(himc_performance *p, const himc_command *c, himc_error *err
     himc_planner_clear(p->motion->planner);
     himc_text_clear(&p->written.score);
     himc_drums_drop_heads(&p->drums);
+    himc_body_plan_pushes(p->body, NULL, 0, false);
     himc_motion_replan(p->motion);
     return true;
 }
@@ -408,11 +409,10 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
 
 static bool do_push(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    int i;
-    if (!himc_body_find_segment(c->atom[0].symbol, &i, error))
+    planned_push push;
+    if (!himc_body_read_push(c, &push, error))
         return false;
-    himc_vec3 force = {c->atom[1].number, c->atom[2].number, c->atom[3].number};
-    himc_body_push(p->body, i, force, step_time(p) + c->atom[4].number);
+    himc_body_push(p->body, push.segment, push.force, step_time(p) + push.seconds);
     return true;
 }
 

@@ -264,6 +264,20 @@ static void dump_nudges(const himc_track *track, const himc_line_sink *to)
                         (double[]){n->time, n->span, n->way.x, n->way.y, n->way.z});
 }
 
+static void dump_pushes(const performance_body *b, const himc_line_sink *to)
+{
+    for (int i = 0; i < b->planned_count; i++) {
+        const planned_push *push = &b->planned[i];
+        himc_state_line line = himc_state_begin("at");
+        himc_state_numbers(&line, 1, &push->beat);
+        himc_state_word(&line, "push");
+        himc_state_word(&line, himc_segment_name(push->segment));
+        himc_state_numbers(&line, 3, &push->force.x);
+        himc_state_numbers(&line, 1, &push->seconds);
+        himc_state_end(&line, to);
+    }
+}
+
 static void dump(const himc_performance *p, const himc_line_sink *to)
 {
     dump_drums(p, to);
@@ -282,6 +296,7 @@ static void dump(const himc_performance *p, const himc_line_sink *to)
     tell_switch(to, "loop", himc_planner_is_looped(p->motion->planner));
     if (!p->written.take[0])
         dump_written(&p->written.score, to);
+    dump_pushes(p->body, to);
 }
 
 void himc_performance_describe(const himc_performance *p, himc_description what,

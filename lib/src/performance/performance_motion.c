@@ -708,6 +708,13 @@ static long whole_beat(const performance_motion *m, double t)
     return waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
 }
 
+double himc_motion_score_beat(const performance_motion *m, double t)
+{
+    if (!m->track)
+        return himc_planner_beat(m->planner, t);
+    return m->playing ? t - m->track_start : -1;
+}
+
 static bool is_over(const performance_motion *m, double t)
 {
     double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;

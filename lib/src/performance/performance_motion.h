@@ -183,6 +183,8 @@ HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand han
 HIMC_RT bool himc_motion_is_calm(const performance_motion *motion, double t);
 /// Finds out if a beat or the end comes before the time `next` (s).
 HIMC_RT void himc_motion_foresee(performance_motion *motion, double next);
+/// The beat at `t`, of a take the time since its first frame (s); negative if nothing is played.
+HIMC_RT double himc_motion_score_beat(const performance_motion *motion, double t);
 /// Something may have changed: nothing is foreseen.
 HIMC_RT void himc_motion_stir(performance_motion *motion);
 /// The whole beat that has begun at `t` since the last call, or -1.

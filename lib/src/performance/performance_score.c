@@ -186,7 +186,7 @@ static bool rehearse_command(score_job *j, const himc_command *c, score_state *s
         return c->count < 3 || himc_body_find_joint(word, "gain", &index, error);
     case HIMC_COMMAND_STRENGTH:
         return c->count < 2 || himc_body_find_joint(word, "strength", &index, error);
-    case HIMC_COMMAND_PUSH: return himc_body_find_segment(word, &index, error);
+    case HIMC_COMMAND_PUSH: return himc_body_read_push(c, &(planned_push){0}, error);
     case HIMC_COMMAND_RATE: return himc_performance_allows(state->recording, c, error);
     case HIMC_COMMAND_RESET: *state = (score_state){.units = 0}; return true;
     case HIMC_COMMAND_TAKE: return rehearse_take(j, c, error);
@@ -252,6 +252,34 @@ static himc_drum_heads *heads_of(const score_job *j, const himc_drum_form *form,
     return heads;
 }
 
+// the pushes of the score (*count, HIMC_PUSHES at most), `from` beats later
+static bool pushes_of(const himc_score *score, const char *path, double from, planned_push *list,
+                      int *count, himc_error *error)
+{
+    *count = 0;
+    for (int i = 0; i < score->change_count; i++) {
+        const himc_score_line *line = &score->changes[i];
+        if (line->drum[0])
+            continue;
+        bool good = *count < HIMC_PUSHES ||
+                    himc_error_set(error, "push: one too many, allowed %d", HIMC_PUSHES);
+        if (!good || !himc_body_read_push(&line->command, &list[*count], error))
+            return himc_error_prefix(error, "%s:%d", path, line->line);
+        list[(*count)++].beat = from + line->beat;
+    }
+    return true;
+}
+
+// plans the pushes of the score
+static bool plan_pushes(score_job *j, himc_error *error)
+{
+    planned_push list[HIMC_PUSHES];
+    int count;
+    return pushes_of(j->score, j->path, j->from, list, &count, error) &&
+           (himc_body_plan_pushes(j->performance->body, list, count, j->queued) ||
+            himc_error_set(error, "%s: push: one too many, allowed %d", j->path, HIMC_PUSHES));
+}
+
 static bool has_changes(const score_job *j, const char *drum)
 {
     for (int i = 0; i < j->score->change_count; i++)
@@ -260,13 +288,16 @@ static bool has_changes(const score_job *j, const char *drum)
     return false;
 }
 
-/// Tries the changes of heads, after all other lines.
+/// Tries the pushes and the changes of heads, after all other lines.
 static bool rehearse_changes(score_job *j, himc_error *error)
 {
+    planned_push list[HIMC_PUSHES];
+    int count;
     for (int i = 0; i < j->score->change_count; i++)
-        if (!trial_drum(j, j->score->changes[i].drum, HIMC_INCHES_USUAL, DRUM_SILENT, error))
+        if (j->score->changes[i].drum[0] &&
+            !trial_drum(j, j->score->changes[i].drum, HIMC_INCHES_USUAL, DRUM_SILENT, error))
             return himc_error_prefix(error, "%s:%d", j->path, j->score->changes[i].line);
-    bool good = true;
+    bool good = pushes_of(j->score, j->path, 0, list, &count, error);
     for (int i = 0; i < j->drums && good; i++) {
         if (!has_changes(j, himc_drum_name(j->drum[i].trial)))
             continue;
@@ -434,7 +465,9 @@ static himc_job_state begin_strokes(score_job *j, himc_error *error)
     }
     j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
     for (int i = 0; i < j->score->change_count; i++)
-        if (himc_written_room(&p->written.score, "score", error))
+        if (!j->score->changes[i].drum[0])
+            continue; // a push is told as it is planned
+        else if (himc_written_room(&p->written.score, "score", error))
             himc_written_change(&p->written.score, &j->score->changes[i], j->from);
         else
             return HIMC_JOB_FAILED;
@@ -460,8 +493,8 @@ static void copy_performance(score_job *j)
     j->state.units = himc_planner_units(p->motion->planner);
 }
 
-// the heads that the score changes, and the end of those of the score before
-static himc_job_state install_changes(score_job *j)
+// the heads that the score changes, the end of those of the score before, and its pushes
+static himc_job_state install_changes(score_job *j, himc_error *error)
 {
     performance_drums *drums = &j->performance->drums;
     double now = himc_planner_beat(j->performance->motion->planner, step_time(j->performance));
@@ -482,7 +515,7 @@ static himc_job_state install_changes(score_job *j)
             j->heads[k] = NULL;
         j->over[i] = j->queued ? himc_drum_heads_follow(heads, before, j->from, now) : before;
     }
-    return HIMC_JOB_DONE;
+    return plan_pushes(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
 }
 
 // the strokes as written, then what ornaments add, which leaves out what does not fit
@@ -566,7 +599,7 @@ static himc_job_state install_part(score_job *j, himc_error *error)
     case BEFORE_STROKES:
         state = run_lines(j, false, error);
         return state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
-    case CHANGES: return install_changes(j);
+    case CHANGES: return install_changes(j, error);
     case STROKES: return add_strokes(j, error);
     default: return run_lines(j, true, error);
     }
@@ -667,6 +700,14 @@ bool himc_performance_load_text(himc_performance *p, const char *text, const cha
     return himc_job_carry_out(&j->job, error);
 }
 
+static bool changes_heads(const himc_score *score)
+{
+    for (int i = 0; i < score->change_count; i++)
+        if (score->changes[i].drum[0])
+            return true;
+    return false;
+}
+
 // the strokes of a score that is not installed, in the order of add_strokes(); a drum that there is
 // not yet leaves the reason empty
 static bool plan_aside(himc_performance *p, himc_planner *aside, const himc_score *score,
@@ -677,7 +718,7 @@ static bool plan_aside(himc_performance *p, himc_planner *aside, const himc_scor
         himc_stroke stroke = score->strokes[i % score->stroke_count];
         int drum = stroke.drum[0] ? himc_drums_find(&p->drums, stroke.drum) : 0;
         bool own = i < score->stroke_count, rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
-        if (drum < 0 || (rolls && score->change_count > 0)) // a roll depends on the first pitch
+        if (drum < 0 || (rolls && changes_heads(score))) // a roll depends on the first pitch
             good = false;
         else if (!own && stroke.ornament != HIMC_PLAIN)
             himc_planner_add_ornament(aside, &stroke, drum,
@@ -712,9 +753,15 @@ bool himc_performance_exchange_strokes(himc_performance *p, const char *text, co
     error->text[0] = 0;
     himc_score *score = himc_score_parse(text, name, error);
     himc_planner *aside = score ? himc_planner_new(&config, error) : NULL;
-    bool good = aside && (p->motion->track ? exchange_nudges(p, score, error)
-                                           : plan_aside(p, aside, score, error) &&
-                                                 himc_planner_exchange(p->motion->planner, aside));
+    planned_push list[HIMC_PUSHES];
+    int pushes;
+    bool good = aside && pushes_of(score, name, 0, list, &pushes, error) &&
+                himc_body_may_exchange_pushes(p->body, list, pushes) &&
+                (p->motion->track ? exchange_nudges(p, score, error)
+                                  : plan_aside(p, aside, score, error) &&
+                                        himc_planner_exchange(p->motion->planner, aside));
+    if (good)
+        himc_body_plan_pushes(p->body, list, pushes, false);
     himc_planner_free(aside);
     himc_score_free(score);
     return good;

@@ -179,17 +179,27 @@ static bool read_drum_line(reader *r, const himc_atom *atom, int count)
     return add_line(r, atom[0].symbol);
 }
 
-/// "at 12 kettle tune 110": a line for a drum, at a beat.
+/// Of `at` for the performer.
+static bool read_timed_command(reader *r, const himc_atom *atom, int count)
+{
+    return himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
+                              r->error) &&
+           add_line(r, "");
+}
+
+/// "at 12 kettle tune 110": a line for a drum, at a beat; "at 12 push ...": one for the performer.
 static bool read_timed_line(reader *r, const himc_atom *atom, int count)
 {
     const himc_argument *beat = himc_argument_find("BEAT", NULL);
     if (count < 4 || atom[2].kind != HIMC_ATOM_SYMBOL || atom[3].kind != HIMC_ATOM_SYMBOL)
-        return himc_error_set(r->error, "at: allowed at BEAT DRUM COMMAND ...");
+        return himc_error_set(r->error, "at: allowed at BEAT DRUM COMMAND ..., at BEAT push ...");
     if (!himc_argument_accepts(beat, &atom[1]))
         return himc_error_set(r->error, "at: BEAT: allowed %g .. %g", beat->low, beat->high);
     r->timed = true;
     r->beat = atom[1].number;
-    bool good = read_drum_line(r, atom + 2, count - 2);
+    const himc_command_row *own = himc_command_find(HIMC_PERFORMER, atom[2].symbol);
+    bool good = own && (own->marks & HIMC_AT_BEAT) ? read_timed_command(r, atom + 2, count - 2)
+                                                   : read_drum_line(r, atom + 2, count - 2);
     r->timed = false;
     return good;
 }
