@@ -694,7 +694,7 @@ def test_lanes_follow_the_limb_that_is_clicked():
         actions.lanes(), view.settle(), viewer.step(0, false), view.camera.updateMatrixWorld();
         return import("/body.js").then(({ bone }) => {
             const q = performers.get(p.scene.name).points()[bone("left-forearm")].project(view.camera),
-                at = { clientX: ((q.x + 1) / 2) * innerWidth, clientY: ((1 - 2 * view.lift - q.y) / 2) * innerHeight, pointerId: 1, bubbles: true };
+                at = { clientX: ((q.x + 1) / 2) * innerWidth, clientY: ((1 - q.y) / 2) * innerHeight, pointerId: 1, bubbles: true };
             for (const what of ["pointerdown", "pointerup"])
                 document.getElementById("stage").dispatchEvent(new PointerEvent(what, at));
             told.joint = timeline.joint;
@@ -905,6 +905,16 @@ def saved_score():
     return browser.wait("return viewer.saved")
 
 
+def undo_all():
+    """By the key, one change after the other."""
+    while browser.run("return viewer.editor.piece.text.undo"):
+        assert browser.wait("return viewer.editor.piece.over")
+        left = browser.run("return viewer.editor.piece.text.undo")
+        browser.run("dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))")
+        assert browser.wait(f"return viewer.editor.piece.text.undo < {left}")
+    assert browser.wait("return viewer.editor.piece.over")
+
+
 def test_a_stroke_is_dragged_heard_and_put_back():
     with editing("tests/viewer/editable.txt"):
         with open("tests/viewer/editable.txt") as file:
@@ -936,15 +946,52 @@ def test_a_stroke_is_dragged_heard_and_put_back():
         browser.run(DRAG, "top", 0, -15)
         assert browser.wait("return viewer.editor.heard.length === 2")
         assert browser.run("return viewer.editor.chosen.statement.dynamic") > loud + 0.02
-        for _ in range(2):
-            assert browser.wait("return viewer.editor.piece.over")
-            browser.run(
-                "dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))"
-            )
-            browser.wait("return !viewer.editor.piece.over")
-        assert browser.wait("return viewer.editor.piece.over && !viewer.editor.piece.text.undo")
+        undo_all()
         assert saved_score() == written and browser.run(strikes) == before
         return f"heard after {max(browser.run('return viewer.editor.heard')):.0f} ms without pictures"
+
+
+# Drags the chosen statement's mark on the timeline by so many seconds
+RETIME = """
+    const { timeline } = viewer.panel, { canvas } = timeline, box = canvas.getBoundingClientRect(),
+        from = viewer.actions.when.mark.time, x = time => box.left + timeline.x(time);
+    canvas.setPointerCapture = () => {};
+    for (const [name, part] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
+        canvas.dispatchEvent(new PointerEvent(name, {
+            clientX: x(from + 1000 * part * arguments[0]), clientY: box.top + 5, pointerId: 1, bubbles: true, cancelable: true,
+        }));
+"""
+WORDS = "return viewer.editor.chosen.statement.words"
+
+
+def heard(count):
+    assert browser.wait("return viewer.editor.heard.length >= %d && viewer.editor.piece.over" % count)
+
+
+def test_a_stroke_is_moved_in_time_on_the_timeline():
+    """By the mouse, and by keys alone; the chosen stroke stays chosen, and undo gives the text back."""
+    with editing("tests/viewer/editable.txt"):
+        written = saved_score()
+        press = "document.getElementById('timeline').dispatchEvent(new KeyboardEvent('keydown', { key: '%s', bubbles: true }))"
+        time = "return viewer.editor.piece.scene.strikes.find(s => s.beat === 11).time"
+        browser.run(time.replace("return ", "viewer.actions.seek(1000 * ") + " - 50)")
+        browser.run(press % "Enter")
+        assert browser.run(WORDS) == "stroke 11 right tenuto mf normal high"
+        was = browser.run(time)
+        browser.run(RETIME, 0.225)  # half a beat at 132 a minute
+        heard(1)
+        assert browser.run(WORDS) == "stroke 11.5 right tenuto mf normal high"
+        now = browser.run("return viewer.editor.chosen.time")
+        assert abs(now - was - 30 / 132) < 0.05 and abs(browser.run("return viewer.actions.when.mark.time") - 1000 * now) < 1
+        browser.run(press % ",")
+        heard(2)
+        assert browser.run(WORDS) == "stroke 11.375 right tenuto mf normal high"
+        undo_all()
+        assert saved_score() == written and browser.run(time) == was
+        assert abs(browser.run("return viewer.editor.chosen.time") - was) < 1e-9
+        # beside the mark the cursor goes there, and nothing is moved
+        browser.run(RETIME.replace("x(from", "40 + x(from"), 0.2)
+        assert browser.run("return viewer.editor.piece.text.undo") == 0
 
 
 # time and places of the right forearm and of both tips, as the piece is now (s, mm)
@@ -997,6 +1044,32 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
         )
 
 
+def test_on_a_phone_the_figure_stands_over_the_inspector():
+    with editing("tests/viewer/editable.txt"):
+        browser.resize(390, 844)
+        browser.run(
+            "const s = viewer.editor.piece.scene.strikes.find(s => s.beat === 11);"
+            "viewer.actions.seek(1000 * s.time - 200)"
+        )
+        # height of the sheet, and where the figure is between the top and the sheet (pixels)
+        framed = """
+            const p = [...viewer.performers.values()].find(q => q.group.visible),
+                heights = p.points().map(v => viewer.editor.screen(v)[1]),
+                sheet = document.getElementById("edit").getBoundingClientRect();
+            return [sheet.height, Math.min(...heights), sheet.top - Math.max(...heights)]"""
+        settled = "return Math.abs(viewer.view.now.distance - viewer.view.goal.distance) < 0.01"
+        assert browser.wait(settled)
+        folded = browser.run(framed)
+        browser.run("viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 11))")
+        assert browser.wait("return document.getElementById('e-stroke').getBoundingClientRect().height > 0")
+        assert browser.wait(settled)
+        chosen = browser.run(framed)
+        browser.resize(480, 480)
+        assert folded[0] < chosen[0] < 0.35 * 844, (folded, chosen)
+        assert min(folded[1:] + chosen[1:]) > 0, (folded, chosen)
+        return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels"
+
+
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
     with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
         browser.run(
@@ -1029,6 +1102,25 @@ def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
         after = browser.run(place)
         off = max(abs(b + w - a) for a, b, w in zip(after, before, way))
         assert off < 0.01, (words, before, after)
+        # the nudge is chosen on the timeline, moved in time, and drawn further
+        browser.run("viewer.playback.play(false); viewer.actions.pick(viewer.editor.piece.nudges[0])")
+        browser.run(RETIME, -0.2)
+        heard(2)
+        moved = browser.run(WORDS).split()
+        assert abs(float(moved[2]) - 1.3) < 0.002 and moved[3:] == words.split()[3:], (words, moved)
+        browser.run("viewer.playback.play(false)")
+        assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+        browser.run(DRAG, "spot", 12, -12)
+        heard(3)
+        further = browser.run(WORDS).split()
+        assert further[:4] == moved[:4] and further[4:] != moved[4:], (moved, further)
+        undo_all()
+        assert browser.run("return viewer.editor.piece.text.statements.length") == 0
+        browser.run(
+            "viewer.saved = null; document.getElementById('e-c3d').click()"
+        )
+        assert browser.wait("return viewer.saved && viewer.saved.name === 'take.c3d'")
+        assert browser.run("return viewer.saved.arrayBuffer().then(b => new Uint8Array(b)[1])") == 0x50
 
 
 def test_a_shared_page_plays_from_the_disk():
