@@ -525,6 +525,9 @@ const exporter = new Exporter((window.viewer = {
     get playback() {
         return playback;
     },
+    get exaggeration() {
+        return exaggeration;
+    },
     get editor() {
         return editor;
     },
