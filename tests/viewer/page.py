@@ -1048,6 +1048,12 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         browser.run(press % "Enter")
         assert browser.run(WORDS) == "stroke 11 right tenuto mf normal high"
         was = browser.run(time)
+        # the place on the head is right before a frame has drawn the head where it is now
+        high = browser.run(
+            "const e = viewer.editor; e.head('high').matrixWorld.identity();"
+            "return e.choose(e.chosen.strike), e.spot.position.z"
+        )
+        assert abs(high - 0.862) < 1e-3, high
         browser.run(RETIME, 0.225)  # half a beat at 132 a minute
         heard(1)
         assert browser.run(WORDS) == "stroke 11.5 right tenuto mf normal high"
