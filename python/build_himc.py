@@ -15,7 +15,7 @@ ffi.set_source(
     (HERE / "himc" / "session.c").read_text(),
     include_dirs=[str(ROOT / "lib"), str(ROOT / "lib" / "src")],
     extra_objects=[str(BUILD / "libhimc.a")],
-    libraries=["ode", "lo", "stdc++", "pthread", "m"],
+    libraries=["ode", "stdc++", "pthread", "m"],
     extra_compile_args=["-std=gnu17", "-O2"],
 )
 

@@ -249,6 +249,27 @@ static void test_another_body_keeps_the_engine(void)
     himc_performance_free(p);
 }
 
+// a body built anew, with other bytes between the fields of its segments
+static bool shares(himc_performance *p)
+{
+    body_parts parts;
+    TEST_ASSERT_TRUE_MESSAGE(himc_body_make_parts(&parts, &p->settings, &error), error.text);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        memset(&parts.plant.segment[i].parent + 1, 0x55,
+               offsetof(himc_segment, mass) - sizeof(int));
+    himc_body_adopt(p->body, &parts);
+    return p->body->shares;
+}
+
+static void test_the_controller_shares_a_body_of_its_own_weights(void)
+{
+    himc_performance *p = session_new();
+    TEST_ASSERT_TRUE(shares(p));
+    p->settings.weight[HIMC_RIGHT_HAND] = 1.1;
+    TEST_ASSERT_FALSE(shares(p));
+    himc_performance_free(p);
+}
+
 typedef struct tips {
     himc_vec3 at[2000][HIMC_HANDS];
     int rows;
@@ -374,6 +395,7 @@ int main(void)
     RUN_TEST(test_a_body_taken_apart_comes_together_as_by_dworldstep);
     RUN_TEST(test_engines_can_change_in_the_middle_of_a_motion);
     RUN_TEST(test_another_body_keeps_the_engine);
+    RUN_TEST(test_the_controller_shares_a_body_of_its_own_weights);
     RUN_TEST(test_a_piece_is_the_same_by_both_engines);
     RUN_TEST(test_legs_at_rest_are_not_computed_and_wake_as_if_they_had_been);
     return UNITY_END();

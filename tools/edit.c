@@ -223,9 +223,9 @@ static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
     if (!strncmp(line, "take ", 5))
         return save_take(s, line + 5, error);
     if (!strcmp(line, "undo"))
-        changed = edit_text_undo(s->text) || (himc_error_set(error, "nothing to undo"), false);
+        changed = edit_text_undo(s->text) || himc_error_set(error, "nothing to undo");
     else if (!strcmp(line, "redo"))
-        changed = edit_text_redo(s->text) || (himc_error_set(error, "nothing to redo"), false);
+        changed = edit_text_redo(s->text) || himc_error_set(error, "nothing to redo");
     else if (!strncmp(line, "set ", 4))
         changed = set(s, line + 4, error);
     else if (!hello)

@@ -1,11 +1,11 @@
-/// edit_play.c: a piece is played by a process that leaves a copy of itself behind every few seconds.
+/// edit_play.c: a piece is played by a process that leaves a copy of itself behind every second.
 ///
 /// fork() is the checkpoint: the copy holds the whole state of body, drums and plan, costs only the
 /// pages that change, and waits. After a change the last copy before its first effect forks again,
 /// takes the new strokes in place of the old ones, and plays on; copies after it are dismissed. A
 /// copy refuses strokes on which its plan may already rest, and then an earlier one is asked; the
-/// first one has not begun to play. If other lines have changed, a new process loads the text. So the outcome is, bit by bit, that of playing the new
-/// text from the start.
+/// first one has not begun to play. If other lines have changed, a new process loads the text. So
+/// the outcome is, bit by bit, that of playing the new text from the start.
 ///
 /// All processes write whole frames into one pipe, but one at a time: a process that plays looks at
 /// a shared number before each frame and ends, with a last frame, once that is no longer its own.
@@ -36,9 +36,8 @@ enum {
     PATIENCE = 30000, // for a frame of a process that lives (ms); chosen: a loaded machine
     LARGEST = 1 << 26 // of a frame (bytes)
 };
-// chosen: the piece is played 10 times as fast as it sounds, so a copy is never 0.2 s away
 
-#define APART 1.0    // copies, at least (s)
+#define APART 1.0    // copies, at least (s); chosen: it is played again in a tenth of that
 #define HEADROOM 2.0 // (s) a piece may begin so much later than its first beat
 
 struct edit_play {
@@ -264,22 +263,40 @@ static void play_from_start(const edit_play *of, int turn, const char *text, con
 
 // --- in the process that gives orders
 
+// gives back all but the processes
+static void release(edit_play *play)
+{
+    for (int i = 0; i < 2 * (COPIES + 1); i++) {
+        int *pipe = i < 2 ? play->frames : play->order[i / 2 - 1];
+        if (pipe[i % 2] >= 0)
+            close(pipe[i % 2]);
+    }
+    if (play->turn != MAP_FAILED)
+        munmap(play->turn, sizeof *play->turn);
+    free(play->bytes);
+    free(play);
+}
+
 edit_play *edit_play_new(const char *name, const himc_take_options *options, himc_error *error)
 {
-    edit_play *play = calloc(1, sizeof *play);
-    bool good = play && pipe(play->frames) == 0;
-    for (int i = 0; good && i < COPIES; i++)
-        good = pipe(play->order[i]) == 0;
-    void *shared =
-        mmap(NULL, sizeof *play->turn, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (!good || shared == MAP_FAILED) {
-        himc_error_set(error, "%s", strerror(errno));
-        free(play);
+    edit_play *play = malloc(sizeof *play);
+    if (!play) {
+        himc_error_set(error, "out of memory");
         return NULL;
     }
-    play->turn = shared;
-    play->name = name;
-    play->options = options;
+    *play = (edit_play){.name = name, .options = options};
+    memset(play->frames, -1, sizeof play->frames);
+    memset(play->order, -1, sizeof play->order);
+    play->turn =
+        mmap(NULL, sizeof *play->turn, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    bool good = play->turn != MAP_FAILED && pipe(play->frames) == 0;
+    for (int i = 0; good && i < COPIES; i++)
+        good = pipe(play->order[i]) == 0;
+    if (!good) {
+        himc_error_set(error, "%s", strerror(errno));
+        release(play);
+        return NULL;
+    }
     signal(SIGCHLD, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
     return play;
@@ -456,6 +473,5 @@ void edit_play_free(edit_play *play)
     if (stop_playing(play, &unused))
         for (int i = 0; i < COPIES; i++)
             dismiss(play, i, &unused);
-    free(play->bytes);
-    free(play);
+    release(play);
 }

@@ -22,8 +22,9 @@ edit_play *edit_play_new(const char *name, const himc_take_options *options, him
 void edit_play_free(edit_play *play);
 
 /// Plays `text` (a score); what the last call had begun is given up. The text differs from the last
-/// one in strokes, nudges and pushes alone, none before `from` (s from beat 0); if it may differ elsewhere, `from` is -1. `record` is a file
-/// that gets the motion as a take, or NULL. False with the reason if the playing is lost.
+/// one in strokes, nudges and pushes alone, none before `from` (s from beat 0); if it may differ
+/// elsewhere, `from` is -1. `record` is a file that gets the motion as a take, or NULL. False with
+/// the reason if the playing is lost.
 bool edit_play_start(edit_play *play, const char *text, double from, const char *record,
                      himc_error *error);
 /// A descriptor that can be read when there is a frame.

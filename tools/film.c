@@ -2,7 +2,7 @@
 ///
 /// The browser opens the page of `himc share`, which draws frame by frame (viewer/page/film.js) and
 /// hands the finished file over in pieces.
-#define _DEFAULT_SOURCE // mkstemps
+#define _POSIX_C_SOURCE 200809L // fdopen
 #include "cli.h"
 
 #include <stdlib.h>
@@ -96,20 +96,21 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
 #include "browser.h"
 #include "recording.h"
 #include "share.h"
+#include "system/files.h"
 
 #include <errno.h>
 #include <unistd.h>
 
+#define PAGE 256 // characters of a file's name; chosen
+
 // the page, in a file of its own whose name `path` becomes
-static bool write_page(const char *source, char path[64], himc_error *error)
+static bool write_page(const char *source, char path[PAGE], himc_error *error)
 {
     size_t size;
     char *scene = recording_load(source, &size, error);
-    const char *folder = getenv("TMPDIR");
     if (!scene)
         return false;
-    snprintf(path, 64, "%.40s/himc-film-XXXXXX.html", folder ? folder : "/tmp");
-    int file = mkstemps(path, 5);
+    int file = himc_system_temporary(path, PAGE, ".html");
     FILE *page = file < 0 ? NULL : fdopen(file, "wb");
     bool good = page ? share_write(page, scene, size, source, error)
                      : himc_error_set(error, "no temporary file: %s", strerror(errno));
@@ -190,7 +191,7 @@ static bool film(browser *b, const char *page, const job *j, FILE *out, himc_err
 
 static bool make(const job *j, himc_error *error)
 {
-    char page[64] = "";
+    char page[PAGE] = "";
     cli_file out = {0};
     browser *b = NULL;
     bool good = write_page(j->scene, page, error) && cli_file_open(&out, j->out, error) &&

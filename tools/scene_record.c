@@ -3,7 +3,8 @@
 /// Poses are joint rotations at the task rate; where the segments are follows from them and from
 /// the body's measures, which are taken from the first pose and again when they change. Heads are
 /// looked at 33 times a second, as over OSC, while they move; with velocity, frequency and decay of
-/// each mode a reader has their motion in between.
+/// each mode a reader has their motion in between. The performance counts its time from 0 again after
+/// `reset`; the recording's goes on.
 #include "scene_record.h"
 #include "drum/drum_performer.h"
 #include "drum/membrane_probe.h"
@@ -76,6 +77,19 @@ static void name_columns(scene_column *column)
                     "n_m", TORQUE_STEP);
 }
 
+// the recording's time of a time of the performance: `reset` leaves the count of samples as it is
+static double own(const scene_record *r, double time)
+{
+    himc_performance_stats s = himc_performance_measure(r->performance);
+    double played = (double)himc_performance_time(r->performance) / s.sample_rate;
+    return time + (played - s.seconds);
+}
+
+static double now(const scene_record *r)
+{
+    return own(r, himc_performance_measure(r->performance).seconds);
+}
+
 // --- the body
 
 static himc_vec3 in_frame(const himc_body_state *body, int segment, himc_vec3 at)
@@ -140,7 +154,7 @@ static void captured_row(scene_record *r, const himc_tick *tick)
     for (int i = 0; i < FORCE; i++)
         value[i] = component(
             i < TARGET ? himc_quat_log(tick->captured[i / 3]) : tick->target[(i - TARGET) / 3], i);
-    scene_row(r->captured, tick->time, value);
+    scene_row(r->captured, own(r, tick->time), value);
     r->captured_rows++;
 }
 
@@ -155,7 +169,7 @@ void scene_record_tick(void *record, const himc_tick *tick)
         changed |=
             differs(&r->tip[hand], in_frame(b, himc_stick_segment((himc_hand)hand), b->tip[hand]));
     if (changed)
-        tell_body(r, tick->time);
+        tell_body(r, own(r, tick->time));
     if (r->captured && tick->captured)
         captured_row(r, tick);
 }
@@ -170,7 +184,7 @@ void scene_record_row(void *record, const himc_motion_row *row)
         value[FORCE + hand] = row->force[hand];
     for (int i = 0; i < COLUMNS - TORQUE; i++)
         value[TORQUE + i] = component(row->torque[i / 3], i);
-    scene_row(r->scene, row->time, value);
+    scene_row(r->scene, own(r, row->time), value);
 }
 
 // --- events
@@ -180,11 +194,10 @@ void scene_record_event(scene_record *r, const himc_event *event)
     char text[6 * sizeof event->text], nuance[6 * HIMC_NAME_SIZE];
     const himc_strike *s = &event->strike;
     if (event->kind == HIMC_EVENT_BEAT)
-        scene_event(r->scene, "\"event\":\"beat\",\"time\":%.6f,\"beat\":%.9g", event->time,
+        scene_event(r->scene, "\"event\":\"beat\",\"time\":%.6f,\"beat\":%.9g", own(r, event->time),
                     event->beat);
     else if (event->kind == HIMC_EVENT_NOTE)
-        scene_event(r->scene, "\"event\":\"note\",\"time\":%.6f,\"text\":\"%s\"",
-                    himc_performance_measure(r->performance).seconds,
+        scene_event(r->scene, "\"event\":\"note\",\"time\":%.6f,\"text\":\"%s\"", now(r),
                     scene_text(text, sizeof text, event->text));
     else if (event->kind == HIMC_EVENT_STRIKE) {
         char beat[40] = "null";
@@ -194,7 +207,8 @@ void scene_record_event(scene_record *r, const himc_event *event)
                     "\"event\":\"strike\",\"time\":%.6f,\"hand\":\"%s\",\"drum\":\"%s\","
                     "\"nuance\":\"%s\",\"beat\":%s,\"x\":%.6f,\"y\":%.6f,\"velocity\":%.5g,"
                     "\"force\":%.6g,\"impulse\":%.6g,\"duration\":%.6g",
-                    s->time, himc_hand_name(s->hand), scene_text(text, sizeof text, s->drum),
+                    own(r, s->time), himc_hand_name(s->hand),
+                    scene_text(text, sizeof text, s->drum),
                     scene_text(nuance, sizeof nuance, s->nuance), beat, s->x, s->y, s->velocity,
                     s->force, s->impulse, s->duration);
     }
@@ -301,7 +315,7 @@ static void look_at_head(scene_record *r, int index, himc_drum *drum)
 void scene_record_block(scene_record *r, const float *frames, int n)
 {
     himc_drum *drum;
-    double time = himc_performance_measure(r->performance).seconds;
+    double time = now(r);
     bool heads = time >= r->next_head;
     for (int i = 0; (drum = himc_performance_drum(r->performance, i)); i++) {
         bool tuned = heads && himc_drum_pitch(drum) != r->pitch[i];
@@ -394,8 +408,7 @@ bool scene_record_end(scene_record *r, himc_error *error)
         return true;
     bool good = end_captured(r, error);
     if (r->scene) {
-        scene_event(r->scene, "\"event\":\"end\",\"time\":%.6f",
-                    himc_performance_measure(r->performance).seconds);
+        scene_event(r->scene, "\"event\":\"end\",\"time\":%.6f", now(r));
         good &= scene_close(r->scene, error);
     }
     free(r->lines);

@@ -33,7 +33,7 @@ typedef struct received {
     const char *types;
     lo_arg **args;
     int count;
-    double now;
+    scene_time time;
 } received;
 
 /// /group/what or /group/NAME/what
@@ -109,9 +109,9 @@ static bool on_body(received *h)
         return false;
     for (int i = 3; i < 7; i++)
         body[i] /= (float)sqrt(norm);
-    scene_performer *p = scene_find_performer(h->s, h->key, h->now);
+    scene_performer *p = scene_find_performer(h->s, h->key, h->time.now);
     if (p)
-        scene_set_body(p, segment, body, h->now);
+        scene_set_body(p, segment, body, h->time);
     return true;
 }
 
@@ -126,7 +126,7 @@ static bool on_targets(received *h)
     int hand = find_hand(text(h, 0));
     if (hand < 0 || !in_range(h, 1, 3))
         return false;
-    scene_performer *p = scene_find_performer(h->s, h->key, h->now);
+    scene_performer *p = scene_find_performer(h->s, h->key, h->time.now);
     for (int i = 0; p && i < 3; i++)
         p->target[hand][i] = (float)number(h, 1 + i);
     if (p)
@@ -142,18 +142,18 @@ static bool on_strike(received *h)
     scene_word(drum, sizeof drum, text(h, 2));
     scene_word(nuance, sizeof nuance, text(h, 8));
     scene_add_event(
-        h->s, h->now,
-        "{\"event\":\"strike\",\"from\":\"%s\",\"time\":%.6f,"
+        h->s, h->time.now,
+        "{\"event\":\"strike\",\"from\":\"%s\",\"told\":%.3f,\"time\":%.6f,"
         "\"hand\":\"%s\",\"drum\":\"%s\",\"x\":%.5f,"
         "\"y\":%.5f,\"velocity\":%.4g,\"force\":%.5g,\"duration\":%.5g,\"nuance\":\"%s\"}",
-        h->key, number(h, 0), text(h, 1), drum, number(h, 3), number(h, 4), number(h, 5),
-        number(h, 6), number(h, 7), nuance);
+        h->key, 1e3 * h->time.told, number(h, 0), text(h, 1), drum, number(h, 3), number(h, 4),
+        number(h, 5), number(h, 6), number(h, 7), nuance);
     return true;
 }
 
 static bool on_beat(received *h)
 {
-    scene_add_event(h->s, h->now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key,
+    scene_add_event(h->s, h->time.now, "{\"event\":\"beat\",\"from\":\"%s\",\"beat\":%.6g}", h->key,
                     number(h, 0));
     return true;
 }
@@ -185,8 +185,8 @@ static bool on_status(received *h)
     char values[1000] = "";
     if (!json_list(h, values, sizeof values))
         return false;
-    scene_add_event(h->s, h->now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}", h->key,
-                    values);
+    scene_add_event(h->s, h->time.now, "{\"event\":\"status\",\"from\":\"%s\",\"values\":[%s]}",
+                    h->key, values);
     return true;
 }
 
@@ -196,7 +196,7 @@ static bool on_view(received *h)
     if (!json_list(h, values, sizeof values))
         return false;
     scene_word(what, sizeof what, h->name);
-    scene_add_event(h->s, h->now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what,
+    scene_add_event(h->s, h->time.now, "{\"event\":\"view\",\"what\":\"%s\",\"values\":[%s]}", what,
                     values);
     return true;
 }
@@ -206,10 +206,11 @@ static bool on_head(received *h)
     for (int i = 0; i < h->count; i++)
         if (!is_number(h->types[i]) || !isfinite(number(h, i)) || fabs(number(h, i)) > 1)
             return false;
-    scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->now);
+    scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->time.now);
     if (!d)
         return true;
     d->modes = (uint32_t)(h->count < SCENE_MODES ? h->count : SCENE_MODES);
+    d->told = h->time.told;
     for (int i = 0; i < SCENE_MODES; i++)
         d->amplitude[i] = i < h->count ? (float)number(h, i) : 0;
     d->version++;
@@ -221,12 +222,13 @@ static bool on_place(received *h)
     double radius = number(h, 4);
     if (!in_range(h, 0, 3) || fabs(number(h, 3)) > 2 || radius < 0.02 || radius > 2)
         return false;
-    scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->now);
+    scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->time.now);
     if (!d)
         return true;
     for (int i = 0; i < 5; i++)
         d->place[i] = (float)number(h, i);
     d->placed = true;
+    d->told = h->time.told;
     d->version++;
     return true;
 }
@@ -242,7 +244,7 @@ static bool on_sound(received *h)
     if (rate < 8000 || rate > 192000 || (channels != 1 && channels != 2) || count > SCENE_SAMPLES)
         return false;
     scene_sound *s = &h->s->sound[h->s->sounds++ % SCENE_SOUNDS];
-    *s = (scene_sound){.time = h->now,
+    *s = (scene_sound){.told = h->time.told,
                        .first = (uint32_t)(int64_t)number(h, 0),
                        .rate = (uint32_t)rate,
                        .channels = (uint32_t)channels,
@@ -296,7 +298,8 @@ static const address *find_address(const char *group, const char *what, bool nam
     return NULL;
 }
 
-void address_dispatch(scene *s, const char *key, const char *path, lo_message message, double now)
+void address_dispatch(scene *s, const char *key, const char *path, lo_message message,
+                      scene_time time)
 {
     static const address view = {"viewer", "", "*", on_view};
     char group[SCENE_NAME], name[SCENE_NAME], what[SCENE_NAME] = "";
@@ -305,7 +308,7 @@ void address_dispatch(scene *s, const char *key, const char *path, lo_message me
                   .types = lo_message_get_types(message),
                   .args = lo_message_get_argv(message),
                   .count = lo_message_get_argc(message),
-                  .now = now};
+                  .time = time};
     const address *w = NULL;
     if (split(path, group, name, what))
         w = strcmp(group, "viewer") == 0 && !name[0] ? &view

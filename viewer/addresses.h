@@ -7,6 +7,7 @@
 #include <lo/lo.h>
 
 /// Stores one message of the sender `key` in the scene, or counts it as unknown or malformed.
-void address_dispatch(scene *s, const char *key, const char *path, lo_message message, double now);
+void address_dispatch(scene *s, const char *key, const char *path, lo_message message,
+                      scene_time time);
 
 #endif

@@ -22,6 +22,7 @@
     SCRIPT(FILE, main)                                                     \
     SCRIPT(FILE, boot)                                                     \
     SCRIPT(FILE, stream)                                                   \
+    SCRIPT(FILE, clock)                                                    \
     SCRIPT(FILE, performer)                                                \
     SCRIPT(FILE, body)                                                     \
     SCRIPT(FILE, figure)                                                   \
@@ -45,6 +46,7 @@
     SCRIPT(FILE, film)                                                     \
     SCRIPT(FILE, webm)                                                     \
     SCRIPT(FILE, gltf)                                                     \
+    FILE(push, "/push.js", "text/javascript", "viewer/page/push.js")       \
     FILE(export, "/export.js", "text/javascript", "viewer/page/export.js") \
     FILE(skeleton, "/skeleton.js", "text/javascript", MADE "/skeleton.js") \
     FILE(three, "/three.js", "text/javascript", THREE_JS "/three.module.js")

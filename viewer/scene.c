@@ -73,7 +73,7 @@ scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double 
     return NULL;
 }
 
-void scene_set_body(scene_performer *p, int segment, const float body[7], double now)
+void scene_set_body(scene_performer *p, int segment, const float body[7], scene_time time)
 {
     uint32_t bit = UINT32_C(1) << segment;
     // a segment received twice begins the next pose: the last one will get no more parts
@@ -82,7 +82,8 @@ void scene_set_body(scene_performer *p, int segment, const float body[7], double
         p->pending = 0;
     }
     if (!p->pending)
-        p->begun = now;
+        p->begun = time.now;
+    p->told = time.told;
     memcpy(p->body[segment], body, sizeof p->body[segment]);
     p->known |= bit;
     p->pending |= bit;

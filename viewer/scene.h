@@ -26,11 +26,18 @@ enum {
     SCENE_NAME = 32      ///< longest drum's name with its zero
 };
 
+/// Two times of a message (s, wall clock): here, and the sender's in the time tag of its bundle. Without
+/// a tag the second is the first.
+typedef struct scene_time {
+    double now, told;
+} scene_time;
+
 /// A body in the world.
 typedef struct scene_performer {
     char key[SCENE_KEY];           ///< the sender; empty if the place is free
     uint64_t version;              ///< grows with each complete pose
     double received;               ///< time of the last message (s, wall clock)
+    double told;                   ///< the sender's time of the pose (s)
     double begun;                  ///< time of the first part of the pending pose (s)
     uint32_t known, pending;       ///< segments received ever; since the last complete pose (bits)
     uint32_t targets;              ///< hands with a known target (bits)
@@ -42,6 +49,7 @@ typedef struct scene_drum {
     char key[SCENE_KEY], name[SCENE_NAME];
     uint64_t version;
     double received;              ///< time of the last message (s, wall clock)
+    double told;                  ///< the sender's time of the amplitudes (s)
     bool placed;                  ///< `place` has been received
     float place[5];               ///< centre x y z (m), tilt (rad), radius (m)
     uint32_t modes;               ///< number of amplitudes
@@ -55,7 +63,7 @@ typedef struct scene_event {
 
 /// A packet of sound.
 typedef struct scene_sound {
-    double time; ///< (s, wall clock)
+    double told; ///< the sender's time of the first sample (s)
     char key[SCENE_KEY];
     uint32_t first, rate, channels, count; ///< sample; (Hz); of samples in all channels
     int16_t sample[SCENE_SAMPLES];
@@ -89,7 +97,7 @@ scene_performer *scene_find_performer(scene *s, const char *key, double now);
 scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double now);
 
 /// Stores one segment of a pose.
-void scene_set_body(scene_performer *p, int segment, const float body[7], double now);
+void scene_set_body(scene_performer *p, int segment, const float body[7], scene_time time);
 /// Marks poses as complete: those with all segments, and those begun more than 5 ms ago (a bundle
 /// may be split, and a packet lost). True if there is one.
 bool scene_complete_poses(scene *s, double now);

@@ -3,7 +3,8 @@
 /// A frame is a sequence of blocks, each a multiple of 8 bytes, in the byte order of the machine
 /// (little-endian everywhere this runs; the page reads so):
 ///
-///     u32 kind, u32 bytes that follow the head, f64 wall clock (ms), then
+///     u32 kind, u32 bytes that follow the head, f64 time (ms), the sender's, or of an event
+///     when it came, then
 ///     1 pose   key[80], u32 segments known, u32 targets known, f32[20][7], f32[2][3]
 ///     2 drum   key[80], name[32], u32 placed, f32[5] place, u32 modes, u32 0, f32[64]
 ///     3 event  JSON, padded with spaces
@@ -53,7 +54,7 @@ static void put_head(writer *p, uint32_t kind, size_t bytes, double time)
 
 static void put_pose(writer *p, const scene_performer *from)
 {
-    put_head(p, 1, POSE, from->received);
+    put_head(p, 1, POSE, from->told);
     put(p, from->key, sizeof from->key);
     put_u32(p, from->known);
     put_u32(p, from->targets);
@@ -63,7 +64,7 @@ static void put_pose(writer *p, const scene_performer *from)
 
 static void put_drum(writer *p, const scene_drum *drum)
 {
-    put_head(p, 2, DRUM, drum->received);
+    put_head(p, 2, DRUM, drum->told);
     put(p, drum->key, sizeof drum->key);
     put(p, drum->name, sizeof drum->name);
     put_u32(p, drum->placed);
@@ -84,7 +85,7 @@ static void put_event(writer *p, const scene_event *e)
 
 static void put_sound(writer *p, const scene_sound *s)
 {
-    put_head(p, 4, SOUND, s->time);
+    put_head(p, 4, SOUND, s->told);
     put(p, s->key, sizeof s->key);
     put_u32(p, s->first);
     put_u32(p, s->rate);

@@ -270,6 +270,24 @@ static int on_data(struct lws *wsi, const session *own)
     return -1;
 }
 
+// what the end of a connection asks for, of both kinds
+static int on_end(struct lws *wsi, enum lws_callback_reasons reason, session *own)
+{
+    switch (reason) {
+    // a close begins here, whoever wanted it: the page, libwebsockets or this program
+    case LWS_CALLBACK_WS_SERVER_DROP_PROTOCOL:
+        own->closing = true;
+        lws_set_timer_usecs(wsi, CLOSE_TIMEOUT * LWS_US_PER_MS);
+        return 0;
+    case LWS_CALLBACK_TIMER: return -1;
+    case LWS_CALLBACK_CLOSED:
+        web_of(wsi)->clients -= own->counted;
+        own->counted = false;
+        return 0;
+    default: return 0;
+    }
+}
+
 static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                      size_t length)
 {
@@ -284,17 +302,7 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
         return lws_callback_on_writable(wsi) < 0;
     case LWS_CALLBACK_SERVER_WRITEABLE: return own->closing ? 0 : send_news(wsi, own);
     case LWS_CALLBACK_RECEIVE: return on_data(wsi, own);
-    // a close begins here, whoever wanted it: the page, libwebsockets or this program
-    case LWS_CALLBACK_WS_SERVER_DROP_PROTOCOL:
-        own->closing = true;
-        lws_set_timer_usecs(wsi, CLOSE_TIMEOUT * LWS_US_PER_MS);
-        return 0;
-    case LWS_CALLBACK_TIMER: return -1;
-    case LWS_CALLBACK_CLOSED:
-        w->clients -= own->counted;
-        own->counted = false;
-        return 0;
-    default: return 0;
+    default: return on_end(wsi, reason, own);
     }
 }
 
@@ -403,17 +411,8 @@ static int on_edit(struct lws *wsi, enum lws_callback_reasons reason, void *user
         if (!own->closing && hear_page(w, wsi, in, length))
             return 0;
         return on_data(wsi, own);
-    case LWS_CALLBACK_WS_SERVER_DROP_PROTOCOL:
-        own->closing = true;
-        lws_set_timer_usecs(wsi, CLOSE_TIMEOUT * LWS_US_PER_MS);
-        return 0;
-    case LWS_CALLBACK_TIMER: return -1;
-    case LWS_CALLBACK_CLOSED:
-        w->clients -= own->counted;
-        own->counted = false;
-        w->editing = w->editing == wsi ? NULL : w->editing;
-        return 0;
-    default: return 0;
+    case LWS_CALLBACK_CLOSED: w->editing = w->editing == wsi ? NULL : w->editing; // fall through
+    default: return on_end(wsi, reason, own);
     }
 }
 

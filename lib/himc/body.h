@@ -278,12 +278,12 @@ HIMC_RT void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_bod
 
 /// A symmetric 3x3 matrix.
 typedef struct himc_symmetric {
-    double xx; ///< the upper triangle, row by row
-    double xy; ///< the same
-    double xz; ///< the same
-    double yy; ///< the same
-    double yz; ///< the same
-    double zz; ///< the same
+    double xx; ///< row x, column x
+    double xy; ///< row x, column y, as row y, column x
+    double xz; ///< row x, column z, as row z, column x
+    double yy; ///< row y, column y
+    double yz; ///< row y, column z, as row z, column y
+    double zz; ///< row z, column z
 } himc_symmetric;
 
 /// The articulated inertias of the segments at a state: working memory of forward dynamics.

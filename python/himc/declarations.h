@@ -29,6 +29,9 @@ typedef struct {
     double hit_latency, longest_latency; long recoveries, limit_hits, events_lost; double sample_rate, physics_rate, task_rate; ...;
 } himc_performance_stats;
 himc_performance_stats himc_performance_measure(const himc_performance *performance);
+typedef struct himc_drum himc_drum;
+himc_drum *himc_performance_drum(himc_performance *performance, int index);
+void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound, double *displacement);
 void himc_performance_target(himc_performance *performance, int hand, himc_vec3 tip);
 const char *himc_joint_name(int joint);
 const char *himc_segment_name(int segment);

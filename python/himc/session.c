@@ -196,6 +196,9 @@ static void add_channel(session *s, int channel, int channels, int n, float *out
 // plays n samples into out (n x channels)
 static void session_process(session *s, size_t n, int channels, float *out)
 {
+    himc_drum *drum;
+    for (int d = 0; (drum = himc_performance_drum(s->performance, d)); d++)
+        himc_drum_watch(drum, false); // nobody reads the displacement
     s->peak = 0;
     for (size_t done = 0; done < n;) {
         int count = n - done < BLOCK ? (int)(n - done) : BLOCK;

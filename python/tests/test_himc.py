@@ -78,6 +78,17 @@ class Package(unittest.TestCase):
         np.testing.assert_allclose(tip, (0.45, 0.0, 1.1), atol=1e-3)
         self.assertAlmostEqual(p.time, 1.5)
 
+    def test_displacements_that_nobody_reads_are_not_computed(self):
+        player = himc.Performance()
+        player.add_drum("kettle")
+        player.drum_command("kettle", "strike 0.25 0 1")
+        player.process(0.1)
+        sound, displacement = np.zeros(2000), np.zeros(2000)
+        himc.lib.himc_drum_read(himc.lib.himc_performance_drum(player._session.performance, 0), 2000, len(sound),
+                                *(himc.ffi.cast("double *", x.ctypes.data) for x in (sound, displacement)))
+        self.assertTrue(sound.any())
+        self.assertFalse(displacement.any())
+
     def test_modes_are_those_of_the_program(self):
         rows = json.loads(self.program("modes", "--json").stdout)
         mine = himc.modes()

@@ -148,7 +148,7 @@ class Stream:
             f"Sec-WebSocket-Protocol: {protocol}" if protocol is not None else None,
         ]
         self.s.sendall("".join(f"{line}\r\n" for line in lines if line).encode() + b"\r\n")
-        self.rest = b""
+        self.rest, self.times = b"", {}
         while b"\r\n\r\n" not in self.rest:
             piece = self.s.recv(4096)
             if not piece:
@@ -189,7 +189,8 @@ class Stream:
         return True
 
     def blocks(self, seconds):
-        """(kind, bytes) of the next frame; none if nothing comes within that time."""
+        """(kind, bytes) of the next frame; none if nothing comes within that time. `times` (s) are those
+        of the last block of each kind."""
         self.s.settimeout(seconds)
         try:
             opcode, payload = self.frame() or (0, b"")
@@ -197,7 +198,8 @@ class Stream:
             return []
         at, out = 0, []
         while opcode == 2 and at < len(payload):
-            kind, size = struct.unpack_from("<II", payload, at)
+            kind, size, time_ms = struct.unpack_from("<IId", payload, at)
+            self.times[kind] = time_ms / 1000
             out.append((kind, payload[at + 16 : at + 16 + size]))
             at += 16 + size
         return out
@@ -292,10 +294,12 @@ def osc(address, *atoms):
     return string(address) + string(types) + data
 
 
-def bundle(*messages):
+def bundle(*messages, told=None):
+    """With a time tag: `told` (s since 1970), or "immediately"."""
+    tag = 1 if told is None else int((told + 2208988800) * 2**32)
     return (
         b"#bundle\0"
-        + struct.pack(">Q", 1)
+        + struct.pack(">Q", tag)
         + b"".join(struct.pack(">I", len(m)) + m for m in messages)
     )
 
@@ -677,17 +681,18 @@ def test_strike_beat_status_and_view_become_events():
         assert heard["view"] == {"event": "view", "what": "camera", "values": ["top"]}
 
 
-def test_sound_reaches_the_stream_in_order():
-    def sound(first, samples, rate=48000, channels=1):
-        blob = struct.pack(f">I{len(samples)}h", 2 * len(samples), *samples)
-        return (
-            string("/himc/sound")
-            + string(",iiib")
-            + struct.pack(">iii", first, rate, channels)
-            + blob
-            + b"\0" * (-len(blob) % 4)
-        )
+def sound(first, samples, rate=48000, channels=1):
+    blob = struct.pack(f">I{len(samples)}h", 2 * len(samples), *samples)
+    return (
+        string("/himc/sound")
+        + string(",iiib")
+        + struct.pack(">iii", first, rate, channels)
+        + blob
+        + b"\0" * (-len(blob) % 4)
+    )
 
+
+def test_sound_reaches_the_stream_in_order():
     with Viewer() as v:
         stream = listen(v)
         v.send(*(sound(240 * i, [i, -i, 32767] * 80) for i in range(5)))
@@ -698,6 +703,18 @@ def test_sound_reaches_the_stream_in_order():
         ]
         assert struct.unpack_from("<3h", got[4], 96) == (4, -4, 32767)
         assert counts(v)["malformed"] == 3
+
+
+def test_the_senders_times_reach_the_stream():
+    head, told = osc("/membrane/kettle/head", 1e-5), 1.5e9 + 0.25
+    with Viewer() as v:
+        stream = listen(v)
+        for at in (told, None):
+            v.send(*(bundle(*what, told=at) for what in (pose(), [head], [STRIKE], [sound(0, [0])])))
+            (strike,) = [e for e in events(stream.until_mark(v)) if e["event"] == "strike"]
+            times = [stream.times[kind] for kind in (1, 2, 4)] + [strike["told"] / 1000]
+            wanted, most = (told, 1e-5) if at else (time.time(), WAIT)
+            assert all(abs(t - wanted) < most for t in times), (times, wanted)
 
 
 def test_text_from_the_network_stays_text():

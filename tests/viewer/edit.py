@@ -157,6 +157,22 @@ def test_the_last_stroke_is_changed_after_the_end():
         assert from_start(piece).parts == piece.parts != before
 
 
+def test_saved_takes_leave_no_open_file():
+    path = os.path.join(folder.name, "short.txt")
+    with open(path, "w") as file:
+        file.write("stroke 0 right legato mf;")
+
+    with Piece(HIMC, path) as piece:
+        open_files = []
+        assert piece.play("hello") is None
+        for _ in range(3):
+            piece.say("take take.trc")
+            piece.until("file")
+            assert piece.play("nothing") is not None  # all has been put away by then
+            open_files.append(len(os.listdir(f"/proc/{piece.process.pid}/fd")))
+        assert len(set(open_files)) == 1, open_files
+
+
 def made_take():
     path, score = (os.path.join(folder.name, name) for name in ("take.bvh", "one.txt"))
     with open(score, "w") as file:

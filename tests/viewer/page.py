@@ -8,6 +8,7 @@ import base64
 import contextlib
 import csv
 import json
+import math
 import os
 import random
 import shutil
@@ -20,7 +21,7 @@ import time
 import zlib
 
 import report
-from bridge import WAIT, osc
+from bridge import WAIT, bundle, osc, pose, sound
 from browser import Browser
 
 BUILD = os.environ["HIMC_BUILD"]
@@ -35,6 +36,7 @@ FOUR_SCORE = "tests/viewer/four.txt"
 # fixed, because the page must find a restarted viewer again; different for each run of this file
 HTTP = 20000 + os.getpid() % 20000
 OSC, SERVE = HTTP + 1, HTTP + 2
+RECOVERED = 10  # of a body that was pushed, a second later (mm); tests/pushes.h
 MARKS = 7  # layer of the marks of strikes
 browser = bridge = None
 
@@ -263,8 +265,31 @@ def test_himc_serve_is_shown_and_heard_with_drum_strikes_and_status():
         assert counts["malformed"] == 0 and counts["unknown"] == 0, counts
         live = "[...viewer.liveSound.nodes.values()].map(n => n.told)"
         assert browser.wait(f"return {live}.some(t => t && t.peak > 0.001)"), "no sound"
-        rate = "Math.max(...[...viewer.performers.values()].map(p => p.rate))"
+        rate = "Math.max(...[...viewer.performers.values()].map(p => p.clock.rate))"
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
+
+
+def test_the_picture_shows_the_moment_that_is_heard():
+    """A sound that its sender tells to be of a moment 0.15 s before that of the poses sent with it."""
+    gone()
+    browser.run("viewer.sound.wake()")
+    late, block, begin, first = 0.15, 240 / 48000, time.time(), 0
+    apart = """
+        const p = [...viewer.performers.values()].find(q => q.group.visible && q.clock.sounds),
+            heard = p && viewer.liveSound.moment(p.key), c = p && p.clock;
+        return heard && [performance.timeOrigin + performance.now() - c.late - heard, c.late - c.lag];"""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        said = None
+        while not said or abs(said[0]) > 1 or said[1] < 1000 * late:
+            assert time.time() < begin + WAIT, said
+            while begin + block * first < time.time():
+                told = begin + block * first
+                udp.sendto(bundle(sound(240 * first, [0] * 240), told=told - late), ("127.0.0.1", OSC))
+                if first % 6 == 0:
+                    udp.sendto(bundle(*pose(), told=told), ("127.0.0.1", OSC))
+                first += 1
+            said = browser.run(apart)
+    return f"{said[0]:.2f} ms apart, {said[1]:.0f} ms late"
 
 
 def test_hostile_senders_leave_the_page_as_it_was():
@@ -600,45 +625,53 @@ def test_sound_is_the_clock_of_a_playback():
     return f"{off:.2f} ms"
 
 
-def test_others_are_shown_over_and_beside_the_performer():
-    """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
-    others = os.path.join(MADE, "others.himc")
+def play_compared(others):
+    """Plays the four drums, with the scenes of other pipelines to compare."""
+    path = os.path.join(MADE, "others.himc")
     command = [HIMC, "render", FOUR_SCORE, "-o", os.path.join(MADE, "others.wav")]
-    command += ["--scene", others, "--compare", "ik", "--quiet"]
+    command += ["--scene", path, "--compare", others, "--quiet"]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    with open(others, "rb") as file:
+    with open(path, "rb") as file:
         scene = base64.b64encode(file.read()).decode()
-    said = browser.run(
+    browser.run(
         """
-        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0)), done = arguments[1];
-        return viewer.play(bytes, "others.himc").then(() => {
-            const { playback: p, performers, drums, actions } = viewer, told = {};
-            viewer.held = true;
-            const far = (a, b) => Math.max(...a.map((v, i) => Math.hypot(...v.map((x, k) => x - b[i][k]))));
-            p.play(false), p.seek(2600), viewer.step(0, false);
-            const here = () => [...performers.values()].filter(q => q.group.visible);
-            const own = q => {
-                const scene = p.scenes.find(s => s.name === q.key), pose = scene.pose(p.at / 1000, new Float64Array(140));
-                return Array.from({ length: 20 }, (_, i) => [...pose.subarray(7 * i, 7 * i + 3)]);
-            };
-            const off = q => far(own(q), q.points().slice(0, 20).map(v => q.group.worldToLocal(v).toArray()));
-            told.over = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
-            told.apart = far(own(here()[0]), own(here()[1]));
-            told.drums = drums.size;
-            p.play(true);
-            for (let i = 0; i < 12; i++) viewer.step(20, false);
-            p.play(false);
-            told.colors = here().map(q => q.trails[1].points.at(-1).color.getHexString());
-            actions.compare("side"), viewer.step(0, false), viewer.step(0, false);
-            told.beside = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
-            told.both = drums.size;
-            actions.compare(""), viewer.step(0, false);
-            told.alone = here().length;
-            viewer.resume();
-            return told;
-        });
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
+        return viewer.play(bytes, "others.himc")
         """,
         scene,
+    )
+
+
+def test_others_are_shown_over_and_beside_the_performer():
+    """A scene with `ik` in it: each figure stands where its own rows say, over or beside the other."""
+    play_compared("ik")
+    said = browser.run(
+        """
+        const { playback: p, performers, drums, actions } = viewer, told = {};
+        viewer.held = true;
+        const far = (a, b) => Math.max(...a.map((v, i) => Math.hypot(...v.map((x, k) => x - b[i][k]))));
+        p.play(false), p.seek(2600), viewer.step(0, false);
+        const here = () => [...performers.values()].filter(q => q.group.visible);
+        const own = q => {
+            const scene = p.scenes.find(s => s.name === q.key), pose = scene.pose(p.at / 1000, new Float64Array(140));
+            return Array.from({ length: 20 }, (_, i) => [...pose.subarray(7 * i, 7 * i + 3)]);
+        };
+        const off = q => far(own(q), q.points().slice(0, 20).map(v => q.group.worldToLocal(v).toArray()));
+        told.over = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
+        told.apart = far(own(here()[0]), own(here()[1]));
+        told.drums = drums.size;
+        p.play(true);
+        for (let i = 0; i < 12; i++) viewer.step(20, false);
+        p.play(false);
+        told.colors = here().map(q => q.trails[1].points.at(-1).color.getHexString());
+        actions.compare("side"), viewer.step(0, false), viewer.step(0, false);
+        told.beside = here().map(q => [q.title, q.group.position.y, off(q), !!q.ghostly]);
+        told.both = drums.size;
+        actions.compare(""), viewer.step(0, false);
+        told.alone = here().length;
+        viewer.resume();
+        return told;
+        """
     )
     for how in ("over", "beside"):
         assert [p[0] for p in said[how]] == ["himc", "ik"], said
@@ -838,11 +871,12 @@ return opened.then(async () => {
 
 DRAG = """
     const e = viewer.editor, stage = document.getElementById("stage"),
-        [handle, x, y] = arguments, [left, top] = e.screen(e[handle].position);
+        [handle, x, y] = arguments, push = typeof handle === "number", // a handle, or a segment
+        [left, top] = e.screen(push ? e.on.performer().figure.center(handle) : e[handle].position);
     stage.setPointerCapture = () => {}; // there is no true pointer
     for (const [name, at] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
         stage.dispatchEvent(new PointerEvent(name, {
-            clientX: left + at * x, clientY: top + at * y, button: 0, pointerId: 1, bubbles: true, cancelable: true,
+            clientX: left + at * x, clientY: top + at * y, button: 0, pointerId: 1, altKey: push, bubbles: true, cancelable: true,
         }));
 """
 
@@ -911,6 +945,56 @@ def test_a_stroke_is_dragged_heard_and_put_back():
         assert browser.wait("return viewer.editor.piece.over && !viewer.editor.piece.text.undo")
         assert saved_score() == written and browser.run(strikes) == before
         return f"heard after {max(browser.run('return viewer.editor.heard')):.0f} ms without pictures"
+
+
+# time and places of the right forearm and of both tips, as the piece is now (s, mm)
+PATHS = """
+const e = viewer.editor, out = [];
+for (let t = 0.7; t < 7; t += 1.096) {
+    const paths = [e.points(null, t, 7), e.points("left", t), e.points("right", t)];
+    paths[0].forEach((p, i) => out.push([p.time, ...paths.map(path => path[i].toArray().map(v => 1000 * v))]));
+}
+return out;
+"""
+
+
+def farthest(before, after, first, last):
+    """By how much the forearm and each tip are elsewhere between two times (mm)."""
+    now = [(x, y) for x, y in zip(before, after, strict=True) if first <= x[0] < last]
+    return [max(math.dist(x[k], y[k]) for x, y in now) for k in (1, 2, 3)]
+
+
+def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
+    with editing("tests/viewer/editable.txt"):
+        written, before = saved_score(), browser.run(PATHS)
+        browser.run("viewer.actions.seek(3000); viewer.actions.camera('side')")
+        assert browser.wait("return Math.abs(viewer.view.now.azimuth - viewer.view.goal.azimuth) < 1e-3")
+        browser.run(DRAG, 7, 25, -30)
+        assert browser.wait("return viewer.editor.heard.length === 1 && viewer.editor.piece.over")
+        s = browser.run("return viewer.editor.chosen.statement")
+        assert s["push"] == "right-forearm" and s["force"][0] > 100 and s["force"][2] > 100, s
+        assert math.hypot(*s["force"]) <= 1000.1 and s["words"] in saved_score(), s
+        # the push begins at most a tick before 3 s; a second after its end the body has recovered
+        after = browser.run(PATHS)
+        assert farthest(before, after, 0, 2.99) == [0, 0, 0]
+        pushed = farthest(before, after, 3, 4)
+        left = farthest(before, after, 3 + s["seconds"] + 1, 3 + s["seconds"] + 1.5)
+        assert pushed[0] > 5 and max(left) < RECOVERED, (pushed, left)
+        # its arrow is there while it acts; the fields change it
+        browser.run("viewer.playback.play(false); viewer.playback.seek(3050)")
+        assert browser.wait("return viewer.editor.pushes.arrows[0].group.visible")
+        browser.run("viewer.playback.seek(3500)")
+        assert browser.wait("return !viewer.editor.pushes.arrows[0].group.visible")
+        browser.run("const x = document.getElementById('e-fx'); x.value = 0; x.onchange()")
+        assert browser.wait("return viewer.editor.heard.length === 2 && viewer.editor.piece.over")
+        assert browser.run("return viewer.editor.chosen.statement.force[0]") == 0
+        browser.run("for (const _ of [1, 2]) document.getElementById('e-undo').click()")
+        assert browser.wait("return !viewer.editor.piece.text.undo && viewer.editor.piece.over")
+        assert saved_score().strip() == written.strip() and browser.run(PATHS) == before
+        return (
+            f"{math.hypot(*s['force']):.0f} N: forearm {pushed[0]:.0f} mm off, tips"
+            f" {max(pushed[1:]):.0f} mm; a second later {max(left):.1f} mm"
+        )
 
 
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():

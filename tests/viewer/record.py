@@ -163,29 +163,63 @@ def test_others_and_the_take_itself_are_in_the_scene():
     return f"within {worst:.4f} rad"
 
 
-def test_what_is_served_is_recorded():
-    """himc serve --scene, driven over OSC and ended: the strikes that were asked for, their sound."""
-    command = [HIMC, "serve", "--port", "0", "--scene", path("live.himc"), path("two.txt")]
+def serve(perform):
+    """himc serve --scene, driven by perform(say, strikes), and ended; the scene, and what it says last.
+    say(address, ...) sends a command, strikes(n) waits for so many strikes."""
+    with open(path("serve.txt"), "w") as file:
+        file.write("tempo 120;\nstroke 1 left legato p;\nstroke 2 right accent f;\n")
+    command = [HIMC, "serve", "--port", "0", "--scene", path("live.himc"), path("serve.txt")]
     live = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     port = int(live.stdout.readline().split()[-1])
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
         udp.bind(("127.0.0.1", 0))
         udp.settimeout(60)
-        udp.sendto(osc("/himc/subscribe", "127.0.0.1", udp.getsockname()[1], "strikes"), ("127.0.0.1", port))
-        udp.sendto(osc("/himc/play"), ("127.0.0.1", port))
-        for _ in range(2):
-            while b"/himc/strike" not in udp.recv(4096):
-                pass
+
+        def say(*message):
+            udp.sendto(osc(*message), ("127.0.0.1", port))
+
+        def strikes(count):
+            for _ in range(count):
+                while b"/himc/strike" not in udp.recv(4096):
+                    pass
+
+        say("/himc/subscribe", "127.0.0.1", udp.getsockname()[1], "strikes")
+        perform(say, strikes)
     live.send_signal(signal.SIGTERM)
     told = json.loads(live.communicate(timeout=60)[0].splitlines()[-1])
     with open(path("live.himc"), "rb") as file:
-        one = Scene(file.read())
+        return Scene(file.read()), told
+
+
+def test_what_is_served_is_recorded():
+    """The strikes that were asked for, their sound."""
+    one, told = serve(lambda say, strikes: (say("/himc/play"), strikes(2)))
     times = [row[0] for row in one.rows]
     assert all(abs(b - a - 0.004) < 1e-6 for a, b in zip(times, times[1:])), "rows are missing"
     assert abs(one.of("end")[0]["time"] - told["blocks"] * 96 / 48000) < 1e-6, told
     assert [s["hand"] for s in one.of("strike")][:2] == ["left", "right"], one.of("strike")
     assert one.sound[:4] in (b"OggS", b"RIFF") and len(one.heads) > 5
     return f"{len(times)} rows, {told['late']} of {told['blocks']} blocks late"
+
+
+def test_a_recording_goes_on_when_the_performer_is_reset():
+    """`reset` counts the performer's time from 0 again: the recording has one time, and all of the sound."""
+
+    def perform(say, strikes):
+        say("/himc/play"), strikes(1)
+        say("/himc/reset")
+        say("/himc/hit", "right", "accent", "f"), strikes(1)
+
+    one, told = serve(perform)
+    times, (first, *_, last) = [row[0] for row in one.rows], one.of("strike")
+    assert all(b > a for a, b in zip(times, times[1:])), "time goes back"
+    assert abs(one.of("end")[0]["time"] - told["blocks"] * 96 / 48000) < 1e-6, told
+    assert last["time"] > first["time"] + 0.1 and last["hand"] == "right", one.of("strike")
+    heads = [frame[0] for frame in one.heads]
+    assert heads == sorted(heads) and heads[-1] > last["time"], heads[-3:]
+    rate, samples = one.heard()
+    blow = round(last["time"] * rate)
+    assert max(map(abs, samples[blow : blow + 2400])) > 10 * max(map(abs, samples[blow - 2400 : blow]))
 
 
 def test_a_film_without_a_browser_is_refused_in_one_line():

@@ -1,7 +1,9 @@
-"""A scene (docs/scene.md), read with the standard library alone."""
+"""A scene (docs/scene.md), read with the standard library alone; its sound with libsndfile, which himc needs too."""
 
+import ctypes
 import json
 import struct
+import tempfile
 import zlib
 
 
@@ -29,6 +31,24 @@ class Scene:
 
     def of(self, event):
         return [e for e in self.events if e["event"] == event]
+
+    def heard(self):
+        """(rate, samples of the left ear)"""
+
+        class Info(ctypes.Structure):
+            _fields_ = [("frames", ctypes.c_int64)] + [
+                (name, ctypes.c_int) for name in ("rate", "channels", "format", "sections", "seekable")
+            ]
+
+        lib, info = ctypes.CDLL("libsndfile.so.1"), Info()
+        lib.sf_open.restype = ctypes.c_void_p
+        with tempfile.NamedTemporaryFile() as file:
+            file.write(self.sound), file.flush()
+            opened = ctypes.c_void_p(lib.sf_open(file.name.encode(), 0x10, ctypes.byref(info)))
+            samples = (ctypes.c_float * (info.frames * info.channels))()
+            lib.sf_readf_float(opened, samples, ctypes.c_int64(info.frames))
+            lib.sf_close(opened)
+        return info.rate, samples[:: info.channels]
 
     def read_rows(self, data):
         """[time, value, ...] of each row."""

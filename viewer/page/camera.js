@@ -76,6 +76,11 @@ export class View {
         return this.name === name;
     }
 
+    // how much larger writing is drawn than 2.9 m away
+    near() {
+        return this.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, this.now.distance / 2.9));
+    }
+
     // a point of the page as the camera has it, -1 .. 1
     screen(e) {
         return [(2 * e.clientX) / innerWidth - 1, 1 - 2 * this.lift - (2 * e.clientY) / innerHeight];

@@ -5,6 +5,7 @@ import * as THREE from "./three.js";
 import { rgb } from "./color.js";
 import { HANDS, bone, place } from "./body.js";
 import { Piece } from "./piece.js";
+import { Pushes } from "./push.js";
 import { before } from "./scene.js";
 import { segments } from "./skeleton.js";
 import { handColor } from "./timeline.js";
@@ -18,6 +19,7 @@ const GRAB = 16, // a press this near takes a handle (pixels)
     SOON = 0.25, // once so much after it has come (s)
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
+    PUSHED = "#9cf29c", // the path of a segment that is pushed
     FAMILY = ["legato", "tenuto", "accent", "vertical-accent", "staccato"];
 const round = (v, digits = 4) => +v.toFixed(digits);
 
@@ -50,7 +52,7 @@ const draw = (made, points) => {
 };
 
 export class Editor {
-    // `on`: opened(piece), playback(), note(line), drum(name), its tilted group, and radius(name)
+    // `on`: opened(piece), playback(), performer(), note(line), drum(name), its tilted group, and radius(name)
     constructor(key, sound, view, stage, on) {
         Object.assign(this, { view, on, chosen: null, drag: null, waiting: null, heard: [] });
         this.piece = new Piece(key, sound, {
@@ -67,6 +69,7 @@ export class Editor {
         this.dots = Array.from({ length: 24 }, () => dot("#ffffff", 0.008));
         this.group.add(this.path, this.ghost, ...this.dots, this.spot, this.top);
         stage.scene.add(this.group);
+        this.pushes = new Pushes(this, stage.scene);
         this.hide();
         const canvas = $("stage");
         canvas.addEventListener("pointerdown", e => this.press(e), { capture: true });
@@ -108,9 +111,10 @@ export class Editor {
         document.body.classList.toggle("take", event.take);
         $("e-undo").disabled = !event.undo;
         $("e-redo").disabled = !event.redo;
-        const old = this.chosen?.statement;
-        if (old) this.chosen.statement = event.statements.find(s => s.index === old.index);
-        if (old && !this.chosen.statement) this.choose(null);
+        const c = this.chosen,
+            index = c?.index ?? c?.statement?.index;
+        if (index !== undefined) c.statement = event.statements.find(s => s.index === index);
+        if (index !== undefined && !c.statement) this.choose(null);
         else this.show();
     }
 
@@ -131,11 +135,12 @@ export class Editor {
             s = c?.statement;
         $("e-none").hidden = !!c;
         $("e-chosen").hidden = !c;
+        this.pushes.show();
         if (!c) return;
         $("e-words").value = s?.words ?? "";
         $("e-words").parentElement.hidden = !s;
         $("e-stroke").hidden = s?.beat === undefined || c.take;
-        $("e-way").hidden = !c.take;
+        $("e-way").hidden = !c.take || c.push;
         if (s?.beat === undefined) return;
         const [x, y] = [s.x ?? c.strike.x, s.y ?? c.strike.y];
         ($("e-hand").value = s.hand), ($("e-nuance").value = s.nuance);
@@ -146,11 +151,12 @@ export class Editor {
 
     // --- choosing
 
-    // a strike of the scene, or a point of a path: { take, hand, time }
+    // a strike of the scene; a point of a path: { take, hand, time }; a push: { push, segment, time,
+    // index, statement }
     choose(what) {
         const { scene, text } = this.piece;
         this.chosen = null;
-        if (what?.take) this.chosen = { ...what, way: new THREE.Vector3() };
+        if (what?.take || what?.push) this.chosen = what;
         else if (what) {
             const near = text.statements.filter(s => s.hand === what.hand && Math.abs(s.beat - what.beat) < 1e-4);
             this.chosen = { strike: what, hand: what.hand, time: what.time, statement: near[0] };
@@ -166,17 +172,17 @@ export class Editor {
         if (this.piece.scene && !this.piece.text?.take) this.choose(strike);
     }
 
-    // the path of the hand's tip around a time
-    points(hand, time) {
+    // the path of the hand's tip, or of a segment's centre, around a time
+    points(hand, time, segment = bone(`${hand}-stick`)) {
         const { scene } = this.piece,
             pose = new Float64Array(7 * segments.length),
             at = new Float64Array(3),
             h = HANDS.indexOf(hand),
-            stick = 7 * bone(`${hand}-stick`),
             out = [];
         for (let t = Math.max(0, time - PATH[0]); t < Math.min(scene.end, time + PATH[1]); t += STEP) {
             scene.pose(t, pose);
-            place(pose, stick + 3, ...scene.body(t).tips[h], pose, stick, at, 0);
+            const point = h < 0 ? segments[segment].center : scene.body(t).tips[h];
+            place(pose, 7 * segment + 3, ...point, pose, 7 * segment, at, 0);
             out.push(Object.assign(new THREE.Vector3(...at), { time: t }));
         }
         return out;
@@ -184,12 +190,12 @@ export class Editor {
 
     trace() {
         const c = this.chosen;
-        c.points = this.points(c.hand, c.time);
-        this.path.material.color = rgb(handColor[HANDS.indexOf(c.hand)]);
+        c.points = this.points(c.hand, c.time, c.segment);
+        this.path.material.color = rgb(c.push ? PUSHED : handColor[HANDS.indexOf(c.hand)]);
         draw(this.path, c.points);
         const nearest = c.points.reduce((a, p) => (Math.abs(p.time - c.time) < Math.abs(a.time - c.time) ? p : a), c.points[0]);
         if (!nearest) return this.hide();
-        if (c.take) this.spot.position.copy(nearest);
+        if (c.take || c.push) this.spot.position.copy(nearest);
         else {
             const head = this.head(c.strike.drum);
             this.spot.position.set(c.strike.x, c.strike.y, 0.012);
@@ -198,8 +204,8 @@ export class Editor {
             const rise = c.points.filter(p => p.time < c.time);
             this.top.position.copy(rise.reduce((a, p) => (p.z > a.z ? p : a), nearest));
         }
-        this.spot.visible = true;
-        this.top.visible = !c.take && !!c.statement;
+        this.spot.visible = !c.push;
+        this.top.visible = !c.take && !c.push && !!c.statement;
     }
 
     hide() {
@@ -234,10 +240,11 @@ export class Editor {
     press(e) {
         if (e.button || !this.piece.text || !this.piece.scene) return;
         const c = this.chosen,
-            handle = [this.spot, this.top].find(h => h.visible && this.off(h.position, e) < GRAB);
-        if (handle && (c.take || c.statement)) {
-            this.drag = { handle, begun: handle.position.clone() };
-            draw(this.ghost, c.points);
+            pushes = this.pushes.press(e),
+            handle = !pushes && [this.spot, this.top].find(h => h.visible && this.off(h.position, e) < GRAB);
+        if (pushes || (handle && (c.take || c.statement))) {
+            this.drag = !pushes && { handle, begun: handle.position.clone() };
+            if (!pushes) draw(this.ghost, c.points);
             $("stage").setPointerCapture(e.pointerId);
         } else if (this.piece.text.take) {
             if (!this.grab(e)) return;
@@ -264,6 +271,7 @@ export class Editor {
     }
 
     move(e) {
+        if (this.pushes.move(e)) return e.stopImmediatePropagation();
         if (!this.drag) return;
         e.stopImmediatePropagation();
         const { handle, begun } = this.drag,
@@ -290,6 +298,7 @@ export class Editor {
     }
 
     release(e) {
+        if (this.pushes.release(e)) return e.stopImmediatePropagation();
         if (!this.drag) return;
         e.stopImmediatePropagation();
         const { handle, way, begun } = this.drag,
@@ -335,6 +344,7 @@ export class Editor {
     send(index, words, moved = null) {
         if (index === undefined) return;
         const c = this.chosen;
+        if (c.push && !this.ghost.visible) draw(this.ghost, c.points);
         this.waiting = { begun: performance.now(), cuts: this.piece.cuts, time: c.time, moved };
         this.piece.say(`set ${index} ${words}`);
     }
@@ -360,7 +370,7 @@ export class Editor {
         const c = this.chosen,
             { scene } = this.piece;
         if (!c) return;
-        if (!c.take) {
+        if (!c.take && !c.push) {
             const wanted = moved ?? c.strike,
                 found = scene.strikes.filter(s => s.hand === wanted.hand && Math.abs(s.beat - wanted.beat) < 1e-3)[0];
             if (!found) return;
@@ -382,6 +392,7 @@ export class Editor {
         const p = this.on.playback(),
             here = p && p.scene === this.piece.scene;
         this.group.visible = !!here && !p.playing;
+        this.pushes.update();
         if (this.late) this.trace();
         if (!this.group.visible || this.piece.text?.take) return;
         const list = p.scene.strikes,

@@ -168,16 +168,24 @@ function strike(event, time) {
     marks.add(d.tilted, event, time);
 }
 
+// does `act` when the picture of that sender has come to `time` (ms)
+function inStep(key, time, act) {
+    const now = () => virtual || clock(),
+        p = performers.get(key);
+    if (p) p.clock.wait(time, () => act(now()));
+    else act(now());
+}
+
 const live = {
     pose(key, time, known, targets, body, target) {
         if (!playback)
             performer(key)?.receive(time, virtual || clock(), known, targets, body, target);
     },
     drum(key, name, time, place, amplitude) {
-        if (!playback) drum(key, name)?.receive(virtual || clock(), place, amplitude);
+        if (!playback) inStep(key, time, now => drum(key, name)?.receive(now, place, amplitude));
     },
-    sound(...packet) {
-        if (!playback) liveSound.receive(...packet, virtual || clock());
+    sound(key, ...packet) {
+        if (!playback) liveSound.receive(key, ...packet, virtual || clock(), performers.get(key)?.clock.delay ?? 0);
     },
     event(event, time) {
         const now = virtual || clock();
@@ -185,9 +193,11 @@ const live = {
         else if (event.event === "view") control(event.what, event.values);
         else if (playback) return;
         else if (event.event === "strike") {
-            strike(event, now);
-            const d = drum(event.from, event.drum);
-            if (d) d.struck = now;
+            inStep(event.from, event.told, then => {
+                strike(event, then);
+                const d = drum(event.from, event.drum);
+                if (d) d.struck = then;
+            });
             Object.assign(event, { now, sent: time });
             panel.strike(event);
             waiting.push(event);
@@ -294,13 +304,9 @@ function frame(_, now = clock(), draw = true) {
     }
     const time = playback ? playback.at : now, // of marks and trails
         first = arrange(now);
-    for (const p of performers.values()) p.update(now, time, view.camera, shown);
+    for (const p of performers.values()) p.update(now, time, view.camera, shown, liveSound.moment(p.key));
     const excursion = updateDrums(now);
-    marks.update(
-        time,
-        shown,
-        view.name === "eye" ? 0.5 : Math.min(3, Math.max(0.4, view.now.distance / 2.9)),
-    );
+    marks.update(time, shown, view.near());
     view.update(Math.min(200, dt), first);
     editor?.update();
     stage.haze(view.now.distance);
@@ -314,9 +320,6 @@ function frame(_, now = clock(), draw = true) {
     }
     if (latencies.length > 200) latencies.splice(0, 100);
     countFrames(now);
-    numbers.script += 0.05 * (drawn - begin - numbers.script);
-    scripts.push(drawn - begin);
-    if (scripts.length > 200) scripts.splice(0, 100);
     numbers.render += 0.05 * (end - drawn - numbers.render);
     numbers.latency = latencies.length
         ? [...latencies].sort((a, b) => a - b)[latencies.length >> 1]
@@ -329,6 +332,10 @@ function frame(_, now = clock(), draw = true) {
         panel.filming(recorder.filming);
     }
     if (!virtual) stage.adapt(dt, view);
+    const script = drawn - begin + performance.now() - end; // all but the drawing
+    numbers.script += 0.05 * (script - numbers.script);
+    scripts.push(script);
+    if (scripts.length > 200) scripts.splice(0, 100);
 }
 
 function next() {
@@ -517,6 +524,7 @@ function edit(key) {
     editor = new Editor(key, sound, view, stage, {
         opened: open,
         playback: () => playback,
+        performer: () => [...performers.values()].find(p => p.group.visible && !p.ghostly),
         note: text => panel.note(text),
         changed: () => panel.timeline.grown(),
         finished: piece => panel.timeline.heard(piece.sound.whole()),

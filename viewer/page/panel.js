@@ -32,6 +32,7 @@ const KEYS = [
     ["\\", "no loop", a => a.unloop()],
     ["home end", "the beginning, the end", null],
     ["l", "more lanes: angles, torques, spectrum", a => a.lanes()],
+    ["alt and drag", "push the body, in an edit", null],
     ["ctrl z, ctrl y", "undo, redo a change", null],
     ["m", "sound on, off", a => a.mute()],
     ["?", "these keys", null],
@@ -231,7 +232,7 @@ export class Panel {
     }
 
     list(here) {
-        const names = here.map(p => `${p.title} ${p.color} ${p.key} ${p.rate.toFixed(0)}`).join("\n");
+        const names = here.map(p => `${p.title} ${p.color} ${p.key} ${p.clock.rate.toFixed(0)}`).join("\n");
         if (names === this.listed) return;
         this.listed = names;
         $("who").replaceChildren(
@@ -242,7 +243,7 @@ export class Panel {
                 const name = this.playback ? p.title : `performer ${i + 1}`;
                 row.append(name);
                 const from = row.appendChild(document.createElement("span"));
-                from.textContent = this.playback ? "" : ` ${p.key} ${p.rate.toFixed(0)} Hz`;
+                from.textContent = this.playback ? "" : ` ${p.key} ${p.clock.rate.toFixed(0)} Hz`;
                 return row;
             }),
         );

@@ -1,16 +1,16 @@
 // A performer. Poses arrive at 33 Hz with a varying delay, so each frame shows the pose of a moment
-// ago, interpolated between the poses before and after that moment: motion is smooth at any frame
-// rate. The delay is as short as the intervals between poses allow.
+// ago (clock.js), interpolated between the poses before and after that moment: motion is smooth at any
+// frame rate.
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
+import { Clock } from "./clock.js";
 import { HANDS, bone } from "./body.js";
 import { Figure, shirts } from "./figure.js";
 import { segments } from "./skeleton.js";
 import { Trail } from "./strike.js";
 
-const KEPT = 24, // poses: chosen, 0.7 s at 33 Hz
-    ABSENT_AFTER = 2000, // without a pose (ms); chosen: longer than a pause of the network
-    LONGEST_DELAY = 120; // of the pose shown (ms); chosen: later than that looks late
+const KEPT = 256, // poses: chosen, 1 s at 250 Hz
+    ABSENT_AFTER = 2000; // without a pose (ms); chosen: longer than a pause of the network
 const qa = new THREE.Quaternion(),
     qb = new THREE.Quaternion();
 
@@ -35,9 +35,7 @@ export class Performer {
         this.poses = [];
         this.pose = new Float64Array(7 * segments.length);
         this.target = new Float32Array(3 * HANDS.length);
-        this.interval = 30; // between poses, a running mean (ms)
-        this.lag = Infinity; // of the sender's clock behind ours, the least seen (ms)
-        this.rate = 0; // (Hz)
+        this.clock = new Clock();
         this.trails = [new Trail("#6fd0ff"), new Trail("#ffb36f")];
         const ball = new THREE.SphereBufferGeometry(0.022, 24, 16);
         this.targets = this.trails.map(
@@ -60,13 +58,9 @@ export class Performer {
     }
 
     receive(time, now, known, targets, body, target) {
+        if (!this.clock.hear(time, now)) return;
         const last = this.poses[this.poses.length - 1];
-        if (last && time - last.time > 0 && time - last.time < 500) {
-            this.interval += 0.1 * (time - last.time - this.interval);
-            this.rate = 1000 / this.interval;
-        } else if (last && (time <= last.time - 1000 || time - last.time >= 500))
-            this.poses.length = 0;
-        this.lag = Math.min(this.lag + 0.01, now - time);
+        if (last && (time < last.time || time - last.time >= 500)) this.poses.length = 0;
         this.poses.push({ time, known, targets, body, target });
         if (this.poses.length > KEPT) this.poses.shift();
         this.heard = now;
@@ -83,11 +77,8 @@ export class Performer {
         return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
     }
 
-    // the pose to show at `now`; a third of an interval and 3 ms more than one interval late, so
-    // that the next pose is nearly always there (chosen)
-    interpolateAt(now) {
-        const moment = now - this.lag - Math.min(LONGEST_DELAY, 1.35 * this.interval + 3),
-            list = this.poses;
+    interpolateAt(moment) {
+        const list = this.poses;
         let i = list.length - 1;
         while (i > 0 && list[i].time > moment) i--;
         const a = list[i],
@@ -99,11 +90,16 @@ export class Performer {
         this.haveTargets = a.targets;
     }
 
-    // `time` is that of the trails: of a playback, or now (ms)
-    update(now, time, camera, shown) {
+    // `time` is that of the trails: of a playback, or now; `heard` is the moment of its clock that is at
+    // the loudspeaker, null while nothing sounds (ms)
+    update(now, time, camera, shown, heard) {
         this.group.visible = this.present(now) && (this.shown || this.poses.length > 0);
         if (!this.group.visible) return;
-        if (this.poses.length) this.interpolateAt(now);
+        if (this.poses.length) {
+            const moment = this.clock.moment(now, heard);
+            this.interpolateAt(moment);
+            this.clock.run(moment);
+        }
         this.figure.set(this.pose);
         this.targets.forEach((ball, hand) => {
             ball.visible = shown.targets && !!((this.haveTargets >> hand) & 1);

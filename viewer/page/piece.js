@@ -5,8 +5,8 @@ import { Scene, inflate } from "./scene.js";
 
 const EARS = 2,
     AHEAD = 0.6, // of sound that is handed to the device at a time (s); chosen: some frames
-    MOST = 64 << 20, // of a file that is sent (bytes), as himc-viewer takes
-    APPROACH = 1; // (s) from play to the first frame of a take, as HIMC_APPROACH
+    MOST = 64 << 20; // of a file that is sent (bytes), as himc-viewer takes
+export const APPROACH = 1; // (s) from play to the first frame of a take, as HIMC_APPROACH
 
 // the sound of parts that come one after the other; for a Playback in place of a Sound
 class PieceSound {

@@ -1,8 +1,8 @@
 // The sound of a playback. Browsers start sound only after a click or a key, so the device is opened
 // by wake(); until then the playback is silent and goes by the wall clock.
 const PERFORMERS = 16, // as many as himc-viewer keeps
-    POSE_DELAY = 0.045, // (s) of a live pose at 33 Hz (performer.js): sound and picture go together
-    SHORTEST = 0.02; // (s) of sound that waits; chosen: four packets
+    SHORTEST = 0.02, // (s) of sound that waits; chosen: four packets
+    OLD = 500; // (ms) a report of the audio thread; chosen: ten reports
 
 export class Sound {
     constructor() {
@@ -103,34 +103,40 @@ export class Sound {
     }
 }
 
-// The sound of live performers, each in its order, once the device is open.
+// The sound of live performers, each in its order, once the device is open. What is heard sets the
+// moment of the picture (clock.js).
 export class LiveSound {
     constructor(sound) {
         ((this.sound = sound), (this.nodes = new Map()), (this.module = null));
         this.heard = -Infinity; // the last packet (ms)
     }
 
-    receive(key, first, rate, channels, samples, now) {
+    // `delay` is how late a silent picture would be (ms): the sound need not be earlier
+    receive(key, time, first, rate, channels, samples, now, delay) {
         this.heard = now;
         const { context } = this.sound;
         if (!context || context.state !== "running") return;
         this.module ??= context.audioWorklet.addModule("/worklet.js").then(() => (this.loaded = true));
-        if (this.loaded) this.node(key).port.postMessage({ first, rate, channels, samples });
+        const behind = Math.max(SHORTEST, delay / 1000 - (context.outputLatency || 0));
+        if (this.loaded) this.node(key).port.postMessage({ time, first, rate, channels, samples, behind });
     }
 
     node(key) {
         if (this.nodes.has(key)) return this.nodes.get(key);
         if (this.nodes.size >= PERFORMERS) this.close();
         const { context, gain } = this.sound,
-            behind = Math.max(SHORTEST, POSE_DELAY - (context.outputLatency || 0)),
-            node = new AudioWorkletNode(context, "himc-live", {
-                outputChannelCount: [2],
-                processorOptions: { behind },
-            });
+            node = new AudioWorkletNode(context, "himc-live", { outputChannelCount: [2] });
         node.port.onmessage = e => (node.told = e.data);
         node.connect(gain);
         this.nodes.set(key, node);
         return node;
+    }
+
+    // the sender's time of what is at the loudspeaker now (ms); null while it is silent
+    moment(key) {
+        const told = this.nodes.get(key)?.told,
+            since = told?.playing ? 1000 * (this.sound.heard() - told.at) : Infinity;
+        return since < OLD ? told.moment + since : null;
     }
 
     close() {

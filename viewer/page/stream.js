@@ -44,11 +44,12 @@ function readDrum(buffer, view, bytes, at, time, on) {
     );
 }
 
-function readSound(buffer, view, bytes, at, on) {
+function readSound(buffer, view, bytes, at, time, on) {
     const field = i => view.getUint32(at + KEY + 4 * i, true),
         samples = at + KEY + 16;
     on.sound(
         word(bytes, at, KEY),
+        time,
         field(0),
         field(1),
         field(2),
@@ -68,7 +69,7 @@ export function readFrame(buffer, on) {
             readPose(buffer, view, bytes, at, time, on);
         else if (kind === 2)
             readDrum(buffer, view, bytes, at, time, on);
-        else if (kind === 4) readSound(buffer, view, bytes, at, on);
+        else if (kind === 4) readSound(buffer, view, bytes, at, time, on);
         else if (kind === 3) on.event(JSON.parse(text.decode(bytes.subarray(at, at + size))), time);
         at += size;
     }

@@ -257,23 +257,6 @@ export class Timeline {
         }
     }
 
-    // the largest value of the rows under each pixel, as a line
-    line(c, w, color, value, y) {
-        const { times } = this.playback.scene,
-            [from, to] = this.view;
-        c.strokeStyle = color;
-        c.beginPath();
-        let row = Math.max(0, before(times, from / 1000) - 1);
-        for (let x = 0; x < w && row < times.length; x++) {
-            const end = (from + ((x + 1) / w) * (to - from)) / 1000;
-            if (times[row] > end) continue;
-            let most = -Infinity;
-            for (; row < times.length && times[row] <= end; row++) most = Math.max(most, value(row));
-            c.lineTo(x, y(most));
-        }
-        c.stroke();
-    }
-
     // the joint's three columns of that kind, and the largest value in them; null where there are none
     curve(kind) {
         const { scene } = this.playback,
@@ -290,8 +273,8 @@ export class Timeline {
         return { names, most: this.extent.get(names[0]) };
     }
 
-    // from the least to the largest value under each pixel
-    swing(c, w, color, value, y) {
+    // a line from the least to the largest value of the rows under each pixel
+    line(c, w, color, value, y) {
         const { times } = this.playback.scene,
             [from, to] = this.view;
         c.strokeStyle = color;
@@ -315,7 +298,7 @@ export class Timeline {
             { scene } = this.playback;
         if (curve && curve.most > 0)
             curve.names.forEach((name, axis) =>
-                this.swing(c, w, AXES[axis], r => scene.value(r, name), v => h / 2 - (v / curve.most) * (h / 2 - 3)),
+                this.line(c, w, AXES[axis], r => scene.value(r, name), v => h / 2 - (v / curve.most) * (h / 2 - 3)),
             );
         const most = curve && curve.most > 0 ? `± ${curve.most.toPrecision(3)} ${unit}` : "none";
         this.label(c, `${this.joint.replace("-", " ")}: ${kind}, ${most}`, 11);

@@ -1,19 +1,19 @@
 // Plays sound as it comes, in the audio thread. It is kept a little behind, so that packets that come
-// late are there in time; the delay is that of the picture. Both clocks drift, so the speed follows
-// the amount that waits.
+// late are there in time. Both clocks drift, so the speed follows the amount that waits. It reports
+// the sender's time of what it plays, which the picture follows.
 const MOST = 0.2, // (s) more is left out
     SIZE = 1 << 16, // of the ring (samples)
     SPARE = 0.01, // (s) more than wanted, and never needed within a LOOK, is left out, under a
     LOOK = 0.5, // crossfade: the speed alone would take a minute, and the sound be late meanwhile
     FADE = 256, // (samples)
     PULL = 0.02, // how much of the speed follows (1/s)
-    TOLD = 0.25; // (s) between two reports
+    TOLD = 0.05; // (s) between two reports; chosen: the speed changes far more slowly
 
 class Live extends AudioWorkletProcessor {
-    // `behind` (s) is wanted in the buffer
-    constructor({ processorOptions }) {
+    constructor() {
         super();
-        this.behind = processorOptions.behind;
+        this.behind = this.began = Infinity; // wanted in the buffer now, and when it began (s)
+        ((this.place = 0), (this.time = 0)); // of a sample written; the sender's time of it (ms)
         this.ring = [new Float32Array(SIZE), new Float32Array(SIZE)];
         ((this.written = 0), (this.read = 0), (this.next = null), (this.rate = 48000));
         ((this.least = Infinity), (this.looked = 0), (this.old = 0), (this.fade = 0));
@@ -21,12 +21,13 @@ class Live extends AudioWorkletProcessor {
         this.port.onmessage = e => this.push(e.data);
     }
 
-    push({ first, rate, channels, samples }) {
+    push({ time, first, rate, channels, samples, behind }) {
         const frames = samples.length / channels,
             lost = this.next === null ? 0 : (first - this.next) | 0;
-        if (lost < 0 || lost > SIZE / 4 || rate !== this.rate) this.begun = false;
+        if (lost < 0 || lost > SIZE / 4 || rate !== this.rate || behind > this.began + SPARE) this.begun = false;
         else for (let i = 0; i < lost; i++) this.put(0, 0);
-        ((this.next = (first + frames) | 0), (this.rate = rate));
+        ((this.next = (first + frames) | 0), (this.rate = rate), (this.behind = behind));
+        ((this.place = this.written), (this.time = time));
         for (let i = 0; i < frames; i++)
             this.put(samples[i * channels] / 32768, samples[i * channels + channels - 1] / 32768);
     }
@@ -42,8 +43,10 @@ class Live extends AudioWorkletProcessor {
         if (!this.begun || waits > MOST) {
             this.read = Math.max(0, this.written - this.behind * this.rate);
             this.begun = this.written - this.read >= this.behind * this.rate;
+            this.began = this.behind;
         }
         this.catchUp(waits);
+        this.tell(waits);
         const step = (this.rate / sampleRate) * (1 + PULL * (waits - this.behind));
         for (let i = 0; this.begun && i < output[0].length; i++) {
             if (Math.floor(this.read) + 1 >= this.written) {
@@ -59,7 +62,6 @@ class Live extends AudioWorkletProcessor {
             this.read += step;
             this.old += step;
         }
-        this.tell(waits);
         return true;
     }
 
@@ -76,15 +78,17 @@ class Live extends AudioWorkletProcessor {
         if (currentTime < this.looked + LOOK) return;
         const spare = this.least - this.behind;
         if (this.begun && spare > SPARE)
-            ((this.old = this.read), (this.fade = FADE), (this.read += spare * this.rate));
+            ((this.old = this.read), (this.fade = FADE), (this.read += spare * this.rate), (this.skipped = true));
         ((this.looked = currentTime), (this.least = Infinity));
     }
 
+    // what sounds from this block on
     tell(waits) {
-        if (currentTime < this.told + TOLD) return;
-        this.told = currentTime;
-        this.port.postMessage({ waits, missed: this.missed, peak: this.peak, played: this.read });
-        this.peak = 0;
+        const { begun: playing, missed, peak, read: played } = this;
+        if (currentTime < this.told + TOLD && playing === this.playing && !this.skipped) return;
+        ((this.told = currentTime), (this.playing = playing), (this.skipped = false), (this.peak = 0));
+        const moment = this.time + (1000 * (played - this.place)) / this.rate;
+        this.port.postMessage({ at: currentTime, moment, playing, waits, missed, peak, played });
     }
 }
 registerProcessor("himc-live", Live);
