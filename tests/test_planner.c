@@ -1,6 +1,7 @@
 /// test_planner.c: trajectories of the tips: on time, smooth, and different for each nuance.
 #include "planners.h"
 #include "base/head_frame.h"
+#include "plan/hand.h"
 
 #include <stdlib.h>
 
@@ -259,6 +260,55 @@ static void test_tip_lands_on_the_other_drum_along_its_normal(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, himc_vec3_length(x.v), -himc_vec3_dot(x.v, n));
 }
 
+/// The greatest acceleration along the head from t0 to t1 (m/s^2).
+static double hardest(const himc_hand_plan *plan, double t0, double t1)
+{
+    double most = 0;
+    for (double t = t0; t < t1; t += 1e-3)
+        most = fmax(most, himc_vec3_length(himc_spline_at(&plan->tangential_path, t).a));
+    return most;
+}
+
+/// A leap of 0.66 m in so much time; after this share of it, if not 0, to a spot 5 cm aside.
+static void leap(double time, double share)
+{
+    himc_hand_plan plan;
+    himc_gesture gesture = himc_gesture_of(HIMC_LEGATO, 0.5);
+    himc_goal first = {1, {0.4, 0.2, PLANE}, {0, 0, 1}, {-1, 0, 0}, gesture, 0}, second = first;
+    second.time += time;
+    second.spot = himc_vec3_make(0.5, -0.45, PLANE);
+    himc_hand_place(&plan, 0, himc_vec3_make(0.4, 0.2, 1));
+    TEST_ASSERT_TRUE(himc_hand_strike(&plan, &first) && himc_hand_strike(&plan, &second));
+    if (share > 0) {
+        himc_hand_cut(&plan, first.time + share * time);
+        second.spot.y -= 0.05;
+        TEST_ASSERT_TRUE(himc_hand_strike(&plan, &second));
+    }
+    double most = hardest(&plan, first.time, second.time);
+    TEST_ASSERT_TRUE(most < 2 * HIMC_MOVE_PEAK * 0.66 / (time * time));
+}
+
+static void test_a_leap_in_a_hurry_takes_all_its_time_and_is_not_halted_on_the_way(void)
+{
+    for (double time = 0.25; time < 0.3; time += 0.01)
+        for (double share = 0; share < 0.6; share += 0.1)
+            leap(time, share);
+}
+
+static void test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot(void)
+{
+    himc_gesture gesture = himc_gesture_of(HIMC_VERTICAL_ACCENT, 0.8);
+    for (double time = 0.8; time < 3; time += 0.01) {
+        himc_hand_plan plan;
+        himc_goal goal = {1, {0.5, 0, PLANE}, {0, 0, 1}, {-1, 0, 0}, gesture, 0};
+        himc_hand_place(&plan, 0, himc_vec3_make(0.5, 0, 1));
+        TEST_ASSERT_TRUE(himc_hand_strike(&plan, &goal));
+        goal.time += time;
+        TEST_ASSERT_TRUE(himc_hand_strike(&plan, &goal));
+        TEST_ASSERT_TRUE(hardest(&plan, 1, goal.time - 0.35) < 10); // then it swings forward
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -272,5 +322,7 @@ int main(void)
     RUN_TEST(test_acceleration_has_no_jumps_even_when_the_tempo_changes);
     RUN_TEST(test_plan_continues_from_the_measured_state_at_separation);
     RUN_TEST(test_tip_lands_on_the_other_drum_along_its_normal);
+    RUN_TEST(test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot);
+    RUN_TEST(test_a_leap_in_a_hurry_takes_all_its_time_and_is_not_halted_on_the_way);
     return UNITY_END();
 }

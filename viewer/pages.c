@@ -40,12 +40,14 @@
     SCRIPT(FILE, spectrum)                                                 \
     SCRIPT(FILE, piece)                                                    \
     SCRIPT(FILE, edit)                                                     \
+    SCRIPT(FILE, when)                                                     \
     SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \
     SCRIPT(FILE, film)                                                     \
     SCRIPT(FILE, webm)                                                     \
     SCRIPT(FILE, gltf)                                                     \
+    FILE(push, "/push.js", "text/javascript", "viewer/page/push.js")       \
     FILE(export, "/export.js", "text/javascript", "viewer/page/export.js") \
     FILE(skeleton, "/skeleton.js", "text/javascript", MADE "/skeleton.js") \
     FILE(three, "/three.js", "text/javascript", THREE_JS "/three.module.js")

@@ -4,7 +4,7 @@
 ///
 /// make runs it when the viewer is built (build/viewer/skeleton.h and skeleton.js), so the names,
 /// their order and the parents stand in skeleton.c alone. `origin` is the joint in the parent's
-/// frame; lengths in metres, to a thousandth of a millimetre.
+/// frame, `center` the centre of mass in the segment's; lengths in metres, to a thousandth of a millimetre.
 #include "himc/body.h"
 
 #include <stdio.h>
@@ -25,9 +25,9 @@ static void print_segment(const himc_skeleton *k, int i)
 {
     const himc_segment *s = &k->segment[i];
     printf("    { name: \"%s\", joint: \"%s\", parent: %d,\n"
-           "      length: %.6f, origin: [%.6f, %.6f, %.6f] },\n",
+           "      length: %.6f, origin: [%.6f, %.6f, %.6f], center: [%.6f, %.6f, %.6f] },\n",
            himc_segment_name(i), i ? himc_joint_name(i - 1) : "", s->parent, s->length, s->origin.x,
-           s->origin.y, s->origin.z);
+           s->origin.y, s->origin.z, s->center.x, s->center.y, s->center.z);
 }
 
 static void print_js(const himc_skeleton *k)

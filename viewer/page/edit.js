@@ -5,6 +5,8 @@ import * as THREE from "./three.js";
 import { rgb } from "./color.js";
 import { HANDS, bone, place } from "./body.js";
 import { Piece } from "./piece.js";
+import { Pushes } from "./push.js";
+import { When } from "./when.js";
 import { before } from "./scene.js";
 import { segments } from "./skeleton.js";
 import { handColor } from "./timeline.js";
@@ -18,6 +20,7 @@ const GRAB = 16, // a press this near takes a handle (pixels)
     SOON = 0.25, // once so much after it has come (s)
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
+    PUSHED = "#9cf29c", // the path of a segment that is pushed
     FAMILY = ["legato", "tenuto", "accent", "vertical-accent", "staccato"];
 const round = (v, digits = 4) => +v.toFixed(digits);
 
@@ -50,7 +53,7 @@ const draw = (made, points) => {
 };
 
 export class Editor {
-    // `on`: opened(piece), playback(), note(line), drum(name), its tilted group, and radius(name)
+    // `on`: opened(piece), playback(), performer(), note(line), drum(name), its tilted group, and radius(name)
     constructor(key, sound, view, stage, on) {
         Object.assign(this, { view, on, chosen: null, drag: null, waiting: null, heard: [] });
         this.piece = new Piece(key, sound, {
@@ -61,12 +64,14 @@ export class Editor {
             trouble: text => on.note(text),
             saved: (name, bytes) => save(name, bytes),
         });
+        this.when = new When(this);
         this.group = new THREE.Group();
         ((this.spot = dot("#ffd21f", 0.02)), (this.top = dot("#ff8f5c", 0.02)));
         ((this.path = line("#ffffff", 0.95)), (this.ghost = line("#ffffff", 0.4)));
         this.dots = Array.from({ length: 24 }, () => dot("#ffffff", 0.008));
         this.group.add(this.path, this.ghost, ...this.dots, this.spot, this.top);
         stage.scene.add(this.group);
+        this.pushes = new Pushes(this, stage.scene);
         this.hide();
         const canvas = $("stage");
         canvas.addEventListener("pointerdown", e => this.press(e), { capture: true });
@@ -90,7 +95,7 @@ export class Editor {
         $("e-undo").onclick = () => this.step("undo");
         $("e-redo").onclick = () => this.step("redo");
         $("e-save").onclick = () => say("save");
-        for (const ending of ["bvh", "trc"]) $(`e-${ending}`).onclick = () => (say(`take take.${ending}`), this.on.note("The take is being played and saved …"));
+        for (const ending of ["bvh", "trc", "c3d"]) $(`e-${ending}`).onclick = () => (say(`take take.${ending}`), this.on.note("The take is being played and saved …"));
         addEventListener("keydown", e => {
             if (!(e.ctrlKey || e.metaKey) || e.target.tagName === "INPUT") return;
             const name = e.key === "z" && !e.shiftKey ? "undo" : e.key === "y" || (e.key === "Z" && e.shiftKey) ? "redo" : null;
@@ -108,9 +113,10 @@ export class Editor {
         document.body.classList.toggle("take", event.take);
         $("e-undo").disabled = !event.undo;
         $("e-redo").disabled = !event.redo;
-        const old = this.chosen?.statement;
-        if (old) this.chosen.statement = event.statements.find(s => s.index === old.index);
-        if (old && !this.chosen.statement) this.choose(null);
+        const c = this.chosen,
+            index = c?.index ?? c?.statement?.index;
+        if (index !== undefined) c.statement = event.statements.find(s => s.index === index);
+        if (index !== undefined && !c.statement) this.choose(null);
         else this.show();
     }
 
@@ -129,13 +135,16 @@ export class Editor {
     show() {
         const c = this.chosen,
             s = c?.statement;
+        document.body.classList.toggle("chosen", !!c);
         $("e-none").hidden = !!c;
         $("e-chosen").hidden = !c;
+        this.pushes.show();
         if (!c) return;
         $("e-words").value = s?.words ?? "";
         $("e-words").parentElement.hidden = !s;
         $("e-stroke").hidden = s?.beat === undefined || c.take;
-        $("e-way").hidden = !c.take;
+        $("e-way").hidden = !c.take || c.push;
+        if (c.take && s) $("e-span").value = s.words.split(" ")[3];
         if (s?.beat === undefined) return;
         const [x, y] = [s.x ?? c.strike.x, s.y ?? c.strike.y];
         ($("e-hand").value = s.hand), ($("e-nuance").value = s.nuance);
@@ -146,11 +155,13 @@ export class Editor {
 
     // --- choosing
 
-    // a strike of the scene, or a point of a path: { take, hand, time }
+    // a strike of the scene; a point of a path: { take, hand, time }; a push: { push, segment, time,
+    // index, statement }
     choose(what) {
         const { scene, text } = this.piece;
         this.chosen = null;
-        if (what?.take) this.chosen = { ...what, way: new THREE.Vector3() };
+        this.when.stay();
+        if (what?.take || what?.push) this.chosen = what;
         else if (what) {
             const near = text.statements.filter(s => s.hand === what.hand && Math.abs(s.beat - what.beat) < 1e-4);
             this.chosen = { strike: what, hand: what.hand, time: what.time, statement: near[0] };
@@ -161,22 +172,27 @@ export class Editor {
         if (this.chosen && scene) this.trace();
     }
 
-    // a click of the timeline
-    pick(strike) {
-        if (this.piece.scene && !this.piece.text?.take) this.choose(strike);
+    // a click of the timeline, on a strike, a nudge or a push
+    pick(what) {
+        if (this.piece.scene && (what.push || !!this.piece.text?.take === !!what.take)) this.choose(what);
     }
 
-    // the path of the hand's tip around a time
-    points(hand, time) {
+    // the nudges and pushes, as what can be chosen
+    get marks() {
+        return [...this.piece.nudges, ...this.pushes.list().map(s => this.pushes.mark(s))];
+    }
+
+    // the path of the hand's tip, or of a segment's centre, around a time
+    points(hand, time, segment = bone(`${hand}-stick`)) {
         const { scene } = this.piece,
             pose = new Float64Array(7 * segments.length),
             at = new Float64Array(3),
             h = HANDS.indexOf(hand),
-            stick = 7 * bone(`${hand}-stick`),
             out = [];
         for (let t = Math.max(0, time - PATH[0]); t < Math.min(scene.end, time + PATH[1]); t += STEP) {
             scene.pose(t, pose);
-            place(pose, stick + 3, ...scene.body(t).tips[h], pose, stick, at, 0);
+            const point = h < 0 ? segments[segment].center : scene.body(t).tips[h];
+            place(pose, 7 * segment + 3, ...point, pose, 7 * segment, at, 0);
             out.push(Object.assign(new THREE.Vector3(...at), { time: t }));
         }
         return out;
@@ -184,12 +200,12 @@ export class Editor {
 
     trace() {
         const c = this.chosen;
-        c.points = this.points(c.hand, c.time);
-        this.path.material.color = rgb(handColor[HANDS.indexOf(c.hand)]);
+        c.points = this.points(c.hand, c.time, c.segment);
+        this.path.material.color = rgb(c.push ? PUSHED : handColor[HANDS.indexOf(c.hand)]);
         draw(this.path, c.points);
         const nearest = c.points.reduce((a, p) => (Math.abs(p.time - c.time) < Math.abs(a.time - c.time) ? p : a), c.points[0]);
         if (!nearest) return this.hide();
-        if (c.take) this.spot.position.copy(nearest);
+        if (c.take || c.push) this.spot.position.copy(nearest);
         else {
             const head = this.head(c.strike.drum);
             this.spot.position.set(c.strike.x, c.strike.y, 0.012);
@@ -198,8 +214,8 @@ export class Editor {
             const rise = c.points.filter(p => p.time < c.time);
             this.top.position.copy(rise.reduce((a, p) => (p.z > a.z ? p : a), nearest));
         }
-        this.spot.visible = true;
-        this.top.visible = !c.take && !!c.statement;
+        this.spot.visible = !c.push;
+        this.top.visible = !c.take && !c.push && !!c.statement;
     }
 
     hide() {
@@ -234,10 +250,11 @@ export class Editor {
     press(e) {
         if (e.button || !this.piece.text || !this.piece.scene) return;
         const c = this.chosen,
-            handle = [this.spot, this.top].find(h => h.visible && this.off(h.position, e) < GRAB);
-        if (handle && (c.take || c.statement)) {
-            this.drag = { handle, begun: handle.position.clone() };
-            draw(this.ghost, c.points);
+            pushes = this.pushes.press(e),
+            handle = !pushes && [this.spot, this.top].find(h => h.visible && this.off(h.position, e) < GRAB);
+        if (pushes || (handle && (c.take || c.statement))) {
+            this.drag = !pushes && { handle, begun: handle.position.clone() };
+            if (!pushes) draw(this.ghost, c.points);
             $("stage").setPointerCapture(e.pointerId);
         } else if (this.piece.text.take) {
             if (!this.grab(e)) return;
@@ -264,6 +281,7 @@ export class Editor {
     }
 
     move(e) {
+        if (this.pushes.move(e)) return e.stopImmediatePropagation();
         if (!this.drag) return;
         e.stopImmediatePropagation();
         const { handle, begun } = this.drag,
@@ -290,6 +308,7 @@ export class Editor {
     }
 
     release(e) {
+        if (this.pushes.release(e)) return e.stopImmediatePropagation();
         if (!this.drag) return;
         e.stopImmediatePropagation();
         const { handle, way, begun } = this.drag,
@@ -311,7 +330,7 @@ export class Editor {
 
     commit(f) {
         const c = this.chosen;
-        if (c?.take) return;
+        if (c?.take) return void (c.statement && this.nudge(new THREE.Vector3()));
         const s = c?.statement;
         if (s?.beat === undefined) return;
         if (!this.ghost.visible) draw(this.ghost, c.points);
@@ -325,17 +344,18 @@ export class Editor {
     nudge(way) {
         const c = this.chosen,
             time = round(Piece.takeTime(c.time), 3),
-            span = Number($("e-span").value);
-        this.send(
-            this.piece.text.count,
-            `nudge ${c.hand} ${time} ${span} ${[way.x, way.y, way.z].map(v => round(Math.min(0.5, Math.max(-0.5, v)))).join(" ")}`,
-        );
+            was = c.statement ? c.statement.words.split(" ").slice(4).map(Number) : [0, 0, 0],
+            whole = way.toArray().map((v, i) => round(Math.min(0.5, Math.max(-0.5, v + was[i]))));
+        this.send(c.statement?.index ?? this.piece.text.count, `nudge ${c.hand} ${time} ${$("e-span").value} ${whole.join(" ")}`);
     }
 
-    send(index, words, moved = null) {
+    // `to` is its new time (s)
+    send(index, words, moved = null, to = this.chosen.time) {
         if (index === undefined) return;
-        const c = this.chosen;
-        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, time: c.time, moved };
+        const c = this.chosen,
+            times = [c.time, to].sort((a, b) => a - b);
+        if (c.push && !this.ghost.visible) draw(this.ghost, c.points);
+        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times, to, moved };
         this.piece.say(`set ${index} ${words}`);
     }
 
@@ -347,27 +367,34 @@ export class Editor {
         p.length = Math.max(piece.over ? 0 : p.length, 1000 * piece.scene.end);
         this.on.changed(piece);
         const w = this.waiting;
-        if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.time + SOON && !piece.over)) return;
+        if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.times[1] + SOON && !piece.over)) return;
         this.waiting = null;
-        p.seek(1000 * Math.max(0, w.time - BEFORE));
+        p.seek(1000 * Math.max(0, w.times[0] - BEFORE));
         p.play(true);
         this.heard.push(performance.now() - w.begun);
         this.follow(w);
     }
 
     // the chosen stroke as it is played now
-    follow({ time, moved }) {
+    follow({ to, moved }) {
         const c = this.chosen,
             { scene } = this.piece;
         if (!c) return;
-        if (!c.take) {
+        if (!c.take && !c.push) {
             const wanted = moved ?? c.strike,
                 found = scene.strikes.filter(s => s.hand === wanted.hand && Math.abs(s.beat - wanted.beat) < 1e-3)[0];
             if (!found) return;
             Object.assign(c, { strike: found, hand: found.hand, time: found.time });
-        } else c.time = time;
+        } else c.time = to;
         this.trace();
         this.show();
+    }
+
+    // the chosen statement as it is written now, after an undo too
+    refresh() {
+        const s = this.chosen?.statement,
+            mark = this.marks.find(n => n.statement.index === s?.index);
+        if (s && !this.waiting && (mark || s.beat !== undefined)) this.follow({ moved: s, to: mark?.time });
     }
 
     over(piece) {
@@ -375,6 +402,7 @@ export class Editor {
         if (p?.scene === piece.scene) p.length = 1000 * piece.scene.end;
         this.on.finished(piece);
         this.grown(piece);
+        this.refresh();
     }
 
     // a frame: the dots of the strokes around, while nothing moves
@@ -382,6 +410,7 @@ export class Editor {
         const p = this.on.playback(),
             here = p && p.scene === this.piece.scene;
         this.group.visible = !!here && !p.playing;
+        this.pushes.update();
         if (this.late) this.trace();
         if (!this.group.visible || this.piece.text?.take) return;
         const list = p.scene.strikes,

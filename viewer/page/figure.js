@@ -361,6 +361,37 @@ function shadowed(mesh) {
     return mesh;
 }
 
+// a skinned mesh as the figure's bones put it, as the graphics card does
+function posed(mesh, { skeleton: { boneMatrices }, group }) {
+    const { position, skinIndex, skinWeight } = mesh.geometry.attributes,
+        out = new Float32Array(3 * position.count),
+        at = new THREE.Vector3(),
+        one = new THREE.Matrix4(),
+        sum = new THREE.Vector3();
+    for (let i = 0; i < position.count; i++) {
+        sum.set(0, 0, 0);
+        for (let k = 0; k < 4; k++) {
+            const weight = skinWeight.array[4 * i + k];
+            if (!weight) continue;
+            one.fromArray(boneMatrices, 16 * skinIndex.array[4 * i + k]);
+            sum.addScaledVector(at.fromBufferAttribute(position, i).applyMatrix4(one), weight);
+        }
+        sum.toArray(out, 3 * i);
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(out, 3));
+    geometry.setIndex(mesh.geometry.index);
+    const made = new THREE.Mesh(geometry, mesh.material);
+    made.matrixWorld.copy(group.matrixWorld);
+    return made;
+}
+
+// the bone that moves a vertex most
+function mainBone({ attributes: { skinIndex, skinWeight } }, vertex) {
+    const weights = skinWeight.array.subarray(4 * vertex, 4 * vertex + 4);
+    return skinIndex.array[4 * vertex + weights.indexOf(Math.max(...weights))];
+}
+
 // A figure in its own group, moved by set(). `bones[i].matrixWorld` is segment i in the group's
 // frame.
 export class Figure {
@@ -418,6 +449,29 @@ export class Figure {
             stick.position.set(pose[o], pose[o + 1], pose[o + 2]);
             stick.quaternion.set(pose[o + 4], pose[o + 5], pose[o + 6], pose[o + 3]);
         });
+    }
+
+    // what a ray meets first: { point, segment }; null if nothing
+    meet(ray) {
+        const caster = new THREE.Raycaster(ray.origin, ray.direction),
+            hits = [];
+        this.skeleton.update();
+        for (const mesh of this.group.children)
+            if (mesh.isSkinnedMesh && mesh.visible)
+                for (const hit of caster.intersectObject(posed(mesh, this)))
+                    hits.push({ ...hit, segment: mainBone(mesh.geometry, hit.face.a) });
+        this.sticks.forEach((stick, hand) => {
+            for (const hit of caster.intersectObject(stick, true))
+                hits.push({ ...hit, segment: bone(HANDS[hand] + "-stick") });
+        });
+        return hits.sort((a, b) => a.distance - b.distance)[0] ?? null;
+    }
+
+    // a segment's centre of mass in the scene (m)
+    center(segment) {
+        return new THREE.Vector3(...segments[segment].center)
+            .applyMatrix4(this.bones[segment].matrixWorld)
+            .applyMatrix4(this.group.matrixWorld);
     }
 
     // in one transparent colour, or as ever

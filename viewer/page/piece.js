@@ -5,8 +5,8 @@ import { Scene, inflate } from "./scene.js";
 
 const EARS = 2,
     AHEAD = 0.6, // of sound that is handed to the device at a time (s); chosen: some frames
-    MOST = 64 << 20, // of a file that is sent (bytes), as himc-viewer takes
-    APPROACH = 1; // (s) from play to the first frame of a take, as HIMC_APPROACH
+    MOST = 64 << 20; // of a file that is sent (bytes), as himc-viewer takes
+export const APPROACH = 1; // (s) from play to the first frame of a take, as HIMC_APPROACH
 
 // the sound of parts that come one after the other; for a Playback in place of a Sound
 class PieceSound {
@@ -173,8 +173,10 @@ export class Piece {
     }
 
     event(event) {
-        if (event.event === "text") this.on.text((this.text = event));
-        else this.on.trouble(event.text);
+        if (event.event === "text") {
+            this.over &&= event.source === this.source; // else another piece is to come
+            this.on.text((this.text = event));
+        } else this.on.trouble(event.text);
     }
 
     cut(time) {
@@ -207,5 +209,14 @@ export class Piece {
     // when a nudge is, in the take
     static takeTime(time) {
         return time - APPROACH;
+    }
+
+    // the nudges of a take as what can be chosen, by their times in the scene
+    get nudges() {
+        const all = this.text?.take ? this.text.statements.filter(s => s.words.startsWith("nudge ")) : [];
+        return all.map(statement => {
+            const [, hand, time] = statement.words.split(" ");
+            return { take: true, hand, time: Number(time) + APPROACH, statement };
+        });
     }
 }

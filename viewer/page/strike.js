@@ -53,6 +53,39 @@ class Label {
     }
 }
 
+// An arrow along z, its point at the origin, with writing at its other end.
+export class Arrow {
+    constructor(material) {
+        this.material = new THREE.MeshBasicMaterial({ transparent: true, ...material });
+        this.group = new THREE.Group();
+        this.shaft = new THREE.Mesh(
+            new THREE.CylinderBufferGeometry(0.006, 0.006, 1, 16).rotateX(Math.PI / 2),
+            this.material,
+        );
+        this.point = new THREE.Mesh(
+            new THREE.ConeBufferGeometry(0.017, 0.045, 20).rotateX(-Math.PI / 2),
+            this.material,
+        );
+        this.label = new Label();
+        this.group.add(this.shaft, this.point, this.label.sprite);
+    }
+
+    write(newtons, color) {
+        if (this.written === `${newtons} ${color}`) return;
+        this.written = `${newtons} ${color}`;
+        this.material.color.copy(rgb(color));
+        this.label.write(`${Math.round(newtons)} N`, color);
+    }
+
+    // `length` of the shaft; `near` scales the writing
+    stretch(length, near) {
+        this.point.position.z = 0.026;
+        ((this.shaft.scale.z = length), (this.shaft.position.z = 0.045 + length / 2));
+        this.label.sprite.scale.set(0.2 * near, 0.1 * near, 1);
+        this.label.sprite.position.z = 0.045 + length + 0.05 * near;
+    }
+}
+
 // One mark, taken from a pool.
 class Mark {
     constructor() {
@@ -67,21 +100,8 @@ class Mark {
                 polygonOffsetFactor: -4,
             }),
         );
-        this.material = new THREE.MeshBasicMaterial({
-            color: rgb("#ff6a3d"),
-            transparent: true,
-            depthWrite: false,
-        });
-        this.shaft = new THREE.Mesh(
-            new THREE.CylinderBufferGeometry(0.006, 0.006, 1, 16).rotateX(Math.PI / 2),
-            this.material,
-        );
-        this.point = new THREE.Mesh(
-            new THREE.ConeBufferGeometry(0.017, 0.045, 20).rotateX(-Math.PI / 2),
-            this.material,
-        );
-        this.label = new Label();
-        this.group.add(this.disc, this.shaft, this.point, this.label.sprite);
+        this.arrow = new Arrow({ depthWrite: false });
+        this.group.add(this.disc, this.arrow.group);
         this.group.visible = false;
         this.born = -Infinity;
     }
@@ -94,9 +114,7 @@ class Mark {
         this.length = 0.06 + ARROW_LENGTH * Math.min(strike.force, STRONGEST);
         this.group.position.set(strike.x, strike.y, 0);
         this.size = 0.1 + 0.0011 * Math.min(strike.force, 200);
-        const color = strike.hand === "left" ? "#7fd6ff" : "#ffb066";
-        this.material.color.copy(rgb(color));
-        this.label.write(`${Math.round(strike.force)} N`, color);
+        this.arrow.write(strike.force, strike.hand === "left" ? "#7fd6ff" : "#ffb066");
         this.group.visible = true;
     }
 
@@ -109,21 +127,14 @@ class Mark {
             this.group.visible = false;
             return;
         }
-        const grow = Math.min(1, 0.35 + (now - this.born) / 70),
-            l = this.length * grow;
+        const grow = Math.min(1, 0.35 + (now - this.born) / 70);
         this.disc.scale.setScalar(this.size * (1 + 0.9 * age));
         this.disc.position.z = 0.004;
         this.disc.material.opacity = fade * fade;
-        this.point.position.z = 0.026;
-        ((this.shaft.scale.z = l), (this.shaft.position.z = 0.045 + l / 2));
-        this.material.opacity = 0.9 * Math.min(1, 2 * fade);
-        this.label.sprite.scale.set(0.2 * near, 0.1 * near, 1);
-        this.label.sprite.position.z = 0.045 + l + 0.05 * near;
-        this.label.sprite.material.opacity = Math.min(1, 2 * fade);
-        this.shaft.visible =
-            this.point.visible =
-            this.label.sprite.visible =
-                shown.forces && this.latest;
+        this.arrow.stretch(this.length * grow, near);
+        this.arrow.material.opacity = 0.9 * Math.min(1, 2 * fade);
+        this.arrow.label.sprite.material.opacity = Math.min(1, 2 * fade);
+        this.arrow.group.visible = shown.forces && this.latest;
         this.disc.visible = shown.marks;
     }
 }

@@ -42,18 +42,21 @@
 #define FORWARD_TIME 0.2      // the way forward takes as long as the fall, at least this (s) ...
 #define FORWARD_SHARE 0.55    // ... but no more than this share of the time there is
 #define SWING_PEAK 60.0       // peak acceleration of the swing behind the spot (m/s^2)
-#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s)
-#define IDLE_TIME 1.1         // with more time the tip first waits behind the spot (s) ...
+#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s), and ...
+#define STRAIGHT_PEAK 80.0    // ... where the way behind it would be harder (m/s^2)
+#define IDLE_TIME 1.4         // with more time the tip first waits behind the spot (s) ...
 #define IDLE_ARRIVAL 0.65     // ... coming there in this time (s) ...
 #define IDLE_DEPTH 0.3        // ... at this share of the swing's depth ...
 #define IDLE_DEPARTURE 0.45   // ... and leaving so long before the swing's end (s) ...
-#define IDLE_DEPTH_LATER 0.35 // ... from this share: a slow drift, no frozen hand
+#define IDLE_DEPTH_LATER 0.35 // ... from this share: a drift of .3 s or more, no frozen hand
 
-// a tip that is fast along the head halts first; chosen: see the test of a tip thrown at 16 m/s
-#define COAST_LIMIT 0.3 // way its speed would carry it before it is halted (m) ...
+// a tip that is fast along the head, but not to its goal, halts first; chosen: see the test of a tip
+// thrown at 16 m/s
+#define COAST_LIMIT 0.3 // way its speed would carry it off before it is halted (m) ...
 #define HALT_WAY 0.15   // ... and way it goes meanwhile, at most (m)
 #define HALT_TIME 0.12  // a halt takes no more than this (s) ...
 #define HALT_SHARE 0.4  // ... and no more than this share of the time there is
+#define ON_THE_WAY 2.5  // mean speeds from which a quintic comes to rest and does not pass its goal
 
 /// Time in which the acceleration that a contact left fades (s). Chosen: long beside a contact.
 #define ABSORB_TIME 0.02
@@ -113,15 +116,24 @@ static void path_segment(stroke_plan *s, double t, himc_vec3 x)
     s->path = to;
 }
 
-/// The tangential path to rest at x. A tip that is fast and has time halts first: one long quintic
-/// would carry it far off.
+/// How far the tip's speed would carry it off its way to x within T (m).
+static double coast_off(const stroke_plan *s, double T, himc_vec3 x)
+{
+    himc_vec3 way = himc_vec3_sub(x, s->path.x), coast = himc_vec3_scale(s->path.v, T);
+    double square = himc_vec3_dot(way, way), along = himc_vec3_dot(coast, way);
+    double share = square > 0 ? fmin(fmax(along / square, 0), ON_THE_WAY) : 0;
+    return himc_vec3_length(himc_vec3_madd(coast, -share, way));
+}
+
+/// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one long
+/// quintic would carry it far off.
 static void path_to(stroke_plan *s, double t, himc_vec3 x)
 {
     double T = t - s->path_end;
     if (T <= 0)
         return;
-    double speed = himc_vec3_length(s->path.v);
-    if (speed * T > COAST_LIMIT) {
+    if (coast_off(s, T, x) > COAST_LIMIT) {
+        double speed = himc_vec3_length(s->path.v);
         double halt = fmin(fmin(HALT_TIME, HALT_SHARE * T), 2 * HALT_WAY / speed);
         path_segment(s, s->path_end + halt, himc_vec3_madd(s->path.x, 0.5 * halt, s->path.v));
     }
@@ -148,7 +160,8 @@ static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, 
     double depth = fmin(g->depth, SWING_PEAK / HIMC_MOVE_PEAK * shorter * shorter);
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
     double off = himc_vec3_length(himc_vec3_sub(s->path.x, spot));
-    if (span < STRAIGHT_TIME && off > depth)
+    bool hurries = himc_move_time(off, STRAIGHT_PEAK) > back_at - s->path_end;
+    if ((span < STRAIGHT_TIME || hurries) && off > depth)
         back_at = s->path_end;
     if (back_at - s->path_end > IDLE_TIME) {
         path_to(s, s->path_end + IDLE_ARRIVAL,

@@ -259,11 +259,14 @@ static bool make_candidate(himc_planner *planner)
     return make_way(planner, way < STROKE_WAYS ? later : other_hand(later), way % STROKE_WAYS);
 }
 
-/// Whether it is worth while to try the next candidate.
-static bool goes_on(const planner_clear *c)
+/// Whether it is worth while to try the next candidate. A lift that would come too late if more were
+/// tried is made, if nothing meets.
+static bool goes_on(const himc_planner *planner)
 {
+    const planner_clear *c = &planner->clear;
+    bool due = c->best_lift.end > 0 && c->best_lift.begin < planner->now + 2 * LEAST_AHEAD;
     return c->least.lack > 0 && c->candidate < 2 * (LIFT_TRIES + STROKE_WAYS) &&
-           (c->least.gap < 0 || c->candidate < LIFT_TRIES);
+           (c->least.gap < 0 || (c->candidate < LIFT_TRIES && !due));
 }
 
 static void begin_search(planner_clear *c)
@@ -389,7 +392,7 @@ bool himc_planner_search(himc_planner *planner, double work)
         return false;
     c->credit = fmin(c->credit + work, MOST_CREDIT);
     while (c->credit > 0) {
-        bool ends = c->searching && !c->trying && !goes_on(c);
+        bool ends = c->searching && !c->trying && !goes_on(planner);
         if (ends && end_search(planner))
             return true;
         int done = !c->searching ? walk_on(planner)
@@ -407,6 +410,8 @@ void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t)
 {
     planner_hand *h = &planner->hand[hand];
     const planner_lift *l = &h->lift;
-    if (l->end > 0 && fabs(touch_after(h, t) - l->touch) < SAME_TOUCH && l->end <= h->plan.end)
+    double touch = touch_after(h, t);
+    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
+    if (l->end > t && same && l->end <= h->plan.end)
         himc_hand_lift(&h->plan, fmax(l->begin, t), l->from, l->to, l->end, l->way);
 }
