@@ -265,6 +265,12 @@ def test_himc_serve_is_shown_and_heard_with_drum_strikes_and_status():
         assert counts["malformed"] == 0 and counts["unknown"] == 0, counts
         live = "[...viewer.liveSound.nodes.values()].map(n => n.told)"
         assert browser.wait(f"return {live}.some(t => t && t.peak > 0.001)"), "no sound"
+        # the performer's time begins at 0 again: the picture goes on, as late as before
+        count = browser.run("return viewer.panel.count")
+        say(SERVE, osc("/himc/reset"), osc("/himc/hit", "right", "accent", "f"))
+        clock = "[...viewer.performers.values()].find(p => p.group.visible).clock"
+        assert browser.wait(f"return viewer.panel.count > {count}"), "no strike after a reset"
+        assert browser.wait(f"const c = {clock}; return c.sounds && c.lag < 1000 && c.late - c.lag < 1000")
         rate = "Math.max(...[...viewer.performers.values()].map(p => p.clock.rate))"
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
 
