@@ -952,7 +952,7 @@ return opened.then(async () => {
 DRAG = """
     const e = viewer.editor, stage = document.getElementById("stage"),
         [handle, x, y] = arguments, push = typeof handle === "number", // a handle, or a segment
-        [left, top] = e.screen(push ? e.on.performer().figure.center(handle) : e[handle].position);
+        [left, top] = e.screen(push ? e.on.performer().figure.place(handle, [0, 0, -0.2]) : e[handle].position);
     stage.setPointerCapture = () => {}; // there is no true pointer
     for (const [name, at] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
         stage.dispatchEvent(new PointerEvent(name, {
@@ -1084,7 +1084,7 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
 PATHS = """
 const e = viewer.editor, out = [];
 for (let t = 0.7; t < 7; t += 1.096) {
-    const paths = [e.points(null, t, 7), e.points("left", t), e.points("right", t)];
+    const paths = [e.points(null, t, 7, [0, 0, -0.2]), e.points("left", t), e.points("right", t)];
     paths[0].forEach((p, i) => out.push([p.time, ...paths.map(path => path[i].toArray().map(v => 1000 * v))]));
 }
 return out;
@@ -1106,6 +1106,7 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
         assert browser.wait("return viewer.editor.heard.length === 1 && viewer.editor.piece.over")
         s = browser.run("return viewer.editor.chosen.statement")
         assert s["push"] == "right-forearm" and s["force"][0] > 100 and s["force"][2] > 100, s
+        assert 0.15 < s["along"] < 0.25, s  # it was taken hold of at 0.2 m
         assert math.hypot(*s["force"]) <= 1000.1 and s["words"] in saved_score(), s
         # the push begins at most a tick before 3 s; a second after its end the body has recovered
         after = browser.run(PATHS)
