@@ -1194,16 +1194,24 @@ def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
         after = browser.run(place)
         off = max(abs(b + w - a) for a, b, w in zip(after, before, way))
         assert off < 0.01, (words, before, after)
+        # the same ball again changes the same line
+        browser.run("viewer.playback.play(false)")
+        assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+        browser.run(DRAG, "spot", -12, 12)
+        heard(2)
+        assert browser.run("return viewer.editor.piece.text.statements.length") == 1
+        words = browser.run(WORDS)
+        assert words.startswith("nudge right 1.5 0.3 "), words
         # the nudge is chosen on the timeline, moved in time, and drawn further
         browser.run("viewer.playback.play(false); viewer.actions.pick(viewer.editor.piece.nudges[0])")
         browser.run(RETIME, -0.2)
-        heard(2)
+        heard(3)
         moved = browser.run(WORDS).split()
         assert abs(float(moved[2]) - 1.3) < 0.002 and moved[3:] == words.split()[3:], (words, moved)
         browser.run("viewer.playback.play(false)")
         assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
         browser.run(DRAG, "spot", 12, -12)
-        heard(3)
+        heard(4)
         further = browser.run(WORDS).split()
         assert further[:4] == moved[:4] and further[4:] != moved[4:], (moved, further)
         undo_all()
