@@ -1059,6 +1059,7 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         assert browser.run(WORDS) == "stroke 11 right tenuto mf normal high"
         was = browser.run(time)
         # the place on the head is right before a frame has drawn the head where it is now
+        assert browser.wait("return !!viewer.editor.head('high')")
         high = browser.run(
             "const e = viewer.editor; e.head('high').matrixWorld.identity();"
             "return e.choose(e.chosen.strike), e.spot.position.z"
@@ -1075,6 +1076,9 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         undo_all()
         assert saved_score() == written and browser.run(time) == was
         assert abs(browser.run("return viewer.editor.chosen.time") - was) < 1e-9
+        browser.run("viewer.actions.loop(1000, 1400); viewer.playback.seek(1300); viewer.playback.play(true)")
+        assert browser.wait("return viewer.playback.at < 1290"), "the loop does not begin again"
+        browser.run("viewer.actions.unloop(); viewer.playback.play(false)")
         # beside the mark the cursor goes there, and nothing is moved
         browser.run(RETIME.replace("x(from", "40 + x(from"), 0.2)
         assert browser.run("return viewer.editor.piece.text.undo") == 0
