@@ -174,7 +174,8 @@ static void test_a_wrong_change_is_refused_with_its_line(void)
             SCORE ":3: low: tune: HZ missing, allowed tune HZ | NOTE");
     refused("drum low;\nat -1 low tune A2;", SCORE ":2: at: BEAT: allowed 0 .. 1e+06");
     refused("drum low;\nat low tune A2;", SCORE ":2: at: BEAT: allowed 0 .. 1e+06");
-    refused("drum low;\nat 2 low;", SCORE ":2: at: allowed at BEAT DRUM COMMAND ..., at BEAT push ...");
+    refused("drum low;\nat 2 low;",
+            SCORE ":2: at: allowed at BEAT DRUM COMMAND ..., at BEAT push ...");
     refused("drum low 60;\nat 7 low damp 1; at 8 low tune 2000;",
             SCORE ":2: low: tune: 2000 Hz, allowed 2.58125 .. 215.288 Hz");
 }
