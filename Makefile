@@ -155,8 +155,8 @@ macos-here: $(PROGRAM) $(SHARED)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=d_arm64 ARCHIVES=$(MACOS)/root/lib PDINCLUDEDIR=/usr/include/pd)
 
-deb: deps ## Debian packages (libhimc0, libhimc-dev, himc, pd-himc), in build/debian, held against lintian
-	@tools/deps.sh tools/deps-debian.txt
+deb: deps ## Debian packages (libhimc0, libhimc-dev, himc, himc-viewer, pd-himc), in build/debian, held against lintian
+	@tools/deps.sh tools/deps-debian.txt tools/deps-viewer.txt
 	@tools/deb.sh $(BUILD)
 
 deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would

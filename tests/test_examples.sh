@@ -86,7 +86,7 @@ done
 
 # what else is installed, and that all of it goes again
 calls=$("$prefix/bin/himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p')
-for page in himc $(printf 'himc-%s ' $calls); do
+for page in $(ls "$prefix/bin") $(printf 'himc-%s ' $calls); do
     check "test_${page}_has_a_manual_page" grep -q '^\.SH SYNOPSIS$' "$prefix/share/man/man1/$page.1"
 done
 offers() { # offers WORD...: what bash offers for the last of them

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Both objects as plain C files in a program that contains Pure Data (tests/libpd/embed.c): they say what they say in Debian's Pd,
-# alone and in four instances at once, a thread each; and no symbol of ours can clash. `make test-libpd LIBPD=path` runs it.
+# alone and in four instances at once, a thread each, where the thread sanitizer finds nothing but a counter of Pd's scheduler that all
+# instances add to and none needs; and no symbol of ours can clash. `make test-libpd LIBPD=path` runs it.
 . tests/check.sh
 : "${HIMC_BUILD:=build}"
 here=$(realpath "$HIMC_BUILD")
@@ -15,6 +16,8 @@ build() { # build NAME OPTION...
 mkdir -p "$dir"
 check test_program_builds build one
 check test_program_with_instances_builds build many -DPD_MULTI=ON
+thread=-fsanitize=thread
+check test_program_for_the_thread_sanitizer_builds build threads -DPD_MULTI=ON -DCMAKE_C_FLAGS=$thread -DCMAKE_CXX_FLAGS=$thread
 check test_our_symbols_are_prefixed [ -z "$(nm -g --defined-only "$dir"/one/himc/libhimc*.a | awk 'NF == 3 { print $3 }' |
     grep -vE '^(himc_|membrane_tilde_setup$|_Z.*10himc_eigen|_ZT|DW\.ref\.)')" ]
 cd tests/pd || exit 1
@@ -28,5 +31,11 @@ for i in 0 1 2 3; do
     awk -v i=$i '/^instance/ { now = $2 } now == i && /^strike: /' "$dir/many.txt" >"$dir/instance.txt"
     check test_instance_${i}_says_what_pd_says cmp "$dir/pd.txt" "$dir/instance.txt"
 done
+echo race:sched_tick >"$dir/known.txt"
+race() {
+    TSAN_OPTIONS="suppressions=$dir/known.txt" "$dir/threads/embed" score.pd 4 4 >"$dir/threads.txt" 2>"$dir/race.log"
+}
+check test_instances_play_without_a_race race || head -n 20 "$dir/race.log"
+check test_all_strike_under_the_sanitizer [ "$(grep -c '^strike: strike' "$dir/threads.txt")" = 12 ]
 
 finish

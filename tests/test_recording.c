@@ -20,11 +20,11 @@ static void load(himc_performance *p, const char *text)
     TEST_ASSERT_TRUE_MESSAGE(ok, error.text);
 }
 
-static heard record(const char *path)
+static heard record(const char *path, const char *piece)
 {
     himc_performance *p = session_new();
     heard h = {0};
-    load(p, PIECE);
+    load(p, piece);
     session_do(p, "record %s", path);
     session_do(p, "play");
     session_play(p, 7, &h);
@@ -49,7 +49,7 @@ static void expect_same_strokes(const char *suffix)
 {
     char path[64];
     snprintf(path, sizeof path, "/tmp/himc-recording-%d.%s", (int)getpid(), suffix);
-    heard first = record(path), again = play_take(path);
+    heard first = record(path, PIECE), again = play_take(path);
     unlink(path);
     TEST_ASSERT_EQUAL_INT_MESSAGE(STROKES, first.strikes, suffix);
     TEST_ASSERT_EQUAL_INT_MESSAGE(STROKES, again.strikes, suffix);
@@ -82,6 +82,52 @@ static void test_c3d_plays_back_to_the_same_strokes(void)
 static void test_trc_plays_back_to_the_same_strokes(void)
 {
     expect_same_strokes("trc");
+}
+
+typedef struct target_steps {
+    himc_vec3 x[HIMC_HANDS], v[HIMC_HANDS]; ///< of the targets in the row before
+    double time, worst;                     ///< step beside the mean velocity (m)
+} target_steps;
+
+static void watch_targets(void *user, const himc_motion_row *row)
+{
+    target_steps *w = user;
+    double h = row->time - w->time;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 v = himc_vec3_add(w->v[hand], row->target_velocity[hand]);
+        himc_vec3 foreseen = himc_vec3_madd(w->x[hand], 0.5 * h, v);
+        if (w->time > 0)
+            w->worst = fmax(w->worst, himc_vec3_length(himc_vec3_sub(row->target[hand], foreseen)));
+        w->x[hand] = row->target[hand];
+        w->v[hand] = row->target_velocity[hand];
+    }
+    w->time = row->time;
+}
+
+// nothing stops a stick beside the drum: it is not let go there, but follows the take, strike and all
+static void test_strikes_beside_the_drum_leave_no_jump(void)
+{
+    static const char path[] = "build/recording-two-drums.trc";
+    heard first =
+        record(path, "drum low; low place 0.6 0.4 0.85; drum high; high place 0.6 -0.4 0.85;"
+                     "stroke 2 right accent ff normal high; stroke 3 left accent ff normal low;"
+                     "stroke 4 left accent ff normal low; tempo 120;");
+    himc_performance *p = session_new();
+    heard again = {0};
+    target_steps steps = {.time = 0};
+    TEST_ASSERT_EQUAL_INT(3, first.strikes);
+    session_do(p, "drum kettle");
+    session_do(p, "take %s", path);
+    himc_performance_on_motion(p, watch_targets, &steps);
+    session_do(p, "play");
+    session_play(p, 4, &again);
+    printf("%d strikes, %.1f mm\n", again.strikes, 1e3 * steps.worst);
+    TEST_ASSERT_EQUAL_INT(3, himc_performance_measure(p).missed);
+    TEST_ASSERT_TRUE(steps.worst < 0.01);
+    unlink(path);
+    heard_free(&first);
+    heard_free(&again);
+    himc_performance_free(p);
 }
 
 // every point of every frame, whatever the format
@@ -246,6 +292,7 @@ int main(void)
     RUN_TEST(test_bvh_plays_back_to_the_same_strokes);
     RUN_TEST(test_c3d_plays_back_to_the_same_strokes);
     RUN_TEST(test_trc_plays_back_to_the_same_strokes);
+    RUN_TEST(test_strikes_beside_the_drum_leave_no_jump);
     RUN_TEST(test_any_body_is_read_back_point_by_point);
     RUN_TEST(test_gaps_of_markers_are_saved_as_gaps);
     RUN_TEST(test_what_a_format_cannot_hold_is_refused_and_leaves_no_file);

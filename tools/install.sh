@@ -23,13 +23,20 @@ lists() {
     echo "644 $share/zsh/site-functions $BUILD/share/_himc"
 }
 
-# manual pages and completions, from what the program says of itself
+page() { # page CALL COMMAND...: the manual page himc-CALL
+    call=$1
+    shift
+    "$@" --help | awk -v call="$call" -v version="$VERSION" -f tools/man.awk >"$BUILD/share/himc${call:+-$call}.1"
+}
+
+# manual pages and completions, from what the programs say of themselves
 make_pages() {
     calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p')
     rm -rf "$BUILD/share"
     mkdir -p "$BUILD/share"
+    [ ! -x "$himc-viewer" ] || page viewer "$himc-viewer"
     for call in "" $calls; do
-        "$himc" $call --help | awk -v call="$call" -v version="$VERSION" -f tools/man.awk >"$BUILD/share/himc${call:+-$call}.1"
+        page "$call" "$himc" $call
         echo "== $call"
         "$himc" $call --help
     done >"$BUILD/share/help"

@@ -40,6 +40,7 @@
     SCRIPT(FILE, spectrum)                                                 \
     SCRIPT(FILE, piece)                                                    \
     SCRIPT(FILE, edit)                                                     \
+    SCRIPT(FILE, when)                                                     \
     SCRIPT(FILE, timeline)                                                 \
     SCRIPT(FILE, panel)                                                    \
     SCRIPT(FILE, record)                                                   \

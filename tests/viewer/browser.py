@@ -95,6 +95,16 @@ class Browser:
             for entry in self.call("POST", self.session + "/se/log", {"type": "browser"})
         ]
 
+    def resize(self, width, height):
+        self.call(
+            "POST",
+            self.session + "/goog/cdp/execute",
+            {
+                "cmd": "Emulation.setDeviceMetricsOverride",
+                "params": {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False},
+            },
+        )
+
     def shot(self, path):
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("GET", self.session + "/screenshot")))

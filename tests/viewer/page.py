@@ -694,7 +694,7 @@ def test_lanes_follow_the_limb_that_is_clicked():
         actions.lanes(), view.settle(), viewer.step(0, false), view.camera.updateMatrixWorld();
         return import("/body.js").then(({ bone }) => {
             const q = performers.get(p.scene.name).points()[bone("left-forearm")].project(view.camera),
-                at = { clientX: ((q.x + 1) / 2) * innerWidth, clientY: ((1 - 2 * view.lift - q.y) / 2) * innerHeight, pointerId: 1, bubbles: true };
+                at = { clientX: ((q.x + 1) / 2) * innerWidth, clientY: ((1 - q.y) / 2) * innerHeight, pointerId: 1, bubbles: true };
             for (const what of ["pointerdown", "pointerup"])
                 document.getElementById("stage").dispatchEvent(new PointerEvent(what, at));
             told.joint = timeline.joint;
@@ -791,6 +791,29 @@ def times(a, b):
     return [[sum(a[r][k] * b[k][c] for k in range(4)) for c in range(4)] for r in range(4)]
 
 
+def loudest(gltf, binary, channel):
+    """A head of the file at its loudest frame: name, time, some points (radius, angle), number of its
+    shapes, and the heights of the points (m)."""
+
+    def floats(accessor):
+        found = gltf["accessors"][accessor]
+        start = gltf["bufferViews"][found["bufferView"]]["byteOffset"]
+        return struct.unpack_from(f"<{found['count'] * (3 if found['type'] == 'VEC3' else 1)}f", binary, start)
+
+    node = gltf["nodes"][channel["target"]["node"]]
+    primitive = gltf["meshes"][node["mesh"]]["primitives"][0]
+    shapes = [floats(target["POSITION"]) for target in primitive["targets"]]
+    at = floats(primitive["attributes"]["POSITION"])
+    weights = floats(gltf["animations"][0]["samplers"][channel["sampler"]]["output"])
+    rows = [weights[i : i + len(shapes)] for i in range(0, len(weights), len(shapes))]
+    frame = max(range(len(rows)), key=lambda i: max(map(abs, rows[i])))
+    edge = max(at)
+    chosen = range(72, len(at) // 3 - 72, 131)
+    points = [[math.hypot(at[3 * i], at[3 * i + 1]) / edge, math.atan2(at[3 * i + 1], at[3 * i])] for i in chosen]
+    heights = [sum(w * s[3 * i + 2] for w, s in zip(rows[frame], shapes)) for i in chosen]
+    return node["name"].split()[0], frame / 60, points, len(shapes), heights
+
+
 def test_the_figure_as_gltf_moves_as_on_the_page():
     data = made_by_film("glb")
     magic, version, size, length, kind = struct.unpack_from("<IIIII", data)
@@ -804,8 +827,11 @@ def test_the_figure_as_gltf_moves_as_on_the_page():
         width *= 2 if accessor["componentType"] == 5123 else 4
         assert width * accessor["count"] == view["byteLength"] and view["byteOffset"] % 4 == 0
     animation, frame = gltf["animations"][0], 120  # 2 s
-    turned = {}
+    turned, loud = {}, []
     for channel in animation["channels"]:
+        if channel["target"]["path"] == "weights":
+            loud.append(loudest(gltf, binary, channel))
+            continue
         accessor = gltf["accessors"][animation["samplers"][channel["sampler"]]["output"]]
         start = gltf["bufferViews"][accessor["bufferView"]]["byteOffset"] + 16 * frame
         turned[channel["target"]["node"]] = struct.unpack_from("<4f", binary, start)
@@ -820,13 +846,30 @@ def test_the_figure_as_gltf_moves_as_on_the_page():
             walk(child, own)
 
     walk(0, [[float(r == c) for c in range(4)] for r in range(4)])
-    there = browser.run(
+    there, heads = browser.run(
         """
-        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
-        return viewer.readScene(bytes, "a").then(scene => [...scene.pose(2, new Float64Array(140))]);
+        const [packed, loud] = arguments, bytes = Uint8Array.from(atob(packed), c => c.charCodeAt(0));
+        return Promise.all([viewer.readScene(bytes, "a"), import("/playback.js"), import("/modes.js")]).then(
+            ([scene, { Playback }, { shape }]) => {
+                const p = new Playback(scene, null), drums = [...scene.drums.values()];
+                const heads = loud.map(([name, time, points, shapes]) => {
+                    const all = p.head(drums.find(d => d.name === name), time).slice(),
+                        sum = n => points.map(([r, t]) => 8 * all.slice(0, n).reduce((z, q, i) => z + q * shape(i, r, t), 0));
+                    return [sum(shapes), sum(64)];
+                });
+                return [[...scene.pose(2, new Float64Array(140))], heads];
+            });
         """,
         base64.b64encode(open(FOUR, "rb").read()).decode(),
+        [head[:4] for head in loud],
     )
+    assert len(loud) == 4, [head[0] for head in loud]
+    left = 0
+    for (name, _, _, _, drawn), (same, whole) in zip(loud, heads):
+        most = max(map(abs, whole))
+        assert most > 1e-5 and max(abs(a - b) for a, b in zip(drawn, same)) < 1e-3 * most, (name, drawn, same)
+        left = max(left, max(abs(a - b) for a, b in zip(drawn, whole)) / most)
+    assert left < 0.3, left
     names = [n["name"] for n in gltf["nodes"][1:21]]
     worst = max(
         abs(a - b)
@@ -837,7 +880,34 @@ def test_the_figure_as_gltf_moves_as_on_the_page():
         )
     )
     assert worst < 1e-5, worst
-    return f"joints within {1e6 * worst:.1f} µm, {len(data) / 1e6:.1f} MB"
+    said = f"joints within {1e6 * worst:.1f} µm, heads but for {100 * left:.0f} % of their height"
+    return f"{said}, {len(data) / 1e6:.1f} MB"
+
+
+def test_a_body_that_changes_moves_the_joints_of_the_gltf():
+    browser.run("viewer.held = true")
+    gltf = browser.run(
+        """
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
+        return viewer.play(bytes, "four.himc").then(async () => {
+            const { bodies } = viewer.playback.scene, [first] = bodies,
+                longer = first.segments.map(s => ({ ...s, origin: s.origin.map(v => 1.1 * v) }));
+            bodies.push({ ...first, time: 1.5, segments: longer });
+            const blob = await viewer.exporter.make("glb", {}), data = await blob.arrayBuffer();
+            return JSON.parse(new TextDecoder().decode(new Uint8Array(data, 20, new DataView(data).getUint32(12, true))));
+        });
+        """,
+        base64.b64encode(open(FOUR, "rb").read()).decode(),
+    )
+    browser.run("viewer.resume(); viewer.actions.live()")
+    animation = gltf["animations"][0]
+    placed = [c for c in animation["channels"] if c["target"]["path"] == "translation"]
+    assert sorted(c["target"]["node"] for c in placed) == sorted(gltf["skins"][0]["joints"])
+    for channel in placed:
+        sampler = animation["samplers"][channel["sampler"]]
+        times, places = (gltf["accessors"][sampler[k]] for k in ("input", "output"))
+        assert sampler["interpolation"] == "STEP" and times["max"] == [1.5], (sampler, times)
+        assert times["count"] == places["count"] == 2, (times, places)
 
 
 # Where the audio thread meets the first loud sample of a playback, against the picture's time (ms)
@@ -905,6 +975,16 @@ def saved_score():
     return browser.wait("return viewer.saved")
 
 
+def undo_all():
+    """By the key, one change after the other."""
+    while browser.run("return viewer.editor.piece.text.undo"):
+        assert browser.wait("return viewer.editor.piece.over")
+        left = browser.run("return viewer.editor.piece.text.undo")
+        browser.run("dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))")
+        assert browser.wait(f"return viewer.editor.piece.text.undo < {left}")
+    assert browser.wait("return viewer.editor.piece.over")
+
+
 def test_a_stroke_is_dragged_heard_and_put_back():
     with editing("tests/viewer/editable.txt"):
         with open("tests/viewer/editable.txt") as file:
@@ -936,15 +1016,52 @@ def test_a_stroke_is_dragged_heard_and_put_back():
         browser.run(DRAG, "top", 0, -15)
         assert browser.wait("return viewer.editor.heard.length === 2")
         assert browser.run("return viewer.editor.chosen.statement.dynamic") > loud + 0.02
-        for _ in range(2):
-            assert browser.wait("return viewer.editor.piece.over")
-            browser.run(
-                "dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))"
-            )
-            browser.wait("return !viewer.editor.piece.over")
-        assert browser.wait("return viewer.editor.piece.over && !viewer.editor.piece.text.undo")
+        undo_all()
         assert saved_score() == written and browser.run(strikes) == before
         return f"heard after {max(browser.run('return viewer.editor.heard')):.0f} ms without pictures"
+
+
+# Drags the chosen statement's mark on the timeline by so many seconds
+RETIME = """
+    const { timeline } = viewer.panel, { canvas } = timeline, box = canvas.getBoundingClientRect(),
+        from = viewer.actions.when.mark.time, x = time => box.left + timeline.x(time);
+    canvas.setPointerCapture = () => {};
+    for (const [name, part] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
+        canvas.dispatchEvent(new PointerEvent(name, {
+            clientX: x(from + 1000 * part * arguments[0]), clientY: box.top + 5, pointerId: 1, bubbles: true, cancelable: true,
+        }));
+"""
+WORDS = "return viewer.editor.chosen.statement.words"
+
+
+def heard(count):
+    assert browser.wait("return viewer.editor.heard.length >= %d && viewer.editor.piece.over" % count)
+
+
+def test_a_stroke_is_moved_in_time_on_the_timeline():
+    """By the mouse, and by keys alone; the chosen stroke stays chosen, and undo gives the text back."""
+    with editing("tests/viewer/editable.txt"):
+        written = saved_score()
+        press = "document.getElementById('timeline').dispatchEvent(new KeyboardEvent('keydown', { key: '%s', bubbles: true }))"
+        time = "return viewer.editor.piece.scene.strikes.find(s => s.beat === 11).time"
+        browser.run(time.replace("return ", "viewer.actions.seek(1000 * ") + " - 50)")
+        browser.run(press % "Enter")
+        assert browser.run(WORDS) == "stroke 11 right tenuto mf normal high"
+        was = browser.run(time)
+        browser.run(RETIME, 0.225)  # half a beat at 132 a minute
+        heard(1)
+        assert browser.run(WORDS) == "stroke 11.5 right tenuto mf normal high"
+        now = browser.run("return viewer.editor.chosen.time")
+        assert abs(now - was - 30 / 132) < 0.05 and abs(browser.run("return viewer.actions.when.mark.time") - 1000 * now) < 1
+        browser.run(press % ",")
+        heard(2)
+        assert browser.run(WORDS) == "stroke 11.375 right tenuto mf normal high"
+        undo_all()
+        assert saved_score() == written and browser.run(time) == was
+        assert abs(browser.run("return viewer.editor.chosen.time") - was) < 1e-9
+        # beside the mark the cursor goes there, and nothing is moved
+        browser.run(RETIME.replace("x(from", "40 + x(from"), 0.2)
+        assert browser.run("return viewer.editor.piece.text.undo") == 0
 
 
 # time and places of the right forearm and of both tips, as the piece is now (s, mm)
@@ -997,6 +1114,34 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
         )
 
 
+def test_on_a_phone_the_figure_stands_over_the_inspector():
+    with editing("tests/viewer/editable.txt"):
+        browser.resize(390, 844)
+        browser.run(
+            "const s = viewer.editor.piece.scene.strikes.find(s => s.beat === 11);"
+            "viewer.actions.seek(1000 * s.time - 200)"
+        )
+        # height of the sheet, and where the figure is between the top and the sheet (pixels)
+        framed = """
+            const p = [...viewer.performers.values()].find(q => q.group.visible),
+                heights = p.points().map(v => viewer.editor.screen(v)[1]),
+                sheet = document.getElementById("edit").getBoundingClientRect();
+            return [sheet.height, Math.min(...heights), sheet.top - Math.max(...heights)]"""
+        settled = """
+            const { now, goal, lift } = viewer.view, left = document.querySelector("footer").offsetHeight - 60;
+            return Math.abs(lift - left / 2 / innerHeight) < 0.02 && Math.abs(now.distance - goal.distance) < 0.01"""
+        assert browser.wait(settled)
+        folded = browser.run(framed)
+        browser.run("viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 11))")
+        assert browser.wait("return document.getElementById('e-stroke').getBoundingClientRect().height > 0")
+        assert browser.wait(settled)
+        chosen = browser.run(framed)
+        browser.resize(480, 480)
+        assert folded[0] < chosen[0] < 0.35 * 844, (folded, chosen)
+        assert min(folded[1:] + chosen[1:]) > 0, (folded, chosen)
+        return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels"
+
+
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
     with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
         browser.run(
@@ -1029,6 +1174,25 @@ def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
         after = browser.run(place)
         off = max(abs(b + w - a) for a, b, w in zip(after, before, way))
         assert off < 0.01, (words, before, after)
+        # the nudge is chosen on the timeline, moved in time, and drawn further
+        browser.run("viewer.playback.play(false); viewer.actions.pick(viewer.editor.piece.nudges[0])")
+        browser.run(RETIME, -0.2)
+        heard(2)
+        moved = browser.run(WORDS).split()
+        assert abs(float(moved[2]) - 1.3) < 0.002 and moved[3:] == words.split()[3:], (words, moved)
+        browser.run("viewer.playback.play(false)")
+        assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+        browser.run(DRAG, "spot", 12, -12)
+        heard(3)
+        further = browser.run(WORDS).split()
+        assert further[:4] == moved[:4] and further[4:] != moved[4:], (moved, further)
+        undo_all()
+        assert browser.run("return viewer.editor.piece.text.statements.length") == 0
+        browser.run(
+            "viewer.saved = null; document.getElementById('e-c3d').click()"
+        )
+        assert browser.wait("return viewer.saved && viewer.saved.name === 'take.c3d'")
+        assert browser.run("return viewer.saved.arrayBuffer().then(b => new Uint8Array(b)[1])") == 0x50
 
 
 def test_a_shared_page_plays_from_the_disk():

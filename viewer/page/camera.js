@@ -63,11 +63,12 @@ export class View {
                 1,
                 0.95 / Math.max(0.3, window.innerWidth / window.innerHeight),
             );
+            const above = 1 + 2 * this.lift; // what is left over the writing
             this.name = name;
             Object.assign(this.goal, {
                 azimuth,
                 elevation,
-                distance: (distance * narrow + 1.25 * this.spread) * (1 + 2 * this.lift),
+                distance: distance * Math.max(narrow, above) + 1.25 * this.spread * above,
             });
             this.goal.target.set(...target);
             if (this.spread) this.goal.target.x += 0.35 * this.spread;
@@ -83,7 +84,7 @@ export class View {
 
     // a point of the page as the camera has it, -1 .. 1
     screen(e) {
-        return [(2 * e.clientX) / innerWidth - 1, 1 - 2 * this.lift - (2 * e.clientY) / innerHeight];
+        return [(2 * e.clientX) / innerWidth - 1, 1 - (2 * e.clientY) / innerHeight];
     }
 
     // keeps what is under the pointer where it is, at the target's depth
@@ -91,7 +92,8 @@ export class View {
         const before = this.goal.distance;
         this.goal.distance = Math.min(30, Math.max(NEAREST, before * factor));
         if (e) {
-            const [x, y] = this.screen(e),
+            const [x, high] = this.screen(e),
+                y = high - 2 * this.lift, // over the target
                 half = Math.tan((this.camera.fov * Math.PI) / 360) * (before - this.goal.distance),
                 m = this.camera.matrixWorld.elements;
             for (const [i, a] of ["x", "y", "z"].entries())

@@ -277,6 +277,27 @@ export class Drum {
         this.wasStill = still;
     }
 
+    // the lowest shapes: by how much points and normals differ from rest where a shape is `height` (m)
+    shapes(count, height) {
+        const part = 1e-3, // of it, which is drawn: there heights and slopes are in proportion
+            now = this.now.slice(),
+            { position, normal } = this.head.geometry.attributes,
+            drawn = i => {
+                this.now.fill(0);
+                if (i >= 0) this.now[i] = part * height;
+                this.draw(1);
+                return [position, normal].map(a => Float32Array.from(a.array));
+            },
+            rest = drawn(-1),
+            made = Array.from({ length: count }, (_, i) => {
+                const [p, n] = drawn(i).map((a, k) => a.map((v, j) => (v - rest[k][j]) / part));
+                return { position: p, normal: n };
+            });
+        this.now.set(now);
+        this.wasStill = false;
+        return made;
+    }
+
     // Heights, exaggerated but limited, and normals from the differences along and across the
     // rings.
     draw(exaggeration) {

@@ -6,6 +6,7 @@ import { rgb } from "./color.js";
 import { HANDS, bone, place } from "./body.js";
 import { Piece } from "./piece.js";
 import { Pushes } from "./push.js";
+import { When } from "./when.js";
 import { before } from "./scene.js";
 import { segments } from "./skeleton.js";
 import { handColor } from "./timeline.js";
@@ -63,6 +64,7 @@ export class Editor {
             trouble: text => on.note(text),
             saved: (name, bytes) => save(name, bytes),
         });
+        this.when = new When(this);
         this.group = new THREE.Group();
         ((this.spot = dot("#ffd21f", 0.02)), (this.top = dot("#ff8f5c", 0.02)));
         ((this.path = line("#ffffff", 0.95)), (this.ghost = line("#ffffff", 0.4)));
@@ -93,7 +95,7 @@ export class Editor {
         $("e-undo").onclick = () => this.step("undo");
         $("e-redo").onclick = () => this.step("redo");
         $("e-save").onclick = () => say("save");
-        for (const ending of ["bvh", "trc"]) $(`e-${ending}`).onclick = () => (say(`take take.${ending}`), this.on.note("The take is being played and saved …"));
+        for (const ending of ["bvh", "trc", "c3d"]) $(`e-${ending}`).onclick = () => (say(`take take.${ending}`), this.on.note("The take is being played and saved …"));
         addEventListener("keydown", e => {
             if (!(e.ctrlKey || e.metaKey) || e.target.tagName === "INPUT") return;
             const name = e.key === "z" && !e.shiftKey ? "undo" : e.key === "y" || (e.key === "Z" && e.shiftKey) ? "redo" : null;
@@ -133,6 +135,7 @@ export class Editor {
     show() {
         const c = this.chosen,
             s = c?.statement;
+        document.body.classList.toggle("chosen", !!c);
         $("e-none").hidden = !!c;
         $("e-chosen").hidden = !c;
         this.pushes.show();
@@ -141,6 +144,7 @@ export class Editor {
         $("e-words").parentElement.hidden = !s;
         $("e-stroke").hidden = s?.beat === undefined || c.take;
         $("e-way").hidden = !c.take || c.push;
+        if (c.take && s) $("e-span").value = s.words.split(" ")[3];
         if (s?.beat === undefined) return;
         const [x, y] = [s.x ?? c.strike.x, s.y ?? c.strike.y];
         ($("e-hand").value = s.hand), ($("e-nuance").value = s.nuance);
@@ -156,6 +160,7 @@ export class Editor {
     choose(what) {
         const { scene, text } = this.piece;
         this.chosen = null;
+        this.when.stay();
         if (what?.take || what?.push) this.chosen = what;
         else if (what) {
             const near = text.statements.filter(s => s.hand === what.hand && Math.abs(s.beat - what.beat) < 1e-4);
@@ -167,9 +172,14 @@ export class Editor {
         if (this.chosen && scene) this.trace();
     }
 
-    // a click of the timeline
-    pick(strike) {
-        if (this.piece.scene && !this.piece.text?.take) this.choose(strike);
+    // a click of the timeline, on a strike, a nudge or a push
+    pick(what) {
+        if (this.piece.scene && (what.push || !!this.piece.text?.take === !!what.take)) this.choose(what);
+    }
+
+    // the nudges and pushes, as what can be chosen
+    get marks() {
+        return [...this.piece.nudges, ...this.pushes.list().map(s => this.pushes.mark(s))];
     }
 
     // the path of the hand's tip, or of a segment's centre, around a time
@@ -320,7 +330,7 @@ export class Editor {
 
     commit(f) {
         const c = this.chosen;
-        if (c?.take) return;
+        if (c?.take) return void (c.statement && this.nudge(new THREE.Vector3()));
         const s = c?.statement;
         if (s?.beat === undefined) return;
         if (!this.ghost.visible) draw(this.ghost, c.points);
@@ -334,18 +344,18 @@ export class Editor {
     nudge(way) {
         const c = this.chosen,
             time = round(Piece.takeTime(c.time), 3),
-            span = Number($("e-span").value);
-        this.send(
-            this.piece.text.count,
-            `nudge ${c.hand} ${time} ${span} ${[way.x, way.y, way.z].map(v => round(Math.min(0.5, Math.max(-0.5, v)))).join(" ")}`,
-        );
+            was = c.statement ? c.statement.words.split(" ").slice(4).map(Number) : [0, 0, 0],
+            whole = way.toArray().map((v, i) => round(Math.min(0.5, Math.max(-0.5, v + was[i]))));
+        this.send(c.statement?.index ?? this.piece.text.count, `nudge ${c.hand} ${time} ${$("e-span").value} ${whole.join(" ")}`);
     }
 
-    send(index, words, moved = null) {
+    // `to` is its new time (s)
+    send(index, words, moved = null, to = this.chosen.time) {
         if (index === undefined) return;
-        const c = this.chosen;
+        const c = this.chosen,
+            times = [c.time, to].sort((a, b) => a - b);
         if (c.push && !this.ghost.visible) draw(this.ghost, c.points);
-        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, time: c.time, moved };
+        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times, to, moved };
         this.piece.say(`set ${index} ${words}`);
     }
 
@@ -357,16 +367,16 @@ export class Editor {
         p.length = Math.max(piece.over ? 0 : p.length, 1000 * piece.scene.end);
         this.on.changed(piece);
         const w = this.waiting;
-        if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.time + SOON && !piece.over)) return;
+        if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.times[1] + SOON && !piece.over)) return;
         this.waiting = null;
-        p.seek(1000 * Math.max(0, w.time - BEFORE));
+        p.seek(1000 * Math.max(0, w.times[0] - BEFORE));
         p.play(true);
         this.heard.push(performance.now() - w.begun);
         this.follow(w);
     }
 
     // the chosen stroke as it is played now
-    follow({ time, moved }) {
+    follow({ to, moved }) {
         const c = this.chosen,
             { scene } = this.piece;
         if (!c) return;
@@ -375,9 +385,16 @@ export class Editor {
                 found = scene.strikes.filter(s => s.hand === wanted.hand && Math.abs(s.beat - wanted.beat) < 1e-3)[0];
             if (!found) return;
             Object.assign(c, { strike: found, hand: found.hand, time: found.time });
-        } else c.time = time;
+        } else c.time = to;
         this.trace();
         this.show();
+    }
+
+    // the chosen statement as it is written now, after an undo too
+    refresh() {
+        const s = this.chosen?.statement,
+            mark = this.marks.find(n => n.statement.index === s?.index);
+        if (s && !this.waiting && (mark || s.beat !== undefined)) this.follow({ moved: s, to: mark?.time });
     }
 
     over(piece) {
@@ -385,6 +402,7 @@ export class Editor {
         if (p?.scene === piece.scene) p.length = 1000 * piece.scene.end;
         this.on.finished(piece);
         this.grown(piece);
+        this.refresh();
     }
 
     // a frame: the dots of the strokes around, while nothing moves

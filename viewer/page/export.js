@@ -17,12 +17,16 @@ const makers = {
     async glb(viewer) {
         prepare(viewer, 0);
         viewer.step(0, false);
-        const { scene } = viewer.playback,
+        const { playback } = viewer,
+            { scene } = playback,
+            known = [...scene.drums.values()],
             mine = key => p => p.key === key;
         return makeGltf(
             scene,
             [...viewer.performers.values()].find(mine(scene.name)),
             [...viewer.drums.values()].filter(mine(scene.name)),
+            (name, time) => playback.head(known.find(drum => drum.name === name), time),
+            viewer.exaggeration,
         );
     },
 };

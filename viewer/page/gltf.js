@@ -1,11 +1,14 @@
 // The figure with its motion, its sticks and the drums as one glTF 2.0 file (.glb): a skin over the
-// segments' nodes, one animation with a rotation for each joint. The heads do not move. Lengths in
-// metres; glTF has y upwards.
+// segments' nodes, morph targets for the shapes of the heads, one animation with a rotation for each
+// joint, its place where the body's measures change, and the weights of the shapes. Lengths in metres;
+// glTF has y upwards.
 import * as THREE from "./three.js";
 import { HANDS, bone } from "./body.js";
 import { segments } from "./skeleton.js";
 
-const FRAMES = 60; // key frames a second; chosen: as many as are shown
+const FRAMES = 60, // key frames a second; chosen: as many as are shown
+    SHAPES = 16, // of a head, the lowest; chosen: the others are a twentieth of its height, and 40 kB each
+    UNIT = 0.01; // height of a shape at weight 1 (m); chosen: viewers make room for all shapes at 1
 const FLOAT = 5126,
     SHORT = 5123,
     INT = 5125;
@@ -63,8 +66,8 @@ class Writer {
         return this.materials.get(m);
     }
 
-    // a mesh of glTF; figures share theirs
-    mesh(object) {
+    // a mesh of glTF; figures share theirs. `shapes`: { position, normal } by which it can differ
+    mesh(object, shapes = []) {
         const { geometry, material } = object,
             { position, normal, skinIndex, skinWeight } = geometry.attributes,
             key = `${geometry.uuid} ${material.uuid}`;
@@ -80,7 +83,15 @@ class Writer {
         const primitive = { attributes, material: this.material(material) };
         if (geometry.index)
             primitive.indices = this.accessor(Uint32Array.from(geometry.index.array), "SCALAR", INT);
-        this.primitives.set(key, this.add("meshes", { primitives: [primitive] }));
+        const mesh = { primitives: [primitive] };
+        if (shapes.length) {
+            primitive.targets = shapes.map(({ position, normal }) => ({
+                POSITION: this.accessor(position, "VEC3", FLOAT, true),
+                NORMAL: this.accessor(normal, "VEC3", FLOAT),
+            }));
+            mesh.weights = shapes.map(() => 0);
+        }
+        this.primitives.set(key, this.add("meshes", mesh));
         return this.primitives.get(key);
     }
 
@@ -117,16 +128,27 @@ function rotations(scene, times) {
     return out;
 }
 
-function animate(writer, scene, nodes) {
+// the places of a joint in its parent's frame, one for each body
+const places = (scene, i) => Float32Array.from(scene.bodies.flatMap(b => b.segments[i].origin));
+
+// `heads`: { node, name, weights(time) }
+function animate(writer, scene, nodes, heads) {
     const times = Float32Array.from({ length: Math.floor(scene.end * FRAMES) + 1 }, (_, i) => i / FRAMES),
-        input = writer.accessor(times, "SCALAR", FLOAT, true),
+        clock = list => writer.accessor(list, "SCALAR", FLOAT, true),
+        input = clock(times),
         channels = [],
         samplers = [];
-    rotations(scene, times).forEach((list, i) => {
-        if (!i) return;
-        channels.push({ sampler: samplers.length, target: { node: nodes[i], path: "rotation" } });
-        samplers.push({ input, output: writer.accessor(list, "VEC4", FLOAT) });
-    });
+    const move = (node, path, output, type, more = {}) => {
+        channels.push({ sampler: samplers.length, target: { node, path } });
+        samplers.push({ input, output: writer.accessor(output, type, FLOAT), ...more });
+    };
+    rotations(scene, times).forEach((list, i) => i && move(nodes[i], "rotation", list, "VEC4"));
+    if (scene.bodies.length > 1) {
+        const changes = clock(Float32Array.from(scene.bodies, b => b.time));
+        nodes.forEach((node, i) => move(node, "translation", places(scene, i), "VEC3", { input: changes, interpolation: "STEP" }));
+    }
+    for (const { node, weights } of heads)
+        move(node, "weights", Float32Array.from([...times].flatMap(weights)), "SCALAR");
     writer.add("animations", { name: "performance", channels, samplers });
 }
 
@@ -140,8 +162,8 @@ function skeleton(writer, body) {
 }
 
 // a mesh that stands, or is moved by the node above it
-const still = (writer, object, matrix) =>
-    writer.add("nodes", { mesh: writer.mesh(object), matrix: [...matrix.elements] });
+const still = (writer, object, matrix, shapes) =>
+    writer.add("nodes", { mesh: writer.mesh(object, shapes), matrix: [...matrix.elements] });
 
 function figure(writer, performer, nodes) {
     const { group, sticks, skeleton: bones, scale } = performer.figure,
@@ -166,29 +188,41 @@ function figure(writer, performer, nodes) {
         .map(part => writer.add("nodes", { mesh: writer.mesh(part), skin }));
 }
 
-function standing(writer, group) {
+// `head`: the mesh in it that has shapes
+function standing(writer, group, head, shapes) {
     const all = [];
     group.updateMatrixWorld();
     const own = new THREE.Matrix4().getInverse(group.matrixWorld);
     group.traverse(part => {
         if (part.isMesh && part.geometry.attributes.normal && part.material.isMeshStandardMaterial)
-            all.push(still(writer, part, new THREE.Matrix4().multiplyMatrices(own, part.matrixWorld)));
+            all.push(
+                still(writer, part, new THREE.Matrix4().multiplyMatrices(own, part.matrixWorld), part === head ? shapes : []),
+            );
     });
     return all;
 }
 
-// `performer` and `drums` as they are drawn now
-export function makeGltf(scene, performer, drums) {
+// a drum, and what moves its head: the amplitudes at a time (m), `times` larger
+function drum(writer, one, amplitudes, times) {
+    const nodes = standing(writer, one.group, one.head, one.shapes(SHAPES, UNIT)),
+        node = nodes.find(i => writer.json.meshes[writer.json.nodes[i].mesh].weights);
+    writer.json.nodes[node].name = `${one.name} head`;
+    return { nodes, node, weights: time => Array.from(amplitudes(time).subarray(0, SHAPES), q => (times * q) / UNIT) };
+}
+
+// `performer` and `drums` as they are drawn now; `amplitudes(name, time)` of a drum's shapes (m)
+export function makeGltf(scene, performer, drums, amplitudes, times) {
     const writer = new Writer(),
         root = writer.add("nodes", { name: "himc", rotation: [-Math.SQRT1_2, 0, 0, Math.SQRT1_2] }),
-        nodes = skeleton(writer, scene.bodies[0]);
+        nodes = skeleton(writer, scene.bodies[0]),
+        moving = drums.map(d => drum(writer, d, time => amplitudes(d.name, time), times));
     writer.json.nodes[root].children = [
         nodes[0],
         ...figure(writer, performer, nodes),
         ...standing(writer, performer.stool),
-        ...drums.flatMap(drum => standing(writer, drum.group)),
+        ...moving.flatMap(d => d.nodes),
     ];
-    animate(writer, scene, nodes);
+    animate(writer, scene, nodes, moving);
     for (const node of writer.json.nodes) if (node.children && !node.children.length) delete node.children;
     return writer.glb();
 }

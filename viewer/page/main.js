@@ -31,6 +31,7 @@ const PERFORMERS = 16, // as many as himc-viewer keeps
     ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
     LIFT = 0.08, // of the picture over the timeline, of the window's height
     TALL = 0.17, // with all lanes
+    HEADER = 60, // over the picture on a phone (pixels)
     SLOW = 0.02, // speed for a look at a head; the slowest
     SECOND = 1000; // over which frames are counted (ms)
 const shown = { targets: false, trails: true, errors: false, forces: false, marks: false, drums: true };
@@ -57,7 +58,7 @@ const actions = {
     lanes() {
         if (!playback) return;
         panel.tall(panel.timeline.more());
-        setLift(document.body.classList.contains("tall") ? TALL : LIFT);
+        setLift(lifted());
     },
     frameAll: () => actions.camera(view.name && view.name !== "eye" ? view.name : "stage"),
     orbit: (x, y) => view.orbit(x, y),
@@ -83,6 +84,12 @@ const actions = {
     pause: () => playback && playback.play(!playback.playing),
     seek: ms => playback && playback.seek(ms),
     pick: strike => editor?.pick(strike),
+    get marks() {
+        return this.when ? editor.marks : [];
+    },
+    get when() {
+        return editor?.piece.scene === playback?.scene ? editor?.when : null;
+    },
     step: (by, strikes) => playback && playback.step(by, strikes),
     loop: (a, b) => playback && playback.setLoop(a, b),
     loopEnd: end => {
@@ -355,6 +362,18 @@ function step(ms, draw = true) {
 
 // --- a scene
 
+const phone = matchMedia("(max-width: 760px)"),
+    footer = document.querySelector("footer");
+
+// on a phone the picture is in the middle of what the writing leaves
+function lifted() {
+    if (!playback) return 0;
+    if (phone.matches) return Math.max(0, (footer.offsetHeight - HEADER) / 2 / innerHeight);
+    return panel.timeline.all ? TALL : LIFT;
+}
+
+new ResizeObserver(() => phone.matches && Math.abs(lifted() - view.lift) > 0.01 && setLift(lifted())).observe(footer);
+
 function setLift(lift) {
     view.lift = lift;
     dispatchEvent(new Event("resize"));
@@ -386,7 +405,7 @@ async function play(bytes, name, others = []) {
     panel.compared(playback.compare);
     actions.show("errors", !!playback.compare);
     panel.loading(null);
-    setLift(panel.timeline.all ? TALL : LIFT);
+    setLift(lifted());
     const buffer = await sound
         .load(scene.sounds, scene.head.sound)
         .catch(error => panel.note(`${name}: its sound cannot be played (${error.message})`));
@@ -506,6 +525,9 @@ const exporter = new Exporter((window.viewer = {
     get playback() {
         return playback;
     },
+    get exaggeration() {
+        return exaggeration;
+    },
     get editor() {
         return editor;
     },
@@ -517,7 +539,7 @@ function open(piece) {
     playback = new Playback(piece.scene, piece.sound);
     panel.open(playback);
     panel.loading(null);
-    setLift(panel.timeline.all ? TALL : LIFT);
+    setLift(lifted());
 }
 
 function edit(key) {

@@ -33,6 +33,8 @@ const KEYS = [
     ["home end", "the beginning, the end", null],
     ["l", "more lanes: angles, torques, spectrum", a => a.lanes()],
     ["alt and drag", "push the body, in an edit", null],
+    ["enter", "choose the stroke at the cursor, to edit it", null],
+    [", .", "the chosen stroke an eighth of a beat earlier, later (< > a third of that)", null],
     ["ctrl z, ctrl y", "undo, redo a change", null],
     ["m", "sound on, off", a => a.mute()],
     ["?", "these keys", null],

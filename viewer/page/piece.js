@@ -173,8 +173,10 @@ export class Piece {
     }
 
     event(event) {
-        if (event.event === "text") this.on.text((this.text = event));
-        else this.on.trouble(event.text);
+        if (event.event === "text") {
+            this.over &&= event.source === this.source; // else another piece is to come
+            this.on.text((this.text = event));
+        } else this.on.trouble(event.text);
     }
 
     cut(time) {
@@ -207,5 +209,14 @@ export class Piece {
     // when a nudge is, in the take
     static takeTime(time) {
         return time - APPROACH;
+    }
+
+    // the nudges of a take as what can be chosen, by their times in the scene
+    get nudges() {
+        const all = this.text?.take ? this.text.statements.filter(s => s.words.startsWith("nudge ")) : [];
+        return all.map(statement => {
+            const [, hand, time] = statement.words.split(" ");
+            return { take: true, hand, time: Number(time) + APPROACH, statement };
+        });
     }
 }

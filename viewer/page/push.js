@@ -56,8 +56,16 @@ export class Pushes {
         return beats;
     }
 
+    beatAt(time) {
+        return along(this.course(), time);
+    }
+
+    timeAt(beat) {
+        return along(this.course().map(([time, at]) => [at, time]), beat);
+    }
+
     time(s) {
-        return along(this.course().map(([time, beat]) => [beat, time]), s.at);
+        return this.timeAt(s.at);
     }
 
     // --- what is written
@@ -74,7 +82,7 @@ export class Pushes {
     add(name, force) {
         const { editor } = this,
             time = editor.on.playback().at / 1000,
-            at = round(Math.max(0, along(this.course(), time)), 4);
+            at = round(Math.max(0, this.beatAt(time)), 4);
         editor.choose({ push: true, time, segment: bone(name), index: editor.piece.text.count });
         editor.send(editor.piece.text.count, this.words(at, name, force));
     }
@@ -84,12 +92,17 @@ export class Pushes {
         if (s?.push) this.editor.send(s.index, this.words(s.at, $("e-segment").value, this.fields()));
     }
 
+    // a push as what can be chosen
+    mark(s) {
+        return { push: true, time: this.time(s), segment: bone(s.push), statement: s, index: s.index };
+    }
+
     choose(s) {
         if (!s) return void this.editor.choose(null);
-        const time = this.time(s);
+        const mark = this.mark(s);
         this.editor.on.playback().play(false);
-        this.editor.on.playback().seek(1000 * time);
-        this.editor.choose({ push: true, time, segment: bone(s.push), statement: s, index: s.index });
+        this.editor.on.playback().seek(1000 * mark.time);
+        this.editor.choose(mark);
     }
 
     // the fields as the text has them

@@ -14,6 +14,8 @@ export const nuanceColor = {
 };
 const STRONGEST = 150, // tallest stroke (N); a forte stroke
     NEAR = 6, // a click this near to a stroke jumps to it (pixels)
+    GRIP = [9, 20], // a press this near to a chosen stroke's mark takes hold of it, by mouse, by finger (pixels)
+    YELLOW = "#ffd21f",
     SHORTEST = 100, // of a view (ms)
     BUCKETS = 400; // of the sound's outline, each second
 // what is shown, and its share of the height; all of it if more lanes are wanted
@@ -65,6 +67,7 @@ export class Timeline {
         on("pointerdown", e => this.press(e));
         on("pointermove", e => this.move(e));
         for (const name of ["pointerup", "pointercancel"]) on(name, e => this.release(e));
+        on("keydown", e => this.key(e));
         on("pointerleave", () => (this.hover = null));
         on("dblclick", () => this.show(0, this.playback?.length));
         on("wheel", e => {
@@ -151,16 +154,29 @@ export class Timeline {
         return from + ((e.clientX - box.left) / box.width) * (to - from);
     }
 
-    // the stroke under the pointer
+    // the stroke, nudge or push under the pointer
     near(e) {
         if (!this.playback) return null;
         const at = this.time(e),
             list = this.playback.scene.strikes,
             i = before(list, at / 1000, s => s.time);
         return (
-            [list[i], list[i + 1]]
+            [...this.actions.marks, list[i], list[i + 1]]
                 .filter(s => s && Math.abs(this.x(1000 * s.time) - this.x(at)) < NEAR)
                 .sort((a, b) => Math.abs(1000 * a.time - at) - Math.abs(1000 * b.time - at))[0] ?? null
+        );
+    }
+
+    // whether the pointer is at the chosen stroke's mark, in the lanes of beats and strokes
+    grips(e) {
+        const mark = this.actions.when?.mark,
+            box = this.canvas.getBoundingClientRect(),
+            sum = this.shown.reduce((all, { share }) => all + share, 0),
+            low = ((LANES[0].share + LANES[1].share) / sum) * box.height;
+        return (
+            !!mark &&
+            e.clientY - box.top < low &&
+            Math.abs(this.x(mark.time) - (e.clientX - box.left)) < GRIP[e.pointerType === "touch" ? 1 : 0]
         );
     }
 
@@ -169,11 +185,14 @@ export class Timeline {
         this.canvas.setPointerCapture(e.pointerId);
         this.pointers.set(e.pointerId, e.clientX);
         this.begun = this.time(e);
-        if (this.pointers.size === 1 && !e.shiftKey) this.scrub(e);
+        this.held = this.pointers.size === 1 && !e.shiftKey && this.grips(e);
+        if (this.pointers.size === 1 && !e.shiftKey && !this.held) this.scrub(e);
     }
 
     move(e) {
         this.hover = this.near(e);
+        this.canvas.style.cursor = this.held || this.grips(e) ? "ew-resize" : "";
+        if (this.held) return this.actions.when.move(this.time(e) / 1000);
         const was = this.pointers.get(e.pointerId);
         if (was === undefined) return;
         if (this.pointers.size === 2) {
@@ -186,6 +205,16 @@ export class Timeline {
 
     release(e) {
         this.pointers.delete(e.pointerId);
+        if (this.held) this.actions.when[e.type === "pointerup" ? "drop" : "stay"]();
+        this.held = false;
+    }
+
+    // enter chooses the stroke at the cursor
+    key(e) {
+        if (e.key !== "Enter" || !this.playback) return;
+        const apart = s => Math.abs(1000 * s.time - this.playback.at),
+            [first, ...rest] = this.playback.scene.strikes;
+        if (first) this.actions.pick(rest.reduce((a, b) => (apart(b) < apart(a) ? b : a), first));
     }
 
     scrub(e) {
@@ -196,14 +225,17 @@ export class Timeline {
 
     // --- the lanes
 
+    get shown() {
+        return this.all ? MORE : LANES;
+    }
+
     redraw(w, h, ratio) {
-        const { lanes } = this,
+        const { lanes, shown } = this,
             c = lanes.getContext("2d");
         ((lanes.width = Math.round(w * ratio)), (lanes.height = Math.round(h * ratio)));
         c.setTransform(ratio, 0, 0, ratio, 0, 0);
         c.font = "11px system-ui, sans-serif";
-        const shown = this.all ? MORE : LANES,
-            sum = shown.reduce((all, { share }) => all + share, 0);
+        const sum = shown.reduce((all, { share }) => all + share, 0);
         let top = 0;
         for (const { name, share } of shown) {
             const tall = (share / sum) * h;
@@ -402,18 +434,39 @@ export class Timeline {
         }
         c.fillStyle = "#fff";
         c.fillRect(this.x(p.at) - 0.75, 0, 1.5, h);
-        if (this.hover) this.tell(c, this.hover, w);
+        c.fillStyle = YELLOW;
+        for (const { time } of this.actions.marks) c.fillRect(this.x(1000 * time) - 1, 0, 2, h / 4);
+        const mark = this.actions.when?.mark;
+        if (mark) this.mark(c, mark, w, h);
+        else if (this.hover) this.tell(c, this.hover, w);
+    }
+
+    // the chosen stroke, and where it goes
+    mark(c, { time, from, moves, name }, w, h) {
+        const x = this.x(time);
+        c.fillStyle = "rgba(255,255,255,0.5)";
+        if (moves) c.fillRect(this.x(from) - 0.5, 0, 1, h);
+        c.fillStyle = YELLOW;
+        c.fillRect(x - 1, 0, 2, h);
+        c.beginPath();
+        (c.moveTo(x - 9, 7), c.lineTo(x - 3, 1), c.lineTo(x + 3, 1), c.lineTo(x + 9, 7));
+        (c.lineTo(x + 3, 13), c.lineTo(x - 3, 13), c.fill());
+        this.write(c, name, x + 4, w, h - 22);
     }
 
     tell(c, s, w) {
         const beat = Number.isFinite(s.beat) ? ` · beat ${+s.beat.toFixed(3)}` : "",
-            text = `${s.hand} ${s.nuance} · ${s.drum} · ${s.force.toFixed(0)} N${beat}`;
+            text = s.statement ? s.statement.words : `${s.hand} ${s.nuance} · ${s.drum} · ${s.force.toFixed(0)} N${beat}`;
+        this.write(c, text, this.x(1000 * s.time), w, 2);
+    }
+
+    write(c, text, at, w, y) {
         c.font = "12px system-ui, sans-serif";
         const wide = c.measureText(text).width + 12,
-            x = Math.min(w - wide, Math.max(0, this.x(1000 * s.time) + 8));
+            x = Math.min(w - wide, Math.max(0, at + 8));
         c.fillStyle = "#22232bf2";
-        c.fillRect(x, 2, wide, 20);
+        c.fillRect(x, y, wide, 20);
         c.fillStyle = "#fff";
-        c.fillText(text, x + 6, 16);
+        c.fillText(text, x + 6, y + 14);
     }
 }

@@ -174,14 +174,15 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
 
 // gives up a planned contact that has not come; the plan continues
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
-                    const planned_contact *next)
+                    const planned_contact *next, bool beside)
 {
     bool known = next->drum < s->drums->count;
     himc_motion_answer(s->motion, hand, next->time);
     himc_statistics_strokes(s->statistics, 1, 0);
     himc_events_note(s->events, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
                      known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum", next->time);
-    go_on_from_here(c, s, hand, t);
+    if (!beside)
+        go_on_from_here(c, s, hand, t);
 }
 
 // in `ik` the contact moves the end of the stick, and the arm follows
@@ -212,8 +213,10 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
 {
     planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool due = next.any && t >= next.time && !is_free(c);
-    if (due && t >= next.time + LATEST_CONTACT) {
-        give_up(c, s, hand, t, &next);
+    // nothing would stop a stick that is let go beside all heads; the take goes on by itself
+    bool beside = due && himc_motion_tracks(s->motion, hand) && head_under(c, s, hand) < 0;
+    if (due && (beside || t >= next.time + LATEST_CONTACT)) {
+        give_up(c, s, hand, t, &next, beside);
         due = false;
     }
     int drum = is_free(c) ? c->drum : next.drum;
@@ -435,8 +438,12 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
         s->drums->slot[drum].behind += n;
         return;
     }
+    himc_drum *of = s->drums->slot[drum].drum;
+    uint64_t singles = himc_drum_single_samples(of);
     himc_drums_catch_up_one(s->drums, drum);
-    himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
+    himc_drum_advance_sticks(of, n, sticks, count, forces, NULL);
+    if (himc_drum_single_samples(of) != singles)
+        c->quiet = 0;
 }
 
 // all drums, together from one exchange through the air between them to the next
@@ -471,6 +478,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         memset(c->force[hand], 0, (size_t)n * sizeof(double));
     c->force_count = n;
+    c->quiet += n / s->clock->sample_rate;
     load_sticks(c, s, &near);
     himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, &near);

@@ -1,0 +1,80 @@
+// When a chosen statement happens: its mark on the timeline is dragged, or moved by keys. A stroke
+// moves by beats, on a grid; what a take has, by seconds. Times of the scene in seconds.
+
+const GRID = 24, // places in a beat; chosen: halves to eighths, and thirds
+    FINE = 1000, // in a second of a take
+    STEP = [1 / 8, 0.024], // of a key: beats, seconds of a take; a third of it with shift
+    KEYS = { ",": -1, ".": 1, "<": -1 / 3, ">": 1 / 3 },
+    SOON = 400; // the last key is waited for (ms); chosen: between two presses
+
+// the statement's words with another time, which follows the name, or a nudge's name and hand
+function retimed(words, value) {
+    const all = words.split(" ");
+    all[all[0] === "nudge" ? 2 : 1] = String(value);
+    return all.join(" ");
+}
+
+export class When {
+    // `editor` has chosen, piece, pushes, on and send()
+    constructor(editor) {
+        ((this.editor = editor), (this.to = null));
+        addEventListener("keydown", e => this.key(e));
+    }
+
+    get take() {
+        return this.editor.piece.text.take;
+    }
+
+    // what its mark on the timeline says (time in ms); null without a statement
+    get mark() {
+        const c = this.editor.chosen;
+        if (!c?.statement) return null;
+        const name = this.take ? `${this.value().toFixed(3)} s` : `beat ${+this.value().toFixed(3)}`;
+        return { time: 1000 * (this.to ?? c.time), from: 1000 * c.time, moves: this.to !== null, hand: c.hand, name };
+    }
+
+    // the beat, or the second of the take
+    value() {
+        const { chosen, pushes } = this.editor,
+            s = chosen.statement,
+            from = pushes.beatAt(chosen.time),
+            was = s.beat ?? s.at ?? from,
+            steps = this.take ? FINE : GRID;
+        if (this.to === null) return was;
+        return Math.max(0, Math.round((was + pushes.beatAt(this.to) - from) * steps) / steps);
+    }
+
+    // shows the mark there (s)
+    move(time) {
+        this.editor.on.playback()?.play(false);
+        this.to = Math.min(this.editor.piece.scene.end, Math.max(0, time));
+    }
+
+    // leaves it where it was
+    stay() {
+        this.to = null;
+    }
+
+    // says so to the program
+    drop() {
+        const { chosen } = this.editor,
+            s = chosen?.statement;
+        if (this.to === null || !s) return;
+        const value = +this.value().toFixed(4),
+            to = this.to;
+        this.to = null;
+        if (Math.abs(to - chosen.time) < 1e-3) return;
+        const moved = s.beat === undefined ? null : { beat: value, hand: s.hand };
+        this.editor.send(s.index, retimed(s.words, value), moved, to);
+    }
+
+    key(e) {
+        const { chosen, pushes } = this.editor;
+        if (!KEYS[e.key] || !chosen?.statement || e.ctrlKey || e.metaKey || e.altKey) return;
+        if (["INPUT", "SELECT"].includes(e.target.tagName)) return;
+        e.preventDefault();
+        this.move(pushes.timeAt(pushes.beatAt(this.to ?? chosen.time) + KEYS[e.key] * STEP[this.take ? 1 : 0]));
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => this.drop(), SOON);
+    }
+}
