@@ -221,8 +221,11 @@ export class Editor {
         for (const part of this.group.children) part.visible = false;
     }
 
+    // with its place of now, which a frame has perhaps not drawn yet
     head(name) {
-        return this.on.drum(name);
+        const head = this.on.drum(name);
+        head?.updateWorldMatrix(true, false);
+        return head;
     }
 
     // --- dragging
