@@ -286,7 +286,13 @@ static void test_a_blow_hangs_on_place_head_and_speed_alone(void)
     }
 }
 
-// the patch holds from the first force to the end of the blow; the next blow has its own
+static double gap(void)
+{
+    return stick.height - himc_membrane_displacement(membrane, SPOT, 0);
+}
+
+// the patch holds from the first force to the end of the blow, when the stick is clear of the head;
+// the next blow has its own
 static void test_a_patch_holds_for_a_blow(void)
 {
     remake();
@@ -294,10 +300,14 @@ static void test_a_patch_holds_for_a_blow(void)
     himc_contact_step(membrane, sticks, 1);
     double first = stick.patch;
     TEST_ASSERT_TRUE(stick.touching && first > 5e-3);
-    while (stick.chatter > 0 || stick.touching) {
+    int apart = 0;
+    for (; stick.touching || (stick.chatter > 0 && gap() < 1e-4);
+         himc_contact_step(membrane, sticks, 1)) {
         TEST_ASSERT_EQUAL_DOUBLE(first, stick.patch);
-        himc_contact_step(membrane, sticks, 1);
+        TEST_ASSERT_TRUE(stick.residual_y != 0); // what the patch presses down swings on
+        apart += !stick.touching;
     }
+    TEST_ASSERT_TRUE(apart > 0);
     himc_membrane_rest(membrane);
     stick.height = 0.005;
     stick.velocity = -1;
@@ -350,7 +360,7 @@ static void test_a_stick_near_a_head_that_it_does_not_meet_flies_with_the_same_b
             TEST_ASSERT_EQUAL_DOUBLE(end[0].height, end[1].height);
             TEST_ASSERT_EQUAL_DOUBLE(end[0].velocity, end[1].velocity);
             TEST_ASSERT_EQUAL_UINT(end[0].contacts, end[1].contacts);
-            TEST_ASSERT_TRUE(i == WOOD ? saved == 0 : saved > 30);
+            TEST_ASSERT_TRUE(i == WOOD ? saved == 0 : saved > 1000);
         }
 }
 
@@ -360,7 +370,8 @@ static void test_no_place_of_a_ringing_head_swings_farther_than_its_bound(void)
     head = himc_head_default();
     for (int loud = 0; loud < 3; loud++) {
         strike(&mallet[HARD], 2 + 4 * loud);
-        double bound = himc_membrane_swing(membrane);
+
+        double bound = himc_membrane_bounds(membrane).swing;
         for (int n = 0; n < 48; n++) {
             himc_membrane_run(membrane, 5, (double *[]){NULL}, NULL);
             for (double r = 0; r < 1; r += 0.1)

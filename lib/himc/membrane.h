@@ -224,6 +224,8 @@ typedef struct himc_stick {
     double residual_omega; ///< frequency of that (rad/s)
     double residual_x;     ///< its state: it adds residual_root residual_x to the displacement ...
     double residual_y;     ///< ... and has (residual_x^2 + residual_y^2)/2 of energy (J^1/2)
+    double watched_x;      ///< x of the place from which it watches the head, in the air (m)
+    double watched_y;      ///< y of it (m)
 } himc_stick;
 
 #define HIMC_STICKS 8 ///< of a performer at one head; its own mallets are as many; chosen

@@ -59,7 +59,7 @@
 
 #define QUIET 1e-8         // (m/s) of p and s; chosen: 160 dB below a stroke
 #define TIDY_INTERVAL 1024 // least samples between two searches for quiet ones; chosen: 20 ms
-#define SWING_TIME 256     // samples between two searches for the swing; chosen: they cost nothing
+#define BOUNDS_TIME 256    // samples between two searches for the bounds; chosen: they cost nothing
 #define FILM_SWING 2.0     // growth of a swing by what the film gives back; the comment there
 
 void himc_bank_wake(himc_bank *bank)
@@ -389,16 +389,20 @@ double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
            (f->lead - bank->step_at - 1) * film_slope(bank, readout, sum);
 }
 
-double himc_bank_swing(himc_bank *bank, const double *most)
+himc_bank_bounds himc_bank_bounds_of(himc_bank *bank, const double *most)
 {
-    if (bank->forced || bank->swing_left <= 0) {
-        bank->swing = 0;
-        for (int i = 0; i < bank->live; i++)
-            bank->swing += most[i] * bank->q_per_p[i] *
-                           sqrt(bank->p[i] * bank->p[i] + bank->s[i] * bank->s[i]);
-        bank->swing_left = SWING_TIME;
+    himc_bank_bounds *b = &bank->bounds;
+    if (bank->forced || bank->bounds_left <= 0) {
+        *b = (himc_bank_bounds){0};
+        for (int i = 0; i < bank->live; i++) {
+            double size = most[i] * sqrt(bank->p[i] * bank->p[i] + bank->s[i] * bank->s[i]);
+            b->swing += bank->q_per_p[i] * size;
+            b->speed += (1 + bank->film.damp[i]) * size; // q' = s - d q
+        }
+        bank->bounds_left = BOUNDS_TIME;
     }
-    return (bank->film.on ? FILM_SWING : 1) * bank->swing;
+    double film = bank->film.on ? FILM_SWING : 1;
+    return (himc_bank_bounds){film * b->swing, film * b->speed};
 }
 
 // Chooses the film's steps, sets s to what the state makes of it, and scales the velocities so that
@@ -416,7 +420,7 @@ static void anchor(himc_bank *bank)
         potential += 0.5 * bank->mass[i] * u * u;
     }
     f->moved = false;
-    bank->swing_left = 0;
+    bank->bounds_left = 0;
     if (kinetic + potential <= f->least) {
         slacken(bank);
         return;
@@ -461,7 +465,7 @@ static void single_step(himc_bank *bank)
     bank->film.lead -= samples;
     bank->age++;
     bank->forced = false;
-    bank->swing_left = 0;
+    bank->bounds_left = 0;
 }
 
 // turns the oscillators on which the film does not act by what its pull has been
@@ -544,7 +548,7 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
         bank->at += single ? 0 : run;
         bank->step_at += single ? 0 : run;
         bank->age += single ? 0 : run;
-        bank->swing_left -= run;
+        bank->bounds_left -= run;
     }
 }
 
@@ -571,7 +575,8 @@ void himc_bank_kick(himc_bank *bank, int index, double change)
         return;
     arrive(bank);
     bank->s[index] += change;
-    bank->swing += HIMC_BANK_MOST * fabs(change) * bank->q_per_p[index];
+    bank->bounds.swing += HIMC_BANK_MOST * fabs(change) * bank->q_per_p[index];
+    bank->bounds.speed += HIMC_BANK_MOST * fabs(change);
     if (index >= bank->live)
         bank->live = bank_round_up(index + 1);
 }

@@ -92,10 +92,17 @@ HIMC_RT void himc_bank_ready(himc_bank *bank);
 HIMC_RT void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int count,
                            double *const *out);
 
-#define HIMC_BANK_MOST 2.0 ///< largest entry of himc_bank_swing's weights
-/// An upper bound of |sum_i shape_i q_i| (m) for all shapes with |shape_i| <= most_i (padded), until
-/// the next force, excitation or setting: oscillators only lose. The film lends and takes back.
-HIMC_RT double himc_bank_swing(himc_bank *bank, const double *most);
+#define HIMC_BANK_MOST 2.0 ///< largest entry of the weights of himc_bank_bounds_of
+
+/// How far (m) and how fast (m/s) a place moves at most.
+typedef struct himc_bank_bounds {
+    double swing, speed;
+} himc_bank_bounds;
+
+/// Upper bounds of |sum_i shape_i q_i| and |sum_i shape_i q_i'| for all shapes with |shape_i| <=
+/// most_i (padded), until the next force, excitation or setting: oscillators only lose. The film
+/// lends and takes back.
+HIMC_RT himc_bank_bounds himc_bank_bounds_of(himc_bank *bank, const double *most);
 
 /// The film: a spring of energy s^2/2, s = sum_i a_i q_i^2/2, on all oscillators together. Sets the
 /// a_i (count), or NULL for none. It comes on with a force or himc_bank_find_film, and goes off,

@@ -185,7 +185,7 @@ static void go_on_as(himc_bank *bank, const himc_bank *from)
     f->lead = g->lead;
     f->level = g->level;
     f->due = g->due;
-    bank->swing_left = 0;
+    bank->bounds_left = 0;
     bank->pass++;
     bank->part++;
 }

@@ -66,10 +66,10 @@ struct himc_bank {
     bank_rotation present;       ///< of a step of the present length
     bank_effect push;            ///< in it
     himc_step_length kind;
-    int substeps;   ///< of a sample
-    double h;       ///< a sample (s)
-    double swing;   ///< of himc_bank_swing, found ...
-    int swing_left; ///< ... so that it holds for this number of samples
+    int substeps;            ///< of a sample
+    double h;                ///< a sample (s)
+    himc_bank_bounds bounds; ///< without the film's part, found ...
+    int bounds_left;         ///< ... so that they hold for this number of samples
     bank_film film;
     double *omega, *decay, *mass, *damped;              ///< w, d, m, w_d
     double *q_per_p;                                    ///< 1/w_d

@@ -39,14 +39,10 @@ double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q)
     return himc_capsule_nearest(p, q).gap;
 }
 
-bool himc_capsule_is_far(const himc_capsule *p, const himc_capsule *q, double gap)
+himc_ball himc_capsule_ball(const himc_capsule *p)
 {
-    himc_vec3 d1 = himc_vec3_sub(p->b, p->a), d2 = himc_vec3_sub(q->b, q->a);
-    himc_vec3 r = himc_vec3_add(himc_vec3_sub(p->a, q->a), himc_vec3_sub(p->b, q->b));
-    double long1 = himc_vec3_dot(d1, d1), long2 = himc_vec3_dot(d2, d2);
-    double reach = 2 * (gap + p->radius + q->radius);
-    // |r| > |d1| + |d2| + reach, the squares bounded by 3 times the sum of squares
-    return himc_vec3_dot(r, r) > 3 * (long1 + long2 + reach * reach);
+    himc_vec3 half = himc_vec3_scale(himc_vec3_sub(p->b, p->a), 0.5);
+    return (himc_ball){himc_vec3_add(p->a, half), himc_vec3_length(half) + p->radius};
 }
 
 himc_capsule_near himc_capsule_shell(const himc_capsule *p, const himc_head_frame *head)

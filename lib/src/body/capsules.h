@@ -28,8 +28,21 @@ typedef struct himc_capsule_near {
 
 HIMC_RT himc_capsule_near himc_capsule_nearest(const himc_capsule *p, const himc_capsule *q);
 
-/// True only if the gap is larger (m); cheaper, and often false where it is, too.
-HIMC_RT bool himc_capsule_is_far(const himc_capsule *p, const himc_capsule *q, double gap);
+/// The smallest ball that a capsule fits into.
+typedef struct himc_ball {
+    himc_vec3 middle;
+    double radius; ///< (m)
+} himc_ball;
+
+HIMC_RT himc_ball himc_capsule_ball(const himc_capsule *p);
+
+/// Whether the gap between two balls is larger (m); that of what they contain is, then, too.
+static inline bool himc_balls_are_far(const himc_ball *p, const himc_ball *q, double gap)
+{
+    himc_vec3 r = himc_vec3_sub(p->middle, q->middle);
+    double reach = p->radius + q->radius + gap;
+    return himc_vec3_dot(r, r) > reach * reach;
+}
 
 /// A capsule and a drum's shell, the cylinder under its head; exact at eight points along the
 /// capsule.

@@ -18,7 +18,9 @@
 #include <math.h>
 #include <string.h>
 
-#define NEAR_ARM 0.06  // D of the two arms (m); chosen: uncrossed ones are 80 mm apart and more
+#define NEAR_ARM 0.06 // D of the two arms (m); chosen: uncrossed ones are 80 mm apart and more
+#define SEEN \
+    0.1 // (m) gaps of the two arms that a rehearsal is told of; rehearsal.c looks closer below
 #define NEAR_BODY 0.02 // D of arm and body (m); chosen: usual forearms pass the trunk at 39 mm
 #define FOLDED \
     0.20 // wrist from shoulder (m); chosen: nearer, a small way of the wrist swings the elbow
@@ -36,6 +38,10 @@
 // limits of the three angles of an arm; chosen: what shoulders and wrists allow
 static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.4, -0.6},
                     most[HIMC_ARM_ANGLES] = {1.5, 1.0, 1.0};
+
+// the parts of the body that an arm may meet
+static const unsigned char body_part[] = {HIMC_TRUNK, HIMC_HEAD, HIMC_LEFT_UPPER_LEG,
+                                          HIMC_RIGHT_UPPER_LEG};
 
 /// What is near in one posture: its pushes on the points of the arms, and the least gaps.
 typedef struct field {
@@ -127,14 +133,16 @@ static bool is_stick(int part)
     return part == HIMC_LEFT_STICK || part == HIMC_RIGHT_STICK;
 }
 
-static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS], int order)
+static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
+                       const himc_ball ball[HIMC_SEGMENTS], int order)
 {
     for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
         himc_capsule_pair pair = himc_capsule_pairs[i];
         const himc_capsule *p = &capsule[pair.part], *q = &capsule[pair.other];
         bool arms = i < HIMC_CAPSULE_ARM_PAIRS,
              sticks = is_stick(pair.part) || is_stick(pair.other);
-        if (himc_capsule_is_far(p, q, arms ? NEAR_ARM : NEAR_BODY) && (!arms || order == 0))
+        if (himc_balls_are_far(&ball[pair.part], &ball[pair.other], arms ? SEEN : NEAR_BODY) &&
+            (!arms || order == 0))
             continue;
         himc_capsule_near near = himc_capsule_nearest(p, q);
         if (!arms || !sticks)
@@ -152,18 +160,15 @@ static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS], int 
 
 // arms off the drums' shells, but a hand may lie on a head; sticks are the plan's
 static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
-                           const himc_shells *shells)
+                           const himc_ball ball[HIMC_SEGMENTS], const himc_shells *shells)
 {
     for (int i = 0; i < shells->count; i++)
         for (int part = HIMC_LEFT_FOREARM; part <= HIMC_RIGHT_HAND; part++) {
-            const himc_capsule *p = &capsule[part];
-            himc_vec3 middle = himc_vec3_madd(p->b, 0.5, himc_vec3_sub(p->a, p->b));
-            himc_vec3 away = himc_vec3_sub(middle, shells->head[i]->center);
-            double half = 0.5 * himc_vec3_length(himc_vec3_sub(p->a, p->b));
-            if (hypot(away.x, away.y) > shells->head[i]->radius + half + p->radius + NEAR_BODY ||
-                away.z > shells->head[i]->radius + half + p->radius + NEAR_BODY)
+            himc_vec3 away = himc_vec3_sub(ball[part].middle, shells->head[i]->center);
+            double reach = shells->head[i]->radius + ball[part].radius + NEAR_BODY;
+            if (away.x * away.x + away.y * away.y > reach * reach || away.z > reach)
                 continue;
-            himc_capsule_near near = himc_capsule_shell(p, shells->head[i]);
+            himc_capsule_near near = himc_capsule_shell(&capsule[part], shells->head[i]);
             if (part >= HIMC_LEFT_HAND && near.n.z > LEVEL)
                 continue;
             push_apart(f, (himc_capsule_pair){(unsigned char)part, HIMC_PELVIS}, &near, NEAR_BODY);
@@ -197,9 +202,14 @@ static field field_of(const himc_avoidance *a, const himc_capsule capsule[HIMC_S
                       const himc_shells *shells)
 {
     field f = {.clear = {.sticks = INFINITY, .body = INFINITY}};
+    himc_ball ball[HIMC_SEGMENTS];
+    for (int i = HIMC_LEFT_UPPER_ARM; i <= HIMC_RIGHT_STICK; i++)
+        ball[i] = himc_capsule_ball(&capsule[i]);
+    for (size_t i = 0; i < sizeof body_part / sizeof *body_part; i++)
+        ball[body_part[i]] = himc_capsule_ball(&capsule[body_part[i]]);
     unfold(&f, capsule, is_active(a));
-    push_pairs(&f, capsule, a->order);
-    push_off_drums(&f, capsule, shells);
+    push_pairs(&f, capsule, ball, a->order);
+    push_off_drums(&f, capsule, ball, shells);
     return f;
 }
 
@@ -267,9 +277,10 @@ himc_clearance himc_avoidance_rehearse(himc_avoidance *a, const himc_posture *po
                                        double dt)
 {
     himc_capsule capsule[HIMC_SEGMENTS];
+    himc_posture then = foreseen_posture(a, posture, foreseen);
     int steps = dt < 0 ? FIRST_REHEARSED : (int)ceil(REHEARSED * dt), work = 1;
     for (int i = 0;; i++, work += 1 + DESCENT_WORK) {
-        himc_posture then = foreseen_posture(a, posture, foreseen);
+        put(a->goal, &then.trunk_posture);
         double missing = himc_posture_capsules(&then, foreseen->tip, capsule),
                rate[HIMC_AVOIDANCE_PARTS] = {0};
         int order = order_of(capsule);

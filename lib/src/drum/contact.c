@@ -57,6 +57,12 @@
 #define CHATTER 0.0015        // (s) forces less than this apart are one contact; chosen
 #define STIFF_POINT 100.0     // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
 #define STIFF_PATCH 5e3       // the same for a mallet that has a patch; wood has 9487
+// a stick in the air; chosen: a head is seldom steeper, and a push of 100 N on another place of it
+// moves it less in a sample
+#define WATCHED 0.001       // (m) it looks at the head from a place so near to its own ...
+#define STEEPEST 0.3        // ... which may be so much higher per distance ...
+#define PUSHED 1e-4         // (m) ... and by this after another stick's push,
+#define FASTEST_HEAD 30.0   // (m/s) and the head rises no faster
 #define CLOSE 0.001         // (m) nearer than this and two steps, a stick's patch is found; chosen
 #define SAME_PATCH 0.005    // relative; chosen: less than the formula of the radius is worth
 #define REACH_ROUNDING 1e-6 // (m) allowance in an estimate of future heights
@@ -280,14 +286,46 @@ static bool is_stiff(const himc_mallet_head *head)
     return head->stiffness * pow(0.001, head->exponent) > stiff;
 }
 
-// A stick above this height does what one in the air does. The substeps of a stiff one change the
-// last digits of the head, so their beginning must not hang on an estimate; nor must a blow's end.
-static double reach(himc_membrane *membrane, const himc_stick *s, double fastest, double h)
+// Bounds of a stick's coming n samples: its velocity and acceleration are downward all the time.
+typedef struct fall {
+    double lowest, fastest; // (m, m/s)
+} fall;
+
+static fall fall_of(const himc_stick *s, double t)
 {
-    if (s->height > HIMC_CONTACT_REACH || s->chatter > 0 || is_stiff(&s->head))
-        return HIMC_CONTACT_REACH;
-    double near = himc_membrane_swing(membrane) + CLOSE + 2 * h * fastest;
-    return fmin(near, HIMC_CONTACT_REACH);
+    double down = fmax(-s->velocity, 0), faster = fmax(-s->acceleration, 0);
+    return (fall){s->height - t * (down + 0.5 * t * faster) - REACH_ROUNDING, down + t * faster};
+}
+
+// The head's displacement near a stick in the air, at a place that is kept while the stick is near
+// it: most places on a stick's way are not worth the shapes of all modes.
+static double watched(himc_membrane *m, himc_stick *s)
+{
+    double x = s->x - s->watched_x, y = s->y - s->watched_y;
+    if (!(x * x + y * y < WATCHED * WATCHED)) {
+        s->watched_x = s->x;
+        s->watched_y = s->y;
+    }
+    return himc_strike_point_displacement(
+        m, himc_membrane_strike_point(m, s->watched_x, s->watched_y, 0));
+}
+
+// Whether in the coming n samples a stick certainly is in the air, over a head that may be `pushed` in
+// them. The substeps of a stiff one change the last digits of the head, so their beginning must not
+// hang on an estimate.
+static bool is_clear(himc_membrane *membrane, himc_stick *s, int n, double h, bool pushed)
+{
+    himc_bank_bounds head = {INFINITY, INFINITY};
+    fall f = fall_of(s, n * h);
+    if (s->touching || f.lowest >= HIMC_CONTACT_REACH)
+        return !s->touching;
+    if (!pushed)
+        head = himc_membrane_bounds(membrane);
+    double near = 2 * h * f.fastest + PUSHED, over = near + head.swing;
+    double moves = near + STEEPEST * WATCHED + n * h * fmin(head.speed, FASTEST_HEAD);
+    if (!(f.lowest > fmin(over, moves)) || is_stiff(&s->head))
+        return false;
+    return f.lowest > over || f.lowest > moves + watched(membrane, s);
 }
 
 int himc_contact_clear(himc_membrane *membrane, himc_stick *const *sticks, int count, int n)
@@ -296,14 +334,9 @@ int himc_contact_clear(himc_membrane *membrane, himc_stick *const *sticks, int c
     for (int i = 0; i < count; i++)
         if (sticks[i]->touching)
             return 0;
-    for (int i = 0; i < count && n > 0; i++) {
-        // bounds of speed and height: both velocity and acceleration downward all the time
-        const himc_stick *s = sticks[i];
-        double down = fmax(-s->velocity, 0), faster = fmax(-s->acceleration, 0), t = n * h;
-        double near = reach(membrane, s, down + t * faster, h) + REACH_ROUNDING;
-        for (; n > 0 && s->height - t * (down + 0.5 * t * faster) < near; t = n * h)
+    for (int i = 0; i < count; i++)
+        while (n > 0 && !is_clear(membrane, sticks[i], n, h, false))
             n /= 2;
-    }
     return n;
 }
 
@@ -452,7 +485,7 @@ static strike_point *point_under(himc_membrane *m, himc_stick *s, double h)
 {
     double x = s->touching ? s->contact_x : s->x, y = s->touching ? s->contact_y : s->y;
     strike_point *point = himc_membrane_strike_point(m, x, y, s->patch);
-    if (s->touching || s->chatter > 0)
+    if (s->touching || (s->chatter > 0 && s->patch > 0))
         return point;
     double speed = fmax(-s->velocity, 0), last = 2 * h * speed;
     double gap = s->height - (s->one_way ? 0 : himc_strike_point_displacement(m, point));
@@ -474,23 +507,35 @@ void himc_stick_put(himc_membrane *membrane, himc_stick *stick)
     stick->height = displacement(membrane, stick, point_under(membrane, stick, 0));
 }
 
+// Moves the sticks that are in the air in a step whatever the others do; the rest are `low`. Returns
+// their number.
+static int let_fly(himc_membrane *membrane, himc_stick *const *sticks, int count, double h,
+                   himc_stick **low)
+{
+    int low_count = 0;
+    for (int i = 0; i < count; i++) {
+        if (within_reach(sticks[i], h) && !is_clear(membrane, sticks[i], 1, h, true))
+            low[low_count++] = sticks[i];
+        else
+            himc_stick_fly(sticks[i], h);
+    }
+    return low_count;
+}
+
 // a step of length h: a sample or a substep
 static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, double h)
 {
     near_stick near[MAX_PAIRS];
-    int near_count = 0;
+    himc_stick *low[MAX_PAIRS];
     himc_membrane_ready(membrane);
-    for (int i = 0; i < count && i < MAX_PAIRS; i++) {
-        himc_stick *s = sticks[i];
-        if (!within_reach(s, h)) {
-            himc_stick_fly(s, h);
-            continue;
-        }
+    int near_count = let_fly(membrane, sticks, count, h, low);
+    for (int i = 0; i < near_count; i++) {
+        himc_stick *s = low[i];
         strike_point *point = point_under(membrane, s, h);
         double before = displacement(membrane, s, point);
         keep_compression(s, before);
         himc_residual residual = {s->residual_root, s->residual_omega};
-        near[near_count++] = (near_stick){s, point, before, himc_residual_in(&residual, h)};
+        near[i] = (near_stick){s, point, before, himc_residual_in(&residual, h)};
     }
     himc_membrane_free_step(membrane);
     if (near_count > 0)

@@ -421,8 +421,14 @@ void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
             run_clear(drum, run, all, count, forces, o.at);
         else
             step_once(drum, all, count, forces, &o);
+        drum->singles += run == 0;
         o.at += run > 0 ? run : 1;
     }
+}
+
+uint64_t himc_drum_single_samples(const himc_drum *drum)
+{
+    return drum->singles;
 }
 
 void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,

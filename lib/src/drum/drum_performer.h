@@ -21,6 +21,10 @@ typedef struct himc_outside_force {
 HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                                       double *const *forces, const himc_outside_force *outside);
 
+/// Samples that sticks near the head have made it make one by one, so far; each costs as much as
+/// several others.
+HIMC_RT uint64_t himc_drum_single_samples(const himc_drum *drum);
+
 /// Who hears the drum by two ears: from now on they are its first two channels, instead of pickups.
 /// A listener who is off, as at first, leaves them to the pickups. It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);

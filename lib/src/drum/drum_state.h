@@ -46,8 +46,9 @@ struct himc_drum {
     unsigned revision;
     himc_drum_driver driver;
     double rate;
-    uint64_t time; ///< samples since the drum was made; all samples in here are counted so
-    uint64_t zero; ///< the one that counts as 0 outside, since the last realign
+    uint64_t time;    ///< samples since the drum was made; all samples in here are counted so
+    uint64_t singles; ///< of these, made one by one with sticks near the head
+    uint64_t zero;    ///< the one that counts as 0 outside, since the last realign
     double ring[HIMC_PICKUPS + 1][HIMC_DRUM_RING]; ///< sound of each channel; the displacement
     uint64_t filled[HIMC_PICKUPS + 1]; ///< `time` after the last sample of a ring that may not be 0
     bool unwatched;                    ///< the displacement is not wanted

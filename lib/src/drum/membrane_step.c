@@ -288,10 +288,11 @@ double himc_membrane_energy(const himc_membrane *membrane)
     return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
 }
 
-double himc_membrane_swing(himc_membrane *membrane)
+himc_bank_bounds himc_membrane_bounds(himc_membrane *membrane)
 {
-    bool known = himc_modes_shape(membrane->core.modes)->kind != HIMC_GRID;
-    return known ? himc_bank_swing(membrane->core.bank, membrane->core.most) : INFINITY;
+    if (himc_modes_shape(membrane->core.modes)->kind == HIMC_GRID)
+        return (himc_bank_bounds){INFINITY, INFINITY};
+    return himc_bank_bounds_of(membrane->core.bank, membrane->core.most);
 }
 
 bool himc_membrane_at_rest(const himc_membrane *membrane)

@@ -8,6 +8,7 @@
 #ifndef HIMC_STRIKE_POINT_H
 #define HIMC_STRIKE_POINT_H
 
+#include "bank/bank.h"
 #include "drum/patch.h"
 
 typedef struct strike_point strike_point;
@@ -29,8 +30,8 @@ HIMC_RT himc_residual himc_strike_point_residual(const strike_point *s);
 /// Displacement at `a` at the end of a step per newton at `b` during it (m/N).
 HIMC_RT double himc_strike_point_compliance(himc_membrane *membrane, strike_point *a,
                                             strike_point *b);
-/// The head's displacement is nowhere larger until a force acts (m); INFINITY if that is not known.
-HIMC_RT double himc_membrane_swing(himc_membrane *membrane);
+/// The head moves nowhere farther or faster until a force acts; INFINITY if that is not known.
+HIMC_RT himc_bank_bounds himc_membrane_bounds(himc_membrane *membrane);
 /// Before a step's displacements are read: makes what changes the head between two steps.
 HIMC_RT void himc_membrane_ready(himc_membrane *membrane);
 /// True if the head is at rest, and silent until a force acts.

@@ -144,7 +144,7 @@ static void performance_step(himc_performance *p)
     }
     if (tick)
         keep_to_score(p, t);
-    himc_motion_think(p->motion, h, himc_contacts_any(&p->contacts));
+    himc_motion_think(p->motion, h, himc_contacts_busy(&p->contacts));
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
     if (p->settings.control.mode == HIMC_PIPELINE_IK)

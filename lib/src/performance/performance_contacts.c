@@ -438,8 +438,12 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
         s->drums->slot[drum].behind += n;
         return;
     }
+    himc_drum *of = s->drums->slot[drum].drum;
+    uint64_t singles = himc_drum_single_samples(of);
     himc_drums_catch_up_one(s->drums, drum);
-    himc_drum_advance_sticks(s->drums->slot[drum].drum, n, sticks, count, forces, NULL);
+    himc_drum_advance_sticks(of, n, sticks, count, forces, NULL);
+    if (himc_drum_single_samples(of) != singles)
+        c->quiet = 0;
 }
 
 // all drums, together from one exchange through the air between them to the next
@@ -474,6 +478,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         memset(c->force[hand], 0, (size_t)n * sizeof(double));
     c->force_count = n;
+    c->quiet += n / s->clock->sample_rate;
     load_sticks(c, s, &near);
     himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, &near);

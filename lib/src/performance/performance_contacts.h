@@ -10,7 +10,8 @@
 #include "performance/performance_motion.h"
 #include "performance/performance_statistics.h"
 
-#define LONGEST_STEP 512 // samples of one physics step: 192 kHz at 500 Hz has 384
+#define LONG_BLOCK 0.0015 // (s) chosen: 64 samples of 44.1 kHz
+#define LONGEST_STEP 512  // samples of one physics step: 192 kHz at 500 Hz has 384
 
 /// A hand's stick on a head.
 typedef struct stick_contact {
@@ -35,6 +36,7 @@ typedef struct performance_contacts {
     stick_contact hand[HIMC_HANDS];
     double force[HIMC_HANDS][LONGEST_STEP]; ///< of the last step (N)
     int force_count;                        ///< its samples
+    double quiet; ///< since a stick was so near a head that its samples were made one by one (s)
 } performance_contacts;
 
 /// The parts that a contact changes: it ends a stroke, continues the plan and reports to the user.
@@ -67,6 +69,12 @@ HIMC_RT void himc_contacts_finish(performance_contacts *contacts, const contact_
 static inline bool himc_contacts_any(const performance_contacts *contacts)
 {
     return contacts->hand[HIMC_LEFT].touching || contacts->hand[HIMC_RIGHT].touching;
+}
+
+/// True while contacts take most of the time of a host's block, whose samples are played together.
+static inline bool himc_contacts_busy(const performance_contacts *contacts)
+{
+    return himc_contacts_any(contacts) || contacts->quiet < LONG_BLOCK;
 }
 
 /// Largest force (N) and impulse (N s) of a hand since the last call.

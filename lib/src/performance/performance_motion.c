@@ -21,10 +21,10 @@
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
 #define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
-// postures a second of the planner's rehearsal; chosen: 5 % of a core, and a fifth of that in the
-// steps of a contact, which cost most
+// postures a second of the planner's rehearsal; chosen: 10 % of a core, and a tenth of that near
+// contacts, whose steps cost most
 #define WORK 50000.0
-#define BUSY_WORK 10000.0
+#define BUSY_WORK 5000.0
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8   // postures in that mean

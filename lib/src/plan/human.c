@@ -95,16 +95,40 @@ static double normal(const himc_human *human, int stream, int hand, double at)
     return 2.0 * (double)sum / (double)most - 3;
 }
 
-/// 1/f noise at a beat, standard deviation 1, as Voss makes it: octaves of held noise.
-static double drift(const himc_human *human, int stream, double beat)
+/// 1/f noise, standard deviation 1, as Voss makes it: octaves of held noise. Each keeps the cell that
+/// it was last read in.
+typedef struct drift {
+    int stream;
+    double size;           // of the sum
+    double begin[OCTAVES]; // of the cells, in cells
+    double cell[OCTAVES], held[OCTAVES];
+} drift;
+
+static drift drift_of(const himc_human *human, int stream)
 {
-    double sum = 0, power = 0, weight = 1, period = SHORTEST_PERIOD;
-    for (int i = 0; i < OCTAVES; i++, period *= 2, weight *= OCTAVE_WEIGHT) {
-        double cell = floor(beat / period + share(human, stream + i, 0));
-        sum += weight * normal(human, stream + i, 0, cell);
+    drift d = {.stream = stream};
+    double power = 0, weight = 1;
+    for (int i = 0; i < OCTAVES; i++, weight *= OCTAVE_WEIGHT) {
+        d.begin[i] = share(human, stream + i, 0);
+        d.cell[i] = NAN;
         power += weight * weight;
     }
-    return sum / sqrt(power);
+    d.size = sqrt(power);
+    return d;
+}
+
+static double drift_at(const himc_human *human, drift *d, double beat)
+{
+    double sum = 0, weight = 1, cells = 1 / SHORTEST_PERIOD;
+    for (int i = 0; i < OCTAVES; i++, cells *= 0.5, weight *= OCTAVE_WEIGHT) {
+        double at = beat * cells + d->begin[i];
+        if (!(at >= d->cell[i] && at < d->cell[i] + 1)) {
+            d->cell[i] = floor(at);
+            d->held[i] = normal(human, d->stream + i, 0, d->cell[i]);
+        }
+        sum += weight * d->held[i];
+    }
+    return sum / d->size;
 }
 
 /// The motor delays of the hands that strike on a beat, their mean (s at amount 1).
@@ -125,13 +149,14 @@ static double motor_delay(const himc_human *human, const planner_onset *onset)
 static double clock_error(const himc_human *human, const planner_onset *onset, int count,
                           double period)
 {
+    drift slow = drift_of(human, CLOCK_OCTAVE);
     double error = 0;
     for (int i = count - 2; i >= 0; i--) {
         double interval = fmin((onset[i].beat - onset[i + 1].beat) * period, LONGEST_INTERVAL);
         double sd = interval * (interval < ROLL_INTERVAL ? ROLL_SHARE : CLOCK_SHARE);
         error -= CORRECTION * (error + motor_delay(human, &onset[i + 1]));
         error += sd * normal(human, CLOCK, 0, onset[i].beat);
-        error += CLOCK_DRIFT * drift(human, CLOCK_OCTAVE, onset[i].beat);
+        error += CLOCK_DRIFT * drift_at(human, &slow, onset[i].beat);
     }
     return error;
 }
@@ -139,6 +164,7 @@ static double clock_error(const himc_human *human, const planner_onset *onset, i
 /// The log of the speed's factor: the stroke's own noise, less a share of the other hand's before.
 static double log_speed(const himc_human *human, int hand, double beat, const planner_onset *before)
 {
+    drift slow = drift_of(human, SPEED_OCTAVE);
     double noise = normal(human, SPEED, hand, beat), weight = 0;
     int other = HIMC_HANDS - 1 - hand;
     if (before && before->strikes[other] && !before->strikes[hand]) {
@@ -146,7 +172,7 @@ static double log_speed(const himc_human *human, int hand, double beat, const pl
         noise -= weight * normal(human, SPEED, other, before->beat);
     }
     return human->amount * (SPEED_WHITE * noise / sqrt(1 + weight * weight) +
-                            SPEED_DRIFT * drift(human, SPEED_OCTAVE, beat));
+                            SPEED_DRIFT * drift_at(human, &slow, beat));
 }
 
 /// All but time and speed. `kind`: 0 or HIT.
@@ -185,9 +211,10 @@ himc_variation himc_human_stroke(const himc_human *human, const planner_score *s
 himc_variation himc_human_hit(const himc_human *human, himc_hand hand, int count)
 {
     double at = (double)count / HITS_A_BEAT;
+    drift slow = drift_of(human, SPEED_OCTAVE);
     himc_variation v = place_of(human, hand, HIT, at);
     v.log_speed = human->amount * (SPEED_WHITE * normal(human, HIT + SPEED, hand, at) +
-                                   SPEED_DRIFT * drift(human, SPEED_OCTAVE, at));
+                                   SPEED_DRIFT * drift_at(human, &slow, at));
     v.late = human->amount * MOTOR_DELAY * fabs(normal(human, HIT + MOTOR, hand, at));
     v.together = true;
     return v;

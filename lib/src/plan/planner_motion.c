@@ -184,8 +184,8 @@ static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t)
     stroke->bounce_time = fmin(stroke->bounce_time, share * (after.time - t));
 }
 
-/// The next stroke of a hand, of the score or waiting; false if there is none.
-static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *next)
+/// The next stroke of a hand, of the score or waiting, as written; false if there is none.
+static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *next)
 {
     const planner_hand *h = &planner->hand[hand];
     planner_due due;
@@ -206,9 +206,16 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     next->written = himc_planner_goal(planner, &next->stroke, next->drum, t);
     next->goal = next->written;
     next->varied = false;
-    if (planner->human.amount > 0)
-        vary(planner, next);
     return true;
+}
+
+/// The same as a human plays it.
+static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *next)
+{
+    bool more = next_written(planner, hand, next);
+    if (more && planner->human.amount > 0)
+        vary(planner, next);
+    return more;
 }
 
 /// Takes the next stroke out of the score or of the queue.
@@ -325,7 +332,7 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
     if (!himc_planner_reaches(planner, hand, &s->goal) ||
         !himc_hand_can_strike(&planner->hand[hand].plan, &s->goal))
         return false;
-    return !next_stroke(planner, hand, &after) || himc_hand_can_follow(&s->goal, &after.written) ||
+    return !next_written(planner, hand, &after) || himc_hand_can_follow(&s->goal, &after.written) ||
            !himc_hand_can_follow(&s->written, &after.written);
 }
 
@@ -376,7 +383,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 /// the other hand still has time to play it.
 static plan_result check_following(himc_planner *planner, himc_hand hand, timed_stroke *following)
 {
-    if (!next_stroke(planner, hand, following) || following->index < 0 ||
+    if (!next_written(planner, hand, following) || following->index < 0 ||
         is_settled(planner, following))
         return PLANNED;
     if (!himc_planner_reaches(planner, hand, &following->written))

@@ -368,9 +368,15 @@ int himc_planner_score_round_at(const planner_score *score, double t)
     return score->loop ? (int)round : (int)fmin(round, score->rounds);
 }
 
+/// Beats of all rounds before one.
+static double beats_before(const planner_score *score, int round)
+{
+    return ((double)score->past + round) * himc_planner_score_length(score);
+}
+
 double himc_planner_score_total_beat(const planner_score *score, int round, double beat)
 {
-    return beat + ((double)score->past + round) * himc_planner_score_length(score);
+    return beat + beats_before(score, round);
 }
 
 double himc_planner_score_period(const planner_score *score, double beat)
@@ -407,7 +413,7 @@ double himc_planner_score_since(const planner_score *score, double beat)
 
 planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat)
 {
-    planner_walk walk = {.round = round};
+    planner_walk walk = {.round = round, .before = beats_before(score, round)};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         walk.at[hand] = first_after(&score->part[hand], beat, false);
     return walk;
@@ -427,14 +433,14 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
 {
     double beat = beat_back(score, walk);
     if (beat < 0 && walk->round > -score->past) {
-        walk->round--;
+        walk->before = beats_before(score, --walk->round);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             walk->at[hand] = score->part[hand].count;
         beat = beat_back(score, walk);
     }
     if (beat < 0)
         return false;
-    onset->beat = himc_planner_score_total_beat(score, walk->round, beat);
+    onset->beat = beat + walk->before;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_stroke *list = score->part[hand].list;
         int at = walk->at[hand];

@@ -51,6 +51,7 @@ typedef struct planner_onset {
 typedef struct planner_walk {
     int at[HIMC_HANDS]; ///< strokes of the round that are still to come
     int round;
+    double before; ///< beats of the rounds before it
 } planner_walk;
 
 /// False without memory.
