@@ -440,6 +440,21 @@ static void test_bank_comes_to_exact_rest(void)
     TEST_ASSERT_TRUE(velocities[0] != 0);
 }
 
+// a head at rest is run or not, as a host's blocks end
+static void test_bank_moves_alike_however_long_it_was_run_at_rest(void)
+{
+    double after[2];
+    for (int k = 0; k < 2; k++) {
+        himc_bank_rest(bank);
+        run(k == 0 ? 3 : 1000, 0);
+        himc_bank_kick(bank, 0, 5e-9); // so little that it is set to rest some time later
+        run(96, 0);
+        after[k] = himc_bank_energy(bank);
+    }
+    TEST_ASSERT_TRUE(after[0] > 0);
+    TEST_ASSERT_EQUAL_DOUBLE(after[0], after[1]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -457,6 +472,7 @@ int main(void)
     RUN_TEST(test_bank_silences_oscillators_that_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);
     RUN_TEST(test_bank_comes_to_exact_rest);
+    RUN_TEST(test_bank_moves_alike_however_long_it_was_run_at_rest);
     RUN_TEST(test_bank_oscillators_set_to_rest_are_missed_by_140_dB_at_most);
     return UNITY_END();
 }

@@ -254,6 +254,15 @@ void himc_bank_state(const himc_bank *bank, int index, double *q, double *v)
     *v = s - bank->decay[index] * *q;
 }
 
+// an oscillator moves; for how long the bank has been at rest, some of it not run, makes no difference
+static void stir(himc_bank *bank, int index)
+{
+    if (bank->live == 0)
+        bank->age = bank->bounds_left = 0;
+    if (index >= bank->live)
+        bank->live = bank_round_up(index + 1);
+}
+
 void himc_bank_excite(himc_bank *bank, int index, double q, double v)
 {
     if (index >= bank->count)
@@ -263,8 +272,8 @@ void himc_bank_excite(himc_bank *bank, int index, double q, double v)
     bank->s[index] = v + bank->decay[index] * q;
     if (bank->p[index] == 0 && bank->s[index] == 0)
         himc_bank_wake(bank);
-    else if (index >= bank->live)
-        bank->live = bank_round_up(index + 1);
+    else
+        stir(bank, index);
     bank->forced = true;
 }
 
@@ -577,8 +586,7 @@ void himc_bank_kick(himc_bank *bank, int index, double change)
     bank->s[index] += change;
     bank->bounds.swing += HIMC_BANK_MOST * fabs(change) * bank->q_per_p[index];
     bank->bounds.speed += HIMC_BANK_MOST * fabs(change);
-    if (index >= bank->live)
-        bank->live = bank_round_up(index + 1);
+    stir(bank, index);
 }
 
 void himc_bank_step_response(const himc_bank *bank, const himc_readout *readout, double *response)
