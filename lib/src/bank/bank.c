@@ -384,6 +384,27 @@ double himc_bank_read(himc_bank *bank, himc_readout *readout)
     return value;
 }
 
+// the values of readouts that are alike, after a step of its own
+static void read_alike(himc_bank *bank, const himc_alike *alike)
+{
+    const bank_film *f = &bank->film;
+    const himc_readout *form = &alike->form;
+    double value[2][HIMC_BANK_ALIKE];
+    double by = f->on ? f->lead * film_slope(bank, form, 1) - audible(f) : 0;
+    for (int part = 0; part < 2; part++) {
+        int first = part * coupled(bank), end = part ? bank->live : coupled(bank);
+        const double *gain[HIMC_BANK_ALIKE];
+        for (int k = 0; k < HIMC_BANK_ALIKE; k++)
+            gain[k] = alike->gain[k] + first;
+        bank->loops->read_alike(form->p + first, form->s + first, form->film + first, part ? 0 : by,
+                                gain, bank->p + first, bank->s + first, end - first, value[part]);
+    }
+    for (int k = 0; k < HIMC_BANK_ALIKE; k++) {
+        alike->readout[k]->value = value[0][k] + value[1][k];
+        alike->readout[k]->read_pass = bank->pass;
+    }
+}
+
 double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
 {
     const bank_film *f = &bank->film;
@@ -536,6 +557,14 @@ static void copy_ahead(himc_bank *bank, himc_readout *readout, int n, double *ou
     memcpy(out, readout->ahead + bank->at, sizeof *out * (size_t)n);
 }
 
+// its value after a step of its own
+static double read_single(himc_bank *bank, himc_readout *readout)
+{
+    if (readout->alike && readout->read_pass != bank->pass)
+        read_alike(bank, readout->alike);
+    return himc_bank_read(bank, readout);
+}
+
 void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int count,
                    double *const *out)
 {
@@ -550,7 +579,7 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
             if (bank->live == 0)
                 memset(out[k] + done, 0, sizeof **out * (size_t)run);
             else if (single)
-                out[k][done] = himc_bank_read(bank, readouts[k]);
+                out[k][done] = read_single(bank, readouts[k]);
             else
                 copy_ahead(bank, readouts[k], run, out[k] + done);
         }
