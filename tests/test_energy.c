@@ -59,7 +59,7 @@ static void mirror(balance *b, const himc_motion_row *row)
     himc_pose_to_state(plant, &pose, rate, &state);
     himc_inverse_dynamics(plant, &state, row->acceleration, false, torque);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
-        himc_add_force(plant, &state, i, himc_segment_center(plant, &state, i), row->push[i], load);
+        himc_add_force(plant, &state, i, row->push_at[i], row->push[i], load);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_add_force(plant, &state, himc_stick_segment((himc_hand)hand), state.tip[hand],
                        row->tip_force[hand], load);
@@ -147,7 +147,7 @@ static void test_the_balance_of_a_disturbed_piece_closes(void)
     balance b;
     himc_performance *p = accounted(&b, "patches/improvisation.txt");
     session_play(p, 1.5, NULL);
-    session_do(p, "push left-forearm 100 0 170 0.1");
+    session_do(p, "push left-forearm 100 0 170 0.1 0.25");
     session_play(p, 1, NULL);
     session_do(p, "push right-lower-leg 30 0 0 0.05");
     session_do(p, "player 1.8 90");

@@ -106,7 +106,7 @@ static void move(himc_character *c, const moves *m, int n, double h)
         bool on = part > 0 && part < 1;
         force[hand] = himc_vec3_scale(m->blow[hand].force, on ? sin(HIMC_PI * part) : 0);
     }
-    himc_character_push(c, m->pushed, m->push);
+    himc_character_push(c, m->pushed, m->push, himc_vec3_make(0, 0.01, -0.1));
     TEST_ASSERT_TRUE(himc_character_step(c, m->torque, force, h));
 }
 

@@ -249,9 +249,12 @@ static void print_statement(FILE *to, int index, const char *bytes, const himc_c
 static void print_push(FILE *to, const himc_command *c, double at)
 {
     const himc_atom *a = c->atom;
-    if (c->id == HIMC_COMMAND_PUSH)
-        fprintf(to, ",\"at\":%.17g,\"push\":\"%s\",\"force\":[%.9g,%.9g,%.9g],\"seconds\":%.9g", at,
-                a[0].symbol, a[1].number, a[2].number, a[3].number, a[4].number);
+    if (c->id != HIMC_COMMAND_PUSH)
+        return;
+    fprintf(to, ",\"at\":%.17g,\"push\":\"%s\",\"force\":[%.9g,%.9g,%.9g],\"seconds\":%.9g", at,
+            a[0].symbol, a[1].number, a[2].number, a[3].number, a[4].number);
+    if (c->count > 5)
+        fprintf(to, ",\"along\":%.9g", a[5].number);
 }
 
 void edit_text_print(const edit_text *t, FILE *to)

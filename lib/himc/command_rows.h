@@ -113,8 +113,9 @@ HIMC_COMMAND_ROW(ENGINE, engine, PERFORMER, AT_SAMPLE, 0, "tree|ode",
                  "chooses who solves the equations of the body's motion, to the same result: himc, "
                  "along the tree of joints, or the Open Dynamics Engine")
 HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
-HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS",
-                 "pushes a segment of the body with a force for a time")
+HIMC_COMMAND_ROW(
+    PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
+    "pushes a segment of the body with a force for a time, on its centre of mass or so far from its joint")
 HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | X Y Z [YAW]",
                  "has all drums heard by two ears there, facing the performer or that way; off: by "
                  "the drums' pickups")

@@ -173,7 +173,8 @@ typedef struct himc_motion_row {
     himc_vec3 center[HIMC_SEGMENTS];       ///< of mass (m)
     himc_vec3 tip_force[HIMC_HANDS];       ///< of the heads on the sticks (N)
     double impulse[HIMC_HANDS];            ///< of a head on the stick, since the last row (N s)
-    himc_vec3 push[HIMC_SEGMENTS];         ///< force of the command `push` (N)
+    himc_vec3 push[HIMC_SEGMENTS];         ///< force of the command `push` (N) ...
+    himc_vec3 push_at[HIMC_SEGMENTS];      ///< ... and where it acts (m)
     double null_space[HIMC_HANDS]; ///< share of the arm's squared joint rates that moves no tip
     himc_energy energy;            ///< (J)
 } himc_motion_row;

@@ -14,7 +14,7 @@ typedef struct {
     himc_vec3 target_velocity[2]; himc_vec3 tip_velocity[2]; himc_vec3 tip_error[2]; double joint_error[19];
     himc_quat rotation[19]; himc_vec3 rate[19]; himc_vec3 acceleration[19]; himc_vec3 torque[19]; double power[19];
     himc_vec3 segment[20]; himc_quat orientation[20]; himc_vec3 center[20]; himc_vec3 tip_force[2]; double impulse[2];
-    himc_vec3 push[20]; double null_space[2]; himc_energy energy;
+    himc_vec3 push[20]; himc_vec3 push_at[20]; double null_space[2]; himc_energy energy;
 } himc_motion_row;
 
 typedef struct {

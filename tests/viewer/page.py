@@ -265,6 +265,12 @@ def test_himc_serve_is_shown_and_heard_with_drum_strikes_and_status():
         assert counts["malformed"] == 0 and counts["unknown"] == 0, counts
         live = "[...viewer.liveSound.nodes.values()].map(n => n.told)"
         assert browser.wait(f"return {live}.some(t => t && t.peak > 0.001)"), "no sound"
+        # the performer's time begins at 0 again: the picture goes on, as late as before
+        count = browser.run("return viewer.panel.count")
+        say(SERVE, osc("/himc/reset"), osc("/himc/hit", "right", "accent", "f"))
+        clock = "[...viewer.performers.values()].find(p => p.group.visible).clock"
+        assert browser.wait(f"return viewer.panel.count > {count}"), "no strike after a reset"
+        assert browser.wait(f"const c = {clock}; return c.sounds && c.lag < 1000 && c.late - c.lag < 1000")
         rate = "Math.max(...[...viewer.performers.values()].map(p => p.clock.rate))"
         return f"{browser.run(f'return {rate}'):.1f} poses/s"
 
@@ -538,26 +544,26 @@ def test_timeline_steps_loops_and_slows_down():
     assert abs(said["click"]) < 1e-6 and abs(said["zoom"] - 0.25) < 1e-6 and said["end"], said
 
 
-def test_controls_have_names_sizes_and_contrast():
-    """What a finger or a screen reader needs: at a phone's width every control that is shown is 42
+def control_faults():
+    """What a finger or a screen reader lacks: at a phone's width every control that is shown is 42
     pixels wide and high and has a name; writing stands out by 4.5 even where a drum is white."""
-    faults = browser.run(
+    return browser.run(
         """
         document.body.classList.add("open");
         const faults = [], shown = e => e.offsetParent !== null && !e.disabled;
-        for (const e of document.querySelectorAll("button, select, input, canvas[tabindex]")) {
+        for (const e of document.querySelectorAll("button, select, input, summary, canvas[tabindex]")) {
             if (!shown(e) && getComputedStyle(e).position !== "fixed") continue;
             const box = e.getBoundingClientRect(), label = e.closest("label");
             const name = e.ariaLabel || e.textContent.trim() || label?.textContent.trim();
             if (!name) faults.push(`${e.id} has no name`);
-            if (e.tagName === "BUTTON" && (box.width < 41.5 || box.height < 41.5))
+            if (e.tagName !== "CANVAS" && e.type !== "range" && (box.width < 41.5 || box.height < 41.5))
                 faults.push(`${e.id || name}: ${box.width} x ${box.height}`);
         }
         const light = ([r, g, b]) => [r, g, b].map(v => v / 255)
             .map(v => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
             .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
         const parse = text => { const n = text.match(/[0-9.]+/g).map(Number); return n.length < 4 ? [...n, 1] : n; };
-        for (const e of document.querySelectorAll("button, #big span, #who div, nav label, #clock, #text span, #lost, #note, .playback label, #silent")) {
+        for (const e of document.querySelectorAll("button, #big span, #who div, nav label, #edit :is(label, summary, #e-none), #clock, #text span, #lost, #note, .playback label, #silent")) {
             if (!e.textContent.trim()) continue;
             let back = [225, 225, 225], layers = [];
             for (let at = e; at && at !== document.body; at = at.parentElement)
@@ -571,6 +577,10 @@ def test_controls_have_names_sizes_and_contrast():
         return faults;
         """
     )
+
+
+def test_controls_have_names_sizes_and_contrast():
+    faults = control_faults()
     assert not faults, faults
 
 
@@ -942,7 +952,7 @@ return opened.then(async () => {
 DRAG = """
     const e = viewer.editor, stage = document.getElementById("stage"),
         [handle, x, y] = arguments, push = typeof handle === "number", // a handle, or a segment
-        [left, top] = e.screen(push ? e.on.performer().figure.center(handle) : e[handle].position);
+        [left, top] = e.screen(push ? e.on.performer().figure.place(handle, [0, 0, -0.2]) : e[handle].position);
     stage.setPointerCapture = () => {}; // there is no true pointer
     for (const [name, at] of [["pointerdown", 0], ["pointermove", 0.5], ["pointermove", 1], ["pointerup", 1]])
         stage.dispatchEvent(new PointerEvent(name, {
@@ -1048,6 +1058,12 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         browser.run(press % "Enter")
         assert browser.run(WORDS) == "stroke 11 right tenuto mf normal high"
         was = browser.run(time)
+        # the place on the head is right before a frame has drawn the head where it is now
+        high = browser.run(
+            "const e = viewer.editor; e.head('high').matrixWorld.identity();"
+            "return e.choose(e.chosen.strike), e.spot.position.z"
+        )
+        assert abs(high - 0.862) < 1e-3, high
         browser.run(RETIME, 0.225)  # half a beat at 132 a minute
         heard(1)
         assert browser.run(WORDS) == "stroke 11.5 right tenuto mf normal high"
@@ -1068,7 +1084,7 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
 PATHS = """
 const e = viewer.editor, out = [];
 for (let t = 0.7; t < 7; t += 1.096) {
-    const paths = [e.points(null, t, 7), e.points("left", t), e.points("right", t)];
+    const paths = [e.points(null, t, 7, [0, 0, -0.2]), e.points("left", t), e.points("right", t)];
     paths[0].forEach((p, i) => out.push([p.time, ...paths.map(path => path[i].toArray().map(v => 1000 * v))]));
 }
 return out;
@@ -1090,6 +1106,7 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
         assert browser.wait("return viewer.editor.heard.length === 1 && viewer.editor.piece.over")
         s = browser.run("return viewer.editor.chosen.statement")
         assert s["push"] == "right-forearm" and s["force"][0] > 100 and s["force"][2] > 100, s
+        assert 0.15 < s["along"] < 0.25, s  # it was taken hold of at 0.2 m
         assert math.hypot(*s["force"]) <= 1000.1 and s["words"] in saved_score(), s
         # the push begins at most a tick before 3 s; a second after its end the body has recovered
         after = browser.run(PATHS)
@@ -1136,7 +1153,10 @@ def test_on_a_phone_the_figure_stands_over_the_inspector():
         assert browser.wait("return document.getElementById('e-stroke').getBoundingClientRect().height > 0")
         assert browser.wait(settled)
         chosen = browser.run(framed)
+        browser.run("for (const part of document.querySelectorAll('#edit details')) part.open = true")
+        faults = control_faults()
         browser.resize(480, 480)
+        assert not faults, faults
         assert folded[0] < chosen[0] < 0.35 * 844, (folded, chosen)
         assert min(folded[1:] + chosen[1:]) > 0, (folded, chosen)
         return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels"

@@ -19,6 +19,13 @@ export function bone(name) {
 // each joint in its parent's frame, the pelvis in the world (m)
 const usual = Float64Array.from(segments.flatMap((s, i) => (i ? s.origin : root)));
 
+// where a push acts, in the segment's frame: `along` its line from the joint through the centre of
+// mass (m), or if that is not said the centre of mass
+export function pushed(segment, along) {
+    const { center } = segments[segment];
+    return along === undefined ? center : center.map(v => (v * along) / Math.hypot(...center));
+}
+
 // the rotation (w x y z) of a rotation vector, into out[o ..]
 export function quaternion(x, y, z, out, o) {
     const angle = Math.hypot(x, y, z),

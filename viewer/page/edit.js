@@ -3,7 +3,7 @@
 // shortly before. In a take a point of a stick's path is dragged. Sizes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
-import { HANDS, bone, place } from "./body.js";
+import { HANDS, bone, place, pushed } from "./body.js";
 import { Piece } from "./piece.js";
 import { Pushes } from "./push.js";
 import { When } from "./when.js";
@@ -155,8 +155,8 @@ export class Editor {
 
     // --- choosing
 
-    // a strike of the scene; a point of a path: { take, hand, time }; a push: { push, segment, time,
-    // index, statement }
+    // a strike of the scene; a point of a path: { take, hand, time }; a push: { push, segment, along,
+    // time, index, statement }
     choose(what) {
         const { scene, text } = this.piece;
         this.chosen = null;
@@ -182,8 +182,8 @@ export class Editor {
         return [...this.piece.nudges, ...this.pushes.list().map(s => this.pushes.mark(s))];
     }
 
-    // the path of the hand's tip, or of a segment's centre, around a time
-    points(hand, time, segment = bone(`${hand}-stick`)) {
+    // the path of the hand's tip, or of another segment's point, around a time
+    points(hand, time, segment = bone(`${hand}-stick`), local = null) {
         const { scene } = this.piece,
             pose = new Float64Array(7 * segments.length),
             at = new Float64Array(3),
@@ -191,8 +191,7 @@ export class Editor {
             out = [];
         for (let t = Math.max(0, time - PATH[0]); t < Math.min(scene.end, time + PATH[1]); t += STEP) {
             scene.pose(t, pose);
-            const point = h < 0 ? segments[segment].center : scene.body(t).tips[h];
-            place(pose, 7 * segment + 3, ...point, pose, 7 * segment, at, 0);
+            place(pose, 7 * segment + 3, ...(local ?? scene.body(t).tips[h]), pose, 7 * segment, at, 0);
             out.push(Object.assign(new THREE.Vector3(...at), { time: t }));
         }
         return out;
@@ -200,7 +199,7 @@ export class Editor {
 
     trace() {
         const c = this.chosen;
-        c.points = this.points(c.hand, c.time, c.segment);
+        c.points = this.points(c.hand, c.time, c.segment, c.push && pushed(c.segment, c.along));
         this.path.material.color = rgb(c.push ? PUSHED : handColor[HANDS.indexOf(c.hand)]);
         draw(this.path, c.points);
         const nearest = c.points.reduce((a, p) => (Math.abs(p.time - c.time) < Math.abs(a.time - c.time) ? p : a), c.points[0]);
@@ -222,8 +221,11 @@ export class Editor {
         for (const part of this.group.children) part.visible = false;
     }
 
+    // with its place of now, which a frame has perhaps not drawn yet
     head(name) {
-        return this.on.drum(name);
+        const head = this.on.drum(name);
+        head?.updateWorldMatrix(true, false);
+        return head;
     }
 
     // --- dragging

@@ -467,9 +467,16 @@ export class Figure {
         return hits.sort((a, b) => a.distance - b.distance)[0] ?? null;
     }
 
-    // a segment's centre of mass in the scene (m)
-    center(segment) {
-        return new THREE.Vector3(...segments[segment].center)
+    // how far along a segment a point of the scene is, from its joint (m)
+    along(segment, point) {
+        const m = new THREE.Matrix4().multiplyMatrices(this.group.matrixWorld, this.bones[segment].matrixWorld),
+            axis = new THREE.Vector3(...segments[segment].center).normalize();
+        return +Math.min(1, Math.max(0, point.clone().applyMatrix4(new THREE.Matrix4().getInverse(m)).dot(axis))).toFixed(3);
+    }
+
+    // a point of a segment's frame in the scene (m)
+    place(segment, point) {
+        return new THREE.Vector3(...point)
             .applyMatrix4(this.bones[segment].matrixWorld)
             .applyMatrix4(this.group.matrixWorld);
     }

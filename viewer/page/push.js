@@ -1,8 +1,8 @@
 // Pushes: a drag on the body becomes a force on the segment it took hold of, as by a spring from
 // there to the pointer, from the beat shown on for a while. Each is a statement of the piece,
-// `at BEAT push SEGMENT X Y Z SECONDS`. Colour: chosen by eye.
+// `at BEAT push SEGMENT X Y Z SECONDS ALONG`. Colour: chosen by eye.
 import * as THREE from "./three.js";
-import { bone } from "./body.js";
+import { bone, pushed } from "./body.js";
 import { APPROACH } from "./piece.js";
 import { segments } from "./skeleton.js";
 import { Arrow } from "./strike.js";
@@ -17,7 +17,7 @@ const STIFFNESS = 2000, // of the spring (N/m); chosen: a hand's width is 200 N,
 const round = (v, digits) => +v.toFixed(digits);
 
 // y at x, linear between the points [x, y] and beyond the outer ones
-function along(points, x) {
+function linear(points, x) {
     let i = 1;
     while (i < points.length - 1 && points[i][0] < x) i++;
     const [a, b] = [points[i - 1], points[i]];
@@ -36,8 +36,8 @@ export class Pushes {
         scene.add(...this.arrows.map(a => a.group));
         for (const s of segments.slice(1)) $("e-segment").add(new Option(s.name.replaceAll("-", " "), s.name));
         $("e-segment").value = "left-forearm";
-        for (const id of ["e-segment", "e-fx", "e-fy", "e-fz", "e-seconds"]) $(id).onchange = () => this.changed();
-        $("e-add").onclick = () => this.add($("e-segment").value, this.fields());
+        for (const id of ["e-segment", "e-fx", "e-fy", "e-fz", "e-seconds", "e-along"]) $(id).onchange = () => this.changed();
+        $("e-add").onclick = () => this.add($("e-segment").value, this.fields(), this.along());
         $("e-grab").onclick = () => $("e-grab").setAttribute("aria-pressed", document.body.classList.toggle("pushing"));
         $("e-pushes").onchange = e => this.choose(this.list().find(s => s.index === Number(e.target.value)));
     }
@@ -57,11 +57,11 @@ export class Pushes {
     }
 
     beatAt(time) {
-        return along(this.course(), time);
+        return linear(this.course(), time);
     }
 
     timeAt(beat) {
-        return along(this.course().map(([time, at]) => [at, time]), beat);
+        return linear(this.course().map(([time, at]) => [at, time]), beat);
     }
 
     time(s) {
@@ -74,27 +74,32 @@ export class Pushes {
         return ["e-fx", "e-fy", "e-fz"].map(id => Number($(id).value));
     }
 
-    words(at, name, force) {
-        return `at ${at} push ${name} ${force.map(f => round(f, 1)).join(" ")} ${Number($("e-seconds").value)}`;
+    // undefined: the centre of mass
+    along() {
+        return $("e-along").value === "" ? undefined : Number($("e-along").value);
+    }
+
+    words(at, name, force, along) {
+        return `at ${at} push ${name} ${force.map(f => round(f, 1)).join(" ")} ${Number($("e-seconds").value)} ${along ?? ""}`.trim();
     }
 
     // at the moment that is shown
-    add(name, force) {
+    add(name, force, along) {
         const { editor } = this,
             time = editor.on.playback().at / 1000,
             at = round(Math.max(0, this.beatAt(time)), 4);
-        editor.choose({ push: true, time, segment: bone(name), index: editor.piece.text.count });
-        editor.send(editor.piece.text.count, this.words(at, name, force));
+        editor.choose({ push: true, time, segment: bone(name), along, index: editor.piece.text.count });
+        editor.send(editor.piece.text.count, this.words(at, name, force, along));
     }
 
     changed() {
         const s = this.editor.chosen?.statement;
-        if (s?.push) this.editor.send(s.index, this.words(s.at, $("e-segment").value, this.fields()));
+        if (s?.push) this.editor.send(s.index, this.words(s.at, $("e-segment").value, this.fields(), this.along()));
     }
 
     // a push as what can be chosen
     mark(s) {
-        return { push: true, time: this.time(s), segment: bone(s.push), statement: s, index: s.index };
+        return { push: true, time: this.time(s), segment: bone(s.push), along: s.along, statement: s, index: s.index };
     }
 
     choose(s) {
@@ -114,7 +119,8 @@ export class Pushes {
         if (!chosen?.push) return;
         ($("e-pushes").value = chosen.index), ($("e-segment").value = chosen.push);
         ["e-fx", "e-fy", "e-fz"].forEach((id, i) => ($(id).value = round(chosen.force[i], 1)));
-        ($("e-seconds").value = round(chosen.seconds, 3)), ($("e-push").open = true);
+        ($("e-seconds").value = round(chosen.seconds, 3)), ($("e-along").value = chosen.along === undefined ? "" : round(chosen.along, 3));
+        $("e-push").open = true;
     }
 
     // --- dragging; each tells whether the event was for a push
@@ -128,6 +134,7 @@ export class Pushes {
         const away = this.editor.view.camera.getWorldDirection(new THREE.Vector3());
         this.held = {
             segment: hit.segment,
+            along: figure.along(hit.segment, hit.point),
             from: hit.point,
             plane: new THREE.Plane().setFromNormalAndCoplanarPoint(away, hit.point),
             force: new THREE.Vector3(),
@@ -145,7 +152,7 @@ export class Pushes {
     release(e) {
         const { held } = this;
         this.held = null;
-        if (held && e.type === "pointerup" && held.force.length() > WEAKEST) this.add(segments[held.segment].name, held.force.toArray());
+        if (held && e.type === "pointerup" && held.force.length() > WEAKEST) this.add(segments[held.segment].name, held.force.toArray(), held.along);
         return !!held;
     }
 
@@ -156,11 +163,12 @@ export class Pushes {
             figure = this.editor.on.performer()?.figure,
             here = figure && p && p.scene === this.editor.piece.scene,
             acting = here ? this.list().filter(s => this.acts(s, p.at / 1000)) : [],
-            shown = acting.map(s => [bone(s.push), new THREE.Vector3(...s.force)]);
-        if (here && this.held) shown.unshift([this.held.segment, this.held.force]);
+            shown = acting.map(s => ({ segment: bone(s.push), along: s.along, force: new THREE.Vector3(...s.force) }));
+        if (here && this.held) shown.unshift(this.held);
         this.arrows.forEach((arrow, i) => {
-            arrow.group.visible = !!shown[i] && shown[i][1].length() > WEAKEST;
-            if (arrow.group.visible) this.point(arrow, figure.center(shown[i][0]), shown[i][1]);
+            const { segment, along, force } = shown[i] ?? {};
+            arrow.group.visible = force?.length() > WEAKEST;
+            if (arrow.group.visible) this.point(arrow, figure.place(segment, pushed(segment, along)), force);
         });
     }
 
@@ -169,7 +177,7 @@ export class Pushes {
         return since > -0.004 && since < s.seconds; // it begins at a tick
     }
 
-    // from the centre of mass, on which the force acts
+    // from where the force acts
     point(arrow, from, force) {
         const way = force.clone().divideScalar(STIFFNESS);
         arrow.group.position.copy(from).add(way);

@@ -48,6 +48,7 @@ static const himc_argument arguments[] = {
     {"FY", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
     {"FZ", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
     {"SECONDS", NULL, HIMC_ARGUMENT_NUMBER, 0, 10, "s", NULL},
+    {"ALONG", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "m", NULL},
     {"X", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
     {"Y", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
     {"X", "nudge", HIMC_ARGUMENT_NUMBER, -0.5, 0.5, "m", NULL},

@@ -34,7 +34,8 @@ struct himc_character {
     himc_skeleton skeleton;
     himc_engine engine;
     segment_states state;
-    himc_vec3 push[HIMC_SEGMENTS]; // in the next step (N)
+    himc_vec3 push[HIMC_SEGMENTS]; // in the next step (N) ...
+    himc_vec3 turn[HIMC_SEGMENTS]; // ... and its moment about the centre of mass (N m)
     himc_body_work *work;          // borrowed, NULL when nobody asks
     himc_articulation articulation;
     bool articulated;       // the articulation belongs to this state
@@ -202,6 +203,7 @@ void himc_character_place(himc_character *c, const himc_body_state *state)
     if (c->work)
         c->work->placed += energy(c) - before;
     memset(c->push, 0, sizeof c->push);
+    memset(c->turn, 0, sizeof c->turn);
     c->still = 0;
     changed(c);
 }
@@ -255,7 +257,7 @@ static void fill_forces(const himc_character *c, const himc_vec3 torque[HIMC_JOI
                         const himc_vec3 tip_force[HIMC_HANDS], segment_forces *f)
 {
     memcpy(f->force, c->push, sizeof f->force);
-    memset(f->torque, 0, sizeof f->torque);
+    memcpy(f->torque, c->turn, sizeof f->torque);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = c->skeleton.segment[i].parent;
         f->torque[i] = himc_vec3_add(f->torque[i], torque[i - 1]);
@@ -285,10 +287,12 @@ static bool can_step(const segment_states *s, const segment_forces *f)
     return sum < LARGEST_SUM;
 }
 
-void himc_character_push(himc_character *c, int segment, himc_vec3 force)
+void himc_character_push(himc_character *c, int segment, himc_vec3 force, himc_vec3 from_center)
 {
-    if (segment > 0 && segment < HIMC_SEGMENTS)
-        c->push[segment] = himc_vec3_add(c->push[segment], force);
+    if (segment <= 0 || segment >= HIMC_SEGMENTS)
+        return;
+    c->push[segment] = himc_vec3_add(c->push[segment], force);
+    c->turn[segment] = himc_vec3_add(c->turn[segment], himc_vec3_cross(from_center, force));
 }
 
 static void step_ode(himc_character *c, const segment_forces *f, double h)
@@ -369,10 +373,11 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
     if (!can_step(&c->state, &forces))
         return false;
     if (c->work)
-        step_accounted(c, &(himc_step_forces){torque, tip_force, c->push}, &forces, h);
+        step_accounted(c, &(himc_step_forces){torque, tip_force, c->push, c->turn}, &forces, h);
     else
         step_engine(c, &forces, h);
     memset(c->push, 0, sizeof c->push);
+    memset(c->turn, 0, sizeof c->turn);
     changed(c);
     c->given = c->engine == HIMC_ENGINE_ODE;
     return true;

@@ -42,9 +42,10 @@ HIMC_RT double himc_character_potential(const himc_character *character);
 /// and valid until the next one.
 HIMC_RT const himc_articulation *himc_character_articulation(himc_character *character);
 
-/// Adds a force (world frame, N) at a segment's centre of mass during the next step only. Several
+/// Adds a force (world frame, N) that acts at `from_center` (world frame, m) from a segment's centre of mass during the next step only. Several
 /// forces add up; the pelvis is fixed and ignores them.
-HIMC_RT void himc_character_push(himc_character *character, int segment, himc_vec3 force);
+HIMC_RT void himc_character_push(himc_character *character, int segment, himc_vec3 force,
+                                 himc_vec3 from_center);
 
 /// One step of `h` seconds (1e-5 .. 0.01) under gravity, the `torque` of each joint on its child
 /// and its opposite on the parent (world frame, N m), and a `tip_force` on each drumstick tip (N).

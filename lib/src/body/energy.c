@@ -85,7 +85,8 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
     for (int i = art->end - 1; i > 0; i--) {
         himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
         work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);
-        work->push += h * himc_vec3_dot(forces->push[i], s.velocity[i]);
+        work->push += h * (himc_vec3_dot(forces->push[i], s.velocity[i]) +
+                           himc_vec3_dot(forces->turn[i], s.spin[i]));
         work->numerical += h * numerical_power(&s, i, joint);
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++) {

@@ -17,7 +17,8 @@ typedef struct himc_body_work {
 typedef struct himc_step_forces {
     const himc_vec3 *torque;    ///< of each joint on its child (N m) (HIMC_JOINTS)
     const himc_vec3 *tip_force; ///< (N) (HIMC_HANDS)
-    const himc_vec3 *push;      ///< on centres of mass (N) (HIMC_SEGMENTS)
+    const himc_vec3 *push;      ///< on segments (N) (HIMC_SEGMENTS) ...
+    const himc_vec3 *turn;      ///< ... and their moments about the centres of mass (N m)
 } himc_step_forces;
 
 /// Adds the work of a step of `h` seconds that led from `before`, of which spins, rotations and

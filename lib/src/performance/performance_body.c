@@ -1,7 +1,7 @@
 /// performance_body.c: the body, its controller and the forces on it.
 ///
 /// The controller assumes the skeleton; the engine simulates the plant, which may be heavier. A
-/// push is a constant force on a segment's centre of mass. It is not given to the controller, so it
+/// push is a constant force on a point of a segment. It is not given to the controller, so it
 /// disturbs the motion. The pelvis is held, and `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
 #include "base/format.h"
@@ -147,10 +147,13 @@ void himc_body_clear_limit_counts(performance_body *b)
     memset(s->farthest, 0, sizeof s->farthest);
 }
 
-void himc_body_push(performance_body *b, int segment, himc_vec3 force, double until)
+void himc_body_push(performance_body *b, const planned_push *push, double t)
 {
-    b->push[segment] = (body_push){force, until};
-    b->push_end = fmax(b->push_end, until);
+    himc_vec3 at = b->plant.segment[push->segment].center;
+    if (push->along >= 0)
+        at = himc_vec3_scale(at, push->along / himc_vec3_length(at));
+    b->push[push->segment] = (body_push){push->force, at, t + push->seconds};
+    b->push_end = fmax(b->push_end, t + push->seconds);
 }
 
 bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int count, bool after)
@@ -172,7 +175,8 @@ bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int co
 static bool same_push(const planned_push *a, const planned_push *b)
 {
     return a->beat == b->beat && a->segment == b->segment && a->seconds == b->seconds &&
-           a->force.x == b->force.x && a->force.y == b->force.y && a->force.z == b->force.z;
+           a->along == b->along && a->force.x == b->force.x && a->force.y == b->force.y &&
+           a->force.z == b->force.z;
 }
 
 bool himc_body_may_exchange_pushes(const performance_body *b, const planned_push *list, int count)
@@ -192,7 +196,7 @@ void himc_body_begin_pushes(performance_body *b, double now, double next, double
     for (int i = 0; i < b->planned_count; i++) {
         const planned_push *push = &b->planned[i];
         if ((push->beat >= from && push->beat < to) || (round && push->beat < next))
-            himc_body_push(b, push->segment, push->force, t + push->seconds);
+            himc_body_push(b, push, t);
     }
     b->pushed_to = next;
 }
@@ -229,10 +233,18 @@ himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)
     return t < b->push[segment].until ? b->push[segment].force : himc_vec3_make(0, 0, 0);
 }
 
+himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
+{
+    return t < b->push[segment].until ? b->push[segment].at : b->plant.segment[segment].center;
+}
+
 bool himc_body_simulate(performance_body *b, double t, double h)
 {
-    for (int i = 0; t < b->push_end && i < HIMC_SEGMENTS; i++)
-        himc_character_push(b->character, i, himc_body_pushed(b, i, t));
+    for (int i = 0; t < b->push_end && i < HIMC_SEGMENTS; i++) {
+        himc_vec3 away = himc_vec3_sub(himc_body_pushed_at(b, i, t), b->plant.segment[i].center);
+        himc_character_push(b->character, i, himc_body_pushed(b, i, t),
+                            himc_mat3_apply(&b->state.rotation[i], away));
+    }
     return himc_character_step(b->character, b->torque, b->tip_force, h);
 }
 
@@ -300,7 +312,8 @@ bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *e
     const himc_atom *atom = c->atom;
     const char *name = atom[0].symbol;
     *out = (planned_push){.force = {atom[1].number, atom[2].number, atom[3].number},
-                          .seconds = atom[4].number};
+                          .seconds = atom[4].number,
+                          .along = c->count > 5 ? atom[5].number : -1};
     for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
         if (strcmp(name, himc_segment_name(out->segment)) == 0)
             return true;

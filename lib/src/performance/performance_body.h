@@ -8,19 +8,21 @@
 #include "control/still_legs.h"
 #include "performance/performance_settings.h"
 
-/// A constant force on a segment's centre of mass.
-typedef struct body_push {
-    himc_vec3 force; ///< (N)
-    double until;    ///< (s)
-} body_push;
-
 /// A push of a score.
 typedef struct planned_push {
     double beat; ///< (beats; of a take s)
     int segment;
     himc_vec3 force; ///< (N)
     double seconds;
+    double along; ///< from the segment's joint towards its centre of mass (m); negative: there
 } planned_push;
+
+/// A constant force on a segment.
+typedef struct body_push {
+    himc_vec3 force; ///< (N)
+    himc_vec3 at;    ///< in the segment's frame (m)
+    double until;    ///< (s)
+} body_push;
 
 #define HIMC_PUSHES 256 ///< of a score; chosen: more than anyone drags
 
@@ -77,7 +79,8 @@ HIMC_RT void himc_body_configure(performance_body *body, const performance_setti
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
 /// Sets the counts of limits to zero.
 HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
-HIMC_RT void himc_body_push(performance_body *body, int segment, himc_vec3 force, double until);
+/// Begins a push at `t` (s); another one of that segment ends.
+HIMC_RT void himc_body_push(performance_body *body, const planned_push *push, double t);
 /// Plans the pushes of a score (count), sorted by beat, after those that have not begun, or in their place. False, and
 /// nothing changed, if they are too many.
 HIMC_RT bool himc_body_plan_pushes(performance_body *body, const planned_push *list, int count,
@@ -97,6 +100,8 @@ HIMC_RT void himc_body_control(performance_body *body, const himc_reference *ref
 HIMC_RT bool himc_body_simulate(performance_body *body, double t, double h);
 /// The push on a segment at time `t` (N).
 HIMC_RT himc_vec3 himc_body_pushed(const performance_body *body, int segment, double t);
+/// Where it acts, its centre of mass without one; in the segment's frame (m).
+HIMC_RT himc_vec3 himc_body_pushed_at(const performance_body *body, int segment, double t);
 /// Adds up the work on the body from 0 on, or no longer.
 HIMC_RT void himc_body_account(performance_body *body, bool on);
 /// Moves the body by inverse kinematics, by `h` (s). False if the state is not finite.

@@ -412,7 +412,7 @@ static bool do_push(himc_performance *p, const himc_command *c, himc_error *erro
     planned_push push;
     if (!himc_body_read_push(c, &push, error))
         return false;
-    himc_body_push(p->body, push.segment, push.force, step_time(p) + push.seconds);
+    himc_body_push(p->body, &push, step_time(p));
     return true;
 }
 

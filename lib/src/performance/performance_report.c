@@ -116,6 +116,13 @@ static void fill_joints(const himc_performance *p, himc_motion_row *row)
     }
 }
 
+static himc_vec3 push_point(const performance_body *b, const himc_body_state *state, int i,
+                            double t)
+{
+    return himc_vec3_add(state->origin[i],
+                         himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
+}
+
 static void fill_segments(const performance_body *b, double t, himc_motion_row *row)
 {
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
@@ -123,6 +130,7 @@ static void fill_segments(const performance_body *b, double t, himc_motion_row *
         row->orientation[i] = b->state.orientation[i];
         row->center[i] = himc_segment_center(&b->plant, &b->state, i);
         row->push[i] = himc_body_pushed(b, i, t);
+        row->push_at[i] = push_point(b, &b->state, i, t);
     }
 }
 
@@ -148,8 +156,8 @@ static void fill_dynamics(const performance_body *b, himc_motion_row *row)
     memcpy(load, b->torque, sizeof load);
     state_of(b, row, &state);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
-        himc_add_force(&b->plant, &state, i, himc_segment_center(&b->plant, &state, i),
-                       row->push[i], load);
+        himc_add_force(&b->plant, &state, i, push_point(b, &state, i, row->time), row->push[i],
+                       load);
     himc_articulate(&b->plant, &state, &art);
     himc_articulate_legs(&b->plant, &state, &art);
     himc_forward_dynamics(&b->plant, &state, &art, load, row->tip_force, row->acceleration);
