@@ -1115,7 +1115,7 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
         left = farthest(before, after, 3 + s["seconds"] + 1, 3 + s["seconds"] + 1.5)
         assert pushed[0] > 5 and max(left) < RECOVERED, (pushed, left)
         # its arrow is there while it acts; the fields change it
-        browser.run("viewer.playback.play(false); viewer.playback.seek(3050)")
+        browser.run("viewer.actions.loop(2500, 4000); viewer.playback.play(false); viewer.playback.seek(3050)")
         assert browser.wait("return viewer.editor.pushes.arrows[0].group.visible")
         browser.run("viewer.playback.seek(3500)")
         assert browser.wait("return !viewer.editor.pushes.arrows[0].group.visible")

@@ -471,7 +471,7 @@ export class Figure {
     along(segment, point) {
         const m = new THREE.Matrix4().multiplyMatrices(this.group.matrixWorld, this.bones[segment].matrixWorld),
             axis = new THREE.Vector3(...segments[segment].center).normalize();
-        return +Math.min(1, Math.max(0, point.clone().applyMatrix4(new THREE.Matrix4().getInverse(m)).dot(axis))).toFixed(3);
+        return +Math.min(1, Math.max(0, point.clone().applyMatrix4(new THREE.Matrix4().getInverse(m)).dot(axis))).toFixed(2);
     }
 
     // a point of a segment's frame in the scene (m)

@@ -60,6 +60,9 @@ class PieceSound {
         this.schedule();
     }
 
+    // the playback turns back at the loop's end
+    setLoop() {}
+
     schedule() {
         if (!this.on || this.waits) return;
         const until = this.from + (this.out.context.currentTime - this.begun + AHEAD) * this.speed;

@@ -80,7 +80,7 @@ export class Pushes {
     }
 
     words(at, name, force, along) {
-        return `at ${at} push ${name} ${force.map(f => round(f, 1)).join(" ")} ${Number($("e-seconds").value)} ${along ?? ""}`.trim();
+        return `at ${at} push ${name} ${force.map(f => round(f, 0)).join(" ")} ${Number($("e-seconds").value)} ${along ?? ""}`.trim();
     }
 
     // at the moment that is shown

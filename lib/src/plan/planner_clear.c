@@ -17,7 +17,8 @@
 #define MOST_CREDIT 16.0   // work that is not done is not owed
 #define KEPT_TIME 0.2      // between moments that are kept (s): longer than the beginning of a lift
 #define WAIT_FOR_MORE 0.36 // what is near later than this may go on beyond what is known (s)
-#define BESIDE 0.2         // a change is looked at for so long after what was near (s)
+#define BESIDE 0.2         // a lift is looked at for so long after what was near (s) ...
+#define AFTER_WAY 0.5      // ... and a stroke played in another way (s)
 
 // lifts; chosen
 #define LIFT 0.08         // their length in these steps (m) ...
@@ -31,11 +32,11 @@
     0.012 // changes begin after now (s); more than the longest period of advance, 10 ms
 
 // strokes that make way; chosen
-#define CHANGEABLE 0.14 // a stroke nearer than this is left as it is (s)
-#define AT_TOUCH 0.03   // what is near so long after a touch is near at the touch (s)
-#define SAME_PLACE 0.25 // spots are moved away from tips so near (m)
-#define LEAST_SIDE 0.01 // with less each hand goes to its own side (m)
-#define BOTH_ROOM 0.12  // between strokes of the hand that takes one over (s)
+#define CHANGEABLE 0.14  // a stroke nearer than this is left as it is (s)
+#define AT_TOUCH 0.03    // what is near so long after a touch is near at the touch (s)
+#define SAME_PLACE 0.25  // spots are moved away from tips so near (m)
+#define LEAST_SIDE 0.01  // with less each hand goes to its own side (m)
+#define PLANNING_WORK 25 // to plan a trial, in postures: 30 us, measured
 #define LIFT_TRIES (LIFTS * WAYS)
 
 /// What is tried with a stroke, in this order.
@@ -51,7 +52,6 @@ static himc_hand other_hand(himc_hand hand)
 static void try_nothing(planner_clear *c)
 {
     c->lift.end = 0;
-    c->trial[HIMC_LEFT].on = c->trial[HIMC_RIGHT].on = false;
     c->way.touch = -HUGE_VAL;
 }
 
@@ -70,7 +70,7 @@ static void walk_anew(himc_planner *planner)
 
 void himc_planner_changed(himc_planner *planner, double t)
 {
-    if (t < planner->clear.walk.t - fmax(planner->clear.walk.after, 0))
+    if (t < planner->clear.walk.t - fmax(planner->clear.walk.after, 0) && !planner->clear.planning)
         walk_anew(planner);
 }
 
@@ -174,55 +174,11 @@ static double side_of(const himc_planner *planner, himc_hand hand, const timed_s
     return copysign(1, side);
 }
 
-/// A copy of the hand's plan that ends before its stroke `k`, where it can still be changed.
-static planner_trial *begin_trial(himc_planner *planner, himc_hand hand, int k)
+/// Whether the other hand may be asked to play the stroke.
+static bool may_pass_on(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
-    const planner_hand *h = &planner->hand[hand];
-    planner_trial *trial = &planner->clear.trial[hand];
-    double t = planner->now + PLANNER_AHEAD;
-    const timed_stroke *before = k > 0 ? &h->planned[k - 1] : NULL;
-    if (before && !before->separated)
-        t = fmax(t, himc_goal_end(&before->goal));
-    trial->plan = h->plan;
-    himc_hand_cut(&trial->plan, t);
-    if (before)
-        trial->plan.last = before->goal;
-    trial->on = true;
-    trial->strikes = false;
-    return trial;
-}
-
-static bool strike_trial(planner_trial *trial, const timed_stroke *s, himc_vec3 spot, bool waits)
-{
-    himc_goal goal = s->goal;
-    goal.gesture = s->written.gesture;
-    goal.spot = spot;
-    if (waits) {
-        himc_hand_wait(&trial->plan, trial->plan.end, true);
-        if (trial->plan.end + himc_hand_time(&trial->plan, &goal) > goal.time)
-            return false;
-    }
-    trial->strikes = himc_hand_strike(&trial->plan, &goal);
-    trial->spot = spot;
-    trial->touch = goal.time;
-    return trial->strikes;
-}
-
-/// The other hand plays the stroke, its own hand waits.
-static bool try_other(himc_planner *planner, himc_hand hand, const timed_stroke *s)
-{
-    himc_hand other = other_hand(hand);
-    const planner_hand *h = &planner->hand[other];
-    double t = s->goal.time;
-    int next = next_planned(h, t);
-    bool room = (next == h->planned_count || h->planned[next].goal.time > t + BOTH_ROOM) &&
-                (next == 0 || h->planned[next - 1].goal.time < t - BOTH_ROOM);
-    if (s->reassigned || s->index < 0 || !room || planner->clear.least.gap >= 0 ||
-        !himc_planner_reaches(planner, other, &s->written))
-        return false;
-    planner_trial *own = begin_trial(planner, hand, next_planned(&planner->hand[hand], t - 1e-9));
-    himc_hand_wait(&own->plan, planner->clear.walk.t, true);
-    return strike_trial(begin_trial(planner, other, next), s, s->written.spot, false);
+    return !s->reassigned && planner->clear.least.gap < 0 &&
+           himc_planner_reaches(planner, other_hand(hand), &s->written);
 }
 
 /// The k-th way for the hand's stroke; false if it cannot be tried, or has been.
@@ -232,31 +188,30 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
     const timed_stroke *s = yielding(planner, &c->plain, hand);
     if (!s)
         return false;
-    const planner_hand *h = &planner->hand[hand];
-    c->way = stroke_way[k];
-    c->way.hand = hand;
-    c->way.touch = s->written.time;
-    c->way.tried = k + 1;
-    c->way.aside *= side_of(planner, hand, s);
-    bool aside = c->way.aside != 0, known = h->way.touch == c->way.touch;
-    if ((known && k < h->way.tried) || !(aside || c->way.waits || c->way.other))
+    planner_way way = stroke_way[k];
+    const planner_way *tried = &planner->hand[hand].way;
+    way.hand = hand;
+    way.touch = s->written.time;
+    way.tried = k + 1;
+    way.aside *= side_of(planner, hand, s);
+    if ((tried->touch == way.touch && k < tried->tried) ||
+        !(way.aside != 0 || way.waits || (way.other && may_pass_on(planner, hand, s))))
         return false;
-    if (c->way.other)
-        return try_other(planner, hand, s);
-    himc_vec3 spot = himc_planner_aside(planner, s, c->way.aside);
-    return strike_trial(begin_trial(planner, hand, (int)(s - h->planned)), s, spot, c->way.waits);
+    c->way = way;
+    return true;
 }
 
-/// First the lifts of either hand, then the ways of a stroke of either hand.
+/// First the lifts of either hand, then the ways of a stroke of either hand, the other hand last.
 static bool make_candidate(himc_planner *planner)
 {
     planner_clear *c = &planner->clear;
-    int k = c->candidate, way = k - 2 * LIFT_TRIES;
+    int k = c->candidate, way = k - 2 * LIFT_TRIES, kept = STROKE_WAYS - 1;
     himc_hand upper = upper_hand(planner, &c->plain), later = later_hand(planner, &c->plain);
     try_nothing(c);
     if (way < 0)
         return make_lift(planner, k < LIFT_TRIES ? upper : other_hand(upper), k % LIFT_TRIES);
-    return make_way(planner, way < STROKE_WAYS ? later : other_hand(later), way % STROKE_WAYS);
+    bool first = way < 2 * kept ? way < kept : way == 2 * kept;
+    return make_way(planner, first ? later : other_hand(later), way < 2 * kept ? way % kept : kept);
 }
 
 /// Whether it is worth while to try the next candidate. A lift that would come too late if more were
@@ -317,10 +272,8 @@ static bool end_search(himc_planner *planner)
     if (c->least.gap < 0)
         say_meet(planner);
     c->walk.near = himc_rehearsal_begin(0).near;
-    if (c->best_way.touch > -HUGE_VAL) {
-        planner->hand[c->best_way.hand].way = c->best_way;
+    if (c->best_way.touch > -HUGE_VAL)
         return true;
-    }
     if (lift_now(planner))
         walk_from(c, c->kept[1]);
     return false;
@@ -346,17 +299,25 @@ static int try_next(himc_planner *planner)
         c->candidate++;
         return 1;
     }
-    c->trial_walk =
-        c->lift.end > 0 ? c->kept[1] : himc_rehearsal_begin(planner->now + PLANNER_AHEAD);
-    return 2;
+    bool lifts = c->lift.end > 0;
+    c->trial_walk = lifts ? c->kept[1] : himc_rehearsal_begin(planner->now + PLANNER_AHEAD);
+    return lifts ? 2 : PLANNING_WORK;
+}
+
+/// Both plans are known so far (s).
+static double known_to(const planner_hand *hand)
+{
+    return fmin(hand[HIMC_LEFT].plan.end, hand[HIMC_RIGHT].plan.end);
 }
 
 static int try_on(himc_planner *planner)
 {
     planner_clear *c = &planner->clear;
     planner_rehearsal *walk = &c->trial_walk;
-    double end = fmin(c->plain.to + BESIDE, c->walk.t);
-    int work = himc_rehearsal_step(planner, walk, &c->lift, c->trial, c->searched);
+    bool lifts = c->lift.end > 0;
+    const planner_hand *hand = lifts ? planner->hand : c->with_way;
+    double end = fmin(c->plain.to + (lifts ? BESIDE : AFTER_WAY), known_to(hand));
+    int work = himc_rehearsal_step(&planner->config, walk, &c->lift, hand, c->searched);
     if (walk->t >= end || !himc_rehearsal_is_better(&walk->near, &c->least))
         judge(c);
     return work;
@@ -368,8 +329,7 @@ static int walk_on(himc_planner *planner)
     planner_clear *c = &planner->clear;
     if (c->walk.t < planner->now)
         walk_anew(planner);
-    bool over =
-        c->walk.t >= fmin(planner->hand[HIMC_LEFT].plan.end, planner->hand[HIMC_RIGHT].plan.end);
+    bool over = c->walk.t >= known_to(planner->hand);
     bool near = c->walk.near.lack > 0;
     bool late = over && c->walk.near.from < planner->now + WAIT_FOR_MORE;
     if (near && (late || c->walk.t > c->walk.near.to + BESIDE)) {
@@ -382,19 +342,19 @@ static int walk_on(himc_planner *planner)
         c->kept[1] = c->kept[0];
         c->kept[0] = c->walk;
     }
-    return himc_rehearsal_step(planner, &c->walk, &c->lift, c->trial, c->searched);
+    return himc_rehearsal_step(&planner->config, &c->walk, &c->lift, planner->hand, c->searched);
 }
 
-bool himc_planner_search(himc_planner *planner, double work)
+planner_wish himc_planner_search(himc_planner *planner, double work)
 {
     planner_clear *c = &planner->clear;
     if (!planner->config.rehearse)
-        return false;
+        return PLANNER_NO_WISH;
     c->credit = fmin(c->credit + work, MOST_CREDIT);
     while (c->credit > 0) {
-        bool ends = c->searching && !c->trying && !goes_on(planner);
+        bool ends = c->searching && !c->trying && !goes_on(planner), begins = !c->trying;
         if (ends && end_search(planner))
-            return true;
+            return PLANNER_MAKE;
         int done = !c->searching ? walk_on(planner)
                    : c->trying   ? try_on(planner)
                                  : try_next(planner);
@@ -402,8 +362,10 @@ bool himc_planner_search(himc_planner *planner, double work)
             c->credit = 0;
         c->credit -= done;
         c->work += done;
+        if (begins && c->trying && c->way.touch > -HUGE_VAL)
+            return PLANNER_TRY;
     }
-    return false;
+    return PLANNER_NO_WISH;
 }
 
 void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t)

@@ -18,7 +18,7 @@
 #include "plan/bounce.h"
 #include "base/format.h"
 
-#include <stdio.h>
+#include <string.h>
 
 // when a stroke is planned; chosen: a player cannot take back the second half of a fall, and
 // prepares no stroke more than a slow bar ahead
@@ -29,9 +29,8 @@
 
 // the measured touch against the planned one; chosen: a tip bounces once within 0.12 s, and strokes
 // are rarely nearer than 0.1 s
-#define EARLY_TOUCH 0.03  // a touch may come so much before its time (s)
-#define CURRENT_TIME 0.05 // a stroke is the current one until so much after its time (s)
-#define BOUNCE_TIME 0.12  // a rise so soon after a touch is its rebound (s)
+#define EARLY_TOUCH 0.03 // a touch may come so much before its time (s)
+#define BOUNCE_TIME 0.12 // a rise so soon after a touch is its rebound (s)
 
 // strokes that are reported as smaller; chosen: such a stroke looks and sounds another
 #define SMALL_SHARE 0.6  // of the written height
@@ -264,7 +263,7 @@ static bool is_settled(const himc_planner *planner, const timed_stroke *s)
 
 static void settle(himc_planner *planner, const timed_stroke *s)
 {
-    if (s->index >= 0)
+    if (s->index >= 0 && !planner->clear.planning)
         himc_planner_score_settle(&planner->score, s->stroke.hand, s->index, s->round);
 }
 
@@ -587,14 +586,36 @@ void himc_planner_replan(himc_planner *planner, double t)
     }
 }
 
-void himc_planner_think(himc_planner *planner, double work)
+static void plan_way(himc_planner *planner, const planner_way *way)
 {
     double t = planner->now + PLANNER_AHEAD;
-    if (!himc_planner_search(planner, work))
-        return;
-    himc_hand hand = planner->clear.best_way.hand;
-    himc_planner_cut(planner, hand, t);
-    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    planner->hand[way->hand].way = *way;
+    himc_planner_cut(planner, way->hand, t);
+    himc_planner_extend(planner, way->hand, t + PLANNER_HORIZON);
+}
+
+/// The hands as they would be planned with `clear.way`; nothing else changes.
+static void try_way(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    planner_score score = planner->score;
+    memcpy(c->own, planner->hand, sizeof c->own);
+    c->planning = planner->notes.silent = true;
+    plan_way(planner, &c->way);
+    c->planning = planner->notes.silent = false;
+    memcpy(c->with_way, planner->hand, sizeof c->own);
+    memcpy(planner->hand, c->own, sizeof c->own);
+    planner->score = score;
+}
+
+void himc_planner_think(himc_planner *planner, double work)
+{
+    for (;; work = 0)
+        switch (himc_planner_search(planner, work)) {
+        case PLANNER_TRY: try_way(planner); break;
+        case PLANNER_MAKE: plan_way(planner, &planner->clear.best_way); break;
+        default: return;
+        }
 }
 
 long himc_planner_work(const himc_planner *planner)
@@ -749,7 +770,7 @@ bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand)
 static void drop_past(planner_hand *h, double now)
 {
     int past = 0;
-    while (past + 1 < h->planned_count && h->planned[past].goal.time + CURRENT_TIME < now)
+    while (past + 1 < h->planned_count && h->planned[past].goal.time + PLANNER_CURRENT < now)
         past++;
     for (int i = past; past > 0 && i < h->planned_count; i++)
         h->planned[i - past] = h->planned[i];
@@ -813,12 +834,6 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     himc_planner_lift_again(planner, hand, from);
 }
 
-/// A stroke is the current one until this time, `next` the time of the one after it.
-static double current_until(const timed_stroke *s, double next)
-{
-    return s->goal.time + fmin(CURRENT_TIME, 0.5 * (next - s->goal.time));
-}
-
 static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
 {
     *stroke = s->stroke;
@@ -834,11 +849,8 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                           himc_stroke *stroke, int *drum, double *contact_time)
 {
     const planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < h->planned_count; i++) {
-        const timed_stroke *s = &h->planned[i];
-        double next = i + 1 < h->planned_count ? s[1].goal.time : HUGE_VAL;
-        if (t > current_until(s, next))
-            continue;
+    const timed_stroke *s = himc_planner_current_planned(h, t);
+    if (s) {
         if (stroke)
             read_stroke(planner, s, stroke);
         *drum = s->drum;

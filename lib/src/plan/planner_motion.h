@@ -24,6 +24,10 @@
 /// than the longest period of advance, 10 ms.
 #define PLANNER_AHEAD 0.03
 
+/// A stroke is the current one until so much after its time (s); chosen: strokes are rarely nearer than
+/// 0.1 s.
+#define PLANNER_CURRENT 0.05
+
 /// Nothing is struck outside this share of a head's radius; chosen: a mallet that does not touch the
 /// rim of a usual head.
 #define PLANNER_STRUCK 0.97
@@ -55,23 +59,6 @@ typedef struct planner_way {
     int tried;    ///< so many ways
 } planner_way;
 
-/// The search; owned by planner_clear.c.
-typedef struct planner_clear {
-    double credit;             ///< work that has been paid for
-    long work;                 ///< done so far
-    planner_rehearsal walk;    ///< of the plans
-    planner_rehearsal kept[2]; ///< earlier moments of it, the later one first
-    double searched;           ///< ways past what is near before this have been tried (s)
-    bool searching;
-    int candidate;          ///< number of the one that is tried
-    near_time plain, least; ///< without a change, and of the best one so far
-    bool trying;            ///< ... walks
-    planner_rehearsal trial_walk;
-    planner_trial trial[HIMC_HANDS];
-    planner_lift lift, best_lift;
-    planner_way way, best_way; ///< touch -infinity: none
-} planner_clear;
-
 typedef struct planner_hand {
     timed_stroke waiting[PLANNER_WAITING]; ///< hits and reassigned strokes, sorted by time
     int waiting_count;
@@ -84,6 +71,25 @@ typedef struct planner_hand {
     planner_way way;   ///< found for one of its strokes
     planner_lift lift; ///< found for one of its strokes
 } planner_hand;
+
+/// The search; owned by planner_clear.c.
+typedef struct planner_clear {
+    double credit;             ///< work that has been paid for
+    long work;                 ///< done so far
+    planner_rehearsal walk;    ///< of the plans
+    planner_rehearsal kept[2]; ///< earlier moments of it, the later one first
+    double searched;           ///< ways past what is near before this have been tried (s)
+    bool searching;
+    int candidate;          ///< number of the one that is tried
+    near_time plain, least; ///< without a change, and of the best one so far
+    bool trying;            ///< ... walks
+    planner_rehearsal trial_walk;
+    planner_lift lift, best_lift;
+    planner_way way, best_way;         ///< touch -infinity: none
+    bool planning;                     ///< the planner's hands are those of a trial ...
+    planner_hand own[HIMC_HANDS];      ///< ... and these are its own
+    planner_hand with_way[HIMC_HANDS]; ///< as planned with `way`
+} planner_clear;
 
 struct himc_planner {
     himc_planner_config config;
@@ -101,6 +107,18 @@ struct himc_planner {
     double now; ///< of the last advance (s)
     bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
 };
+
+/// The planned stroke that is the current one at t, as himc_planner_current has it, or NULL. HIMC_RT.
+static inline const timed_stroke *himc_planner_current_planned(const planner_hand *h, double t)
+{
+    for (int i = 0; i < h->planned_count; i++) {
+        const timed_stroke *s = &h->planned[i];
+        double next = i + 1 < h->planned_count ? s[1].goal.time : HUGE_VAL;
+        if (t <= s->goal.time + fmin(PLANNER_CURRENT, 0.5 * (next - s->goal.time)))
+            return s;
+    }
+    return NULL;
+}
 
 /// The tip's position when it touches a head at (x, y) (m). HIMC_RT.
 static inline himc_vec3 himc_planner_tip_at(const himc_planner *p, const himc_head_frame *head,
@@ -148,9 +166,15 @@ HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *st
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 /// planner_clear.c: the plan of a hand is another one from t (s) on.
 HIMC_RT void himc_planner_changed(himc_planner *planner, double t);
+/// What the search needs from planner_motion.c.
+typedef enum planner_wish {
+    PLANNER_NO_WISH,
+    PLANNER_TRY,  ///< plan a trial with `clear.way`
+    PLANNER_MAKE, ///< plan the hand of `clear.best_way` again, in that way
+} planner_wish;
 /// Rehearses what is planned, for as much work, and lifts a hand over the other where they would
-/// meet. True if the stroke of `clear.best_way` is to be planned again, in that way.
-HIMC_RT bool himc_planner_search(himc_planner *planner, double work);
+/// meet, until it is done or wishes something.
+HIMC_RT planner_wish himc_planner_search(himc_planner *planner, double work);
 /// The hand's plan, made anew from t (s) on, keeps the lift found for its next stroke.
 HIMC_RT void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t);
 /// Time of a waiting stroke (s): a reassigned one keeps its beat, a hit its time.

@@ -27,7 +27,7 @@ static void put(planner_notes *notes, bool minor, const char *format, va_list ar
 
 void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
 {
-    if (notes->said[kind])
+    if (notes->said[kind] || notes->silent)
         return;
     notes->said[kind] = true;
     va_list args;
@@ -39,8 +39,8 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
 
 void himc_planner_notes_count(planner_notes *notes, planner_kind kind)
 {
-    notes->strokes[kind]++;
-    notes->given_up += kind == PLANNER_GIVEN_UP;
+    notes->strokes[kind] += !notes->silent;
+    notes->given_up += kind == PLANNER_GIVEN_UP && !notes->silent;
 }
 
 void himc_planner_notes_begin(planner_notes *notes)

@@ -21,6 +21,7 @@ typedef enum planner_kind {
 typedef struct planner_notes {
     himc_planner_note line[PLANNER_NOTES]; ///< a ring
     int first, count, lost;
+    bool silent;                ///< nothing is said or counted
     bool said[PLANNER_KINDS];   ///< since play
     int strokes[PLANNER_KINDS]; ///< counted since play
     int given_up;               ///< strokes given up since himc_planner_notes_given_up

@@ -12,10 +12,12 @@
 #define NEAR_GAP 0.008     // hands nearer than this are kept apart (m) ...
 #define CROSSED_GAP 0.05   // ... and crossed ones nearer by this
 #define CROSSED 0.02       // one tip is so far on the other's side (m)
-#define OVERREACH 0.04     // no motion so far out of reach of the usual posture (m)
-#define FOLDED 0.25        // no way of a tip so near to its shoulder (m): the arm would whip
-#define UNREACHED 0.1      // and no stroke so far (m): the arm would not find back
-#define PLACE_AHEAD 1.2    // the trunk turns to a touch within this time (s)
+#define UNSURE 0.006     // so early or late a stick may pass (s): the rebound is only predicted ...
+#define MOST_UNSURE 0.02 // ... so that the gap may be less by this (m)
+#define OVERREACH 0.04   // no motion so far out of reach of the usual posture (m)
+#define FOLDED 0.25      // no way of a tip so near to its shoulder (m): the arm would whip
+#define UNREACHED 0.1    // and no stroke so far (m): the arm would not find back
+#define PLACE_AHEAD 1.2  // the trunk turns to a touch within this time (s)
 
 planner_rehearsal himc_rehearsal_begin(double t)
 {
@@ -39,29 +41,22 @@ static double lifted(const planner_lift *l, double t)
 }
 
 /// Where the hand touches next, if that is soon; else its tip.
-static himc_vec3 next_place(const planner_hand *h, const planner_trial *trial, double t,
-                            himc_vec3 tip)
+static himc_vec3 next_place(const planner_hand *h, double t, himc_vec3 tip)
 {
-    if (trial->on)
-        return trial->strikes && trial->touch >= t && trial->touch < t + PLACE_AHEAD ? trial->spot
-                                                                                     : tip;
-    for (int i = 0; i < h->planned_count; i++)
-        if (h->planned[i].goal.time >= t && h->planned[i].goal.time < t + PLACE_AHEAD)
-            return h->planned[i].goal.spot;
-    return tip;
+    const timed_stroke *s = himc_planner_current_planned(h, t);
+    bool soon = s && s->goal.time >= t && s->goal.time < t + PLACE_AHEAD;
+    return soon ? s->goal.spot : tip;
 }
 
-static himc_moment moment_at(const himc_planner *planner, const planner_rehearsal *walk,
-                             const planner_lift *lift, const planner_trial trial[HIMC_HANDS])
+static himc_moment moment_at(const planner_rehearsal *walk, const planner_lift *lift,
+                             const planner_hand *hand)
 {
     himc_moment m = {.time = walk->t, .after = walk->after};
     for (int i = 0; i < HIMC_HANDS; i++) {
-        const planner_hand *h = &planner->hand[i];
-        const himc_hand_plan *plan = trial[i].on ? &trial[i].plan : &h->plan;
-        m.tip[i] = himc_hand_at(plan, walk->t).x;
+        m.tip[i] = himc_hand_at(&hand[i].plan, walk->t).x;
         if (lift->end > 0 && (int)lift->hand == i)
             m.tip[i] = himc_vec3_madd(m.tip[i], lifted(lift, walk->t), lift->way);
-        m.place[i] = next_place(h, &trial[i], walk->t, m.tip[i]);
+        m.place[i] = next_place(&hand[i], walk->t, m.tip[i]);
     }
     return m;
 }
@@ -91,13 +86,21 @@ static void note(near_time *n, double t, double after, double lack, int order)
     n->to = t;
 }
 
-int himc_rehearsal_step(const himc_planner *planner, planner_rehearsal *walk,
-                        const planner_lift *lift, const planner_trial trial[HIMC_HANDS],
-                        double ignored)
+/// Of the tips past each other, from above (m/s).
+static double speed_past(const planner_hand *hand, double t)
+{
+    himc_vec3 v = himc_vec3_sub(himc_hand_at(&hand[HIMC_LEFT].plan, t).v,
+                                himc_hand_at(&hand[HIMC_RIGHT].plan, t).v);
+    return hypot(v.x, v.y);
+}
+
+int himc_rehearsal_step(const himc_planner_config *config, planner_rehearsal *walk,
+                        const planner_lift *lift, const planner_hand *hand, double ignored)
 {
     int order;
-    himc_moment at = moment_at(planner, walk, lift, trial);
-    himc_clearance clear = planner->config.rehearse(planner->config.motion, &at, &walk->state);
+    himc_moment at = moment_at(walk, lift, hand);
+    himc_clearance clear = config->rehearse(config->motion, &at, &walk->state);
+    clear.sticks -= fmin(MOST_UNSURE, UNSURE * speed_past(hand, at.time));
     double gap = fmin(fmin(clear.body, clear.sticks), UNREACHED - clear.beyond);
     double lack = lack_of(&clear, &at, &order);
     walk->after = clear.sticks < PASSING_GAP ? PASSING_STEP : STEP;

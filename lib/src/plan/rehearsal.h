@@ -3,8 +3,9 @@
 #ifndef HIMC_REHEARSAL_H
 #define HIMC_REHEARSAL_H
 
-#include "plan/hand.h"
 #include "plan/planner.h"
+
+struct planner_hand;
 
 /// A time in which the hands come near.
 typedef struct near_time {
@@ -23,15 +24,6 @@ typedef struct planner_lift {
     himc_vec3 way;
 } planner_lift;
 
-/// What a hand tries in place of its plan.
-typedef struct planner_trial {
-    bool on;
-    himc_hand_plan plan;
-    bool strikes; ///< it strikes `spot` at `touch` (s)
-    himc_vec3 spot;
-    double touch;
-} planner_trial;
-
 /// A walk through both plans.
 typedef struct planner_rehearsal {
     double t;     ///< the next moment (s) ...
@@ -44,9 +36,10 @@ typedef struct planner_rehearsal {
 /// A walk that begins at t (s).
 planner_rehearsal himc_rehearsal_begin(double t);
 
-/// One moment of the walk; what is near before `ignored` (s) is not noted. Returns the work.
-HIMC_RT int himc_rehearsal_step(const himc_planner *planner, planner_rehearsal *walk,
-                                const planner_lift *lift, const planner_trial trial[HIMC_HANDS],
+/// One moment of the walk through the plans of both hands and a lift; what is near before `ignored` (s)
+/// is not noted. Returns the work.
+HIMC_RT int himc_rehearsal_step(const himc_planner_config *config, planner_rehearsal *walk,
+                                const planner_lift *lift, const struct planner_hand *hand,
                                 double ignored);
 
 /// True if `a` is the better way: nothing meets, then less is lacking.
