@@ -16,16 +16,24 @@ build() { # build NAME OPTION...
 mkdir -p "$dir"
 check test_program_builds build one
 check test_program_with_instances_builds build many -DPD_MULTI=ON
+check test_program_without_a_performer_builds build drum -DHIMC_PERFORMER=OFF
 thread=-fsanitize=thread
 check test_program_for_the_thread_sanitizer_builds build threads -DPD_MULTI=ON -DCMAKE_C_FLAGS=$thread -DCMAKE_CXX_FLAGS=$thread
 check test_our_symbols_are_prefixed [ -z "$(nm -g --defined-only "$dir"/one/himc/libhimc*.a | awk 'NF == 3 { print $3 }' |
     grep -vE '^(himc_|membrane_tilde_setup$|_Z.*10himc_eigen|_ZT|DW\.ref\.)')" ]
 cd tests/pd || exit 1
-pd -nrt -nogui -stderr -noaudio -nomidi -r 48000 -batch -path "$here/externals/himc" -open score.pd 2>&1 </dev/null |
-    grep '^strike: ' >"$dir/pd.txt"
-"$dir/one/embed" score.pd 4 2>/dev/null | grep '^strike: ' >"$dir/one.txt"
+play() { # play COMMAND...: what it prints of strikes and levels
+    "$@" 2>&1 </dev/null | grep '^strike: '
+}
+pd="pd -nrt -nogui -stderr -noaudio -nomidi -r 48000 -batch -path $here/externals/himc -open"
+play $pd score.pd >"$dir/pd.txt"
+play "$dir/one/embed" score.pd 4 >"$dir/one.txt"
 check test_pd_strikes_three_times [ "$(grep -c '^strike: strike' "$dir/pd.txt")" = 3 ]
 check test_program_says_what_pd_says cmp "$dir/pd.txt" "$dir/one.txt"
+play $pd drum-alone.pd >"$dir/pd-drum.txt"
+play "$dir/drum/embed" drum-alone.pd 1 >"$dir/drum.txt"
+check test_drum_sounds_in_pd [ "$(grep -c 'strike 0.1 \|level: [3-9]' "$dir/pd-drum.txt")" -gt 10 ]
+check test_drum_without_a_performer_sounds_as_in_pd cmp "$dir/pd-drum.txt" "$dir/drum.txt"
 "$dir/many/embed" score.pd 4 4 2>/dev/null >"$dir/many.txt"
 for i in 0 1 2 3; do
     awk -v i=$i '/^instance/ { now = $2 } now == i && /^strike: /' "$dir/many.txt" >"$dir/instance.txt"
