@@ -3,8 +3,8 @@
 /// Poses are joint rotations at the task rate; where the segments are follows from them and from
 /// the body's measures, which are taken from the first pose and again when they change. Heads are
 /// looked at 33 times a second, as over OSC, while they move; with velocity, frequency and decay of
-/// each mode a reader has their motion in between. The performance counts its time from 0 again after
-/// `reset`; the recording's goes on.
+/// each mode a reader has their motion in between. The performance counts its time from 0 again
+/// after `reset`; the recording's goes on.
 #include "scene_record.h"
 #include "drum/drum_performer.h"
 #include "drum/membrane_probe.h"

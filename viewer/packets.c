@@ -1,9 +1,9 @@
 /// packets.c: packets, bundles, messages.
 ///
 /// Bundles are split here (OSC 1.0: "#bundle", a time tag, then size and element in turn) and liblo
-/// decodes the messages. Messages act when they arrive; the time tag goes with them, so that the page can
-/// put in step what one sender tells of one moment (pose and sound). Invariant: the time for a
-/// packet is at most proportional to its length, whatever it contains.
+/// decodes the messages. Messages act when they arrive; the time tag goes with them, so that the
+/// page can put in step what one sender tells of one moment (pose and sound). Invariant: the time
+/// for a packet is at most proportional to its length, whatever it contains.
 #include "packets.h"
 #include "addresses.h"
 

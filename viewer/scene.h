@@ -26,8 +26,8 @@ enum {
     SCENE_NAME = 32      ///< longest drum's name with its zero
 };
 
-/// Two times of a message (s, wall clock): here, and the sender's in the time tag of its bundle. Without
-/// a tag the second is the first.
+/// Two times of a message (s, wall clock): here, and the sender's in the time tag of its bundle.
+/// Without a tag the second is the first.
 typedef struct scene_time {
     double now, told;
 } scene_time;

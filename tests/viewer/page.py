@@ -1059,6 +1059,7 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         assert browser.run(WORDS) == "stroke 11 right tenuto mf normal high"
         was = browser.run(time)
         # the place on the head is right before a frame has drawn the head where it is now
+        assert browser.wait("return !!viewer.editor.head('high')")
         high = browser.run(
             "const e = viewer.editor; e.head('high').matrixWorld.identity();"
             "return e.choose(e.chosen.strike), e.spot.position.z"
@@ -1075,6 +1076,9 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         undo_all()
         assert saved_score() == written and browser.run(time) == was
         assert abs(browser.run("return viewer.editor.chosen.time") - was) < 1e-9
+        browser.run("viewer.actions.loop(1000, 1400); viewer.playback.seek(1300); viewer.playback.play(true)")
+        assert browser.wait("return viewer.playback.at < 1290"), "the loop does not begin again"
+        browser.run("viewer.actions.unloop(); viewer.playback.play(false)")
         # beside the mark the cursor goes there, and nothing is moved
         browser.run(RETIME.replace("x(from", "40 + x(from"), 0.2)
         assert browser.run("return viewer.editor.piece.text.undo") == 0
@@ -1194,16 +1198,24 @@ def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
         after = browser.run(place)
         off = max(abs(b + w - a) for a, b, w in zip(after, before, way))
         assert off < 0.01, (words, before, after)
+        # the same ball again changes the same line
+        browser.run("viewer.playback.play(false)")
+        assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+        browser.run(DRAG, "spot", -12, 12)
+        heard(2)
+        assert browser.run("return viewer.editor.piece.text.statements.length") == 1
+        words = browser.run(WORDS)
+        assert words.startswith("nudge right 1.5 0.3 "), words
         # the nudge is chosen on the timeline, moved in time, and drawn further
         browser.run("viewer.playback.play(false); viewer.actions.pick(viewer.editor.piece.nudges[0])")
         browser.run(RETIME, -0.2)
-        heard(2)
+        heard(3)
         moved = browser.run(WORDS).split()
         assert abs(float(moved[2]) - 1.3) < 0.002 and moved[3:] == words.split()[3:], (words, moved)
         browser.run("viewer.playback.play(false)")
         assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
         browser.run(DRAG, "spot", 12, -12)
-        heard(3)
+        heard(4)
         further = browser.run(WORDS).split()
         assert further[:4] == moved[:4] and further[4:] != moved[4:], (moved, further)
         undo_all()

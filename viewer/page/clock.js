@@ -1,9 +1,9 @@
-// The clock of a live performer. Poses, heads, strikes and sound carry the sender's time of the moment
-// they tell of. The picture shows one moment: the one that is heard at the loudspeaker, so that both are
-// in step whatever each has waited for. While nothing sounds, the picture is as little late as the
+// The clock of a live performer. Poses, heads, strikes and sound carry the sender's time of what they
+// tell. The picture shows one moment: the one that is heard at the loudspeaker, so that both are in
+// step whatever each has waited for. While nothing sounds, the picture is as little late as the
 // intervals between poses allow. All times in milliseconds.
 const LONGEST_DELAY = 120, // of a silent picture; chosen: later than that looks late
-    LATEST = 600, // a sound that is later than the newest pose by more belongs to no picture; chosen: poses are kept longer
+    LATEST = 600, // a sound later than the newest pose by more has no picture; chosen: poses are kept longer
     SMOOTH = 100, // the picture follows the sound within; chosen: no jump is seen
     JUMP = 300, // further off than that it jumps; chosen
     WAITING = 512; // deeds that wait at most; chosen: a second of a flood

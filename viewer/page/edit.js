@@ -12,7 +12,7 @@ import { segments } from "./skeleton.js";
 import { handColor } from "./timeline.js";
 
 const $ = id => document.getElementById(id);
-const GRAB = 16, // a press this near takes a handle (pixels)
+const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger (pixels)
     PATH = [0.7, 0.4], // of a stick's path, before and after (s)
     STEP = 0.008, // between its points (s)
     STROKES = 1.5, // dots of strokes so near in time (s)
@@ -23,6 +23,7 @@ const GRAB = 16, // a press this near takes a handle (pixels)
     PUSHED = "#9cf29c", // the path of a segment that is pushed
     FAMILY = ["legato", "tenuto", "accent", "vertical-accent", "staccato"];
 const round = (v, digits = 4) => +v.toFixed(digits);
+const reach = e => GRAB[e.pointerType === "touch" ? 1 : 0];
 
 // 0 .. 1 .. 0 over a span, as the library's nudge
 const bump = s => (s <= 0 ? 0 : s * s * s * (10 + s * (-15 + 6 * s)));
@@ -249,11 +250,18 @@ export class Editor {
         return caster.ray;
     }
 
+    // the one of these that a press takes
+    grabbed(meshes, e) {
+        const near = meshes.filter(m => m.visible).map(mesh => ({ mesh, off: this.off(mesh.position, e) })),
+            least = near.reduce((a, b) => (b.off < a.off ? b : a), { off: reach(e) });
+        return least.mesh;
+    }
+
     press(e) {
         if (e.button || !this.piece.text || !this.piece.scene) return;
         const c = this.chosen,
             pushes = this.pushes.press(e),
-            handle = !pushes && [this.spot, this.top].find(h => h.visible && this.off(h.position, e) < GRAB);
+            handle = !pushes && this.grabbed([this.spot, this.top], e);
         if (pushes || (handle && (c.take || c.statement))) {
             this.drag = !pushes && { handle, begun: handle.position.clone() };
             if (!pushes) draw(this.ghost, c.points);
@@ -261,7 +269,7 @@ export class Editor {
         } else if (this.piece.text.take) {
             if (!this.grab(e)) return;
         } else {
-            const hit = this.dots.find(d => d.visible && this.off(d.position, e) < GRAB);
+            const hit = this.grabbed(this.dots, e);
             if (!hit) return;
             this.choose(hit.strike);
         }
@@ -272,7 +280,7 @@ export class Editor {
     // a point of a path of the take; false if none is near
     grab(e) {
         const at = (this.on.playback()?.at ?? 0) / 1000;
-        let best = { off: GRAB };
+        let best = { off: reach(e) };
         for (const hand of HANDS)
             for (const p of this.points(hand, at)) {
                 const off = this.off(p, e);
@@ -348,7 +356,8 @@ export class Editor {
             time = round(Piece.takeTime(c.time), 3),
             was = c.statement ? c.statement.words.split(" ").slice(4).map(Number) : [0, 0, 0],
             whole = way.toArray().map((v, i) => round(Math.min(0.5, Math.max(-0.5, v + was[i]))));
-        this.send(c.statement?.index ?? this.piece.text.count, `nudge ${c.hand} ${time} ${$("e-span").value} ${whole.join(" ")}`);
+        c.index = c.statement?.index ?? this.piece.text.count; // more drags change the same one
+        this.send(c.index, `nudge ${c.hand} ${time} ${$("e-span").value} ${whole.join(" ")}`);
     }
 
     // `to` is its new time (s)

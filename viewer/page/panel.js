@@ -298,7 +298,8 @@ export class Panel {
         const slider = $("timeline");
         slider.setAttribute("aria-valuemax", scene.end.toFixed(2));
         slider.setAttribute("aria-valuenow", time.toFixed(2));
-        slider.setAttribute("aria-valuetext", `${time.toFixed(1)} seconds`);
+        const mark = this.actions.when?.mark;
+        slider.setAttribute("aria-valuetext", `${time.toFixed(1)} seconds${mark ? `, chosen: ${mark.name}` : ""}`);
     }
 
     // --- a frame: the level (largest displacement of all heads, m; three decades), and the timeline

@@ -13,8 +13,8 @@ export const nuanceColor = {
     staccato: "#ffd76a",
 };
 const STRONGEST = 150, // tallest stroke (N); a forte stroke
-    NEAR = 6, // a click this near to a stroke jumps to it (pixels)
-    GRIP = [9, 20], // a press this near to a chosen stroke's mark takes hold of it, by mouse, by finger (pixels)
+    NEAR = [6, 14], // a click this near to a stroke jumps to it, by mouse, by finger (pixels)
+    GRIP = [9, 20], // a press this near to a chosen stroke's mark takes hold of it (pixels)
     YELLOW = "#ffd21f",
     SHORTEST = 100, // of a view (ms)
     BUCKETS = 400; // of the sound's outline, each second
@@ -54,6 +54,7 @@ function outline(buffer) {
     return out;
 }
 
+const finger = e => (e.pointerType === "touch" ? 1 : 0);
 const digits = ms => (ms < 100 ? 3 : ms < 1000 ? 2 : ms < 10000 ? 1 : 0);
 
 export class Timeline {
@@ -162,7 +163,7 @@ export class Timeline {
             i = before(list, at / 1000, s => s.time);
         return (
             [...this.actions.marks, list[i], list[i + 1]]
-                .filter(s => s && Math.abs(this.x(1000 * s.time) - this.x(at)) < NEAR)
+                .filter(s => s && Math.abs(this.x(1000 * s.time) - this.x(at)) < NEAR[finger(e)])
                 .sort((a, b) => Math.abs(1000 * a.time - at) - Math.abs(1000 * b.time - at))[0] ?? null
         );
     }
@@ -176,7 +177,7 @@ export class Timeline {
         return (
             !!mark &&
             e.clientY - box.top < low &&
-            Math.abs(this.x(mark.time) - (e.clientX - box.left)) < GRIP[e.pointerType === "touch" ? 1 : 0]
+            Math.abs(this.x(mark.time) - (e.clientX - box.left)) < GRIP[finger(e)]
         );
     }
 
