@@ -296,7 +296,7 @@ static double gap(void)
 static void test_a_patch_holds_for_a_blow(void)
 {
     remake();
-    place(&mallet[MEDIUM], SPOT, 4);
+    place(&mallet[MEDIUM], SPOT, 1);
     himc_contact_step(membrane, sticks, 1);
     double first = stick.patch;
     TEST_ASSERT_TRUE(stick.touching && first > 5e-3);
@@ -307,7 +307,7 @@ static void test_a_patch_holds_for_a_blow(void)
         TEST_ASSERT_TRUE(stick.residual_y != 0); // what the patch presses down swings on
         apart += !stick.touching;
     }
-    TEST_ASSERT_TRUE(apart > 0);
+    TEST_ASSERT_TRUE(apart > 1);
     himc_membrane_rest(membrane);
     stick.height = 0.005;
     stick.velocity = -1;

@@ -254,6 +254,15 @@ void himc_bank_state(const himc_bank *bank, int index, double *q, double *v)
     *v = s - bank->decay[index] * *q;
 }
 
+// an oscillator moves; for how long the bank has been at rest, some of it not run, makes no difference
+static void stir(himc_bank *bank, int index)
+{
+    if (bank->live == 0)
+        bank->age = bank->bounds_left = 0;
+    if (index >= bank->live)
+        bank->live = bank_round_up(index + 1);
+}
+
 void himc_bank_excite(himc_bank *bank, int index, double q, double v)
 {
     if (index >= bank->count)
@@ -263,8 +272,8 @@ void himc_bank_excite(himc_bank *bank, int index, double q, double v)
     bank->s[index] = v + bank->decay[index] * q;
     if (bank->p[index] == 0 && bank->s[index] == 0)
         himc_bank_wake(bank);
-    else if (index >= bank->live)
-        bank->live = bank_round_up(index + 1);
+    else
+        stir(bank, index);
     bank->forced = true;
 }
 
@@ -373,6 +382,27 @@ double himc_bank_read(himc_bank *bank, himc_readout *readout)
     readout->read_pass = bank->pass;
     readout->value = value;
     return value;
+}
+
+// the values of readouts that are alike, after a step of its own
+static void read_alike(himc_bank *bank, const himc_alike *alike)
+{
+    const bank_film *f = &bank->film;
+    const himc_readout *form = &alike->form;
+    double value[2][HIMC_BANK_ALIKE];
+    double by = f->on ? f->lead * film_slope(bank, form, 1) - audible(f) : 0;
+    for (int part = 0; part < 2; part++) {
+        int first = part * coupled(bank), end = part ? bank->live : coupled(bank);
+        const double *gain[HIMC_BANK_ALIKE];
+        for (int k = 0; k < HIMC_BANK_ALIKE; k++)
+            gain[k] = alike->gain[k] + first;
+        bank->loops->read_alike(form->p + first, form->s + first, form->film + first, part ? 0 : by,
+                                gain, bank->p + first, bank->s + first, end - first, value[part]);
+    }
+    for (int k = 0; k < HIMC_BANK_ALIKE; k++) {
+        alike->readout[k]->value = value[0][k] + value[1][k];
+        alike->readout[k]->read_pass = bank->pass;
+    }
 }
 
 double himc_bank_peek(const himc_bank *bank, const himc_readout *readout)
@@ -527,6 +557,14 @@ static void copy_ahead(himc_bank *bank, himc_readout *readout, int n, double *ou
     memcpy(out, readout->ahead + bank->at, sizeof *out * (size_t)n);
 }
 
+// its value after a step of its own
+static double read_single(himc_bank *bank, himc_readout *readout)
+{
+    if (readout->alike && readout->read_pass != bank->pass)
+        read_alike(bank, readout->alike);
+    return himc_bank_read(bank, readout);
+}
+
 void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int count,
                    double *const *out)
 {
@@ -541,7 +579,7 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
             if (bank->live == 0)
                 memset(out[k] + done, 0, sizeof **out * (size_t)run);
             else if (single)
-                out[k][done] = himc_bank_read(bank, readouts[k]);
+                out[k][done] = read_single(bank, readouts[k]);
             else
                 copy_ahead(bank, readouts[k], run, out[k] + done);
         }
@@ -577,8 +615,7 @@ void himc_bank_kick(himc_bank *bank, int index, double change)
     bank->s[index] += change;
     bank->bounds.swing += HIMC_BANK_MOST * fabs(change) * bank->q_per_p[index];
     bank->bounds.speed += HIMC_BANK_MOST * fabs(change);
-    if (index >= bank->live)
-        bank->live = bank_round_up(index + 1);
+    stir(bank, index);
 }
 
 void himc_bank_step_response(const himc_bank *bank, const himc_readout *readout, double *response)

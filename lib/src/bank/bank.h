@@ -70,7 +70,7 @@ typedef struct himc_readout {
 /// Readouts that see each oscillator in the same phase, louder or softer: the weights of a form, of
 /// each times its gains. What the film does not hold is computed once for all of them.
 typedef struct himc_alike {
-    himc_readout form;                      ///< its `p` and `s` alone
+    himc_readout form;                      ///< its weights alone
     double *gain[HIMC_BANK_ALIKE];          ///< owned by the caller (padded)
     himc_readout *readout[HIMC_BANK_ALIKE]; ///< borrowed
 } himc_alike;

@@ -48,6 +48,10 @@ typedef struct himc_bank_kernel {
     /// sum (rp p + rs s)
     double (*read)(const double *rp, const double *rs, const double *p, const double *s,
                    int length);
+    /// sum[k] = sum gain[k] ((rp + more by) p + rs s) for HIMC_BANK_ALIKE gains
+    void (*read_alike)(const double *rp, const double *rs, const double *more, double by,
+                       const double *const *gain, const double *p, const double *s, int length,
+                       double *sum);
     /// adds samples 1 .. n to `out`, n being 8, 16, 32 or HIMC_BANK_PASS
     void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
     /// The same to each of several, times its gain of each oscillator.

@@ -128,6 +128,23 @@ TARGET static double NAMED(read)(const double *rp, const double *rs, const doubl
     return NAMED(total)(sum);
 }
 
+TARGET static void NAMED(read_alike)(const double *rp, const double *rs, const double *more,
+                                     double by, const double *const *gain, const double *p,
+                                     const double *s, int length, double *sum)
+{
+    VEC part[HIMC_BANK_ALIKE][PARTS] = {{{0}}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++) {
+            int at = i + k * WIDTH;
+            VEC up = *(const VEC *)(rp + at) + *(const VEC *)(more + at) * by;
+            VEC u = up * *(const VEC *)(p + at) + *(const VEC *)(rs + at) * *(const VEC *)(s + at);
+            for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+                part[r][k] += *(const VEC *)(gain[r] + at) * u;
+        }
+    for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+        sum[r] = NAMED(total)(part[r]);
+}
+
 // A few oscillators at a time, which do not wait for each other, one part of the eight samples after
 // the other: so the sums of a whole pass stay in registers. They are added in pairs. `eights` is a
 // constant in each of the four calls.

@@ -197,13 +197,13 @@ void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
         return;
     }
     himc_bank_settle(from);
-    bank->age = from->age;
     bank->film.power = from->film.power;
     for (int i = 0; i < count && i < bank->count && i < from->count; i++) {
         double q, v;
         himc_bank_state(from, i, &q, &v);
         inherit(bank, i, q, v, from->mass[i], from->omega[i]);
     }
+    bank->age = from->age;
     himc_bank_find_film(bank);
 }
 

@@ -283,7 +283,8 @@ static bool within_reach(const himc_stick *stick, double h)
 static bool is_stiff(const himc_mallet_head *head)
 {
     double stiff = head->radius > 0 ? STIFF_PATCH : STIFF_POINT;
-    return head->stiffness * pow(0.001, head->exponent) > stiff;
+    double most = head->exponent >= 2 ? 1e-6 : 1; // of the power, which is asked for in each sample
+    return head->stiffness * most > stiff && head->stiffness * pow(0.001, head->exponent) > stiff;
 }
 
 // Bounds of a stick's coming n samples: its velocity and acceleration are downward all the time.

@@ -369,9 +369,39 @@ static void begin_contact(himc_drum *drum, const himc_stick *stick)
     himc_drum_keep_onset(drum, stick);
 }
 
+// samples made one by one that are not stored yet: ears take several together
+typedef struct singles {
+    int count;
+    double sound[HIMC_OUTPUTS][RUN_BLOCK], watched[RUN_BLOCK];
+} singles;
+
+static void store_singles(himc_drum *drum, singles *s)
+{
+    double *sound[HIMC_OUTPUTS];
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        sound[k] = s->sound[k];
+    if (s->count > 0)
+        store(drum, s->count, sound, drum->unwatched ? NULL : s->watched, false);
+    s->count = 0;
+}
+
+// adds one sample to them
+static void keep_single(himc_drum *drum, double pressing, singles *s)
+{
+    double *into[HIMC_OUTPUTS];
+    int at = s->count++;
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
+        into[k] = &s->sound[k][at];
+        *into[k] = himc_membrane_sound(drum->membrane, k);
+    }
+    s->watched[at] = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
+    add_noise(drum, 1, pressing, into);
+    drum->singles++;
+}
+
 // runs one sample with everything that may touch the head: `given` sticks and the drum's mallets
 static void step_once(himc_drum *drum, himc_stick **all, int given, double *const *forces,
-                      const outside *o)
+                      const outside *o, singles *made)
 {
     double force = outside_force(o, o->at);
     if (force != 0)
@@ -383,21 +413,18 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
         known[k] = all[k]->contacts;
     himc_contact_step(drum->membrane, all, count);
     for (int k = 0; k < count; k++) {
-        if (all[k]->contacts != known[k])
+        if (all[k]->contacts != known[k]) {
+            store_singles(drum, made); // an onset has the drum's time
             begin_contact(drum, all[k]);
+        }
         pressing += all[k]->force;
     }
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][o->at] = all[k]->force;
-    double sound[HIMC_OUTPUTS], *into[HIMC_OUTPUTS];
-    double watched = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
-    for (int k = 0; k < HIMC_OUTPUTS; k++) {
-        sound[k] = himc_membrane_sound(drum->membrane, k);
-        into[k] = &sound[k];
-    }
-    add_noise(drum, 1, pressing, into);
-    store(drum, 1, into, drum->unwatched ? NULL : &watched, false);
+    keep_single(drum, pressing, made);
+    if (count > given || drum->waiting_count > 0 || made->count == RUN_BLOCK)
+        store_singles(drum, made);
     himc_drum_follow_mallets(drum);
 }
 
@@ -406,6 +433,8 @@ void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
 {
     himc_stick *all[2 * HIMC_STICKS];
     outside o = {.n = n};
+    singles made;
+    made.count = 0;
     if (given)
         o.of = *given;
     for (int i = 0; i < count; i++)
@@ -417,13 +446,15 @@ void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
         int run = alone ? outside_quiet(drum, &o) : 0;
         run = himc_drum_until_launch(drum, run < RUN_BLOCK ? run : RUN_BLOCK);
         run = himc_contact_clear(drum->membrane, all, count, run);
-        if (run > 0)
+        if (run > 0) {
+            store_singles(drum, &made);
             run_clear(drum, run, all, count, forces, o.at);
-        else
-            step_once(drum, all, count, forces, &o);
-        drum->singles += run == 0;
+        } else {
+            step_once(drum, all, count, forces, &o, &made);
+        }
         o.at += run > 0 ? run : 1;
     }
+    store_singles(drum, &made);
 }
 
 uint64_t himc_drum_single_samples(const himc_drum *drum)

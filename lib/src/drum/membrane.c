@@ -27,7 +27,7 @@
 
 // arrays of a core: its own, what rays have in common, those of each output, patch, strike point
 #define ARRAYS \
-    (9 + 2 + 2 + HIMC_RAYS + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
+    (9 + 2 + 3 + HIMC_RAYS + PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + STRIKE_POINTS * 3)
 _Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
 #define ENERGY_ROUNDING 1e-12 // relative; chosen: below it an excess is rounding
 // relative; so a point moved to the rim is not outside it in single precision, in which a command
@@ -101,6 +101,7 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         c->outputs[i] = take_output(&memory, padded);
     c->rays.form = take_readout(&memory, padded);
+    c->rays.form.film = take(&memory, padded);
     for (int i = 0; i < HIMC_RAYS; i++)
         c->rays.gain[i] = take(&memory, padded);
     for (int i = 0; i < PATCHES; i++)
@@ -237,8 +238,9 @@ static void find_form(himc_membrane *m)
         pickup_weights w = himc_pickup_form(&mode);
         c->on_q[i] = w.displacement;
         c->on_v[i] = w.velocity;
+        c->on_force[i] = w.force;
     }
-    himc_bank_readout(c->bank, c->on_q, c->on_v, NULL, &c->rays.form);
+    himc_bank_readout(c->bank, c->on_q, c->on_v, c->on_force, &c->rays.form);
 }
 
 // outputs from `first` to `end`, but muted pickups; strike points hold responses to them and are
