@@ -328,20 +328,22 @@ static passage play_reference(soak *s)
     return r;
 }
 
-// in use by this program, and resident (bytes)
+// in use by this program; and resident: what it has written, without the code, which comes page by
+// page as it first runs (bytes)
 typedef struct memory {
     double used, resident;
 } memory;
 
 static memory measure_memory(void)
 {
-    long pages = 0, unused;
+    long pages = 0, files = 0, unused;
+    malloc_trim(0); // else free pages at the heap's end go back to the system now or later
     FILE *f = fopen("/proc/self/statm", "r");
-    TEST_ASSERT_TRUE(f && fscanf(f, "%ld %ld", &unused, &pages) == 2);
+    TEST_ASSERT_TRUE(f && fscanf(f, "%ld %ld %ld", &unused, &pages, &files) == 3);
     fclose(f);
     struct mallinfo2 heap = mallinfo2();
     return (memory){(double)(heap.uordblks + heap.hblkhd),
-                    (double)pages * (double)sysconf(_SC_PAGESIZE)};
+                    (double)(pages - files) * (double)sysconf(_SC_PAGESIZE)};
 }
 
 static void print_counts(const char *name, const strokes *c)
