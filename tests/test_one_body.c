@@ -3,6 +3,7 @@
 #include "session.h"
 
 #include "performance/performance_state.h"
+#include "plan/planner_motion.h"
 
 /// Postures that a tick of 4 ms may rehearse: 50 000 a second, what is left of the tick before, and one
 /// moment more.
@@ -19,15 +20,41 @@ typedef struct watched {
     himc_performance *p;
     double least; ///< (m)
     const himc_capsule_pair *pair;
-    double shell;                  ///< least gap of a forearm or hand from a drum's shell (m)
-    bool avoided;                  ///< elbows or wrists have been moved
-    long work;                     ///< of the planner so far ...
-    long most;                     ///< ... and in one tick, at most
-    long beside;                   ///< ... and in blocks near contacts ...
-    int busy;                      ///< ... of which there were so many
+    double shell; ///< least gap of a forearm, hand or stick from a drum's shell (m)
+    bool avoided; ///< elbows or wrists have been moved
+    long work;    ///< of the planner so far ...
+    long most;    ///< ... and in one tick, at most
+    long beside;  ///< ... and in blocks near contacts ...
+    int busy;     ///< ... of which there were so many
     double most_rate, most_torque; ///< of a joint, allowed (rad/s, N m)
     heard heard;
 } watched;
+
+/// True if the hand strikes the drum now, or nearly so: its stick may reach over the rim.
+static bool strikes(const watched *w, himc_hand hand, int drum)
+{
+    const planner_hand *h = &w->p->motion->planner->hand[hand];
+    double t = (double)himc_performance_time(w->p) / 48000;
+    for (int i = 0; i < h->planned_count; i++)
+        if (h->planned[i].drum == drum && fabs(h->planned[i].goal.time - t) < 0.25)
+            return true;
+    return false;
+}
+
+/// Gap of the hands' sticks, but their last 15 %, from the shells of drums that they do not strike (m).
+static double stick_gap(const watched *w, const himc_capsule *capsule)
+{
+    double least = INFINITY;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < w->p->drums.count; i++) {
+            himc_capsule stick = capsule[HIMC_LEFT_STICK + hand];
+            stick.b = himc_vec3_madd(stick.b, 0.15, himc_vec3_sub(stick.a, stick.b));
+            if (!strikes(w, (himc_hand)hand, i))
+                least =
+                    fmin(least, himc_capsule_shell(&stick, himc_drums_frame(&w->p->drums, i)).gap);
+        }
+    return least;
+}
 
 static void watch(void *user, const himc_motion_row *row)
 {
@@ -46,6 +73,7 @@ static void watch(void *user, const himc_motion_row *row)
             const himc_head_frame *head = himc_drums_frame(&w->p->drums, i);
             w->shell = fmin(w->shell, himc_capsule_shell(&capsule[part], head).gap);
         }
+    w->shell = fmin(w->shell, stick_gap(w, capsule));
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
         w->avoided = w->avoided || w->p->motion->avoidance.goal[i] != 0;
     long work = himc_planner_work(w->p->motion->planner);
