@@ -318,11 +318,11 @@ static void test_pushes_of_a_score_begin_at_their_beats(void)
     static const struct {
         const char *more;
         int count;
-        double at[6]; ///< (beats after `play`)
-    } cases[] = {{"", 3, {0, 2, 3.5}},
+        double at[6]; ///< (beats after `play`); a tick before its end the loop has its last one
+    } cases[] = {{"", 3, {0.1, 2, 3.5}},
                  {"seek 3;", 1, {0.5}},
                  {"seek 2;", 2, {0, 1.5}},
-                 {"loop 1;", 5, {0, 2, 3.5, 7, 9}},
+                 {"loop 1;", 6, {0.1, 2, 3.5, 6.995, 7.1, 9}},
                  {"clear;", 0, {0}}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[400];
@@ -330,7 +330,8 @@ static void test_pushes_of_a_score_begin_at_their_beats(void)
         snprintf(
             text, sizeof text,
             "drum kettle; tempo 240; at 3.5 push left-forearm 0 0 5 0.02; stroke 6 left legato p;"
-            "at 2 push left-forearm 0 0 5 0.02; at 0 push left-forearm 0 0 5 0.02; %s play;",
+            "at 2 push left-forearm 0 0 5 0.02; at 0.1 push left-forearm 0 0 5 0.02;"
+            "at 6.995 push left-forearm 0 0 5 0.02; %s play;",
             cases[i].more);
         write_text(text);
         session_do(p, "score " SCORE);
@@ -356,10 +357,10 @@ static void test_pushes_of_a_take_and_of_the_next_score_are_played_and_told(void
     TEST_ASSERT_EQUAL_INT(1, seen.count);
     TEST_ASSERT_DOUBLE_WITHIN(0.0041, 1.5, seen.begun[0]); // it comes to the first frame in 1 s
     session_do(p, "stop");
-    write_text("tempo 240; at 1 push left-forearm 0 0 5 0.02; stroke 3 left legato p; play;");
+    write_text("tempo 240; at 0 push left-forearm 0 0 5 0.02; stroke 3 left legato p; play;");
     session_do(p, "score " SCORE);
     session_do(p, "score " SCORE);
-    TEST_ASSERT_NOT_NULL(strstr(state_of(p, all), "\nat 5 push left-forearm 0 0 5 0.02"));
+    TEST_ASSERT_NOT_NULL(strstr(state_of(p, all), "\nat 4 push left-forearm 0 0 5 0.02"));
     TEST_ASSERT_EQUAL_INT(2, pushes_in(p, 2).count);
     session_do(p, "reset");
     TEST_ASSERT_NULL(strstr(state_of(p, all), "push"));

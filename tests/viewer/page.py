@@ -1048,8 +1048,39 @@ def heard(count):
     assert browser.wait("return viewer.editor.heard.length >= %d && viewer.editor.piece.over" % count)
 
 
-def test_a_stroke_is_moved_in_time_on_the_timeline():
-    """By the mouse, and by keys alone; the chosen stroke stays chosen, and undo gives the text back."""
+def figure_over_inspector():
+    """On a phone, while a piece is edited: the figure stands over the sheet of the inspector."""
+    browser.resize(390, 844)
+    browser.run(
+        "const s = viewer.editor.piece.scene.strikes.find(s => s.beat === 11);"
+        "viewer.editor.choose(null); viewer.actions.seek(1000 * s.time - 200)"
+    )
+    # height of the sheet, and where the figure is between the top and the sheet (pixels)
+    framed = """
+        const p = [...viewer.performers.values()].find(q => q.group.visible),
+            heights = p.points().map(v => viewer.editor.screen(v)[1]),
+            sheet = document.getElementById("edit").getBoundingClientRect();
+        return [sheet.height, Math.min(...heights), sheet.top - Math.max(...heights)]"""
+    settled = """
+        const { now, goal, lift } = viewer.view, left = document.querySelector("footer").offsetHeight - 60;
+        return Math.abs(lift - left / 2 / innerHeight) < 0.02 && Math.abs(now.distance - goal.distance) < 0.01"""
+    assert browser.wait(settled)
+    folded = browser.run(framed)
+    browser.run("viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 11))")
+    assert browser.wait("return document.getElementById('e-stroke').getBoundingClientRect().height > 0")
+    assert browser.wait(settled)
+    chosen = browser.run(framed)
+    browser.run("for (const part of document.querySelectorAll('#edit details')) part.open = true")
+    faults = control_faults()
+    browser.resize(480, 480)
+    assert not faults, faults
+    assert folded[0] < chosen[0] < 0.35 * 844, (folded, chosen)
+    assert min(folded[1:] + chosen[1:]) > 0, (folded, chosen)
+    return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels"
+
+
+def test_a_stroke_is_moved_in_time_and_a_phone_shows_it():
+    """On the timeline by the mouse, and by keys alone; it stays chosen, and undo gives the text back."""
     with editing("tests/viewer/editable.txt"):
         written = saved_score()
         press = "document.getElementById('timeline').dispatchEvent(new KeyboardEvent('keydown', { key: '%s', bubbles: true }))"
@@ -1082,6 +1113,7 @@ def test_a_stroke_is_moved_in_time_on_the_timeline():
         # beside the mark the cursor goes there, and nothing is moved
         browser.run(RETIME.replace("x(from", "40 + x(from"), 0.2)
         assert browser.run("return viewer.editor.piece.text.undo") == 0
+        return f"sheet of {figure_over_inspector()}"
 
 
 # time and places of the right forearm and of both tips, as the piece is now (s, mm)
@@ -1133,37 +1165,6 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
             f"{math.hypot(*s['force']):.0f} N: forearm {pushed[0]:.0f} mm off, tips"
             f" {max(pushed[1:]):.0f} mm; a second later {max(left):.1f} mm"
         )
-
-
-def test_on_a_phone_the_figure_stands_over_the_inspector():
-    with editing("tests/viewer/editable.txt"):
-        browser.resize(390, 844)
-        browser.run(
-            "const s = viewer.editor.piece.scene.strikes.find(s => s.beat === 11);"
-            "viewer.actions.seek(1000 * s.time - 200)"
-        )
-        # height of the sheet, and where the figure is between the top and the sheet (pixels)
-        framed = """
-            const p = [...viewer.performers.values()].find(q => q.group.visible),
-                heights = p.points().map(v => viewer.editor.screen(v)[1]),
-                sheet = document.getElementById("edit").getBoundingClientRect();
-            return [sheet.height, Math.min(...heights), sheet.top - Math.max(...heights)]"""
-        settled = """
-            const { now, goal, lift } = viewer.view, left = document.querySelector("footer").offsetHeight - 60;
-            return Math.abs(lift - left / 2 / innerHeight) < 0.02 && Math.abs(now.distance - goal.distance) < 0.01"""
-        assert browser.wait(settled)
-        folded = browser.run(framed)
-        browser.run("viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 11))")
-        assert browser.wait("return document.getElementById('e-stroke').getBoundingClientRect().height > 0")
-        assert browser.wait(settled)
-        chosen = browser.run(framed)
-        browser.run("for (const part of document.querySelectorAll('#edit details')) part.open = true")
-        faults = control_faults()
-        browser.resize(480, 480)
-        assert not faults, faults
-        assert folded[0] < chosen[0] < 0.35 * 844, (folded, chosen)
-        assert min(folded[1:] + chosen[1:]) > 0, (folded, chosen)
-        return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels"
 
 
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():

@@ -156,12 +156,13 @@ void himc_body_push(performance_body *b, const planned_push *push, double t)
     b->push_end = fmax(b->push_end, t + push->seconds);
 }
 
-bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int count, bool after)
+bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int count,
+                           push_order order)
 {
     int kept = 0, first = 0;
     while (first < b->planned_count && b->planned[first].beat < b->pushed_to)
         first++;
-    if (after)
+    if (order == PUSHES_AFTER)
         kept = b->planned_count - first;
     if (kept + count > HIMC_PUSHES)
         return false;
@@ -169,6 +170,8 @@ bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int co
     for (int i = 0; i < count; i++)
         b->planned[kept + i] = list[i];
     b->planned_count = kept + count;
+    if (order == PUSHES_ANEW)
+        b->pushed_to = -1;
     return true;
 }
 
@@ -190,7 +193,8 @@ bool himc_body_may_exchange_pushes(const performance_body *b, const planned_push
 
 void himc_body_begin_pushes(performance_body *b, double now, double next, double t)
 {
-    double from = fabs(b->pushed_to - now) < SAME_COURSE ? b->pushed_to : now;
+    // after a jump from the tick before on, in which it was
+    double from = fabs(b->pushed_to - now) < SAME_COURSE ? b->pushed_to : now - fmax(next - now, 0);
     bool round = next < now; // a loop ends on a whole beat
     double to = round ? floor(now) + 1 : next;
     for (int i = 0; i < b->planned_count; i++) {

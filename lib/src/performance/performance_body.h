@@ -81,10 +81,17 @@ HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *lim
 HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
 /// Begins a push at `t` (s); another one of that segment ends.
 HIMC_RT void himc_body_push(performance_body *body, const planned_push *push, double t);
-/// Plans the pushes of a score (count), sorted by beat, after those that have not begun, or in their place. False, and
-/// nothing changed, if they are too many.
+/// What the pushes of a score do to those planned before.
+typedef enum push_order {
+    PUSHES_ANEW,    ///< nothing is played: they replace them
+    PUSHES_INSTEAD, ///< while it is played: they replace them
+    PUSHES_AFTER    ///< they follow those that have not begun
+} push_order;
+
+/// Plans the pushes of a score (count), sorted by beat. False, and nothing changed, if they are too
+/// many.
 HIMC_RT bool himc_body_plan_pushes(performance_body *body, const planned_push *list, int count,
-                                   bool after);
+                                   push_order order);
 /// True if these pushes may take the place of the planned ones: all that differ are to come.
 HIMC_RT bool himc_body_may_exchange_pushes(const performance_body *body, const planned_push *list,
                                            int count);

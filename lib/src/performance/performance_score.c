@@ -276,7 +276,8 @@ static bool plan_pushes(score_job *j, himc_error *error)
     planned_push list[HIMC_PUSHES];
     int count;
     return pushes_of(j->score, j->path, j->from, list, &count, error) &&
-           (himc_body_plan_pushes(j->performance->body, list, count, j->queued) ||
+           (himc_body_plan_pushes(j->performance->body, list, count,
+                                  j->queued ? PUSHES_AFTER : PUSHES_ANEW) ||
             himc_error_set(error, "%s: push: one too many, allowed %d", j->path, HIMC_PUSHES));
 }
 
@@ -761,7 +762,7 @@ bool himc_performance_exchange_strokes(himc_performance *p, const char *text, co
                                   : plan_aside(p, aside, score, error) &&
                                         himc_planner_exchange(p->motion->planner, aside));
     if (good)
-        himc_body_plan_pushes(p->body, list, pushes, false);
+        himc_body_plan_pushes(p->body, list, pushes, PUSHES_INSTEAD);
     himc_planner_free(aside);
     himc_score_free(score);
     return good;
