@@ -36,7 +36,8 @@
 /// Between two samples anything may move head or stick: a change of the head, a step of the body, a
 /// drum put elsewhere. The compression does not grow by it, and a stick in the air gets to the
 /// surface at most (keep_compression). So a change, which gives the head no energy (membrane.c),
-/// gives the contact none either.
+/// gives the contact none either. A blow ends when the stick is clear of the head (is_clear): its
+/// patch and what the patch's oscillator holds are dropped, which only takes energy.
 ///
 /// One-way: the stick meets a rigid head at rest (same law, G = h^2/(2 M) alone), which gives the
 /// force of the motion F_m and the path of the stick. The head is then driven along that path by
