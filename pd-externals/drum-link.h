@@ -7,8 +7,8 @@ build: HIMC_BUILD_ID, made by the Makefile, is a checksum of all sources of the 
 file. Partners of different builds refuse each other.
 
 The first [himc~] plays the drum itself. Each further one gets a guest: a drum of its own with the
-same settings, whose sound [membrane~] adds. So all are heard on one drum, and the sticks of each feel
-the head as they move it.
+same settings, whose sound [membrane~] adds. So all are heard on one drum, and the sticks of each
+feel the head as they move it.
 
 Both are clocked by the samples they have put out since Pd last built its graph (t_stream). The
 engine, a drum or a performance, counts in the same way; the first object in a tick advances it, the

@@ -37,8 +37,8 @@ static int search_folder(const char *folder, void *user)
     return !search->found;
 }
 
-/* Finds a file as Pd does: absolute, beside the patch, or along the search path. Opens nothing: Pd's
-canvas_open would wait for the writer of a FIFO. */
+/* Finds a file as Pd does: absolute, beside the patch, or along the search path. Opens nothing:
+Pd's canvas_open would wait for the writer of a FIFO. */
 static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t size,
                               himc_error *error)
 {
@@ -152,7 +152,8 @@ static bool himc_tilde_perform_command(t_himc *x, const himc_command *command, h
     return himc_performance_command(x->x_performance, command, delay, error);
 }
 
-/* The drums save their own state, and a word that is no command of the performer is a drum's name. */
+/* The drums save their own state, and a word that is no command of the performer is a drum's
+name. */
 static void himc_tilde_save_line(void *saving, const char *line)
 {
     char word[HIMC_NAME_SIZE];

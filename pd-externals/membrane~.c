@@ -1,5 +1,5 @@
-/* [membrane~ [-save] [NAME [INCHES [CHANNELS]]]]: a drum: a membrane that [himc~ NAME], a signal or a message
-strikes.
+/* [membrane~ [-save] [NAME [INCHES [CHANNELS]]]]: a drum: a membrane that [himc~ NAME], a
+signal or a message strikes.
 
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
          (himc/command.h); x and y of the spot (m from the head's centre, x away from the

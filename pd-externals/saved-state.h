@@ -126,7 +126,8 @@ static inline size_t saved_quote(char *to, const char *word)
     return size;
 }
 
-/* Writes the message's words as lines with a `;` each, if there is somewhere to; returns their size. */
+/* Writes the message's words as lines with a `;` each, if there is somewhere to; returns their
+size. */
 static inline size_t saved_lines(char *to, t_canvas *canvas, int argc, const t_atom *argv)
 {
     size_t size = 0;

@@ -8,12 +8,12 @@
 /// pickup: sqrt(2 E sum phi_i^2/m_i). E is the energy of the head and of all sticks on it.
 ///
 /// A declick of L samples starts with the difference of two sounds, at most twice the larger scale
-/// S, and of their slopes, at most 4 S per sample. It is a cubic that adds 4/27 L times the slope at
-/// most. A change before its end begins another one at its value and slope, which like an
+/// S, and of their slopes, at most 4 S per sample. It is a cubic that adds 4/27 L times the slope
+/// at most. A change before its end begins another one at its value and slope, which like an
 /// oscillator with v'' = -6 v/L^2 - 4 v'/L only falls. So (3 + 0.6 L) S bounds the sum.
 ///
-/// An ear adds four paths: a ray times the sum of a tap's weights, its shelf beside it; the shadow's
-/// filter has no more than 1. Noise is white, at most sqrt(3), through filters of power 1.
+/// An ear adds four paths: a ray times the sum of a tap's weights, its shelf beside it; the
+/// shadow's filter has no more than 1. Noise is white, at most sqrt(3), through filters of power 1.
 #ifndef HIMC_TESTS_SOUND_SCALE_H
 #define HIMC_TESTS_SOUND_SCALE_H
 

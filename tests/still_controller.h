@@ -1,5 +1,5 @@
-/// still_controller.h: a controller of the default body at rest, on the joint targets and the tips',
-/// for tests of single terms.
+/// still_controller.h: a controller of the default body at rest, on the joint targets and the
+/// tips', for tests of single terms.
 #ifndef HIMC_TESTS_STILL_CONTROLLER_H
 #define HIMC_TESTS_STILL_CONTROLLER_H
 

@@ -104,8 +104,8 @@ static double total(void)
     return sum;
 }
 
-// Peak of a silent neighbour's (1,1) over that of a drum in unison but for `apart` (Hz), in dB, with
-// these other losses of both.
+// Peak of a silent neighbour's (1,1) over that of a drum in unison but for `apart` (Hz), in dB,
+// with these other losses of both.
 static double answer(double apart, const char *decay)
 {
     char tune[80];

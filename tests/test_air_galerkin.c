@@ -103,8 +103,8 @@ static void test_power_far_away_equals_the_loss_of_the_head(void)
     }
 }
 
-// Mean of u^2 per that of the head's velocity along the outer face of a bare mode: u is the gradient
-// of Phi = int W(k) J_m(k r) dk.
+// Mean of u^2 per that of the head's velocity along the outer face of a bare mode: u is the
+// gradient of Phi = int W(k) J_m(k r) dk.
 static double flow_outside(const himc_air_order *order, int n)
 {
     double alpha = order->alpha[n], next = order->next[n], sum = 0, r_step = 1 / 40.0, step = 0.2;

@@ -1,4 +1,5 @@
-/// test_alive.c: with `alive 1` head, trunk and breath move with the music and the tips do as before.
+/// test_alive.c: with `alive 1` head, trunk and breath move with the music and the tips do as
+/// before.
 #include "session.h"
 
 #include "performance/performance_state.h"

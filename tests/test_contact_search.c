@@ -1,6 +1,6 @@
-/// test_contact_search.c: how often the felt's law is computed for sticks that touch a head together.
-/// The search for their forces must end where rounding leaves them: one that asks for less goes
-/// through all its steps, and a block of sound takes milliseconds.
+/// test_contact_search.c: how often the felt's law is computed for sticks that touch a head
+/// together. The search for their forces must end where rounding leaves them: one that asks for
+/// less goes through all its steps, and a block of sound takes milliseconds.
 #define himc_felt_force felt_force_of_the_library
 #include "drum/felt.c"
 #undef himc_felt_force

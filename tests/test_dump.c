@@ -1,5 +1,5 @@
-/// test_dump.c: `dump` tells a state as commands: a new drum or performer that carries them out sounds
-/// the same, bit by bit.
+/// test_dump.c: `dump` tells a state as commands: a new drum or performer that carries them out
+/// sounds the same, bit by bit.
 #include "session.h"
 
 #include "disc_mesh.h"

@@ -71,8 +71,8 @@ static void test_stroke_without_contact_is_given_up_15_ms_after_its_time(void)
     himc_performance_free(p);
 }
 
-// plays alternating loud and soft strokes with heavy wooden mallets on a slack head, whose swing parts
-// the mallet from it in the middle of a contact; keeps each sample's force
+// plays alternating loud and soft strokes with heavy wooden mallets on a slack head, whose swing
+// parts the mallet from it in the middle of a contact; keeps each sample's force
 static heard play_chattering(double force[][3 * RATE], int samples)
 {
     himc_performance *p = session_new();

@@ -1,5 +1,5 @@
-/// test_file.c: a FIFO, a socket, a device or a folder in a file's place is refused at once, by every
-/// reader and writer of the library. What waits is ended by the alarm, and the program fails.
+/// test_file.c: a FIFO, a socket, a device or a folder in a file's place is refused at once, by
+/// every reader and writer of the library. What waits is ended by the alarm, and the program fails.
 #define _DEFAULT_SOURCE // mkdtemp
 #include "unity.h"
 

@@ -1,5 +1,5 @@
-/// test_marker_table.c: tables of Vicon Nexus, of Qualisys and any CSV with NAME_x NAME_y NAME_z, and
-/// the same with one thing wrong.
+/// test_marker_table.c: tables of Vicon Nexus, of Qualisys and any CSV with NAME_x NAME_y NAME_z,
+/// and the same with one thing wrong.
 #include "take_files.h"
 #include "unity.h"
 

@@ -5,8 +5,8 @@
 #include "performance/performance_state.h"
 #include "plan/planner_motion.h"
 
-/// Postures that a tick of 4 ms may rehearse: 50 000 a second, what is left of the tick before, and one
-/// moment more.
+/// Postures that a tick of 4 ms may rehearse: 50 000 a second, what is left of the tick before, and
+/// one moment more.
 #define MOST_WORK (200 + 16 + 30)
 
 /// In make test-long: all tempi and leaps, and the whole of the tide.
@@ -41,7 +41,8 @@ static bool strikes(const watched *w, himc_hand hand, int drum)
     return false;
 }
 
-/// Gap of the hands' sticks, but their last 15 %, from the shells of drums that they do not strike (m).
+/// Gap of the hands' sticks, but their last 15 %, from the shells of drums that they do not strike
+/// (m).
 static double stick_gap(const watched *w, const himc_capsule *capsule)
 {
     double least = INFINITY;
@@ -161,8 +162,8 @@ static int choose_third(unsigned *seed)
     return (int)((*seed >> 8) % 3);
 }
 
-/// Leaps from a seed over four drums, a stroke every 0.225 s: the left hand on three, the right hand on
-/// three. None is given up.
+/// Leaps from a seed over four drums, a stroke every 0.225 s: the left hand on three, the right
+/// hand on three. None is given up.
 static void test_leaps_at_random_are_all_played_and_no_part_meets_another(void)
 {
     for (unsigned score = is_long() ? 1 : 4; score <= (is_long() ? 5 : 4); score++) {
@@ -230,8 +231,8 @@ static void test_strokes_that_no_hand_has_room_for_are_played_with_one_line(void
     himc_performance_free(w.p);
 }
 
-/// At 84 s from the right to the far left, past the left shoulder, while the right hand is far on the
-/// right.
+/// At 84 s from the right to the far left, past the left shoulder, while the right hand is far on
+/// the right.
 static void test_in_tide_a_tip_passes_its_shoulder_at_a_distance_and_no_joint_whips(void)
 {
     watched w = begin_score(NULL, 0, 60);

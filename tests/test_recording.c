@@ -106,10 +106,11 @@ static void watch_targets(void *user, const himc_motion_row *row)
     w->time = row->time;
 }
 
-// nothing stops a stick beside the drum: it is not let go there, but follows the take, strike and all
+// nothing stops a stick beside the drum: it is not let go there, but follows the take, strike and
+// all
 static void test_strikes_beside_the_drum_leave_no_jump(void)
 {
-    static const char path[] = "build/recording-two-drums.trc";
+    static const char path[] = "/tmp/himc-recording-two-drums.trc";
     heard first =
         record(path, "drum low; low place 0.6 0.4 0.85; drum high; high place 0.6 -0.4 0.85;"
                      "stroke 2 right accent ff normal high; stroke 3 left accent ff normal low;"

@@ -1,5 +1,5 @@
-/// test_room.c: walls return as much sound as a room of their size, for as long, to each ear its own;
-/// and what all drums of a performance share beside it: fader and mute.
+/// test_room.c: walls return as much sound as a room of their size, for as long, to each ear its
+/// own; and what all drums of a performance share beside it: fader and mute.
 #include "drum/ears.h"
 #include "himc/himc.h"
 #include "session.h"

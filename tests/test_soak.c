@@ -37,8 +37,8 @@ typedef struct strokes {
     long recoveries;                      // times the body flew apart and was put back
 } strokes;
 
-/// A run of the reference passage. Its tip error has a sum of its own: in the sum of a day's squares
-/// those of one passage are lost in rounding.
+/// A run of the reference passage. Its tip error has a sum of its own: in the sum of a day's
+/// squares those of one passage are lost in rounding.
 typedef struct passage {
     double tip_rms, force; // (m), (N) mean of the peaks
     int played;

@@ -1,5 +1,5 @@
-/// test_thrown_arms.c: an arm that is kept from its target, by joint limits or for want of strength,
-/// is not thrown about: control brings no energy that a stroke does not need.
+/// test_thrown_arms.c: an arm that is kept from its target, by joint limits or for want of
+/// strength, is not thrown about: control brings no energy that a stroke does not need.
 #include "session.h"
 
 #include "performance/performance_state.h"

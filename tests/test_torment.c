@@ -187,8 +187,8 @@ static void take_notes(himc_performance *p)
     }
 }
 
-// The scale of a channel with `energy` (J), which falls slowly: a declick continues the sound before
-// a change.
+// The scale of a channel with `energy` (J), which falls slowly: a declick continues the sound
+// before a change.
 static double held_scale(const himc_drum *d, int slot, int pickup, int n, double energy)
 {
     static double held[HIMC_DRUMS][HIMC_PICKUPS];
@@ -276,8 +276,8 @@ static himc_performance *performer(himc_drum *drum)
     return p;
 }
 
-// A new drum with the same settings. `reset` sends the listener away, whose ears still fade out; the
-// new drum never had any.
+// A new drum with the same settings. `reset` sends the listener away, whose ears still fade out;
+// the new drum never had any.
 static himc_drum *drum_like(const himc_drum *d)
 {
     himc_drum *c = himc_drum_new(d->name, 23, d->rate, &error);

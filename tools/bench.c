@@ -1,7 +1,8 @@
 /// bench.c: `himc bench`: the speed of one core. It measures whole steps of a performance (alone,
 /// with a drum that is struck, with joint limits) and the parts of a step; the solvers of inverse
 /// kinematics; drums without a performer; the bank alone by its loops for each vector unit; the
-/// performers with their drums that one core plays in real time; the worst of their blocks. With --peers it runs other programs beside it (bench_peers.h).
+/// performers with their drums that one core plays in real time; the worst of their blocks. With
+/// --peers it runs other programs beside it (bench_peers.h).
 ///
 /// It measures processor time, not elapsed time, and each figure is the median of five runs, so
 /// other programs on the machine have little effect; of the bank alone the fastest of 40 parts of

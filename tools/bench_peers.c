@@ -1,5 +1,5 @@
-/// bench_peers.c: runs the scripts of tests/bench/peers. A script prints `WHAT VALUE LABEL` for each
-/// figure, or exits with 77 where its program is not installed.
+/// bench_peers.c: runs the scripts of tests/bench/peers. A script prints `WHAT VALUE LABEL` for
+/// each figure, or exits with 77 where its program is not installed.
 #define _POSIX_C_SOURCE 200809L
 #include "bench_peers.h"
 

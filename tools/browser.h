@@ -7,8 +7,8 @@
 /// A browser with one page. Opaque.
 typedef struct browser browser;
 
-/// Starts the browser that HIMC_BROWSER names, else the first that is found, with a page of that size
-/// (pixels). NULL with the reason.
+/// Starts the browser that HIMC_BROWSER names, else the first that is found, with a page of that
+/// size (pixels). NULL with the reason.
 browser *browser_open(int width, int height, himc_error *error);
 /// Loads a page. False with the reason.
 bool browser_go(browser *b, const char *url, himc_error *error);

@@ -90,8 +90,8 @@ bool cli_file_keep(cli_file *file, himc_error *error);
 void cli_file_drop(cli_file *file);
 /// True if the name stands for the standard input or output.
 bool cli_is_standard(const char *path);
-/// The operand, or the name of a file with what came from the standard input, with the suffix of its
-/// contents; it is removed when the program ends. NULL with the reason.
+/// The operand, or the name of a file with what came from the standard input, with the suffix of
+/// its contents; it is removed when the program ends. NULL with the reason.
 const char *cli_input(const char *operand, himc_error *error);
 /// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);

@@ -98,8 +98,8 @@ static size_t space(const char *bytes)
     return strspn(bytes, " \t\r\n");
 }
 
-// the command of a statement, `;` or not, and the beat of its `at`, else -1; false if it is none for
-// the performer
+// the command of a statement, `;` or not, and the beat of its `at`, else -1; false if it is none
+// for the performer
 static bool command_of(const char *bytes, himc_command *out, double *beat, himc_error *error)
 {
     const char *begin = bytes + space(bytes), *end = end_of(begin);

@@ -19,8 +19,8 @@ char *edit_text_join(const edit_text *text);
 bool edit_text_names_file(const edit_text *text);
 
 /// Replaces statement `index` by `words` (without `;`; "" removes it); one past the last adds it.
-/// Old and new must be a stroke, an ornament, a `nudge` or a `push` at a beat. False, and nothing changed, with the
-/// reason.
+/// Old and new must be a stroke, an ornament, a `nudge` or a `push` at a beat. False, and nothing
+/// changed, with the reason.
 bool edit_text_set(edit_text *text, int index, const char *words, himc_error *error);
 /// Takes the last change back, or makes it again; false if there is none.
 bool edit_text_undo(edit_text *text);

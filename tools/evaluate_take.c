@@ -1,11 +1,12 @@
 /// evaluate_take.c: own captures under each controller, compared with the captures themselves.
 ///
 /// As in the published comparison (trial.c), the player's measures, mean posture and joint limits
-/// come from the take; the posture regression, the null-space target of `himc`, from the other takes
-/// that show a whole arm and strike a head if this one does, or do not either: leave one out. (An arm
-/// that reaches teaches a stroke worse than the built-in one, learned from strokes.) Without such a
-/// take it is the built-in one, and a line says so. Under the `printed` law `himc` has no null-space target, as published. A capture has its own
-/// noise and its own body, so none is added, and a take is played once.
+/// come from the take; the posture regression, the null-space target of `himc`, from the other
+/// takes that show a whole arm and strike a head if this one does, or do not either: leave one out.
+/// (An arm that reaches teaches a stroke worse than the built-in one, learned from strokes.)
+/// Without such a take it is the built-in one, and a line says so. Under the `printed` law `himc`
+/// has no null-space target, as published. A capture has its own noise and its own body, so none is
+/// added, and a take is played once.
 #include "evaluate_take.h"
 #include "control/posture_regression.h"
 #include "performance/research.h"
@@ -113,8 +114,8 @@ static bool shows_any_arm(const himc_player *player)
     return shows_arm(player, HIMC_LEFT) || shows_arm(player, HIMC_RIGHT);
 }
 
-/// Learns from the other takes that show a whole arm, of strokes if `strikes`, else of other motion.
-/// `learned` false without one.
+/// Learns from the other takes that show a whole arm, of strokes if `strikes`, else of other
+/// motion. `learned` false without one.
 static bool learn_from_others(const own_takes *own, int unseen, bool strikes,
                               himc_posture_regression *regression, bool *learned, himc_error *error)
 {

@@ -1,4 +1,5 @@
-/// film.c: `himc film`: a film, a still or the moving figure of a scene, by a browser without a window.
+/// film.c: `himc film`: a film, a still or the moving figure of a scene, by a browser without a
+/// window.
 ///
 /// The browser opens the page of `himc share`, which draws frame by frame (viewer/page/film.js) and
 /// hands the finished file over in pieces.

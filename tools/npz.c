@@ -1,7 +1,7 @@
-/// npz.c: a ZIP file (PKWARE's APPNOTE 6.3.3: local headers, central directory, its end), each of whose
-/// files is an array in NumPy's format 1.0: magic, length of a header, the header (a Python
-/// dictionary, padded to 64 bytes), the data. Not compressed, so NumPy may map the data into memory,
-/// and no library is needed. All times are 1980-01-01: equal data give equal files.
+/// npz.c: a ZIP file (PKWARE's APPNOTE 6.3.3: local headers, central directory, its end), each of
+/// whose files is an array in NumPy's format 1.0: magic, length of a header, the header (a Python
+/// dictionary, padded to 64 bytes), the data. Not compressed, so NumPy may map the data into
+/// memory, and no library is needed. All times are 1980-01-01: equal data give equal files.
 #include "npz.h"
 
 #include <stdlib.h>

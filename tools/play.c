@@ -1,8 +1,8 @@
 /// play.c: `himc play`: as `himc render`, to the sound card.
 ///
-/// PortAudio takes blocks when it has room for them, so its clock is the performance's. A block that
-/// comes too late is an under-run, which is heard and counted. The card is known only where the
-/// program was built with PortAudio (HIMC_PORTAUDIO).
+/// PortAudio takes blocks when it has room for them, so its clock is the performance's. A block
+/// that comes too late is an under-run, which is heard and counted. The card is known only where
+/// the program was built with PortAudio (HIMC_PORTAUDIO).
 #define _POSIX_C_SOURCE 200809L
 #include "base/file.h"
 #include "cli.h"

@@ -1,11 +1,11 @@
 /// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a WAV
 /// file.
 ///
-/// The commands `listener`, `score` or `take`, then `play` on sample 0, then block after block, just
-/// as `[himc~]` does it in Pd; each sample of a channel is the sum of the drums' samples, rounded to
-/// 32-bit float once, as Pd's signals are. The end is tested only where a cell of 0.2 s ends; blocks end
-/// there too, so that nothing depends on --block. The end: the performer is done and a whole cell
-/// stayed 80 dB below the peak, or 8 s have passed.
+/// The commands `listener`, `score` or `take`, then `play` on sample 0, then block after block,
+/// just as `[himc~]` does it in Pd; each sample of a channel is the sum of the drums' samples,
+/// rounded to 32-bit float once, as Pd's signals are. The end is tested only where a cell of 0.2 s
+/// ends; blocks end there too, so that nothing depends on --block. The end: the performer is done
+/// and a whole cell stayed 80 dB below the peak, or 8 s have passed.
 #define _POSIX_C_SOURCE 200809L
 #include "capture/take.h"
 #include "cli.h"

@@ -53,7 +53,8 @@ typedef struct scene_ring {
 
 /// Adds the motion of a head at `time` (s); `drum` is the number that its event "drum" gives.
 void scene_head(scene_writer *scene, int drum, double time, const scene_ring *ring);
-/// Adds a whole scene without sound, from the beginning of `stream`: the same piece played by others.
+/// Adds a whole scene without sound, from the beginning of `stream`: the same piece played by
+/// others.
 void scene_more(scene_writer *scene, FILE *stream);
 /// Adds `n` (1 .. 8192) frames of sound, channels interleaved.
 void scene_sound(scene_writer *scene, const float *frames, int n);

@@ -253,7 +253,8 @@ static int shown_modes(const himc_membrane *membrane)
     return modes < SCENE_MODES ? modes : SCENE_MODES;
 }
 
-// frequency and decay of each mode; then what each adds to the bare head's shapes: shape, mode, part
+// frequency and decay of each mode; then what each adds to the bare head's shapes: shape, mode,
+// part
 static void tell_modes(scene_record *r, int index, const himc_membrane *membrane, double time)
 {
     enum { ROOM = SCENE_MODES * 48 };

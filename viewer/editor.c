@@ -1,6 +1,6 @@
-/// editor.c: a child process with two pipes. It is the `himc` in this program's folder, else that of
-/// the path. What a page sends becomes a file in a folder of our own, under a name of our own with
-/// one of a few endings.
+/// editor.c: a child process with two pipes. It is the `himc` in this program's folder, else that
+/// of the path. What a page sends becomes a file in a folder of our own, under a name of our own
+/// with one of a few endings.
 #define _GNU_SOURCE // getrandom, strndup
 #include "editor.h"
 #include "base/file.h"

@@ -104,8 +104,8 @@ bool scene_complete_poses(scene *s, double now);
 /// True while a pose is incomplete.
 bool scene_pose_pending(const scene *s);
 
-/// Copies a word for JSON, cut to `size` (bytes): '?' replaces what is not UTF-8, and characters that
-/// JSON would have to escape.
+/// Copies a word for JSON, cut to `size` (bytes): '?' replaces what is not UTF-8, and characters
+/// that JSON would have to escape.
 void scene_word(char *out, size_t size, const char *from);
 /// Adds an event, a JSON object (printf format).
 void scene_add_event(scene *s, double now, const char *format, ...)

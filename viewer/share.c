@@ -1,8 +1,9 @@
 /// share.c: the page of viewer/page with everything inside.
 ///
-/// Scripts are packed into one text, each after a line "NAME SIZE", deflated, and written as base64;
-/// so is the scene, which is packed already. boot.js unpacks both. It needs modules that import each
-/// other by name, so "./NAME.js" becomes "himc/NAME.js" there and an import map says where that is.
+/// Scripts are packed into one text, each after a line "NAME SIZE", deflated, and written as
+/// base64; so is the scene, which is packed already. boot.js unpacks both. It needs modules that
+/// import each other by name, so "./NAME.js" becomes "himc/NAME.js" there and an import map says
+/// where that is.
 #include "share.h"
 #include "pages.h"
 #include "scene.h"

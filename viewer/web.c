@@ -4,9 +4,10 @@
 /// whatever its protocol: libwebsockets would otherwise accept h2c, and websockets without a
 /// protocol. The page never sends data; clients that send anything but control frames are
 /// disconnected. Another stream is for editing: it is for a page that knows the key in its address.
-/// Its messages go to `himc edit` (editor.c), one line each, or are a file to be edited; and what that
-/// program tells goes back, as fast as the page takes it. A slow browser gets the newest pose when it is ready for it, so no queue grows
-/// here. Invariant: connections are bounded in number, and each that makes no progress in time.
+/// Its messages go to `himc edit` (editor.c), one line each, or are a file to be edited; and what
+/// that program tells goes back, as fast as the page takes it. A slow browser gets the newest pose
+/// when it is ready for it, so no queue grows here. Invariant: connections are bounded in number,
+/// and each that makes no progress in time.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
 #include "access.h"

@@ -24,8 +24,8 @@
 /// Two further headers are tables: himc/command_rows.h, a row for each command, and himc/ranges.h,
 /// the ranges that structs share with commands.
 ///
-/// docs/api.md states what each tier promises. The sources in lib/src stand in rooms, a folder each,
-/// in the order of the data flow (docs/overview.md):
+/// docs/api.md states what each tier promises. The sources in lib/src stand in rooms, a folder
+/// each, in the order of the data flow (docs/overview.md):
 ///
 ///     system       what operating systems do differently: sockets, names of files, threads
 ///     base         errors, files, vectors, the table and the parser of commands

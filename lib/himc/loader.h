@@ -44,8 +44,8 @@ typedef struct himc_load_target {
 /// error, the others are counted, and `done` of the last one tells their number.
 bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
                          const himc_command *command, himc_error *error);
-/// Carries out the lines that `dump` has told (HIMC_DESCRIBE_STATE), each with a `;`, at once and after
-/// all that waits: all of them, or none and false with the reason. A performer's are a score.
+/// Carries out the lines that `dump` has told (HIMC_DESCRIBE_STATE), each with a `;`, at once and
+/// after all that waits: all of them, or none and false with the reason. A performer's are a score.
 bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, const char *state,
                          himc_error *error);
 /// The head of `follower` becomes that of `leader` (himc_membrane_follow). No effect while the same

@@ -38,8 +38,8 @@ typedef struct himc_head {
 
 /// One mode of the list. Modes with m > 0 come as a pair: cosine, then sine. On an even head their
 /// frequency is equal; else the sine's is higher, and each order m has an axis of its own. If the
-/// list ends within a pair, it has the cosine, which on an even head is the one that a blow on the x
-/// axis excites.
+/// list ends within a pair, it has the cosine, which on an even head is the one that a blow on the
+/// x axis excites.
 typedef struct himc_mode {
     int m; ///< nodal diameters; of a rectangle half waves along x; of a grid 0; statistical: -1
     int n; ///< nodal circles with the rim; half waves along y; of a grid or statistical 1, 2, ...

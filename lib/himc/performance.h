@@ -57,9 +57,10 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 /// many strokes or drums, or there is no memory.
 bool himc_performance_add_stroke(himc_performance *performance, const himc_stroke *stroke,
                                  himc_error *error);
-/// Plays a stroke (its beat is ignored), to land as the command `latency` says. Allocates only for a
-/// drum that there is not yet. False if a field is out of its range, while a take plays, or without
-/// memory for that drum. A hit for which no hand has time is given up, and a note counts it.
+/// Plays a stroke (its beat is ignored), to land as the command `latency` says. Allocates only for
+/// a drum that there is not yet. False if a field is out of its range, while a take plays, or
+/// without memory for that drum. A hit for which no hand has time is given up, and a note counts
+/// it.
 bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
                           himc_error *error);
 /// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the

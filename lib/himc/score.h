@@ -3,8 +3,9 @@
 /// Strokes and tempo changes have beats; all other lines act once, in order, when the score is
 /// loaded. A line that begins with a drum's name is for that drum. `tempo BPM [BEAT]` holds from
 /// that beat on (0 when not given); `at BEAT DRUM COMMAND ...` changes a drum's head at that beat,
-/// `at BEAT push ...` pushes the performer (commands marked HIMC_AT_BEAT). At most 200000 strokes, 10000 other lines, 64
-/// MiB; strokes of one hand at least 40 ms apart; a score cannot load a score.
+/// `at BEAT push ...` pushes the performer (commands marked HIMC_AT_BEAT). At most 200000 strokes,
+/// 10000 other lines, 64 MiB; strokes of one hand at least 40 ms apart; a score cannot load a
+/// score.
 #ifndef HIMC_SCORE_H
 #define HIMC_SCORE_H
 

@@ -1,5 +1,5 @@
-/// fuzz_viewer_recording.c: the scene that the viewer plays back. The chunks of what is accepted end
-/// where the file ends.
+/// fuzz_viewer_recording.c: the scene that the viewer plays back. The chunks of what is accepted
+/// end where the file ends.
 #include "fuzz.h"
 #include "recording.h"
 

@@ -1,6 +1,7 @@
-/* embed.c: a program that contains Pure Data (libpd) and both objects, and prints what a patch prints while it
-plays as fast as it can. With a third argument, that many instances play at once, a thread each. Classes are made and
-patches are opened by one thread: Pd keeps lists for both that all its instances share without a lock.
+/* embed.c: a program that contains Pure Data (libpd) and both objects, and prints what a patch
+prints while it plays as fast as it can. With a third argument, that many instances play at once, a
+thread each. Classes are made and patches are opened by one thread: Pd keeps lists for both that all
+its instances share without a lock.
     embed PATCH SECONDS [INSTANCES] */
 #include "z_libpd.h"
 #include "z_print_util.h"

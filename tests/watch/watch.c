@@ -1,8 +1,8 @@
 /// watch.c: the real-time contract from outside: a library to be preloaded, that stands in front of
 /// all that may wait. Between watch_span_begin and watch_span_end, in that thread, each call of the
-/// allocator, a lock, a file, a socket, printf or sleep is counted; the first callers are named when
-/// the process ends. [himc~] and [membrane~] call the two around their DSP routines if they are
-/// there (drum-link.h), test_contract.c around each function that is marked HIMC_RT.
+/// allocator, a lock, a file, a socket, printf or sleep is counted; the first callers are named
+/// when the process ends. [himc~] and [membrane~] call the two around their DSP routines if they
+/// are there (drum-link.h), test_contract.c around each function that is marked HIMC_RT.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <pthread.h>

@@ -1,4 +1,5 @@
-/* doubles.c: what two ears hear of a score on one drum, as computed, in 64-bit floats, and rounded to 32 bits as in a WAV file.
+/* doubles.c: what two ears hear of a score on one drum, as computed, in 64-bit
+floats, and rounded to 32 bits as in a WAV file.
     doubles SCORE SAMPLES OUT.f64 OUT.f32 */
 #include <himc/himc.h>
 

@@ -1,9 +1,9 @@
 /// clips.c: strokes of himc's own timpano as sound files, for patches/techniques: `clips FOLDER`.
 ///
 /// A 23 inch timpano in air at D3, evenly tensioned, is struck at three places with three
-/// velocities. Each stroke is a WAV file of 32-bit floats, in the units of `pickup air`, and ends in
-/// silence. FOLDER/clips.txt lists them, one line each: distance from the centre per radius, velocity
-/// (m/s), pitch (Hz), rate (Hz), file.
+/// velocities. Each stroke is a WAV file of 32-bit floats, in the units of `pickup air`, and ends
+/// in silence. FOLDER/clips.txt lists them, one line each: distance from the centre per radius,
+/// velocity (m/s), pitch (Hz), rate (Hz), file.
 #define _POSIX_C_SOURCE 200809L // fileno
 #include "base/file.h"
 #include "himc/himc.h"

@@ -1,7 +1,7 @@
 /// strokes.c: captured strokes and the same strokes as the controllers play them, for figures 5 and
 /// 6(a) of Bouënard, Gibet & Wanderley 2012 and figures 2 and 3 of theirs at CASA 2009 (figure 4 of
-/// the preprint): `strokes follow|phases LAW GAIN FROM TO` prints a CSV table of an excerpt (s), one
-/// row for every second frame.
+/// the preprint): `strokes follow|phases LAW GAIN FROM TO` prints a CSV table of an excerpt (s),
+/// one row for every second frame.
 ///
 /// `follow` plays the first trial of the evaluation, legato, with `ik`, `id` and `himc`: time (s),
 /// then for the captured motion and each controller flexion of wrist, elbow and shoulder (degrees)

@@ -4,7 +4,8 @@
 ///
 /// make runs it when the viewer is built (build/viewer/skeleton.h and skeleton.js), so the names,
 /// their order and the parents stand in skeleton.c alone. `origin` is the joint in the parent's
-/// frame, `center` the centre of mass in the segment's; lengths in metres, to a thousandth of a millimetre.
+/// frame, `center` the centre of mass in the segment's; lengths in metres, to a thousandth of a
+/// millimetre.
 #include "himc/body.h"
 
 #include <stdio.h>

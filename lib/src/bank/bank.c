@@ -254,7 +254,8 @@ void himc_bank_state(const himc_bank *bank, int index, double *q, double *v)
     *v = s - bank->decay[index] * *q;
 }
 
-// an oscillator moves; for how long the bank has been at rest, some of it not run, makes no difference
+// an oscillator moves; for how long the bank has been at rest, some of it not run, makes no
+// difference
 static void stir(himc_bank *bank, int index)
 {
     if (bank->live == 0)

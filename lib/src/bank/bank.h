@@ -36,8 +36,8 @@ void himc_bank_use(himc_bank *bank, const himc_bank_kernel *kernel);
 HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int count,
                            double rate);
 
-/// Film and the first `count` oscillators, if `from` has them, too, begin with its phase and energy,
-/// as if they had been in use here with its constants before the last himc_bank_set.
+/// Film and the first `count` oscillators, if `from` has them, too, begin with its phase and
+/// energy, as if they had been in use here with its constants before the last himc_bank_set.
 HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from, int count);
 
 /// The bank has coefficients for two lengths of step.
@@ -119,8 +119,8 @@ HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);
 /// Length of a pass that no force ends: 8, 16, 32 or HIMC_BANK_PASS samples, as at first. Kicks in
 /// such intervals cost least.
 HIMC_RT void himc_bank_set_pass(himc_bank *bank, int samples);
-/// Between two samples: adds `change` (m/s) to the velocity of one oscillator; no effect on a silent
-/// one.
+/// Between two samples: adds `change` (m/s) to the velocity of one oscillator; no effect on a
+/// silent one.
 HIMC_RT void himc_bank_kick(himc_bank *bank, int index, double change);
 /// Value of `readout` at the end of a step per newton through `shape` (padded) during it. For a
 /// readout of the displacement at a and the shape at b this is the compliance sum phi_a phi_b b1

@@ -145,9 +145,9 @@ TARGET static void NAMED(read_alike)(const double *rp, const double *rs, const d
         sum[r] = NAMED(total)(part[r]);
 }
 
-// A few oscillators at a time, which do not wait for each other, one part of the eight samples after
-// the other: so the sums of a whole pass stay in registers. They are added in pairs. `eights` is a
-// constant in each of the four calls.
+// A few oscillators at a time, which do not wait for each other, one part of the eight samples
+// after the other: so the sums of a whole pass stay in registers. They are added in pairs. `eights`
+// is a constant in each of the four calls.
 TARGET static inline __attribute__((always_inline)) void
 NAMED(look)(const himc_bank_waves *waves, int length, int eights, double *out)
 {

@@ -35,8 +35,8 @@ int himc_argument_choice(const himc_argument *argument, const himc_atom *atom);
 /// stay exactly as in the table: Pd's 2.2 is a little more than 2.2.
 double himc_argument_number(const himc_argument *argument, double number);
 
-/// The number in single precision. It goes through memory: GCC 12 leaves the rounding out where it packs
-/// two numbers into one vector (-O3).
+/// The number in single precision. It goes through memory: GCC 12 leaves the rounding out where it
+/// packs two numbers into one vector (-O3).
 static inline double himc_argument_single(double number)
 {
     volatile float single = (float)number;

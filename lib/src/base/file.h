@@ -21,8 +21,8 @@ typedef enum himc_file_write_mode {
 /// written or is something else, which is then unchanged. Never waits. The caller closes it.
 FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *error);
 
-/// The job of writing lines, whose memory it takes over, into a file; `command` begins its error lines.
-/// NULL with the reason, also if `lines` have failed.
+/// The job of writing lines, whose memory it takes over, into a file; `command` begins its error
+/// lines. NULL with the reason, also if `lines` have failed.
 himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
                               himc_error *error);
 

@@ -8,8 +8,8 @@
 
 /// Prints into `out` of `size` bytes (1 or more), its final 0 included; what does not fit is cut
 /// off. Returns the length of the text that is there. Conversions: %% %c %s %.Ns %.*s %d %ld %zu %g
-/// %u %.Ng %.Nf, without width; N up to 9. Numbers are those of libc in their first 16 digits; %f of
-/// 1e9 and more is printed as %g.
+/// %u %.Ng %.Nf, without width; N up to 9. Numbers are those of libc in their first 16 digits; %f
+/// of 1e9 and more is printed as %g.
 HIMC_RT size_t himc_format(char *out, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 HIMC_RT size_t himc_format_list(char *out, size_t size, const char *format, va_list args)

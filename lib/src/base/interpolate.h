@@ -20,8 +20,8 @@ typedef struct joint_state {
 
 #define HIMC_JOINT_LANES 12 ///< joints at once: those that targets move, and an even number
 
-/// Rotations of joints as quaternions in four dimensions that move on quintics: of each power of the
-/// time and each component the coefficients of all joints, side by side.
+/// Rotations of joints as quaternions in four dimensions that move on quintics: of each power of
+/// the time and each component the coefficients of all joints, side by side.
 typedef struct joint_courses {
     double c[6][4][HIMC_JOINT_LANES];
 } joint_courses;

@@ -1,8 +1,8 @@
 /// capsules.c: gaps between the parts of a body, and between a body and drums.
 ///
 /// With r = p1 - p2, d1 and d2 the two segments' vectors, a = d1.d1, e = d2.d2, b = d1.d2, c = d1.r
-/// and f = d2.r, the closest points of two lines are at s = (b f - c e) / (a e - b b) and t = (b s +
-/// f) / e. Both are clamped to the segments, one after the other (Ericson 2005, section 5.1.9).
+/// and f = d2.r, the closest points of two lines are at s = (b f - c e) / (a e - b b) and t = (b s
+/// + f) / e. Both are clamped to the segments, one after the other (Ericson 2005, section 5.1.9).
 #include "body/capsules.h"
 
 #include <math.h>

@@ -42,8 +42,9 @@ HIMC_RT double himc_character_potential(const himc_character *character);
 /// and valid until the next one.
 HIMC_RT const himc_articulation *himc_character_articulation(himc_character *character);
 
-/// Adds a force (world frame, N) that acts at `from_center` (world frame, m) from a segment's centre of mass during the next step only. Several
-/// forces add up; the pelvis is fixed and ignores them.
+/// Adds a force (world frame, N) that acts at `from_center` (world frame, m) from a segment's
+/// centre of mass during the next step only. Several forces add up; the pelvis is fixed and ignores
+/// them.
 HIMC_RT void himc_character_push(himc_character *character, int segment, himc_vec3 force,
                                  himc_vec3 from_center);
 

@@ -78,9 +78,9 @@ HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state
                             int segment, himc_vec3 at, himc_vec3 force,
                             himc_vec3 torque[HIMC_JOINTS]);
 
-/// himc_inverse_dynamics of a moving body, of segments `begin` .. `end` - 1: 1 .. HIMC_LEGS - 1, the
-/// legs, or all. Only their joints' torques are written. `articulation` is of these segments in this
-/// state, or NULL: its centres and inertias need not be found again.
+/// himc_inverse_dynamics of a moving body, of segments `begin` .. `end` - 1: 1 .. HIMC_LEGS - 1,
+/// the legs, or all. Only their joints' torques are written. `articulation` is of these segments in
+/// this state, or NULL: its centres and inertias need not be found again.
 HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
                                       const himc_articulation *articulation,
                                       const himc_vec3 *relative, int begin, int end,

@@ -9,7 +9,8 @@
 /// What remains is the integrator's own, `numerical`:
 ///     weight   the fall in the step is h v+, not h u: h m g (v+ - v) / 2 upwards, whose sum over a
 ///              motion between two rests is 0;
-///     joints   the levers are those of the step's beginning, so the two ends of a joint part with a
+///     joints   the levers are those of the step's beginning, so the two ends of a joint part with
+///     a
 ///              mean velocity of h w (w c) / 2; the force in the joint does work on it;
 ///     spin     the gyroscopic moment (tree.h) is implicit and takes energy.
 /// The force in a joint is what accelerates all segments beyond it, less the other forces on them.

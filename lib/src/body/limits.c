@@ -101,8 +101,8 @@ static double along_axis(double radius, double z, double excess)
     return z * z >= excess ? radius * excess / fabs(z) : INFINITY;
 }
 
-// The surface is no farther from a point outside than on the way to the centre or along an axis, and
-// rotations are no farther apart than their logarithms.
+// The surface is no farther from a point outside than on the way to the centre or along an axis,
+// and rotations are no farther apart than their logarithms.
 static double most_beyond(himc_vec3 radius, himc_vec3 t, double measure)
 {
     double excess = measure * measure - 1;
@@ -113,8 +113,8 @@ static double most_beyond(himc_vec3 radius, himc_vec3 t, double measure)
     return fmin(himc_vec3_length(t) * (1 - 1 / measure), least(way));
 }
 
-// A rotation of the joint is in the tangent space at most HIMC_PI / 2 times as long, and the measure
-// grows by its length over the thinnest semi-axis.
+// A rotation of the joint is in the tangent space at most HIMC_PI / 2 times as long, and the
+// measure grows by its length over the thinnest semi-axis.
 static himc_limit_place locate_in_ellipsoid(const himc_limit *l, himc_quat rotation)
 {
     himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), rotation);

@@ -65,8 +65,8 @@
 #define ANKLE_HEIGHT 0.075 // (m)
 #define KNEES_APART 0.45   // each, from straight ahead (rad)
 #define THIGH_LIMIT (-0.2) // cosine of the steepest thigh on a low seat: knees above the hips
-// The stool. Chosen: at 1.75 m a head at 0.85 m, and 0.1 m lower or higher, is played from the usual
-// seat; hands of a lower one would strike through the thighs, arms of a higher one be raised.
+// The stool. Chosen: at 1.75 m a head at 0.85 m, and 0.1 m lower or higher, is played from the
+// usual seat; hands of a lower one would strike through the thighs, arms of a higher one be raised.
 #define HIGHEST_IMPACT 0.14 // over the seat, of the body's height
 #define LOWEST_IMPACT 0.03  // (m)
 #define STANDING_SHARE 0.53 // hips of a standing player, of the height

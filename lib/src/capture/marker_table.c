@@ -4,19 +4,23 @@
 /// All are a head that says rate, unit and the column where each marker's three cells begin,
 /// then rows of numbers. A head is read into a plan; one loop reads the rows of all.
 ///
-///     Nexus     sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is read: the
+///     Nexus     sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is
+///     read: the
 ///               rate, a line of names each above its first column, "Frame,Sub Frame,X,Y,Z,...", a
 ///               line of units, rows up to an empty one
-///     Motive    "Format Version,1.23,Export Frame Rate,120,Length Units,Meters,...", then lines of types
-///               (Marker, Rigid Body, Bone, ...), names, identifiers, properties (Position, Rotation),
-///               and "Frame,Time (Seconds),X,Y,Z,..."; y up. Positions of all are read, but not where
-///               a body's markers ought to be if the file has where they were
-///     Qualisys  lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then rows,
+///     Motive    "Format Version,1.23,Export Frame Rate,120,Length Units,Meters,...", then lines of
+///     types
+///               (Marker, Rigid Body, Bone, ...), names, identifiers, properties (Position,
+///               Rotation), and "Frame,Time (Seconds),X,Y,Z,..."; y up. Positions of all are read,
+///               but not where a body's markers ought to be if the file has where they were
+///     Qualisys  lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then
+///     rows,
 ///               with Frame and Time first if the line before them says so
-///     any       one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
-///               NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others
-///               are not read. So motion.csv of `himc render` is a take, too. Where a semicolon or a
-///               tab parts the cells, numbers may have a decimal comma
+///     any       one line of column names: time (s), and three columns for each marker, NAME_x
+///     NAME_y
+///               NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the
+///               others are not read. So motion.csv of `himc render` is a take, too. Where a
+///               semicolon or a tab parts the cells, numbers may have a decimal comma
 #include "capture/marker_cells.h"
 
 #include <math.h>

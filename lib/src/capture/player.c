@@ -403,8 +403,8 @@ static bool bring_into_reach(himc_player *player, const himc_take *take,
     return true;
 }
 
-// how far a head is to be lowered for a stick that comes from rest over it to the take's first place
-// `first`, in the head's frame (m)
+// how far a head is to be lowered for a stick that comes from rest over it to the take's first
+// place `first`, in the head's frame (m)
 static double under_approach(const himc_head_frame *drum, himc_hand hand, himc_vec3 first)
 {
     double under = 0, x, aside;

@@ -74,8 +74,8 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
 // The seat: player.c.
 
 /// Offset that moves the centre of the take's strikes onto the drum's usual strike place (m);
-/// without strikes it moves the lowest position of a tip to a little above that place. False without
-/// memory.
+/// without strikes it moves the lowest position of a tip to a little above that place. False
+/// without memory.
 bool himc_strike_offset(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                         const himc_head_frame *drum, double mallet_radius, himc_vec3 *offset);
 

@@ -3,8 +3,9 @@
 /// Players look at the place of the next stroke, and in rests to the conductor; they breathe, shift
 /// their weight on the stool, and lift head and chest before a first note, which falls with it. All
 /// are goals of the slow parts of the posture, which follow them without jumps of the acceleration
-/// (posture.h). They move trunk, neck and head; the tips' targets stay, and inverse kinematics makes
-/// up for the shoulders, as it does for a turning trunk. Amplitudes are chosen: seen, and small.
+/// (posture.h). They move trunk, neck and head; the tips' targets stay, and inverse kinematics
+/// makes up for the shoulders, as it does for a turning trunk. Amplitudes are chosen: seen, and
+/// small.
 #include "control/alive.h"
 
 #include <math.h>

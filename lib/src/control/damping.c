@@ -3,8 +3,8 @@
 /// Timpanists stop a head with the fingers of a hand that holds its stick, near the spot of the
 /// strokes; the stick stays over the head. The tip is the hand's only task, so its place is that of
 /// a natural posture with the fingers on the head. The plan moves it there, C2 and at rest in time,
-/// as it moves to any target. The head is damped at its own time, whether a hand has come or not: the
-/// losses are the head's, and the fingers have no contact of their own.
+/// as it moves to any target. The head is damped at its own time, whether a hand has come or not:
+/// the losses are the head's, and the fingers have no contact of their own.
 #include "control/damping.h"
 
 #define FINGERS_BACK 0.55 // from the centre towards the performer, of the radius; chosen

@@ -14,11 +14,12 @@
 /// the servos themselves, which drive no joint further out. It is a spring and a damper: omega_lim
 /// has no more energy than omega, omega' I omega_lim <= omega' I omega, so it pumps none.
 ///
-/// An arm that its limits hold off its target is asked for more and more: 1e5 rad/s^2 at a tip 0.2 m
-/// off, as if all joints could turn. What its limits leave of that threw it about at 50 to 100 m/s,
-/// and once in eight hours apart. So errors of angle pull no harder than LARGEST_ERROR, which brings
-/// a joint to w LARGEST_ERROR/2 against its damping, and no joint is asked for more than
-/// HARDEST_DEMAND: all joints of an arm for as much less, so that it still moves towards its target.
+/// An arm that its limits hold off its target is asked for more and more: 1e5 rad/s^2 at a tip 0.2
+/// m off, as if all joints could turn. What its limits leave of that threw it about at 50 to 100
+/// m/s, and once in eight hours apart. So errors of angle pull no harder than LARGEST_ERROR, which
+/// brings a joint to w LARGEST_ERROR/2 against its damping, and no joint is asked for more than
+/// HARDEST_DEMAND: all joints of an arm for as much less, so that it still moves towards its
+/// target.
 #include "control/limit_torque.h"
 
 #include "body/dynamics.h"

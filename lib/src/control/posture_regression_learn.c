@@ -2,10 +2,11 @@
 ///
 /// A player is described by the means of his takes (rotations.h) and his measures. The weights W
 /// are the least squares solution over all frames of all players, each relative to his own means
-/// (singular values below 1e-3 of the largest are left out: the solution of least norm). A regression has smaller amplitude than its data: its mean square is that of the
-/// explained part. So the weights of each joint are then scaled until its rotations have the mean
-/// square of the captured ones (reduced major axis). So the elbow moves as far as the captured
-/// one, at almost no cost in angle.
+/// (singular values below 1e-3 of the largest are left out: the solution of least norm). A
+/// regression has smaller amplitude than its data: its mean square is that of the explained part.
+/// So the weights of each joint are then scaled until its rotations have the mean square of the
+/// captured ones (reduced major axis). So the elbow moves as far as the captured one, at almost no
+/// cost in angle.
 ///
 /// One take corrects a regression by ridge regression (Hoerl and Kennard 1970), to the W + D of
 ///     min sum |u - (W + D) phi|^2 + PRIOR_FRAMES^2 |D|^2.

@@ -1,17 +1,17 @@
 /// strength.c: torque maxima, in the 2012 paper a feature of its physics engine (section 3.3).
 ///
 /// There each axis of a motor has its own maximum; here a joint's torque keeps its direction and is
-/// shortened, so that a weak joint pulls weakly but in the right direction. Measured isometric maxima: neck
-/// 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014, men); shoulder 68 +- 28, wrist 10
-/// +- 5 (Holzbaur, Delp, Gold & Murray 2007, women and men); wrist 12 in flexion, 7 in extension,
-/// 11 sideways (Delp, Grierson & Buchanan 1996, men). Those for a man of 75 kg are taken from their
-/// upper half; the elbow's stands near the shoulder's, the fingers' on a thin stick, the trunk's
-/// and the legs' are round figures of the size dynamometers show.
+/// shortened, so that a weak joint pulls weakly but in the right direction. Measured isometric
+/// maxima: neck 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014, men); shoulder 68 +-
+/// 28, wrist 10 +- 5 (Holzbaur, Delp, Gold & Murray 2007, women and men); wrist 12 in flexion, 7 in
+/// extension, 11 sideways (Delp, Grierson & Buchanan 1996, men). Those for a man of 75 kg are taken
+/// from their upper half; the elbow's stands near the shoulder's, the fingers' on a thin stick, the
+/// trunk's and the legs' are round figures of the size dynamometers show.
 ///
 /// A muscle that shortens pulls less, and at its highest speed not at all (Hill 1938). So a maximum
 /// falls with the joint's speed v along the torque, most (1 - v/FASTEST), and no joint gets power
-/// above FASTEST: torques cut short one by one do not go together any more, and without this such an
-/// arm whirled at 100 m/s. A torque against the motion keeps its maximum.
+/// above FASTEST: torques cut short one by one do not go together any more, and without this such
+/// an arm whirled at 100 m/s. A torque against the motion keeps its maximum.
 #include "control/strength.h"
 
 #include "control/tracking_error.h"

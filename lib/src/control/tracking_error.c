@@ -61,8 +61,8 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
 }
 
 // The demand of the tip through the Jacobian, then the elbow's place and the posture in its null
-// space; the solution is linear in all of them. What the posture moves the tip by is taken back with
-// the demand: W J' (inverse demand - (J W J')^-1 J posture) + posture.
+// space; the solution is linear in all of them. What the posture moves the tip by is taken back
+// with the demand: W J' (inverse demand - (J W J')^-1 J posture) + posture.
 static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *all)
 {
     const himc_controller_config *c = &tasks->controller->config;

@@ -24,8 +24,8 @@ HIMC_RT void himc_tracking_error_tip(const himc_controller *c, const himc_skelet
                                      himc_hand hand, const himc_arm_jacobian *jacobian,
                                      tracking_error *e);
 
-/// Tip acceleration (m/s^2) that the arm's joints must make: the wanted one less that of the state's
-/// spins and of the trunk, which accelerates as in `relative`.
+/// Tip acceleration (m/s^2) that the arm's joints must make: the wanted one less that of the
+/// state's spins and of the trunk, which accelerates as in `relative`.
 HIMC_RT himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
                                          himc_hand hand, const himc_vec3 *relative,
                                          himc_vec3 wanted);

@@ -4,11 +4,11 @@
 /// together lose the power v'C v/2,
 ///     C_ij = sum_b w_b(f_i) w_b(f_j) Re sum_q a_i conj(a_j) exp(-i k_b q.(r_i - r_j)),
 /// a Gram sum over directions q and bands b of frequency: no velocities can make it negative,
-/// whatever the places, sizes and tunings. A frequency lies between two bands, half an octave apart,
-/// with w^2 + w^2 = 1, so that modes in tune have the k of their frequency, and modes far out of
-/// tune, which cannot move each other, no C_ij. Two drums in unison, d apart, have the ratio j_0(kd)
-/// for (0,1), 3 j_1(kd)/kd for (1,1) across the line between them, as two poles and two dipoles have.
-/// The reactive part and the time between them (2 ms) are left out.
+/// whatever the places, sizes and tunings. A frequency lies between two bands, half an octave
+/// apart, with w^2 + w^2 = 1, so that modes in tune have the k of their frequency, and modes far
+/// out of tune, which cannot move each other, no C_ij. Two drums in unison, d apart, have the ratio
+/// j_0(kd) for (0,1), 3 j_1(kd)/kd for (1,1) across the line between them, as two poles and two
+/// dipoles have. The reactive part and the time between them (2 ms) are left out.
 ///
 /// The modes themselves are without these losses (himc_membrane_share). In its place, every
 /// `himc_membrane_interval` samples t, all velocities change at once by the trapezoidal rule,

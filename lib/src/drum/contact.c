@@ -4,8 +4,8 @@
 /// constant (felt.c). Its elastic part does exactly the work V(c0 + r) - V(c0), the rest only takes
 /// energy, and F does not decrease with r. The bodies respond linearly: r = b - G F(r). So the
 /// residual r - b + G F(r) of one pair rises with slope >= 1 and has one root, at most b; Newton's
-/// steps find it, kept between the places known to be below and above. (Discrete gradient: Chatziioannou & van
-/// Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
+/// steps find it, kept between the places known to be below and above. (Discrete gradient:
+/// Chatziioannou & van Walstijn 2015; Bilbao, Torin & Chatziioannou 2015.)
 ///
 /// Several pairs on one head. The residual is G times the gradient of the strictly convex
 ///     Psi(r) = (r - b)' G^-1 (r - b)/2 + sum_i int F_i dr_i,
@@ -28,10 +28,10 @@
 /// passive body under constant force gains just force times displacement, and the forces' work on
 /// head and sticks together is -F r. No step size restricts it.
 ///
-/// A stiff mallet meets a point of the head in a spike of a few samples, of which steps of 1/48000 s
-/// make 3 % less. So while one is near, a sample is divided into substeps of 5 microseconds (the
-/// head's modes are exact in any step), and the sample's force is their mean. A patch is heavier than
-/// a point and yields more: felt on it needs no substeps, and wood without them is 0.2 % off.
+/// A stiff mallet meets a point of the head in a spike of a few samples, of which steps of 1/48000
+/// s make 3 % less. So while one is near, a sample is divided into substeps of 5 microseconds (the
+/// head's modes are exact in any step), and the sample's force is their mean. A patch is heavier
+/// than a point and yields more: felt on it needs no substeps, and wood without them is 0.2 % off.
 ///
 /// Between two samples anything may move head or stick: a change of the head, a step of the body, a
 /// drum put elsewhere. The compression does not grow by it, and a stick in the air gets to the
@@ -188,8 +188,8 @@ static double descent(const search *s, const double *dual)
     return sum;
 }
 
-// Goes along `step` until Psi's slope has fallen, nearly always all the way. True at the solution, and
-// where no part of the step lowers the slope: what remains is rounding.
+// Goes along `step` until Psi's slope has fallen, nearly always all the way. True at the solution,
+// and where no part of the step lowers the slope: what remains is rounding.
 static bool line_search(search *s, const double *step)
 {
     double a[MAX_PAIRS][MAX_PAIRS], dual[MAX_PAIRS], from[MAX_PAIRS];
@@ -312,9 +312,9 @@ static double watched(himc_membrane *m, himc_stick *s)
         m, himc_membrane_strike_point(m, s->watched_x, s->watched_y, 0));
 }
 
-// Whether in the coming n samples a stick certainly is in the air, over a head that may be `pushed` in
-// them. The substeps of a stiff one change the last digits of the head, so their beginning must not
-// hang on an estimate.
+// Whether in the coming n samples a stick certainly is in the air, over a head that may be `pushed`
+// in them. The substeps of a stiff one change the last digits of the head, so their beginning must
+// not hang on an estimate.
 static bool is_clear(himc_membrane *membrane, himc_stick *s, int n, double h, bool pushed)
 {
     himc_bank_bounds head = {INFINITY, INFINITY};
@@ -472,8 +472,8 @@ static void keep_compression(himc_stick *s, double before)
         s->height = surface - most;
 }
 
-// Kept while it hardly changes: a stick that follows a head on its way down is in its last two steps
-// for a long time, and weighing all modes anew in each of them would take a block's time.
+// Kept while it hardly changes: a stick that follows a head on its way down is in its last two
+// steps for a long time, and weighing all modes anew in each of them would take a block's time.
 static void foresee_patch(const himc_membrane *m, himc_stick *s, double distance, double speed)
 {
     double radius = himc_patch_radius(himc_membrane_head(m), &s->head, s->mass, distance, speed);
@@ -509,8 +509,8 @@ void himc_stick_put(himc_membrane *membrane, himc_stick *stick)
     stick->height = displacement(membrane, stick, point_under(membrane, stick, 0));
 }
 
-// Moves the sticks that are in the air in a step whatever the others do; the rest are `low`. Returns
-// their number.
+// Moves the sticks that are in the air in a step whatever the others do; the rest are `low`.
+// Returns their number.
 static int let_fly(himc_membrane *membrane, himc_stick *const *sticks, int count, double h,
                    himc_stick **low)
 {

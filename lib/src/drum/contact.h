@@ -18,8 +18,8 @@ HIMC_RT void himc_stick_fly(himc_stick *stick, double h);
 /// its patch.
 HIMC_RT void himc_stick_put(himc_membrane *membrane, himc_stick *stick);
 
-/// Energy in a stick and its contact after its last sample (J): m v^2/2, the felt's V(c) and that of
-/// the residual oscillator; gravity not counted.
+/// Energy in a stick and its contact after its last sample (J): m v^2/2, the felt's V(c) and that
+/// of the residual oscillator; gravity not counted.
 HIMC_RT double himc_contact_energy(const himc_stick *stick);
 
 #endif

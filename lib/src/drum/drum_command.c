@@ -21,8 +21,8 @@
 // open drum engine's range. The rest is chosen: a softer felt is heavier and loses more; the soft
 // one's core nearly doubles the centroid of its sound from pp to ff; wood is as light and narrow as
 // makes its contact last the 5 ms of a wooden stick's (3 to 6 ms: Wagner 2006). Medium felt of
-// Rhaouti's 28 g touches so long that the highest notes of a 23 inch drum fall into the first gap of
-// its pulse's spectrum, (2,1) is louder than (1,1), and so do (3,1) at C2 and (2,1) at G2, which
+// Rhaouti's 28 g touches so long that the highest notes of a 23 inch drum fall into the first gap
+// of its pulse's spectrum, (2,1) is louder than (1,1), and so do (3,1) at C2 and (2,1) at G2, which
 // are strong in recordings.
 // In the order of the words of `mallet`.
 static const himc_mallet_head presets[] = {
@@ -61,8 +61,8 @@ static double number(const himc_command *c, int index)
     return c->atom[index].number;
 }
 
-// What a command computes is kept in single precision, as what it is given: so another can say it. The
-// number as the value of that argument.
+// What a command computes is kept in single precision, as what it is given: so another can say it.
+// The number as the value of that argument.
 static double as_said(const char *argument, double value)
 {
     return himc_argument_number(himc_argument_find(argument, NULL), value);

@@ -98,8 +98,8 @@ typedef struct himc_drum_heads himc_drum_heads;
 
 /// Changes of the head of a drum of that form, none yet; NULL with the reason.
 himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *error);
-/// Adds a command that is marked HIMC_AT_BEAT, for a beat at or after the last one's: it acts on what
-/// the ones before left. False with the reason if the drum refuses it.
+/// Adds a command that is marked HIMC_AT_BEAT, for a beat at or after the last one's: it acts on
+/// what the ones before left. False with the reason if the drum refuses it.
 bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command *command,
                          himc_error *error);
 /// Computes the heads, so that himc_drum_heads_turn need not. False without memory.
@@ -108,12 +108,12 @@ bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error);
 HIMC_RT bool himc_drum_heads_due(const himc_drum_heads *heads, double beat);
 /// The damping of the head at that beat (himc_head.damp).
 HIMC_RT double himc_drum_heads_damp(const himc_drum_heads *heads, double beat);
-/// Gives the drum the head that it has at that beat: that of the form before the first change. Quick
-/// where the drum has still the pickups and the listener of the form, else the head is computed
-/// now. Between two samples.
+/// Gives the drum the head that it has at that beat: that of the form before the first change.
+/// Quick where the drum has still the pickups and the listener of the form, else the head is
+/// computed now. Between two samples.
 void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat);
-/// Before beat `from` the drum has the heads of `before` (NULL: none), which are `heads`' own from now
-/// on. Returns those that are over at beat `now`, to be freed, or NULL.
+/// Before beat `from` the drum has the heads of `before` (NULL: none), which are `heads`' own from
+/// now on. Returns those that are over at beat `now`, to be freed, or NULL.
 himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,
                                         double from, double now);
 /// Frees them, and those before. NULL is allowed.

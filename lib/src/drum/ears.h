@@ -93,8 +93,8 @@ static inline bool himc_ears_alone(const himc_ears *ears)
 /// True if nothing is left to be heard, and nothing about to change.
 HIMC_RT bool himc_ears_at_rest(const himc_ears *ears);
 
-/// `n` samples: takes the rays (NULL: silence), and turns the `count` rows of pickups, two at least,
-/// into what is heard: the ears in the first two, and of the pickups what the ears leave.
+/// `n` samples: takes the rays (NULL: silence), and turns the `count` rows of pickups, two at
+/// least, into what is heard: the ears in the first two, and of the pickups what the ears leave.
 HIMC_RT void himc_ears_hear(himc_ears *ears, int n, double *const *rays, int count,
                             double *const *rows);
 

@@ -3,16 +3,16 @@
 /// At rest its force is f = V', the sum of two power laws: the felt's own, and below the depth c_c
 /// that of its core, which is much stiffer,
 ///     V(c) = k c^(alpha+1)/(alpha+1) + k_2 max(c - c_c, 0)^3.5/3.5.
-/// Felt of a piano hammer stiffens alike as it is pressed (exponents 2.1 to 5: Boutillon 1988). Over
-/// a step of length h the compression goes from c0 to c1 = c0 + r and the force is constant,
+/// Felt of a piano hammer stiffens alike as it is pressed (exponents 2.1 to 5: Boutillon 1988).
+/// Over a step of length h the compression goes from c0 to c1 = c0 + r and the force is constant,
 ///     F(r) = max(0, D (1 + mu r/h) + tau (f(c1) - f(c0))/h),   D = (V(c1) - V(c0))/r.
-/// D, the discrete gradient, does exactly the work V(c1) - V(c0) (Chatziioannou & van Walstijn 2015;
-/// Bilbao, Torin & Chatziioannou 2015). mu is the loss of Hunt & Crossley 1975; tau is the slow
-/// limit of felt with memory, F = f + tau df/dt (Stulov 1995): fibres that give way late.
+/// D, the discrete gradient, does exactly the work V(c1) - V(c0) (Chatziioannou & van Walstijn
+/// 2015; Bilbao, Torin & Chatziioannou 2015). mu is the loss of Hunt & Crossley 1975; tau is the
+/// slow limit of felt with memory, F = f + tau df/dt (Stulov 1995): fibres that give way late.
 ///
-/// Both losses only take energy. If F > 0 they take D mu r^2/h >= 0, as V does not decrease, and tau
-/// (f(c1) - f(c0)) r/h >= 0, as V is convex and so f does not decrease. If F = 0, then r <= 0, since
-/// no term is negative for r > 0, and the contact loses -D r >= 0.
+/// Both losses only take energy. If F > 0 they take D mu r^2/h >= 0, as V does not decrease, and
+/// tau (f(c1) - f(c0)) r/h >= 0, as V is convex and so f does not decrease. If F = 0, then r <= 0,
+/// since no term is negative for r > 0, and the contact loses -D r >= 0.
 ///
 /// F does not decrease with r, which makes the solution in contact.c unique: of a convex V both D
 /// and f(c0 + r) rise with r, and so does D (1 + mu r/h) where that factor is positive. Where it is

@@ -35,9 +35,9 @@ _Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
 #define RIM_ROUNDING 1.2e-7
 #define BISECTIONS 60 // halvings of ln T: exact to the last bit of a double
 #define SLACK 1e-6    // rise per tension; chosen: 0.001 cent
-// Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as it
-// should whatever its angle w t in one, unless that is near pi, where its velocity would be met at
-// the same phase again and again.
+// Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as
+// it should whatever its angle w t in one, unless that is near pi, where its velocity would be met
+// at the same phase again and again.
 #define INTERVAL 0.00075     // (s) chosen: 32 samples of 44.1 and 48 kHz
 #define LARGEST_BESSEL 0.582 // of |J_m| with m > 0
 #define SHARED_ANGLE 2.0     // most of w t of a mode that is shared; chosen: up to 477 Hz
@@ -73,8 +73,8 @@ static output take_output(double **memory, int length)
     return o;
 }
 
-// Modes, bank and arrays for `modes` (as a head's) of that outline, and the arrays of strike points.
-// False, and nothing kept, without memory.
+// Modes, bank and arrays for `modes` (as a head's) of that outline, and the arrays of strike
+// points. False, and nothing kept, without memory.
 static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_shape *shape,
                      int modes, himc_error *error)
 {
@@ -119,7 +119,8 @@ static double kettle_of(const himc_head *head)
 }
 
 // Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
-// of the film; Lam_i is the stiffness of a mode's film per tension. The members of a pair have one load.
+// of the film; Lam_i is the stiffness of a mode's film per tension. The members of a pair have one
+// load.
 static void find_oscillators(himc_membrane *m)
 {
     core *c = &m->core;
@@ -470,9 +471,9 @@ static bool resize(himc_membrane *m, int modes, himc_error *error)
     return true;
 }
 
-// Pairs whose axis was another in `before` go on in the same shape: what vibrated along the old axes
-// is taken apart along the new ones. Of amplitudes times frequency and of velocities, as here, a
-// rotation keeps the energy, since both members have one mass.
+// Pairs whose axis was another in `before` go on in the same shape: what vibrated along the old
+// axes is taken apart along the new ones. Of amplitudes times frequency and of velocities, as here,
+// a rotation keeps the energy, since both members have one mass.
 static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
 {
     const himc_lugs_pair *after = himc_modes_pairs(m->core.modes);

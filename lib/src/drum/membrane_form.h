@@ -34,8 +34,8 @@ HIMC_RT int himc_membrane_modes(const himc_membrane *membrane);
 
 /// A membrane of that form, at rest; NULL with the reason.
 himc_membrane *himc_membrane_new_of(const himc_membrane_form *form, himc_error *error);
-/// Sets its rays (HIMC_RAYS, of kind AIR), or NULL for none. Their sound begins, or changes over, in
-/// 5 ms; the pickups do not notice.
+/// Sets its rays (HIMC_RAYS, of kind AIR), or NULL for none. Their sound begins, or changes over,
+/// in 5 ms; the pickups do not notice.
 HIMC_RT void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays);
 /// Its rays, borrowed; NULL if it has none.
 HIMC_RT const himc_pickup *himc_membrane_rays(const himc_membrane *membrane);
@@ -57,9 +57,9 @@ HIMC_RT void himc_membrane_run_all(himc_membrane *membrane, int n, double *const
 /// Whether the sound of the pickups is not wanted: it is then 0 in samples with contact, too.
 HIMC_RT void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute);
 
-/// Gives `membrane` the form of `made`, which has the same rate, and `made` that of `membrane`. Modes
-/// of the same outline go on, as with himc_membrane_set_head; another outline begins at rest, as
-/// with himc_membrane_set_shape. What moves in `made` is lost. No memory is allocated.
+/// Gives `membrane` the form of `made`, which has the same rate, and `made` that of `membrane`.
+/// Modes of the same outline go on, as with himc_membrane_set_head; another outline begins at rest,
+/// as with himc_membrane_set_shape. What moves in `made` is lost. No memory is allocated.
 HIMC_RT void himc_membrane_exchange(himc_membrane *membrane, himc_membrane *made);
 
 #endif

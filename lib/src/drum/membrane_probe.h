@@ -7,8 +7,9 @@
 /// Sets displacement q and velocity v of mode `index` (m, m/s); no effect on a silent mode.
 HIMC_RT void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v);
 
-/// Displacement (m) of the first `count` shapes of a bare head with its axes along x and y, of which
-/// the modes are made: of what the modes have now, or of `modal` (count) (m) if it is not NULL.
+/// Displacement (m) of the first `count` shapes of a bare head with its axes along x and y, of
+/// which the modes are made: of what the modes have now, or of `modal` (count) (m) if it is not
+/// NULL.
 HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
                                    double *displacement);
 

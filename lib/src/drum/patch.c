@@ -1,16 +1,16 @@
 /// patch.c: the size of a contact.
 ///
 /// A mallet of radius R covers a disc of the head with an even pressure F/(pi b^2). A mode's mean
-/// over the disc is its value at the centre times W(k b) = 2 J1(k b)/(k b), k its wave number: exact
-/// for every solution of lap w = -k^2 w. Force and displacement have the same W, so the patch does
-/// the work that the modes receive.
+/// over the disc is its value at the centre times W(k b) = 2 J1(k b)/(k b), k its wave number:
+/// exact for every solution of lap w = -k^2 w. Force and displacement have the same W, so the patch
+/// does the work that the modes receive.
 ///
 /// Radius. Under F the felt flattens by c and the head bends with radius 2 pi T b^2/F: two spheres
 /// that touch as Hertz's do, c = b^2 (1/R - F/(2 pi T b^2)), so
 ///     b^2 = R (c + F/(2 pi T)).
 /// b is fixed for a blow, at the force-weighted mean of that. Its largest force comes from the
-/// energy at impact, m v^2/2 = V(c) + C(b) f(c)^2/2: felt and head in series, as if they had time. A
-/// few Newton steps on the logarithms solve it.
+/// energy at impact, m v^2/2 = V(c) + C(b) f(c)^2/2: felt and head in series, as if they had time.
+/// A few Newton steps on the logarithms solve it.
 ///
 /// Compliance. The mean over disc and disc of Green's function of a disc of radius a, at r0 from
 /// its centre (the mean of -ln|x - y| is 1/4 - ln b; the image is harmonic, so its mean is its
@@ -21,11 +21,11 @@
 /// Residual. The modes that a list lacks yield, too. All together move like one oscillator with the
 /// compliance and the inverse mass that they have together,
 ///     C_res = C(b) - sum phi^2 W^2/K,   1/m_res = 1/(sigma pi b^2) - sum phi^2 W^2/M,
-/// over the bare modes of the list (sigma pi b^2 is the mass of the film under the patch): right for
-/// a slow push and for a sudden one. Its damping stands for the waves that carry the push away. It
-/// is one more passive oscillator, exact in any step; nobody hears it. In coordinates x = q/sqrt(C),
-/// y = q' sqrt(m) its energy is (x^2 + y^2)/2 and its step a rotation that shrinks, so a rotation of
-/// another length gives it none, either.
+/// over the bare modes of the list (sigma pi b^2 is the mass of the film under the patch): right
+/// for a slow push and for a sudden one. Its damping stands for the waves that carry the push away.
+/// It is one more passive oscillator, exact in any step; nobody hears it. In coordinates x =
+/// q/sqrt(C), y = q' sqrt(m) its energy is (x^2 + y^2)/2 and its step a rotation that shrinks, so a
+/// rotation of another length gives it none, either.
 #include "drum/patch.h"
 
 #include "drum/felt.h"

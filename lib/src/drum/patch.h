@@ -5,8 +5,8 @@
 
 #include "himc/membrane.h"
 
-/// Radius of the patch of a blow (m): `mallet` of effective mass `mass` (kg) meets `head` at `speed`
-/// (m/s), `distance` from its centre (m). 0 for a mallet of radius 0, which is a point.
+/// Radius of the patch of a blow (m): `mallet` of effective mass `mass` (kg) meets `head` at
+/// `speed` (m/s), `distance` from its centre (m). 0 for a mallet of radius 0, which is a point.
 HIMC_RT double himc_patch_radius(const himc_head *head, const himc_mallet_head *mallet, double mass,
                                  double distance, double speed);
 

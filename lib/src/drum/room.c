@@ -3,9 +3,9 @@
 /// Sixteen delays of 17 to 71 ms, the ways between walls 6 to 24 m apart. What leaves them is
 /// reflected, x = A y, by an orthogonal A (Householder's reflection, then each to the next delay:
 /// Jot & Chaigne 1991), so no energy comes or goes; it passes a filter y = keep y + take x on its
-/// way, whose gain is at most 10^(-3 d/T60) for the delay d at every frequency. So the energy in the
-/// room only falls, by 60 dB in T60 below 1 kHz and faster above, whatever the delays. While the
-/// walls change, keep and take are means of two such filters: their gain is below 1, too.
+/// way, whose gain is at most 10^(-3 d/T60) for the delay d at every frequency. So the energy in
+/// the room only falls, by 60 dB in T60 below 1 kHz and faster above, whatever the delays. While
+/// the walls change, keep and take are means of two such filters: their gain is below 1, too.
 ///
 /// Level. A source that sends p at 1 m fills a room of volume V with p^2 16 pi/(D A), D its
 /// directivity and A = 0.161 V/T60 its absorption (Sabine). A timpano sends D = 2 to 6 times its
@@ -13,8 +13,8 @@
 /// leaves it sum g^2/(1 - g^2) times.
 ///
 /// The two ears add the delays with signs that are orthogonal, so they hear nothing alike, at any
-/// frequency. In a diffuse field ears 17 cm apart hear low tones alike; microphones in a hall, which
-/// recordings are made with, do not (chosen: as these).
+/// frequency. In a diffuse field ears 17 cm apart hear low tones alike; microphones in a hall,
+/// which recordings are made with, do not (chosen: as these).
 #include "drum/room.h"
 
 #include <math.h>

@@ -13,9 +13,9 @@
 
 typedef struct strike_point strike_point;
 
-/// The strike point at (x, y) with a patch of radius b (m), 0 for a point; the patch ends at the rim
-/// of a round head, and a grid's places have none. Borrowed; valid until 23 others have been asked
-/// for, or the head changes.
+/// The strike point at (x, y) with a patch of radius b (m), 0 for a point; the patch ends at the
+/// rim of a round head, and a grid's places have none. Borrowed; valid until 23 others have been
+/// asked for, or the head changes.
 HIMC_RT strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y,
                                                  double b);
 /// Mean displacement of the patch now (m, up positive), without the residual's.

@@ -1,8 +1,8 @@
 /// stroke_noise.c: noise in four bands, driven by the rate at which the contact's force changes.
 ///
 /// A blow also shakes what is not the head: felt rubs, the shaft bends, shell and stand ring, in
-/// more modes than anyone has measured. So each band b, the lowest from 250 Hz where a shaft of wood
-/// first bends (400 Hz) and kettles ring, has an energy (docs/model.md),
+/// more modes than anyone has measured. So each band b, the lowest from 250 Hz where a shaft of
+/// wood first bends (400 Hz) and kettles ring, has an energy (docs/model.md),
 ///     E_b' = -E_b 13.8/T60_b + q_b (min(F, STRONGEST)/F1)^BETA G^2/sqrt(1 + (G/G1)^2),
 ///     sound = amount sqrt(E_b) x unit noise,
 /// with a level that rises in RISE, and G the part of F' above EDGE: most of F' is the slow rise of

@@ -9,8 +9,9 @@
 ///     1 + epsilon k sum_n 4/(j_n^2 d_n) = 0,   d_n = tau j_n^2 - x^2 (1 + epsilon beta_n)
 /// one between each two zeros of d; such a mode is a mixture of the bare ones, those of norm 1 with
 /// shares 2/(j_n d_n). In a slack head the spring is the stiffer part, and the lowest mode moves
-/// little air: its rim goes down as its middle goes up. f(x l) = x l cot(x l), kept positive: it falls as the kettle's
-/// air begins to move as a column. Radiation is that of the shape in a baffle,
+/// little air: its rim goes down as its middle goes up. f(x l) = x l cot(x l), kept positive: it
+/// falls as the kettle's air begins to move as a column. Radiation is that of the shape in a
+/// baffle,
 ///     delta = x epsilon R/(2 (1 + epsilon beta)),   R = (2/j^2) I_m(x)/(1 - g x^2/j^2)^2
 ///     I_m(x) = int_0^{pi/2} J_m(x sin t)^2 x sin t dt = J_{2m+1}(2x) + J_{2m+3}(2x) + ...
 /// (by Neumann's integral for J_m^2; Watson 1944, section 5.43), g = (2m+2)/(2m+3) the mean of
@@ -35,9 +36,9 @@
 /// step and no bend while the pedal moves.
 ///
 /// Mass. A loaded mode's stiffness is the bare head's and, for m = 0, that of the kettle's slow
-/// spring epsilon/l (2/j)^2; its mass follows from the frequency. Thus static deflections are exact and, for
-/// the preferred modes of a tuned drum, the mass is within a tenth of the mass with which the whole
-/// problem responds to a blow (its residue).
+/// spring epsilon/l (2/j)^2; its mass follows from the frequency. Thus static deflections are exact
+/// and, for the preferred modes of a tuned drum, the mass is within a tenth of the mass with which
+/// the whole problem responds to a blow (its residue).
 #include "head/air.h"
 
 #include "head/statistical.h"

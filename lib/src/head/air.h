@@ -2,9 +2,9 @@
 ///
 /// Air moves with the head and makes it heavier, the low modes most; it carries sound away;
 /// enclosed in the kettle it is a spring to the modes of order m = 0, mixes their shapes, and has
-/// losses. Any other loaded mode keeps its shape and its stiffness T (j/a)^2 int phi^2 dS, so a slow
-/// push and a change of tension act on the same head; its mass and decay change. A head without air needs none of these
-/// functions.
+/// losses. Any other loaded mode keeps its shape and its stiffness T (j/a)^2 int phi^2 dS, so a
+/// slow push and a change of tension act on the same head; its mass and decay change. A head
+/// without air needs none of these functions.
 ///
 /// In the head's own measures a drum is three numbers, tau = T/(sigma c^2), epsilon = rho a/sigma
 /// and L/a = V/(pi a^3). A table, made once by solving the whole problem for the 23, 26, 29 and 32
@@ -57,8 +57,8 @@ HIMC_RT himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero
 HIMC_RT himc_mixture himc_air_mixture(const himc_air *air);
 
 /// The mode with that load: frequency, mass, stiffness, and decay S0 + S1 omega^2 at its new
-/// frequency plus radiation and friction, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a viscoelastic
-/// film's (Rhaouti, Chaigne & Joly 1999), S0 = 0.5 1/s the rest.
+/// frequency plus radiation and friction, at most 0.9 omega. S1 = eta/2 with eta = 0.6e-6 s is a
+/// viscoelastic film's (Rhaouti, Chaigne & Joly 1999), S0 = 0.5 1/s the rest.
 HIMC_RT himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head,
                                   const himc_mode *bare);
 /// The same, with the load found first; that of both members of a pair is equal.

@@ -10,7 +10,8 @@
 ///     stiffness k.mtx     N x N (N/m), symmetric, not negative
 /// A matrix is a Matrix Market file (coordinate or array, real or integer, general or symmetric) or
 /// N rows of N numbers. A free body, for example a bar, also has motions without bending; they
-/// make no sound and are left out, as if it lay on something soft. Between places a shape is interpolated linearly (modes.c), so list the rim.
+/// make no sound and are left out, as if it lay on something soft. Between places a shape is
+/// interpolated linearly (modes.c), so list the rim.
 #ifndef HIMC_GRID_H
 #define HIMC_GRID_H
 

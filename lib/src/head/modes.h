@@ -18,8 +18,8 @@ typedef struct himc_modes himc_modes;
 
 /// The lowest `count` modes of a head of that outline: 1 .. HIMC_MODES_MAX, of a grid (retained) as
 /// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y,
-/// those of a grid are numbered by n; both have no pairs. NULL with an error out of range or without
-/// memory.
+/// those of a grid are numbered by n; both have no pairs. NULL with an error out of range or
+/// without memory.
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error);
 void himc_modes_free(himc_modes *modes);
 
@@ -35,8 +35,8 @@ HIMC_RT const himc_lugs_pair *himc_modes_pairs(const himc_modes *modes);
 
 #define HIMC_MIXED 4 ///< modes of order 0 that a kettle mixes, the lowest
 
-/// Shapes of the modes (0, 1) .. (0, HIMC_MIXED) over a kettle: that of (0, n + 1) is the sum over k
-/// of part[n][k] times the bare shape of (0, k + 1).
+/// Shapes of the modes (0, 1) .. (0, HIMC_MIXED) over a kettle: that of (0, n + 1) is the sum over
+/// k of part[n][k] times the bare shape of (0, k + 1).
 typedef struct himc_mixture {
     double part[HIMC_MIXED][HIMC_MIXED]; ///< 1 in the diagonal
     int index[HIMC_MIXED];               ///< of (0, n + 1) in the list, set by himc_modes_mix_as

@@ -7,8 +7,8 @@
 /// delay R/c is left out.
 ///
 /// Nearer, the lowest multipole that a mode sends, of order m, is stronger by |x h_m(x)|, x = k R,
-/// h_m the spherical Hankel function (Morse & Ingard 1968, section 7.2): at 1 m 1 dB for (3,1) at D3
-/// and 7 dB at C2, whose sound is longer. (0,n) are monopoles, which have no near field, and
+/// h_m the spherical Hankel function (Morse & Ingard 1968, section 7.2): at 1 m 1 dB for (3,1) at
+/// D3 and 7 dB at C2, whose sound is longer. (0,n) are monopoles, which have no near field, and
 /// statistical modes are far in theirs. The phase of it is left out.
 ///
 /// With the time factor exp(-i w t), -i q'' is -w q'. So modes of even m sound by their
@@ -50,8 +50,8 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
     return himc_check_range("pickup place, from the centre", r, 0, head->radius, "m", error);
 }
 
-// The integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2. J_{m+1}(j) is in the mode's norm;
-// its sign changes from zero to zero.
+// The integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2. J_{m+1}(j) is in the mode's
+// norm; its sign changes from zero to zero.
 static double overlap(const himc_mode *mode, double x)
 {
     double j = mode->zero, size = sqrt(mode->m > 0 ? 2 * mode->norm : mode->norm);

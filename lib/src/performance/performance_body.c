@@ -13,8 +13,8 @@
 
 // chosen: the engine keeps joints together to a micrometre
 #define JOINT_GAP 0.01 // a joint further apart has come apart (m)
-// the beat has jumped if it is farther from that foreseen at the last tick (beats); chosen: more than
-// a change of tempo between two ticks makes
+// the beat has jumped if it is farther from that foreseen at the last tick (beats); chosen: more
+// than a change of tempo between two ticks makes
 #define SAME_COURSE 0.25
 
 performance_body *himc_body_new(himc_error *error)

@@ -7,11 +7,12 @@
 /// change of M in a step; that offset is kept during contact and decays afterwards. What the drum's
 /// mallet has more or less than the body's own stick, it has at the end of the stick while it is
 /// near the head: the body feels the part of the force that moves its own mass. From the
-/// planned time of a stroke's contact, or its first force, to separation, control does not act along
-/// the head's normal. Then the plan continues from the measured state of the stick.
+/// planned time of a stroke's contact, or its first force, to separation, control does not act
+/// along the head's normal. Then the plan continues from the measured state of the stick.
 ///
 /// A stroke that bounces (bounce.h) is left to the fingers from its first contact to its last, in
-/// the air, too; each contact is reported as a strike of its own. The plan continues after the last.
+/// the air, too; each contact is reported as a strike of its own. The plan continues after the
+/// last.
 ///
 /// A contact that no stroke asked for is a press (grip.h), and so is a stroke after which the tip
 /// rests on the head: control acts on with a bounded force, and the plan is not changed. A press

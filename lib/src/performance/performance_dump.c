@@ -1,10 +1,10 @@
 /// performance_dump.c: the state of a performance as the lines of a score that makes it again.
 ///
 /// Numbers are told in single precision, as commands take them; what a command computes is told by
-/// what it was given, the usual values by themselves (himc_argument_usual). So a new performance that
-/// loads the lines has the same settings, bit by bit. What is written (strokes, files of takes and
-/// units) is told as it was written, not as it is planned. The transport, moving sticks, sounding heads
-/// and hits that wait are no part of the state.
+/// what it was given, the usual values by themselves (himc_argument_usual). So a new performance
+/// that loads the lines has the same settings, bit by bit. What is written (strokes, files of takes
+/// and units) is told as it was written, not as it is planned. The transport, moving sticks,
+/// sounding heads and hits that wait are no part of the state.
 #include "performance/performance_state.h"
 
 #include "base/argument.h"

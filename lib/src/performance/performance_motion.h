@@ -102,7 +102,8 @@ HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
 /// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
 HIMC_RT void himc_motion_read_task(performance_motion *motion, const performance_settings *settings,
                                    const performance_drums *drums, double t, double next);
-/// Lets the planner rehearse its plan, for a step of `h` (s), less if a stick is `busy` with a head.
+/// Lets the planner rehearse its plan, for a step of `h` (s), less if a stick is `busy` with a
+/// head.
 HIMC_RT void himc_motion_think(performance_motion *motion, double h, bool busy);
 /// The reference at `t` between the ticks.
 HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
@@ -152,8 +153,8 @@ HIMC_RT bool himc_motion_captured_joints(const performance_motion *motion, doubl
 HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
 HIMC_RT bool himc_motion_free_hand(performance_motion *motion, himc_hand hand, double t);
-/// Replaces the take (NULL: none) and the limits of its player (NULL: none). Returns the one before,
-/// which the caller frees.
+/// Replaces the take (NULL: none) and the limits of its player (NULL: none). Returns the one
+/// before, which the caller frees.
 HIMC_RT himc_track *himc_motion_set_track(performance_motion *motion, himc_track *track,
                                           const himc_limits *learned, double t);
 /// Sets the null-space target; NULL: the natural posture. `of_take`: dropped with the take.
@@ -168,12 +169,12 @@ HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
 /// not the requested place, `first` true if the target before was reachable.
 HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand hand, himc_vec3 asked,
                                         bool *reachable, bool *first);
-/// Takes note of a live target at `t`, in that head (NULL: in none). One that has jumped into a head
-/// comes down to it slowly: returns where it is meanwhile.
+/// Takes note of a live target at `t`, in that head (NULL: in none). One that has jumped into a
+/// head comes down to it slowly: returns where it is meanwhile.
 HIMC_RT himc_vec3 himc_motion_ease_down(performance_motion *motion, himc_hand hand, double t,
                                         himc_vec3 target, const himc_head_frame *head);
-/// From the nearest place in reach of either hand to the usual strike point of a head (m); 0 if that
-/// is in reach.
+/// From the nearest place in reach of either hand to the usual strike point of a head (m); 0 if
+/// that is in reach.
 HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const himc_head_frame *head);
 /// Refuses a live target, because the take moves the hand. True for the first one.
 HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);

@@ -2,12 +2,12 @@
 ///
 /// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its
 /// lines for drums go to copies of the drums, its lines for the performer are checked against what
-/// the lines before them leave, its drums are counted and those that are missing are made. Only then
-/// is it installed: the copies give their heads to the drums, lines and strokes follow in portions,
-/// a line that takes long is a job of its own. While a score plays, the beats of the next one follow
-/// its own. Invariants: a score that is refused has changed nothing; a score from the network may do
-/// what its sender may do. A hit or a blow, which happens once, is no reason to refuse a score: a
-/// note tells why it is left out.
+/// the lines before them leave, its drums are counted and those that are missing are made. Only
+/// then is it installed: the copies give their heads to the drums, lines and strokes follow in
+/// portions, a line that takes long is a job of its own. While a score plays, the beats of the next
+/// one follow its own. Invariants: a score that is refused has changed nothing; a score from the
+/// network may do what its sender may do. A hit or a blow, which happens once, is no reason to
+/// refuse a score: a note tells why it is left out.
 #include "performance/performance_state.h"
 
 #include "capture/take.h"

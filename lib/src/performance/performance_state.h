@@ -154,8 +154,8 @@ himc_track *himc_performance_drop_track(himc_performance *p);
 // performance_play.c
 /// himc_performance_add_stroke, but nothing is written, and the beat may be any.
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
-/// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many are
-/// left out.
+/// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many
+/// are left out.
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);
 /// The command `units FILE` as a job; NULL without memory.
 himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,

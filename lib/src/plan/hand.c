@@ -50,8 +50,8 @@
 #define IDLE_DEPARTURE 0.45   // ... and leaving so long before the swing's end (s) ...
 #define IDLE_DEPTH_LATER 0.35 // ... from this share: a drift of .3 s or more, no frozen hand
 
-// a tip that is fast along the head, but not to its goal, halts first; chosen: see the test of a tip
-// thrown at 16 m/s
+// a tip that is fast along the head, but not to its goal, halts first; chosen: see the test of a
+// tip thrown at 16 m/s
 #define COAST_LIMIT 0.3 // way its speed would carry it off before it is halted (m) ...
 #define HALT_WAY 0.15   // ... and way it goes meanwhile, at most (m)
 #define HALT_TIME 0.12  // a halt takes no more than this (s) ...
@@ -125,8 +125,8 @@ static double coast_off(const stroke_plan *s, double T, himc_vec3 x)
     return himc_vec3_length(himc_vec3_madd(coast, -share, way));
 }
 
-/// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one long
-/// quintic would carry it far off.
+/// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one
+/// long quintic would carry it far off.
 static void path_to(stroke_plan *s, double t, himc_vec3 x)
 {
     double T = t - s->path_end;
@@ -394,8 +394,8 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     return true;
 }
 
-/// Moves to a place in space, not before `at`; a fall that would touch the head on the way is halted
-/// first.
+/// Moves to a place in space, not before `at`; a fall that would touch the head on the way is
+/// halted first.
 static void move_to(stroke_plan *s, himc_vec3 x, double peak, double at)
 {
     height_state to = {himc_vec3_dot(s->n, himc_vec3_sub(x, s->plan->last.spot)), 0, 0};

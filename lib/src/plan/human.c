@@ -95,8 +95,8 @@ static double normal(const himc_human *human, int stream, int hand, double at)
     return 2.0 * (double)sum / (double)most - 3;
 }
 
-/// 1/f noise, standard deviation 1, as Voss makes it: octaves of held noise. Each keeps the cell that
-/// it was last read in.
+/// 1/f noise, standard deviation 1, as Voss makes it: octaves of held noise. Each keeps the cell
+/// that it was last read in.
 typedef struct drift {
     int stream;
     double size;           // of the sum

@@ -2,10 +2,10 @@
 ///
 /// No tables of their times have been published, and names differ by school; the figures are chosen
 /// as percussionists describe them. Timpani rolls are single strokes, faster on a higher drum and
-/// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll has
-/// fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce comes
-/// half a stroke later. In a press roll each stroke bounces on a little longer than to the next
-/// one, so that the hands overlap. Grace notes keep their time before the beat at any tempo.
+/// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll
+/// has fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce
+/// comes half a stroke later. In a press roll each stroke bounces on a little longer than to the
+/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo.
 #include "plan/ornament.h"
 
 #include "plan/planner_motion.h"

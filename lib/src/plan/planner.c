@@ -15,7 +15,8 @@
 #define MOST_HEAD_RADIUS 10.0  // (m)
 
 #define PREPARATION_TIME 1.0 // of a late score; chosen (s)
-// no variation depends on a neighbour further away: a fifth of it is more than any lateness; chosen (s)
+// no variation depends on a neighbour further away: a fifth of it is more than any lateness; chosen
+// (s)
 #define NEIGHBOUR_TIME 1.0
 #define LATENESS_NOTED 0.001 // a smaller delay of the first beat is not worth a note (s)
 

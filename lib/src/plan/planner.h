@@ -63,7 +63,8 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
 void himc_planner_free(himc_planner *planner);
 
 /// Drum `index` (0 .. HIMC_DRUMS-1) is at `place` from now on; strokes that have not begun go
-/// there, and a hand rests 85 mm over the head of its last stroke, at first over drum 0. False, and nothing changed, if one of the values is not allowed.
+/// there, and a hand rests 85 mm over the head of its last stroke, at first over drum 0. False, and
+/// nothing changed, if one of the values is not allowed.
 HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place);
 
 #define HIMC_UNITS 256 ///< chosen: five nuances, two hands, and 25 strokes of each
@@ -97,26 +98,26 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
-/// True if so many strokes can be added behind those of the score, as far as they are no rolls; else
-/// the reason.
+/// True if so many strokes can be added behind those of the score, as far as they are no rolls;
+/// else the reason.
 bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strokes, int count,
                            himc_error *error);
 /// Replaces the tempo map (copied); beats must rise. While playing, the current beat stays where it
 /// is.
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                             himc_error *error);
-/// Exchanges the strokes with those of `other`, which does not play. The plan so far stays, and goes
-/// on as it would if these strokes had been there from the start. False, and nothing changed, if a
-/// stroke differs on which the plan so far may rest, if the tempo maps differ, while looping, or
-/// after the end.
+/// Exchanges the strokes with those of `other`, which does not play. The plan so far stays, and
+/// goes on as it would if these strokes had been there from the start. False, and nothing changed,
+/// if a stroke differs on which the plan so far may rest, if the tempo maps differ, while looping,
+/// or after the end.
 /// Before `play` the plan rests on none.
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
 /// Stops, drops all strokes and goes to beat 0; moving sticks come to rest.
 void himc_planner_clear(himc_planner *planner);
 
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been
-/// played; does nothing while strokes are still to come. The first beat waits until the first stroke
-/// can be prepared.
+/// played; does nothing while strokes are still to come. The first beat waits until the first
+/// stroke can be prepared.
 HIMC_RT void himc_planner_play(himc_planner *planner, double t);
 /// Stops. A stroke less than 80 ms away is still played, waiting hits are dropped. `play` goes on
 /// from this beat.
@@ -175,9 +176,9 @@ HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);
-/// Rehearses what is planned with the whole body, and lets the hands pass each other where they would
-/// meet, for so much `work`, counted in postures of the body, and one moment more. What is left is done
-/// at the next calls. Changes begin at least 12 ms after the last advance.
+/// Rehearses what is planned with the whole body, and lets the hands pass each other where they
+/// would meet, for so much `work`, counted in postures of the body, and one moment more. What is
+/// left is done at the next calls. Changes begin at least 12 ms after the last advance.
 HIMC_RT void himc_planner_think(himc_planner *planner, double work);
 /// The work that has been done by himc_planner_think.
 HIMC_RT long himc_planner_work(const himc_planner *planner);
@@ -209,8 +210,8 @@ HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
 HIMC_RT double himc_planner_end(const himc_planner *planner);
 /// Strokes of the score given up since the last call.
 HIMC_RT int himc_planner_given_up(himc_planner *planner);
-/// The score is over: its beats end, the tips come to rest as planned. Adds a note with the count of
-/// strokes since the last `play` that were not played as written, if there is more than one.
+/// The score is over: its beats end, the tips come to rest as planned. Adds a note with the count
+/// of strokes since the last `play` that were not played as written, if there is more than one.
 HIMC_RT void himc_planner_finish(himc_planner *planner, double t);
 /// Takes the oldest note; false if there is none. 32 are kept; the last one counts those that are
 /// lost.

@@ -1,17 +1,18 @@
-/// planner_clear.c: hands that would meet pass each other: the search for a way, a little at a time.
+/// planner_clear.c: hands that would meet pass each other: the search for a way, a little at a
+/// time.
 ///
-/// What is planned stands at once and is rehearsed afterwards (rehearsal.c): a walk goes through both
-/// plans, ahead of the time at which they can still be changed, as far as both are known. Where the
-/// hands come near, changes are tried in a fixed order: the upper hand is lifted over the other one,
-/// or over and outwards, then the other hand is; if the body still meets itself, the spot of the
-/// next stroke is moved aside, or its hand waits, and last the other hand plays it. For these the planner
-/// itself plans a trial (PLANNER_TRY). The change that lacks least is made, and the walk goes on
-/// through it. What no change makes clear is told in one line.
+/// What is planned stands at once and is rehearsed afterwards (rehearsal.c): a walk goes through
+/// both plans, ahead of the time at which they can still be changed, as far as both are known.
+/// Where the hands come near, changes are tried in a fixed order: the upper hand is lifted over the
+/// other one, or over and outwards, then the other hand is; if the body still meets itself, the
+/// spot of the next stroke is moved aside, or its hand waits, and last the other hand plays it. For
+/// these the planner itself plans a trial (PLANNER_TRY). The change that lacks least is made, and
+/// the walk goes on through it. What no change makes clear is told in one line.
 ///
 /// All of this is work that is counted in postures of the body and paid for by the time that passes
-/// (himc_planner_think), so no step carries more than a few of them, and the result does not depend on
-/// the speed of the machine. A plan that changes before the walk's place lets the walk begin anew;
-/// lifts and other ways that have been found stay with their stroke.
+/// (himc_planner_think), so no step carries more than a few of them, and the result does not depend
+/// on the speed of the machine. A plan that changes before the walk's place lets the walk begin
+/// anew; lifts and other ways that have been found stay with their stroke.
 #include "plan/planner_motion.h"
 
 // the walk; chosen
@@ -215,8 +216,8 @@ static bool make_candidate(himc_planner *planner)
     return make_way(planner, first ? later : other_hand(later), way < 2 * kept ? way % kept : kept);
 }
 
-/// Whether it is worth while to try the next candidate. A lift that would come too late if more were
-/// tried is made, if nothing meets.
+/// Whether it is worth while to try the next candidate. A lift that would come too late if more
+/// were tried is made, if nothing meets.
 static bool goes_on(const himc_planner *planner)
 {
     const planner_clear *c = &planner->clear;

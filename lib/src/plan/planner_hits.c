@@ -136,8 +136,9 @@ static double cost_of(himc_hand hand, const chance *c, const chance *other)
     return himc_sticking_cost(&s);
 }
 
-/// The hand that plays a hit: the one asked for if it is on time, else the other if that one is, or if
-/// it alone can come. When both are late a change gains little, and the other has to reach across.
+/// The hand that plays a hit: the one asked for if it is on time, else the other if that one is, or
+/// if it alone can come. When both are late a change gains little, and the other has to reach
+/// across.
 static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hit, chance *chosen)
 {
     chance c[HIMC_HANDS];

@@ -47,7 +47,8 @@
 #define DOUBLE_SHARE 0.25
 #define BUZZ_SHARE 0.55
 
-// the goal; chosen: a unit of another spot further off than any of another speed, of another grip further still
+// the goal; chosen: a unit of another spot further off than any of another speed, of another grip
+// further still
 #define OTHER_SPOT 10 // as a difference of log speed
 #define OTHER_GRIP 20 // as a difference of log speed
 
@@ -344,8 +345,8 @@ static void wait_first(himc_hand_plan *plan, const himc_goal *goal)
         *plan = before;
 }
 
-/// Appends a stroke to its hand's plan, if the hand can play it; in the way found for it, if there is
-/// one.
+/// Appends a stroke to its hand's plan, if the hand can play it; in the way found for it, if there
+/// is one.
 static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 {
     static const planner_way as_written;
@@ -417,8 +418,8 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
 }
 
-/// No hand can play it: a line says so. If only the hands would meet it is played all the same: to a
-/// listener a stroke left out is worse.
+/// No hand can play it: a line says so. If only the hands would meet it is played all the same: to
+/// a listener a stroke left out is worse.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
     char name[64], reason[48];

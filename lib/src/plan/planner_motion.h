@@ -1,8 +1,8 @@
 /// planner_motion.h: the state of the planner, and the functions that plan motion from it.
 ///
 /// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
-/// score, planner_notes.c the notes, planner_motion.c (with planner_clear.c and planner_rest.c) the hands
-/// and the clock, and planner_hits.c
+/// score, planner_notes.c the notes, planner_motion.c (with planner_clear.c and planner_rest.c) the
+/// hands and the clock, and planner_hits.c
 /// the strokes that are asked for while they happen.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
@@ -24,12 +24,13 @@
 /// than the longest period of advance, 10 ms.
 #define PLANNER_AHEAD 0.03
 
-/// A stroke is the current one until so much after its time (s); chosen: strokes are rarely nearer than
+/// A stroke is the current one until so much after its time (s); chosen: strokes are rarely nearer
+/// than
 /// 0.1 s.
 #define PLANNER_CURRENT 0.05
 
-/// Nothing is struck outside this share of a head's radius; chosen: a mallet that does not touch the
-/// rim of a usual head.
+/// Nothing is struck outside this share of a head's radius; chosen: a mallet that does not touch
+/// the rim of a usual head.
 #define PLANNER_STRUCK 0.97
 #define PLANNER_UNREACHED 0.01 ///< a goal so far out of reach is not tried (m); chosen
 
@@ -108,7 +109,8 @@ struct himc_planner {
     bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
-/// The planned stroke that is the current one at t, as himc_planner_current has it, or NULL. HIMC_RT.
+/// The planned stroke that is the current one at t, as himc_planner_current has it, or NULL.
+/// HIMC_RT.
 static inline const timed_stroke *himc_planner_current_planned(const planner_hand *h, double t)
 {
     for (int i = 0; i < h->planned_count; i++) {
@@ -161,8 +163,8 @@ HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
-/// planner_rest.c: where a hand rests (m): over its drum or, out of its reach, over the first one in
-/// reach.
+/// planner_rest.c: where a hand rests (m): over its drum or, out of its reach, over the first one
+/// in reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 /// planner_clear.c: the plan of a hand is another one from t (s) on.
 HIMC_RT void himc_planner_changed(himc_planner *planner, double t);

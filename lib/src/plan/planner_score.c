@@ -13,7 +13,8 @@
 #include <string.h>
 
 #define CLOSEST_STROKES 0.04 // of one hand (s); chosen: faster than any roll of one hand
-// Beats far from 0 are rounded: so much less is no less. Chosen: up to beat 1e10 at 1 beat a minute.
+// Beats far from 0 are rounded: so much less is no less. Chosen: up to beat 1e10 at 1 beat a
+// minute.
 #define BEAT_ROUNDED 1e-4        // (s)
 #define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
 #define FIRST_ROOM 256           // strokes; then the room doubles

@@ -1,6 +1,6 @@
-/// rehearsal.c: the gaps of the body along both plans, with trunk, elbows and wrists as they will have
-/// moved by then. What is tried in place of a plan, a lift or another motion, is walked through in
-/// the same way, from a moment before it begins.
+/// rehearsal.c: the gaps of the body along both plans, with trunk, elbows and wrists as they will
+/// have moved by then. What is tried in place of a plan, a lift or another motion, is walked
+/// through in the same way, from a moment before it begins.
 #include "plan/rehearsal.h"
 #include "plan/planner_motion.h"
 #include "plan/stroke_plan.h"
@@ -61,7 +61,8 @@ static himc_moment moment_at(const planner_rehearsal *walk, const planner_lift *
     return m;
 }
 
-/// What the gaps lack at a moment (m), and the hand that should give way: `order` of himc_clearance.
+/// What the gaps lack at a moment (m), and the hand that should give way: `order` of
+/// himc_clearance.
 static double lack_of(const himc_clearance *clear, const himc_moment *at, int *order)
 {
     double lack = NEAR_GAP - clear->sticks + (is_crossed(at->tip) ? CROSSED_GAP : 0);

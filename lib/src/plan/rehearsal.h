@@ -1,5 +1,5 @@
-/// rehearsal.h: both plans are walked through ahead of time, moment by moment, and the body is asked
-/// for its gaps there; private to the planner.
+/// rehearsal.h: both plans are walked through ahead of time, moment by moment, and the body is
+/// asked for its gaps there; private to the planner.
 #ifndef HIMC_REHEARSAL_H
 #define HIMC_REHEARSAL_H
 
@@ -15,8 +15,8 @@ typedef struct near_time {
     int order;       ///< of the arms then: 1 the left one is above, -1 below, 0 not crossed
 } near_time;
 
-/// A hand is moved by `way` (m) from `from` to `to` (s), not at all before `begin` and after `end`; no
-/// lift if `end` is 0.
+/// A hand is moved by `way` (m) from `from` to `to` (s), not at all before `begin` and after `end`;
+/// no lift if `end` is 0.
 typedef struct planner_lift {
     himc_hand hand;
     double begin, from, to, end;
@@ -36,8 +36,8 @@ typedef struct planner_rehearsal {
 /// A walk that begins at t (s).
 planner_rehearsal himc_rehearsal_begin(double t);
 
-/// One moment of the walk through the plans of both hands and a lift; what is near before `ignored` (s)
-/// is not noted. Returns the work.
+/// One moment of the walk through the plans of both hands and a lift; what is near before `ignored`
+/// (s) is not noted. Returns the work.
 HIMC_RT int himc_rehearsal_step(const himc_planner_config *config, planner_rehearsal *walk,
                                 const planner_lift *lift, const struct planner_hand *hand,
                                 double ignored);

@@ -36,7 +36,8 @@ int himc_system_open_inside(const char *folder, const char *name);
 bool himc_system_rename(const char *from, const char *to);
 
 /// Makes a file that nobody else knows, with an ending such as ".mid", in the system's folder for
-/// such files, and opens it for writing. Its name is `path`, of at most `size` bytes. -1 with errno.
+/// such files, and opens it for writing. Its name is `path`, of at most `size` bytes. -1 with
+/// errno.
 int himc_system_temporary(char *path, size_t size, const char *ending);
 
 /// Standard input and output give and take bytes as they are.

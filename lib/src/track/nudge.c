@@ -1,6 +1,6 @@
-/// nudge.c: a bump of two quintics, from rest to rest: 10 s^3 - 15 s^4 + 6 s^5 up, the same down. Its
-/// value, velocity and acceleration are zero at both ends, and its velocity and acceleration at the
-/// top, so its two sides may have different lengths.
+/// nudge.c: a bump of two quintics, from rest to rest: 10 s^3 - 15 s^4 + 6 s^5 up, the same down.
+/// Its value, velocity and acceleration are zero at both ends, and its velocity and acceleration at
+/// the top, so its two sides may have different lengths.
 #include "track/nudge.h"
 
 // value and derivatives of the bump whose sides last `before` and `after`; 0 where a side has no

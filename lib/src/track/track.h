@@ -45,11 +45,11 @@ double himc_track_length(const himc_track *track);
 int himc_track_strikes(const himc_track *track, himc_hand hand);
 
 /// Leads a tip aside from now on; the nudge's `rise` and `fall` are found here. The height is given
-/// up where a strike is at its very time. False with the reason: that hand is not in the take, not in
-/// its time, or too many nudges.
+/// up where a strike is at its very time. False with the reason: that hand is not in the take, not
+/// in its time, or too many nudges.
 bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error);
-/// Replaces all nudges (count, 0 .. HIMC_NUDGES) while the take is played at `t`. False, and nothing
-/// changed, with the reason if one is not allowed, without if one differs that has begun.
+/// Replaces all nudges (count, 0 .. HIMC_NUDGES) while the take is played at `t`. False, and
+/// nothing changed, with the reason if one is not allowed, without if one differs that has begun.
 bool himc_track_exchange(himc_track *track, const himc_nudge *list, int count, double t,
                          himc_error *error);
 /// The nudges (*count), borrowed.

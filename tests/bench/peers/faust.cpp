@@ -1,4 +1,5 @@
-// The architecture file of faust.sh: runs the bank offline and prints how many modes one core plays in real time.
+// The architecture file of faust.sh: runs the bank offline and prints how many modes one core plays
+// in real time.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
