@@ -203,12 +203,13 @@ static inline void play_block(void)
 
 static inline void play(double seconds)
 {
+    double begun = system_seconds();
     if (!real_time)
         settle();
     for (int i = 0; i < seconds * 250; i++) {
         play_block();
         if (real_time)
-            rest(0.003);
+            rest(fmax(0, begun + 0.004 * (i + 1) - system_seconds()));
         serve();
     }
     if (!real_time)
