@@ -110,7 +110,8 @@ static void watch_targets(void *user, const himc_motion_row *row)
 // all
 static void test_strikes_beside_the_drum_leave_no_jump(void)
 {
-    static const char path[] = "/tmp/himc-recording-two-drums.trc";
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/himc-recording-two-drums-%d.trc", (int)getpid());
     heard first =
         record(path, "drum low; low place 0.6 0.4 0.85; drum high; high place 0.6 -0.4 0.85;"
                      "stroke 2 right accent ff normal high; stroke 3 left accent ff normal low;"

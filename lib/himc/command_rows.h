@@ -115,7 +115,7 @@ HIMC_COMMAND_ROW(ENGINE, engine, PERFORMER, AT_SAMPLE, 0, "tree|ode",
 HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
 HIMC_COMMAND_ROW(
     PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
-    "pushes a segment of the body with a force for a time, on its centre of mass or so far from its joint")
+    "pushes a segment with a force for a time, at its centre of mass or ALONG m from its joint")
 HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | X Y Z [YAW]",
                  "has all drums heard by two ears there, facing the performer or that way; off: by "
                  "the drums' pickups")

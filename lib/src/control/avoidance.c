@@ -19,11 +19,9 @@
 #include <string.h>
 
 #define NEAR_ARM 0.06 // D of the two arms (m); chosen: uncrossed ones are 80 mm apart and more
-#define SEEN \
-    0.1 // (m) gaps of the two arms that a rehearsal is told of; rehearsal.c looks closer below
+#define SEEN 0.1 // the arms' gaps are told below this (m); chosen: more than rehearsal.c asks for
 #define NEAR_BODY 0.02 // D of arm and body (m); chosen: usual forearms pass the trunk at 39 mm
-#define FOLDED \
-    0.20 // wrist from shoulder (m); chosen: nearer, a small way of the wrist swings the elbow
+#define FOLDED 0.20    // wrist from shoulder (m); chosen: nearer, its small ways swing the elbow
 #define LARGEST_LACK (-0.08) // of crossed parts in the wrong order (m); chosen: all is pushed alike
 #define LEVEL 0.5            // of the vertical: parts beside each other are in no order
 #define DESCENT 20.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second

@@ -284,7 +284,7 @@ static bool within_reach(const himc_stick *stick, double h)
 static bool is_stiff(const himc_mallet_head *head)
 {
     double stiff = head->radius > 0 ? STIFF_PATCH : STIFF_POINT;
-    double most = head->exponent >= 2 ? 1e-6 : 1; // of the power, which is asked for in each sample
+    double most = head->exponent >= 2 ? 1e-6 : 1; // a bound of the power, which takes long
     return head->stiffness * most > stiff && head->stiffness * pow(0.001, head->exponent) > stiff;
 }
 

@@ -173,7 +173,8 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
     }
 }
 
-// gives up a planned contact that has not come; the plan continues
+// gives up a planned contact that has not come; the plan continues from the stick, or `beside` all
+// heads as it was
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
                     const planned_contact *next, bool beside)
 {

@@ -272,8 +272,9 @@ static void dump_pushes(const performance_body *b, const himc_line_sink *to)
         himc_state_numbers(&line, 1, &push->beat);
         himc_state_word(&line, "push");
         himc_state_word(&line, himc_segment_name(push->segment));
-        himc_state_numbers(&line, 3, &push->force.x);
-        himc_state_numbers(&line, push->along < 0 ? 1 : 2, &push->seconds);
+        const double how[] = {push->force.x, push->force.y, push->force.z, push->seconds,
+                              push->along};
+        himc_state_numbers(&line, push->along < 0 ? 4 : 5, how);
         himc_state_end(&line, to);
     }
 }

@@ -24,9 +24,8 @@
 /// than the longest period of advance, 10 ms.
 #define PLANNER_AHEAD 0.03
 
-/// A stroke is the current one until so much after its time (s); chosen: strokes are rarely nearer
-/// than
-/// 0.1 s.
+/// A stroke is the current one until so much after its time (s); chosen: strokes are rarely less
+/// than 0.1 s apart.
 #define PLANNER_CURRENT 0.05
 
 /// Nothing is struck outside this share of a head's radius; chosen: a mallet that does not touch
