@@ -344,6 +344,18 @@ static void test_pushes_of_a_score_begin_at_their_beats(void)
     }
 }
 
+static void test_a_push_on_the_first_beat_comes_in_each_round(void)
+{
+    himc_performance *p = session_new();
+    write_text("drum kettle; tempo 240; stroke 6 left legato p; at 0 push left-forearm 0 0 5 0.02;"
+               "loop 1; play;");
+    session_do(p, "score " SCORE);
+    push_seen seen = pushes_in(p, 2.4);
+    TEST_ASSERT_EQUAL_INT(2, seen.count);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0041, 1.75, seen.begun[1] - seen.begun[0]);
+    himc_performance_free(p);
+}
+
 // of a take at their seconds; a score that follows brings its own; dump tells them
 static void test_pushes_of_a_take_and_of_the_next_score_are_played_and_told(void)
 {
@@ -371,6 +383,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_pushes_of_a_score_begin_at_their_beats);
+    RUN_TEST(test_a_push_on_the_first_beat_comes_in_each_round);
     RUN_TEST(test_pushes_of_a_take_and_of_the_next_score_are_played_and_told);
     RUN_TEST(test_a_hit_in_a_score_is_played_when_it_is_loaded);
     RUN_TEST(test_a_score_begins_at_its_seek);
