@@ -9,9 +9,9 @@
 /// wherever nothing was measured.
 #include "plan/stroke_plan.h"
 
-/// Restitution of the predicted contact. Chosen; only until the measured state replaces the
-/// prediction at separation.
-#define PREDICTED_RESTITUTION 0.85
+/// Restitution of the predicted contact, only until the measured state replaces the prediction at
+/// separation. Chosen: simulated strokes of 1.6 to 2.9 m/s leave with .88 to .92 of their speed.
+#define PREDICTED_RESTITUTION 0.89
 #define BOUNCE_RATIO 0.5 // of the speeds of the last bounce and the stroke; chosen, as above
 
 // limits of a hand: beyond them a stroke is refused; chosen: well beyond captured strokes
@@ -234,9 +234,14 @@ void himc_hand_cut(himc_hand_plan *plan, double t)
     plan->at_home = plan->at_home && himc_vec3_length(s.v) < 1e-6 && himc_vec3_length(s.a) < 1e-6;
 }
 
+static double absorb_time(double until_next)
+{
+    return fmin(ABSORB_TIME, fmax(ABSORB_SHARE * until_next, LEAST_ABSORB_TIME));
+}
+
 void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state, double next)
 {
-    double T = fmin(ABSORB_TIME, fmax(ABSORB_SHARE * (next - t), LEAST_ABSORB_TIME));
+    double T = absorb_time(next - t);
     himc_hand_cut(plan, t);
     plan->lift.count = 0; // the measured state contains it
     himc_target on = {himc_vec3_madd(state->x, T, state->v), state->v, {0, 0, 0}};
@@ -246,6 +251,28 @@ void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state,
     plan->end = t + T;
     plan->rebounding = true;
     plan->at_home = false;
+}
+
+/// Time in which the tip goes on as it left a predicted contact, if the plan ends with one (s): so
+/// it will when it has been measured (himc_hand_restart).
+static double leaving_time(const himc_hand_plan *plan, double next)
+{
+    bool leaves = plan->rebounding && plan->end == himc_goal_end(&plan->last);
+    return leaves ? absorb_time(next - plan->end) : 0;
+}
+
+static void leave(himc_hand_plan *plan, double next)
+{
+    double T = leaving_time(plan, next);
+    himc_target path = himc_spline_at(&plan->tangential_path, plan->end), to = path,
+                rise = himc_spline_at(&plan->height_profile, plan->end), up = rise;
+    if (T == 0)
+        return;
+    to.x = himc_vec3_madd(path.x, T, path.v);
+    up.x = himc_vec3_madd(rise.x, T, rise.v);
+    himc_spline_add(&plan->tangential_path, plan->end, &path, plan->end + T, &to);
+    himc_spline_add(&plan->height_profile, plan->end, &rise, plan->end + T, &up);
+    plan->end += T;
 }
 
 bool himc_hand_room(const himc_hand_plan *plan)
@@ -290,6 +317,9 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
 bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
 {
     stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);
+    double T = t == plan->end ? leaving_time(plan, goal->time) : 0;
+    s.height_end += T;
+    s.height.h += T * s.height.v;
     return is_possible(&s, goal);
 }
 
@@ -302,6 +332,7 @@ bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)
 {
     himc_vec3 way = himc_vec3_sub(first->spot, second->spot);
     stroke_plan s = {.height_end = himc_goal_end(first)};
+    s.height_end += absorb_time(second->time - s.height_end);
     s.height.h = himc_vec3_dot(second->normal, way);
     s.path.x = himc_vec3_madd(first->spot, -s.height.h, second->normal);
     return is_possible(&s, second);
@@ -368,9 +399,10 @@ void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
 
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
-    stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
-    if (!is_possible(&s, goal))
+    if (!himc_hand_can_strike(plan, goal))
         return false;
+    leave(plan, goal->time);
+    stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
     himc_gesture g = goal->gesture;
     double begin = s.height_end;
     s.approach = fmax(LEAST_APPROACH_TIME, himc_move_time(distance_to(&s, goal), GENTLE_MOVE));
@@ -435,6 +467,7 @@ static void hover(stroke_plan *s)
 
 void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
 {
+    leave(plan, HUGE_VAL);
     stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
     if (s.height.v > HIMC_TURNING_SPEED)
         himc_height_profile_rebound(&s, s.height_end + FREE_REBOUND_TIME, HIMC_HIGHEST_REBOUND);

@@ -28,8 +28,8 @@ typedef struct himc_hand_plan {
 } himc_hand_plan;
 
 /// Length of a predicted contact, touch to separation (s). Chosen: simulated contacts of
-/// patches/improvisation.txt last 6.3 to 10.4 ms.
-#define HIMC_CONTACT_TIME 0.007
+/// patches/improvisation.txt last 6.3 to 10.4 ms, those of mezzoforte 8.6 to 10 ms.
+#define HIMC_CONTACT_TIME 0.009
 
 /// End of the goal's predicted contact, or of its bounces (s).
 static inline double himc_goal_end(const himc_goal *goal)
