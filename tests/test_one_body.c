@@ -121,8 +121,8 @@ static void play_score(watched *w, double seconds, int strokes)
 static void test_hands_crossed_over_two_drums_pass_each_other(void)
 {
     static const char *const drum[] = {"place 0.55 0.4 0.85", "place 0.55 -0.4 0.85"};
-    static const double tempo[] = {70, 100, 50, 85};
-    for (int k = 0; k < (is_long() ? 4 : 2); k++) {
+    static const double tempo[] = {55, 70, 50, 60, 65, 75, 80, 85, 90, 95, 100};
+    for (int k = 0; k < (is_long() ? 11 : 2); k++) {
         watched w = begin_score(drum, 2, tempo[k]);
         for (int i = 0; i < 6; i++) {
             session_do(w.p, "stroke %g left legato mf normal %s", 1 + 2.0 * i, i % 2 ? "b" : "a");
@@ -166,7 +166,7 @@ static int choose_third(unsigned *seed)
 /// hand on three. None is given up.
 static void test_leaps_at_random_are_all_played_and_no_part_meets_another(void)
 {
-    for (unsigned score = is_long() ? 1 : 4; score <= (is_long() ? 5 : 4); score++) {
+    for (unsigned score = is_long() ? 1 : 13; score <= (is_long() ? 15 : 13); score++) {
         watched w = begin_score(four_drums, 4, 60);
         unsigned seed = score;
         char drum[41] = {0};
@@ -213,7 +213,8 @@ static void test_planning_is_spread_over_ticks_and_the_same_in_all_blocks(void)
     himc_performance_free(b.p);
 }
 
-static void test_strokes_that_no_hand_has_room_for_are_played_with_one_line(void)
+/// Both hands at once on the other's side: no way is free, so one of two is left out.
+static void test_a_stroke_that_no_hand_has_room_for_is_left_out_and_told(void)
 {
     static const char *const drum[] = {"place 0.35 0.75 0.82", "place 0.35 -0.80 0.82"};
     watched w = begin_score(drum, 2, 60);
@@ -221,14 +222,8 @@ static void test_strokes_that_no_hand_has_room_for_are_played_with_one_line(void
         session_do(w.p, "stroke %g right legato mf normal %c", 1.5 + 1.5 * i, i ? 'b' : 'a');
         session_do(w.p, "stroke %g left legato mf normal %c", 1.5 + 1.5 * i, i ? 'a' : 'b');
     }
-    session_do(w.p, "play");
-    session_play(w.p, 5.5, &w.heard);
-    free(w.heard.strike);
-    TEST_ASSERT_EQUAL_INT(4, himc_performance_measure(w.p).played);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(w.heard.note, "the hands come too near on the way"),
-                                 w.heard.note);
-    TEST_ASSERT_EQUAL_INT(1, w.heard.notes);
-    himc_performance_free(w.p);
+    play_score(&w, 5.5, 2);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(w.heard.note, "2 given up"), w.heard.note);
 }
 
 /// At 84 s from the right to the far left, past the left shoulder, while the right hand is far on
@@ -354,7 +349,7 @@ int main(void)
     RUN_TEST(test_a_stroke_that_would_meet_the_other_arm_goes_to_the_other_hand);
     RUN_TEST(test_leaps_at_random_are_all_played_and_no_part_meets_another);
     RUN_TEST(test_planning_is_spread_over_ticks_and_the_same_in_all_blocks);
-    RUN_TEST(test_strokes_that_no_hand_has_room_for_are_played_with_one_line);
+    RUN_TEST(test_a_stroke_that_no_hand_has_room_for_is_left_out_and_told);
     RUN_TEST(test_in_tide_a_tip_passes_its_shoulder_at_a_distance_and_no_joint_whips);
     RUN_TEST(test_hands_on_four_drums_pass_each_other);
     RUN_TEST(test_no_joint_whips_where_a_leap_passes_under_the_shoulder);

@@ -24,14 +24,11 @@
 #define FOLDED 0.20    // wrist from shoulder (m); chosen: nearer, its small ways swing the elbow
 #define LARGEST_LACK (-0.08) // of crossed parts in the wrong order (m); chosen: all is pushed alike
 #define LEVEL 0.5            // of the vertical: parts beside each other are in no order
-#define DESCENT 20.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second
+#define DESCENT 40.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second
 #define RETURN_TIME 2.0 // T (s); chosen: long, so that the goal rests 5 mm inside D
 #define LEAST_GOAL 1e-3 // a smaller goal of a clear body is 0 (rad)
-#define LONGEST_STEP 0.012   // (s); chosen: K dt stays below 1 / |F''|
-#define FASTEST 8.0          // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
-#define REHEARSED 200.0      // steps a second of a rehearsal; chosen: the body then is as quick
-#define FIRST_REHEARSED 5    // at its beginning
-#define REHEARSED_STEP 0.024 // of a single posture (s); chosen: as LONGEST_STEP, of fewer postures
+#define LONGEST_STEP 0.012 // (s); chosen: K dt stays below 1 / |F''|
+#define FASTEST 8.0        // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
 #define DESCENT_WORK (1 + HIMC_ARM_ANGLES) // postures of a descent
 // limits of the three angles of an arm; chosen: what shoulders and wrists allow
 static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.4, -0.6},
@@ -248,13 +245,13 @@ static void foresee_order(himc_avoidance *a, himc_capsule capsule[HIMC_FORESEEN]
         a->order = order;
 }
 
-void himc_avoidance_update(himc_avoidance *a, const himc_posture *posture,
-                           const himc_shells *shells, const himc_foreseen foreseen[HIMC_FORESEEN],
-                           double dt)
+int himc_avoidance_update(himc_avoidance *a, const himc_posture *posture, const himc_shells *shells,
+                          const himc_foreseen foreseen[HIMC_FORESEEN], double dt)
 {
     himc_capsule capsule[HIMC_FORESEEN][HIMC_SEGMENTS];
     double rate[HIMC_AVOIDANCE_PARTS] = {0}, missing[HIMC_FORESEEN];
     himc_posture then;
+    int work = HIMC_FORESEEN;
     for (int k = 0; k < HIMC_FORESEEN; k++) {
         then = foreseen_posture(a, posture, &foreseen[k]);
         missing[k] = himc_posture_capsules(&then, foreseen[k].tip, capsule[k]);
@@ -266,30 +263,18 @@ void himc_avoidance_update(himc_avoidance *a, const himc_posture *posture,
             continue;
         then = foreseen_posture(a, posture, &foreseen[k]);
         add_descent(&then, &foreseen[k], &f, rate);
+        work += DESCENT_WORK;
     }
     step(a, rate, fmin(dt, LONGEST_STEP));
+    return work;
 }
 
-himc_clearance himc_avoidance_rehearse(himc_avoidance *a, const himc_posture *posture,
-                                       const himc_shells *shells, const himc_foreseen *foreseen,
-                                       double dt)
+himc_clearance himc_avoidance_gaps(const himc_avoidance *a, const himc_posture *posture,
+                                   const himc_shells *shells, const himc_vec3 tip[HIMC_HANDS])
 {
     himc_capsule capsule[HIMC_SEGMENTS];
-    himc_posture then = foreseen_posture(a, posture, foreseen);
-    int steps = dt < 0 ? FIRST_REHEARSED : (int)ceil(REHEARSED * dt), work = 1;
-    for (int i = 0;; i++, work += 1 + DESCENT_WORK) {
-        put(a->goal, &then.trunk_posture);
-        double missing = himc_posture_capsules(&then, foreseen->tip, capsule),
-               rate[HIMC_AVOIDANCE_PARTS] = {0};
-        int order = order_of(capsule);
-        if (order == 0 || a->order == 0)
-            a->order = order;
-        field f = field_of(a, capsule, shells);
-        f.clear.beyond = missing;
-        f.clear.work = work;
-        if (i == steps || (!f.pushed && missing == 0))
-            return f.clear;
-        add_descent(&then, foreseen, &f, rate);
-        step(a, rate, REHEARSED_STEP);
-    }
+    double missing = himc_posture_capsules(posture, tip, capsule);
+    field f = field_of(a, capsule, shells);
+    f.clear.beyond = missing;
+    return f.clear;
 }

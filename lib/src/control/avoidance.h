@@ -18,7 +18,7 @@ typedef struct himc_foreseen {
     himc_trunk_posture trunk;
 } himc_foreseen;
 
-#define HIMC_FORESEEN 4 ///< postures looked at; chosen: half a second in steps of a tenth
+#define HIMC_FORESEEN 2 ///< postures looked at; chosen: so few that a rehearsal can do the same
 
 /// The drums.
 typedef struct himc_shells {
@@ -27,17 +27,15 @@ typedef struct himc_shells {
 } himc_shells;
 
 /// Moves the goal during `dt` (s) so that the foreseen postures come clear, or back to 0 when they
-/// are. All are in the order of time but the last, which has none: the next strokes.
-HIMC_RT void himc_avoidance_update(himc_avoidance *avoidance, const himc_posture *posture,
-                                   const himc_shells *shells,
-                                   const himc_foreseen foreseen[HIMC_FORESEEN], double dt);
+/// are; they are in the order of time. Returns how many postures were looked at.
+HIMC_RT int himc_avoidance_update(himc_avoidance *avoidance, const himc_posture *posture,
+                                  const himc_shells *shells,
+                                  const himc_foreseen foreseen[HIMC_FORESEEN], double dt);
 
-/// Moves the goal as it will be when that posture has come `dt` after the one before (s; negative:
-/// it is the first), and returns the gaps then.
-HIMC_RT himc_clearance himc_avoidance_rehearse(himc_avoidance *avoidance,
-                                               const himc_posture *posture,
-                                               const himc_shells *shells,
-                                               const himc_foreseen *foreseen, double dt);
+/// The gaps of a posture; no work is counted.
+HIMC_RT himc_clearance himc_avoidance_gaps(const himc_avoidance *avoidance,
+                                           const himc_posture *posture, const himc_shells *shells,
+                                           const himc_vec3 tip[HIMC_HANDS]);
 
 /// Puts the goal into a trunk posture's values.
 HIMC_RT void himc_avoidance_apply(const himc_avoidance *avoidance, himc_trunk_posture *goal);

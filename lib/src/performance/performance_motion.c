@@ -19,6 +19,7 @@
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
 #define TRUNK_FORESIGHT 1.2     // chosen: strokes further ahead do not turn the trunk (s)
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
+#define REHEARSED_STEP 0.004    // of the rehearsed trunk, at most (s): a usual tick
 #define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
 #define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
 // postures a second of the planner's rehearsal; chosen: 10 % of a core, and a tenth of that near
@@ -47,6 +48,9 @@
 static const double rests_at[] = {0.06, 0.09}; // (s)
 #define RESTS_BELOW 0.002                      // (m)
 
+// the postures that the avoidance looks at (s); chosen: elbows and wrists lag by 0.07 s
+static const double ahead[HIMC_FORESEEN] = {0.06, 0.14};
+
 // distance of a place from the nearest one that the tip reaches
 static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
 {
@@ -56,29 +60,61 @@ static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
 // what a rehearsal remembers
 typedef struct rehearsed {
     himc_avoidance avoidance;
-    himc_trunk_posture trunk;
+    double since; // its last update (s)
+    himc_trunk_posture trunk, goal;
 } rehearsed;
 
 _Static_assert(sizeof(rehearsed) <= sizeof(himc_rehearsed), "himc_rehearsed has no room");
 
-// Gaps at a moment of the plan, with trunk, elbows and wrists where they will have moved by then.
+// one step of the avoidance with the tips in `foreseen`; returns how many postures were looked at
+static int clear_ahead(const performance_motion *m, himc_avoidance *a,
+                       const himc_trunk_posture *now, const himc_trunk_posture *goal,
+                       himc_foreseen foreseen[HIMC_FORESEEN], double dt)
+{
+    for (int k = 0; k < HIMC_FORESEEN; k++)
+        foreseen[k].trunk = himc_trunk_posture_foreseen(now, goal, ahead[k]);
+    return himc_avoidance_update(a, &m->posture, &m->shells, foreseen, dt);
+}
+
+// by `time` (s), in steps of a tick
+static void move_trunk(rehearsed *r, double time)
+{
+    int steps = (int)ceil(time / REHEARSED_STEP);
+    for (int i = 0; i < steps; i++)
+        r->trunk = himc_trunk_posture_approach(&r->trunk, &r->goal, time / steps);
+}
+
+// as `avoid` does; the work
+static int rehearse_avoidance(const performance_motion *m, const himc_moment *at, rehearsed *r)
+{
+    himc_foreseen f[HIMC_FORESEEN];
+    int work = 0;
+    r->since += fmax(at->after, 0);
+    if (r->since >= AVOIDANCE_PERIOD) {
+        for (int k = 0; k < HIMC_FORESEEN; k++)
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                f[k].tip[hand] = himc_moment_tip(at, (himc_hand)hand, at->time + ahead[k]);
+        work = clear_ahead(m, &r->avoidance, &r->trunk, &r->goal, f, r->since);
+        r->since = 0;
+    }
+    himc_avoidance_apply(&r->avoidance, &r->goal);
+    return work;
+}
+
+// Gaps at a moment of the plan. Trunk, elbows and wrists move as they will: the same steps of the
+// avoidance are taken with the same tips.
 static himc_clearance rehearse(const void *motion, const himc_moment *at, himc_rehearsed *state)
 {
     const performance_motion *m = motion;
-    rehearsed r;
-    himc_foreseen then = {.tip = {at->tip[HIMC_LEFT], at->tip[HIMC_RIGHT]}};
-    memcpy(&r, state, sizeof r);
-    if (at->after < 0) {
-        r.avoidance = m->avoidance;
-        r.trunk = himc_trunk_posture_foreseen(&m->course.from, &m->course.goal,
-                                              fmax(at->time - m->course.time, 0));
-    }
-    himc_trunk_posture goal = himc_posture_trunk(at->place, m->grip);
-    if (at->after > 0)
-        r.trunk = himc_trunk_posture_approach(&r.trunk, &goal, fmin(at->after, TRUNK_STEP));
-    then.trunk = r.trunk;
-    himc_clearance clear =
-        himc_avoidance_rehearse(&r.avoidance, &m->posture, &m->shells, &then, at->after);
+    rehearsed r = {m->avoidance, m->course.time - m->avoided, m->course.from, m->course.goal};
+    if (at->after >= 0)
+        memcpy(&r, state, sizeof r);
+    move_trunk(&r, at->after < 0 ? fmax(at->time - m->course.time, 0) : at->after);
+    himc_posture then = m->posture;
+    then.trunk_posture = r.trunk;
+    himc_clearance clear = himc_avoidance_gaps(&r.avoidance, &then, &m->shells, at->tip);
+    r.goal = himc_posture_trunk(at->place, m->grip);
+    clear.work = 1 + rehearse_avoidance(m, at, &r);
     memcpy(state, &r, sizeof r);
     return clear;
 }
@@ -338,20 +374,15 @@ static void damp(performance_motion *m, const performance_drums *drums, double t
         m->replan = true;
 }
 
-// keeps the planned tips of the next half second and the next strokes clear of the body
-static void avoid(performance_motion *m, const himc_vec3 place[HIMC_HANDS], double t)
+// keeps the arms clear along the planned way of the tips
+static void avoid(performance_motion *m, double t)
 {
-    static const double ahead[HIMC_FORESEEN] = {0.045, 0.08, 0.12, 0.17};
     himc_foreseen f[HIMC_FORESEEN];
     if (t - m->avoided >= AVOIDANCE_PERIOD) {
-        for (int k = 0; k < HIMC_FORESEEN; k++) {
-            f[k].trunk = himc_trunk_posture_foreseen(&m->course.from, &m->course.goal, ahead[k]);
+        for (int k = 0; k < HIMC_FORESEEN; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
-                f[k].tip[hand] = isfinite(ahead[k])
-                                     ? himc_motion_planned(m, (himc_hand)hand, t + ahead[k]).x
-                                     : place[hand];
-        }
-        himc_avoidance_update(&m->avoidance, &m->posture, &m->shells, f, t - m->avoided);
+                f[k].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t + ahead[k]).x;
+        clear_ahead(m, &m->avoidance, &m->course.from, &m->course.goal, f, t - m->avoided);
         m->avoided = t;
     }
     himc_avoidance_apply(&m->avoidance, &m->course.goal);
@@ -373,7 +404,7 @@ static void set_course(performance_motion *m, const performance_settings *s,
     }
     if (s->alive && !m->track)
         enliven(m, drums, t);
-    avoid(m, place, t);
+    avoid(m, t);
     m->course.time = t;
 }
 

@@ -16,15 +16,20 @@
 
 /// Both hands at a moment of their plans.
 typedef struct himc_moment {
-    double time;                 ///< (s)
-    double after;                ///< the moment before (s); negative: it is the first
-    himc_vec3 tip[HIMC_HANDS];   ///< (m)
-    himc_vec3 place[HIMC_HANDS]; ///< of the next touch, or the tip (m)
+    double time;                      ///< (s)
+    double after;                     ///< the moment before (s); negative: it is the first
+    himc_vec3 tip[HIMC_HANDS];        ///< (m)
+    himc_vec3 place[HIMC_HANDS];      ///< of the next touch, or the tip (m)
+    const struct planner_hand *plans; ///< of both hands ...
+    const struct planner_lift *lift;  ///< ... and a lift of one; NULL: the tips stay; borrowed
 } himc_moment;
+
+/// The tip of a hand (m) at another time (s) of these plans.
+HIMC_RT himc_vec3 himc_moment_tip(const himc_moment *moment, himc_hand hand, double t);
 
 /// What a rehearsal remembers from moment to moment; its contents are of `rehearse` alone.
 typedef struct himc_rehearsed {
-    double state[64];
+    double state[96];
 } himc_rehearsed;
 
 typedef struct himc_planner_config {

@@ -5,9 +5,9 @@
 /// both plans, ahead of the time at which they can still be changed, as far as both are known.
 /// Where the hands come near, changes are tried in a fixed order: the upper hand is lifted over the
 /// other one, or over and outwards, then the other hand is; if the body still meets itself, the
-/// spot of the next stroke is moved aside, or its hand waits, and last the other hand plays it. For
-/// these the planner itself plans a trial (PLANNER_TRY). The change that lacks least is made, and
-/// the walk goes on through it. What no change makes clear is told in one line.
+/// spot of the next stroke is moved aside, or its hand waits, or the other hand plays it; where the
+/// body still meets itself it is left out, and a line says so. For these the planner itself plans a
+/// trial (PLANNER_TRY). The best change is made, and the walk goes on through it.
 ///
 /// All of this is work that is counted in postures of the body and paid for by the time that passes
 /// (himc_planner_think), so no step carries more than a few of them, and the result does not depend
@@ -43,8 +43,9 @@
 
 /// What is tried with a stroke, in this order.
 static const planner_way stroke_way[] = {
-    {.aside = 0.03}, {.aside = 0.06}, {.waits = true}, {.other = true}};
+    {.aside = 0.03}, {.aside = 0.06}, {.waits = true}, {.other = true}, {.leaves = true}};
 #define STROKE_WAYS (int)(sizeof stroke_way / sizeof stroke_way[0])
+#define KEPT_WAYS 3 ///< the first ones: its hand plays it
 
 static himc_hand other_hand(himc_hand hand)
 {
@@ -66,7 +67,7 @@ static void walk_from(planner_clear *c, planner_rehearsal from)
 
 static void walk_anew(himc_planner *planner)
 {
-    walk_from(&planner->clear, himc_rehearsal_begin(planner->now + PLANNER_AHEAD));
+    walk_from(&planner->clear, himc_rehearsal_begin(planner->now));
     planner->clear.searched = -HUGE_VAL;
 }
 
@@ -197,23 +198,26 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
     way.tried = k + 1;
     way.aside *= side_of(planner, hand, s);
     if ((tried->touch == way.touch && k < tried->tried) ||
-        !(way.aside != 0 || way.waits || (way.other && may_pass_on(planner, hand, s))))
+        !(way.aside != 0 || way.waits || (way.other && may_pass_on(planner, hand, s)) ||
+          (way.leaves && c->least.gap < 0)))
         return false;
     c->way = way;
     return true;
 }
 
-/// First the lifts of either hand, then the ways of a stroke of either hand, the other hand last.
+/// First the lifts of either hand, then the ways of a stroke of either hand: that the other hand
+/// plays it comes late, that it is left out last.
 static bool make_candidate(himc_planner *planner)
 {
     planner_clear *c = &planner->clear;
-    int k = c->candidate, way = k - 2 * LIFT_TRIES, kept = STROKE_WAYS - 1;
+    int k = c->candidate, way = k - 2 * LIFT_TRIES, late = way - 2 * KEPT_WAYS;
     himc_hand upper = upper_hand(planner, &c->plain), later = later_hand(planner, &c->plain);
     try_nothing(c);
     if (way < 0)
         return make_lift(planner, k < LIFT_TRIES ? upper : other_hand(upper), k % LIFT_TRIES);
-    bool first = way < 2 * kept ? way < kept : way == 2 * kept;
-    return make_way(planner, first ? later : other_hand(later), way < 2 * kept ? way % kept : kept);
+    bool first = late < 0 ? way < KEPT_WAYS : late % 2 == 0;
+    return make_way(planner, first ? later : other_hand(later),
+                    late < 0 ? way % KEPT_WAYS : KEPT_WAYS + late / 2);
 }
 
 /// Whether it is worth while to try the next candidate. A lift that would come too late if more
@@ -223,7 +227,7 @@ static bool goes_on(const himc_planner *planner)
     const planner_clear *c = &planner->clear;
     bool due = c->best_lift.end > 0 && c->best_lift.begin < planner->now + 2 * LEAST_AHEAD;
     return c->least.lack > 0 && c->candidate < 2 * (LIFT_TRIES + STROKE_WAYS) &&
-           (c->least.gap < 0 || (c->candidate < LIFT_TRIES && !due));
+           (c->least.gap < HIMC_SURE_GAP || (c->candidate < LIFT_TRIES && !due));
 }
 
 static void begin_search(planner_clear *c)
@@ -250,14 +254,18 @@ static void say_meet(himc_planner *planner)
         himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
 }
 
+/// Lifts a hand, a little later than found if it cannot begin before t (s); false if it is too late.
+static bool lift_from(planner_hand *h, const planner_lift *l, double t)
+{
+    double begin = fmax(l->begin, t), from = fmax(l->from, begin + lift_time(l));
+    return himc_hand_lift(&h->plan, begin, from, fmax(l->to, from), l->end, l->way);
+}
+
 static bool lift_now(himc_planner *planner)
 {
-    planner_lift *l = &planner->clear.best_lift;
+    const planner_lift *l = &planner->clear.best_lift;
     planner_hand *h = &planner->hand[l->hand];
-    double begin = fmax(l->begin, planner->now + LEAST_AHEAD);
-    l->from = fmax(l->from, begin + lift_time(l));
-    if (!(l->end > 0) || l->from > l->to ||
-        !himc_hand_lift(&h->plan, begin, l->from, l->to, l->end, l->way))
+    if (!(l->end > 0) || !lift_from(h, l, planner->now + LEAST_AHEAD))
         return false;
     h->lift = *l;
     return true;
@@ -302,7 +310,7 @@ static int try_next(himc_planner *planner)
         return 1;
     }
     bool lifts = c->lift.end > 0;
-    c->trial_walk = lifts ? c->kept[1] : himc_rehearsal_begin(planner->now + PLANNER_AHEAD);
+    c->trial_walk = lifts ? c->kept[1] : himc_rehearsal_begin(planner->now);
     return lifts ? 2 : PLANNING_WORK;
 }
 
@@ -377,5 +385,5 @@ void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t)
     double touch = touch_after(h, t);
     bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
     if (l->end > t && same && l->end <= h->plan.end)
-        himc_hand_lift(&h->plan, fmax(l->begin, t), l->from, l->to, l->end, l->way);
+        lift_from(h, l, t);
 }

@@ -55,7 +55,7 @@
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
-typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS } plan_result;
+typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS, LEFT_OUT } plan_result;
 
 void himc_planner_motion_init(himc_planner *planner)
 {
@@ -305,7 +305,7 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
         himc_format(text, 48, "out of reach by %.2f m",
                     himc_planner_beyond(planner, s->stroke.hand, &s->written));
     else
-        himc_format(text, 48, result == MEETS ? "the hands would meet" : "no time to prepare it");
+        himc_format(text, 48, result == NO_TIME ? "no time to prepare it" : "the hands would meet");
     return text;
 }
 
@@ -360,6 +360,8 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
     if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
+    if (way->leaves)
+        return LEFT_OUT;
     if (way->other && s->index >= 0)
         return MEETS;
     if (way->aside != 0) {
@@ -418,8 +420,8 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
 }
 
-/// No hand can play it: a line says so. If only the hands would meet it is played all the same: to
-/// a listener a stroke left out is worse.
+/// No hand can play it: a line says so. One that the other hand has no time for is played all the
+/// same; where the hands then meet, the search leaves it out.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
     char name[64], reason[48];
@@ -508,19 +510,21 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     return true;
 }
 
-/// Whether the hand can play a stroke beside its own; its plan ends as early as it can.
-static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *s)
+/// Whether the hand can play a stroke beside its own, in a hurry if it must; its plan ends as early
+/// as it can.
+static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *s, bool hurries)
 {
     const planner_hand *h = &planner->hand[hand];
     double t = s->goal.time, gap = t;
+    bool in_time = hurries ? himc_hand_can_strike(&h->plan, &s->goal)
+                           : t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
     return h->waiting_count < PLANNER_WAITING && himc_planner_reaches(planner, hand, &s->goal) &&
-           himc_planner_find_gap(planner, hand, &gap) && gap == t &&
-           t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal) &&
+           himc_planner_find_gap(planner, hand, &gap) && gap == t && in_time &&
            fits_in(planner, hand, &s->goal);
 }
 
 /// The other hand takes a stroke of the score, if it has nothing to do and is near enough.
-static bool reassign(himc_planner *planner, const timed_stroke *s)
+static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
 {
     himc_hand other = other_hand(s->stroke.hand);
     planner_hand *h = &planner->hand[other];
@@ -535,7 +539,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s)
     taken.reassigned = true;
     taken.stroke.hand = other;
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
-    bool can = can_take(planner, other, &taken);
+    bool can = can_take(planner, other, &taken, hurries);
     if (can)
         himc_planner_queue(planner, &taken);
     extend_alone(planner, other, from + PLANNER_HORIZON);
@@ -545,7 +549,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s)
 static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
     char name[64], reason[48];
-    if (!reassign(planner, s)) {
+    if (result == LEFT_OUT || !reassign(planner, s, result == MEETS)) {
         give_up(planner, s, result);
         return;
     }
@@ -830,9 +834,8 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
         h->plan.rebounding = t - last->goal.time < BOUNCE_TIME;
     }
     himc_planner_changed(planner, t);
-    double from = h->plan.end;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    himc_planner_lift_again(planner, hand, from);
+    himc_planner_lift_again(planner, hand, t);
 }
 
 static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)

@@ -56,6 +56,7 @@ typedef struct planner_way {
     double aside; ///< its spot is moved to the left by so much, in the head's frame (m)
     bool waits;   ///< the hand first waits over its last spot
     bool other;   ///< the other hand plays it
+    bool leaves;  ///< it is left out
     int tried;    ///< so many ways
 } planner_way;
 

@@ -1,19 +1,21 @@
 /// rehearsal.c: the gaps of the body along both plans, with trunk, elbows and wrists as they will
-/// have moved by then. What is tried in place of a plan, a lift or another motion, is walked
+/// have moved by then, at all touches and as often as needed between them. What is tried in place of a plan, a lift or another motion, is walked
 /// through in the same way, from a moment before it begins.
 #include "plan/rehearsal.h"
 #include "plan/planner_motion.h"
 #include "plan/stroke_plan.h"
 
 // moments; chosen: sticks that play one head side by side are 14 mm apart
-#define STEP 0.02          // between two looks (s)
+#define STEP 0.012         // between two looks (s)
 #define PASSING_GAP 0.1    // sticks nearer than this (m) ...
-#define PASSING_STEP 0.005 // ... are looked at so often (s): they pass at up to 6 m/s
+#define PASSING_STEP 0.004 // ... are looked at so often (s): they pass at up to 6 m/s
 #define NEAR_GAP 0.008     // hands nearer than this are kept apart (m) ...
 #define CROSSED_GAP 0.05   // ... and crossed ones nearer by this
 #define CROSSED 0.02       // one tip is so far on the other's side (m)
-#define UNSURE 0.006     // so early or late a stick may pass (s): the rebound is only predicted ...
-#define MOST_UNSURE 0.02 // ... so that the gap may be less by this (m)
+#define UNSURE_GAP 0.004 // real gaps are less than rehearsed ones by up to this (m): seen 1 to 4 mm
+#define UNSURE 0.003     // so early or late a stick may pass (s): the rebound is only predicted ...
+#define MOST_UNSURE 0.01 // ... so that the gap may be less by this, too (m)
+#define STRETCHED 2.0    // ... and a body gap by this share of the way out of reach: seen up to 1.8
 #define OVERREACH 0.04   // no motion so far out of reach of the usual posture (m)
 #define FOLDED 0.25      // no way of a tip so near to its shoulder (m): the arm would whip
 #define UNREACHED 0.1    // and no stroke so far (m): the arm would not find back
@@ -48,14 +50,22 @@ static himc_vec3 next_place(const planner_hand *h, double t, himc_vec3 tip)
     return soon ? s->goal.spot : tip;
 }
 
+himc_vec3 himc_moment_tip(const himc_moment *m, himc_hand hand, double t)
+{
+    if (!m->plans)
+        return m->tip[hand];
+    himc_vec3 tip = himc_hand_at(&m->plans[hand].plan, t).x;
+    return m->lift->end > 0 && m->lift->hand == hand
+               ? himc_vec3_madd(tip, lifted(m->lift, t), m->lift->way)
+               : tip;
+}
+
 static himc_moment moment_at(const planner_rehearsal *walk, const planner_lift *lift,
                              const planner_hand *hand)
 {
-    himc_moment m = {.time = walk->t, .after = walk->after};
+    himc_moment m = {.time = walk->t, .after = walk->after, .plans = hand, .lift = lift};
     for (int i = 0; i < HIMC_HANDS; i++) {
-        m.tip[i] = himc_hand_at(&hand[i].plan, walk->t).x;
-        if (lift->end > 0 && (int)lift->hand == i)
-            m.tip[i] = himc_vec3_madd(m.tip[i], lifted(lift, walk->t), lift->way);
+        m.tip[i] = himc_moment_tip(&m, (himc_hand)i, walk->t);
         m.place[i] = next_place(&hand[i], walk->t, m.tip[i]);
     }
     return m;
@@ -95,16 +105,28 @@ static double speed_past(const planner_hand *hand, double t)
     return hypot(v.x, v.y);
 }
 
+/// Time from t to the next planned touch (s).
+static double to_touch(const planner_hand *hand, double t)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < HIMC_HANDS; i++)
+        for (int k = 0; k < hand[i].planned_count; k++)
+            if (hand[i].planned[k].goal.time > t)
+                least = fmin(least, hand[i].planned[k].goal.time - t);
+    return least;
+}
+
 int himc_rehearsal_step(const himc_planner_config *config, planner_rehearsal *walk,
                         const planner_lift *lift, const planner_hand *hand, double ignored)
 {
     int order;
     himc_moment at = moment_at(walk, lift, hand);
     himc_clearance clear = config->rehearse(config->motion, &at, &walk->state);
-    clear.sticks -= fmin(MOST_UNSURE, UNSURE * speed_past(hand, at.time));
+    clear.body -= UNSURE_GAP + STRETCHED * clear.beyond;
+    clear.sticks -= UNSURE_GAP + fmin(MOST_UNSURE, UNSURE * speed_past(hand, at.time));
     double gap = fmin(fmin(clear.body, clear.sticks), UNREACHED - clear.beyond);
     double lack = lack_of(&clear, &at, &order);
-    walk->after = clear.sticks < PASSING_GAP ? PASSING_STEP : STEP;
+    walk->after = fmin(clear.sticks < PASSING_GAP ? PASSING_STEP : STEP, to_touch(hand, walk->t));
     walk->met = walk->met && gap < 0;
     if (at.time > ignored) {
         walk->near.gap = walk->met ? walk->near.gap : fmin(walk->near.gap, gap);
@@ -117,5 +139,6 @@ int himc_rehearsal_step(const himc_planner_config *config, planner_rehearsal *wa
 
 bool himc_rehearsal_is_better(const near_time *a, const near_time *b)
 {
-    return (a->gap >= 0) == (b->gap >= 0) ? a->lack < b->lack : a->gap >= 0;
+    double p = fmin(a->gap, HIMC_SURE_GAP), q = fmin(b->gap, HIMC_SURE_GAP);
+    return p == q ? a->lack < b->lack : p > q;
 }

@@ -7,6 +7,9 @@
 
 struct planner_hand;
 
+/// With a smaller gap other ways are tried (m); chosen: what two plans that differ by a rebound differ by.
+#define HIMC_SURE_GAP 0.008
+
 /// A time in which the hands come near.
 typedef struct near_time {
     double lack;     ///< what gaps lack, over the time (m s)
@@ -42,7 +45,8 @@ HIMC_RT int himc_rehearsal_step(const himc_planner_config *config, planner_rehea
                                 const planner_lift *lift, const struct planner_hand *hand,
                                 double ignored);
 
-/// True if `a` is the better way: nothing meets, then less is lacking.
+/// True if `a` is the better way: its least gap is larger, or both are HIMC_SURE_GAP, and less is
+/// lacking.
 bool himc_rehearsal_is_better(const near_time *a, const near_time *b);
 
 #endif
