@@ -125,6 +125,22 @@ static void test_packets_off_loopback_stay_below_1400_bytes(void)
         TEST_ASSERT_TRUE(p.size[i] <= 1400);
 }
 
+static void test_a_push_begins_when_it_arrives_and_ends(void)
+{
+    static const double force[] = {40, 0};
+    say("/himc/push", "left-forearm 0 0 40 0.2");
+    for (int i = 0; i < 2; i++) {
+        play(0.15);
+        TEST_ASSERT_EQUAL_DOUBLE(
+            force[i],
+            himc_body_pushed(performance->body, HIMC_LEFT_FOREARM, step_time(performance)).z);
+    }
+    subscribe("errors");
+    say("/himc/push", "nobody 0 0 40 0.2");
+    play(0.1);
+    TEST_ASSERT_NOT_NULL(strstr(last_error(), "push: SEGMENT: nobody, allowed"));
+}
+
 static void test_time_tag_is_ntp_time(void)
 {
     TEST_ASSERT_EQUAL_UINT64((uint64_t)(1 + 2208988800u) << 32 | 0x80000000u,
@@ -205,6 +221,7 @@ int main(void)
     RUN_TEST(test_a_drum_is_tuned_over_osc);
     RUN_TEST(test_errors_are_answered_with_the_parsers_line);
     RUN_TEST(test_packets_off_loopback_stay_below_1400_bytes);
+    RUN_TEST(test_a_push_begins_when_it_arrives_and_ends);
     RUN_TEST(test_time_tag_is_ntp_time);
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);
