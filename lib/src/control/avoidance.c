@@ -26,6 +26,7 @@
 #define LEVEL 0.5            // of the vertical: parts beside each other are in no order
 #define DESCENT 20.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second
 #define RETURN_TIME 2.0 // T (s); chosen: long, so that the goal rests 5 mm inside D
+#define AVOIDS 0.05     // goals up to it unfold no arm (rad); chosen: a push of 1 mm makes less
 #define LEAST_GOAL 1e-3 // a smaller goal of a clear body is 0 (rad)
 #define LONGEST_STEP 0.012   // (s); chosen: K dt stays below 1 / |F''|
 #define FASTEST 8.0          // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
@@ -177,7 +178,7 @@ static bool is_active(const himc_avoidance *a)
 {
     bool active = false;
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
-        active = active || a->goal[i] != 0;
+        active = active || fabs(a->goal[i]) > AVOIDS;
     return active;
 }
 
