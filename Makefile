@@ -280,7 +280,7 @@ mutants: deps ## put more than a hundred faults into the library, one at a time,
 	@$(MAKE) check-mutants
 
 check-mutants: $(UNIT)
-	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS)" tests/mutants/run.sh $(MUTANTS)
+	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS) -llo" tests/mutants/run.sh $(MUTANTS)
 
 # the externals for it, of 32 or 64 bits
 FLOATSIZE ?= 32

@@ -232,6 +232,13 @@ static inline const seen *last(const char *path)
     return NULL;
 }
 
+// when it was, on the wall clock (s since 1970)
+static inline double wall_of(const seen *s)
+{
+    return (double)(s->time_tag >> 32) - 2208988800.0 +
+           (double)(uint32_t)s->time_tag / 4294967296.0;
+}
+
 static inline const char *last_error(void)
 {
     const seen *s = last("/himc/error");

@@ -5,6 +5,8 @@
 #include "body/dynamics.h"
 
 #include "control/limit_torque.h"
+#include "control/strength.h"
+#include "control/tracking_error.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -110,6 +112,24 @@ static void test_a_demand_on_an_arm_is_bounded_and_keeps_its_proportions(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.4 * 12e3, wanted[elbow].z);
     TEST_ASSERT_EQUAL_MEMORY(&asked[2], &wanted[other], sizeof asked[2]);
     TEST_ASSERT_EQUAL_MEMORY(&asked[3], &wanted[NECK], sizeof asked[3]);
+}
+
+// an arm that is held off its target is pulled no harder than 0.4 rad pull it
+static void test_errors_of_an_arm_are_bounded_and_keep_their_proportions(void)
+{
+    int shoulder = himc_arm_joint(HIMC_LEFT, 0), elbow = himc_arm_joint(HIMC_LEFT, 1),
+        other = himc_arm_joint(HIMC_RIGHT, 1);
+    tracking_error asked, e = {.angle = {[NECK] = {0.9, 0, 0}}};
+    e.angle[shoulder] = himc_vec3_make(0, 0.3, 0);
+    e.angle[elbow] = himc_vec3_make(0.8, 0, 0.6);
+    e.angle[other] = himc_vec3_make(0, 0.39, 0);
+    asked = e;
+    himc_limits_bound_errors(&controller, &e);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.4 * 0.3, e.angle[shoulder].y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.4 * 0.8, e.angle[elbow].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.4 * 0.6, e.angle[elbow].z);
+    TEST_ASSERT_EQUAL_MEMORY(&asked.angle[other], &e.angle[other], sizeof asked.angle[0]);
+    TEST_ASSERT_EQUAL_MEMORY(&asked.angle[NECK], &e.angle[NECK], sizeof asked.angle[0]);
 }
 
 // a joint at a constant rate along its bounds stays inside; its spin rotates with the parent
@@ -293,11 +313,29 @@ static void test_strength_of_75_kg_is_that_of_the_table(void)
     }
 }
 
+// Hill 1938: a muscle that shortens pulls less, none at 20 rad/s; one that is stretched pulls in full
+static void test_strength_falls_with_the_speed_along_the_torque(void)
+{
+    static const double speed[] = {0, 5, 10, 25, -10}, left[] = {8, 6, 4, 0, 8};
+    int elbow = himc_arm_joint(HIMC_LEFT, 1);
+    controller.config.strength[elbow] = 8;
+    for (int i = 0; i < 5; i++) {
+        himc_vec3 torque[HIMC_JOINTS] = {[0] = {0, 0, 0}};
+        state.spin[elbow + 1] = himc_vec3_madd(state.spin[skeleton.segment[elbow + 1].parent],
+                                               speed[i], himc_vec3_make(0.6, 0, 0.8));
+        torque[elbow] = himc_vec3_make(0.6 * 30, 0, 0.8 * 30);
+        himc_strength_apply(&controller, &skeleton, &state, torque);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.6 * left[i], torque[elbow].x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.8 * left[i], torque[elbow].z);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_joint_about_to_leave_its_bounds_is_on_them_a_moment_later);
     RUN_TEST(test_a_demand_on_an_arm_is_bounded_and_keeps_its_proportions);
+    RUN_TEST(test_errors_of_an_arm_are_bounded_and_keep_their_proportions);
     RUN_TEST(test_a_turning_parent_drives_no_joint_out_of_its_bounds);
     RUN_TEST(test_a_joint_far_beyond_its_bounds_returns_at_3_radians_a_second);
     RUN_TEST(test_limit_damping_beside_servos_never_adds_energy);
@@ -306,5 +344,6 @@ int main(void)
     RUN_TEST(test_a_joint_at_rest_a_little_beyond_its_bounds_is_on_them_a_moment_later);
     RUN_TEST(test_the_farthest_angle_beyond_is_that_of_all_steps);
     RUN_TEST(test_strength_of_75_kg_is_that_of_the_table);
+    RUN_TEST(test_strength_falls_with_the_speed_along_the_torque);
     return UNITY_END();
 }

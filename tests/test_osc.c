@@ -53,9 +53,7 @@ static void test_the_time_tag_of_a_strike_is_its_time_on_the_wall_clock(void)
     TEST_ASSERT_NOT_NULL(s);
     lo_arg **a = lo_message_get_argv(s->message);
     double time = whole(a[10]) + (double)number(a[11]);
-    double tag =
-        (double)(s->time_tag >> 32) - 2208988800.0 + (double)(uint32_t)s->time_tag / 4294967296.0;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, EPOCH + begun + time, tag);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, EPOCH + begun + time, wall_of(s));
 }
 
 // a performance that has gone on for a day, and for longer than 32 bits of seconds
@@ -75,10 +73,8 @@ static void test_time_tags_hold_across_2_to_the_32_and_50_samples(void)
         TEST_ASSERT_NOT_NULL(s);
         lo_arg **a = lo_message_get_argv(s->message);
         double time = whole(a[10]) + (double)number(a[11]) - fmod(seconds[i], 2147483648.0);
-        double tag = (double)(s->time_tag >> 32) - 2208988800.0 +
-                     (double)(uint32_t)s->time_tag / 4294967296.0;
         TEST_ASSERT_TRUE(time > 0.1 && time < 2);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-4, EPOCH + begun + time, tag);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, EPOCH + begun + time, wall_of(s));
     }
 }
 
@@ -127,6 +123,22 @@ static void test_packets_off_loopback_stay_below_1400_bytes(void)
     TEST_ASSERT_TRUE(p.count >= 2 && p.count <= PACKETS);
     for (int i = 0; i < p.count; i++)
         TEST_ASSERT_TRUE(p.size[i] <= 1400);
+}
+
+static void test_a_push_begins_when_it_arrives_and_ends(void)
+{
+    static const double force[] = {40, 0};
+    say("/himc/push", "left-forearm 0 0 40 0.2");
+    for (int i = 0; i < 2; i++) {
+        play(0.15);
+        TEST_ASSERT_EQUAL_DOUBLE(
+            force[i],
+            himc_body_pushed(performance->body, HIMC_LEFT_FOREARM, step_time(performance)).z);
+    }
+    subscribe("errors");
+    say("/himc/push", "nobody 0 0 40 0.2");
+    play(0.1);
+    TEST_ASSERT_NOT_NULL(strstr(last_error(), "push: SEGMENT: nobody, allowed"));
 }
 
 static void test_time_tag_is_ntp_time(void)
@@ -209,6 +221,7 @@ int main(void)
     RUN_TEST(test_a_drum_is_tuned_over_osc);
     RUN_TEST(test_errors_are_answered_with_the_parsers_line);
     RUN_TEST(test_packets_off_loopback_stay_below_1400_bytes);
+    RUN_TEST(test_a_push_begins_when_it_arrives_and_ends);
     RUN_TEST(test_time_tag_is_ntp_time);
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);

@@ -24,6 +24,19 @@ static void test_poses_continue_after_a_reset(void)
     TEST_ASSERT_INT_WITHIN(2, 25, count("/himc/body") / HIMC_SEGMENTS);
 }
 
+static void test_after_a_reset_all_poses_have_the_time_of_the_wall_clock(void)
+{
+    subscribe("pose 250");
+    play(2);
+    forget();
+    say("/himc/reset", "");
+    double begun = EPOCH + simulated;
+    play(0.1);
+    for (int i = 0; i < heard_count; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(0.051, begun + 0.05, wall_of(&heard[i]));
+    TEST_ASSERT_TRUE(count("/himc/body") >= 24 * HIMC_SEGMENTS);
+}
+
 static void test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second(void)
 {
     subscribe("strikes");
@@ -135,6 +148,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_highest_rate_of_several_subscriptions_is_kept);
     RUN_TEST(test_poses_continue_after_a_reset);
+    RUN_TEST(test_after_a_reset_all_poses_have_the_time_of_the_wall_clock);
     RUN_TEST(test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second);
     RUN_TEST(test_each_drum_is_sent_by_its_name);
     RUN_TEST(test_the_sound_is_that_of_the_drums_without_a_gap);

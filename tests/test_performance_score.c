@@ -379,9 +379,43 @@ static void test_pushes_of_a_take_and_of_the_next_score_are_played_and_told(void
     himc_performance_free(p);
 }
 
+static void write_pushes(const char *before, int count)
+{
+    FILE *file = fopen(SCORE, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fprintf(file, "tempo 240; %s stroke 6 left legato p;", before);
+    for (int i = 0; i < count; i++)
+        fprintf(file, "at %.9g push left-forearm 0 0 5 0.001;", 0.02 * i);
+    fputs("play;", file);
+    fclose(file);
+}
+
+// begun ones are kept, as the strokes are, until there is no room for them
+static void test_a_following_score_with_too_many_pushes_changes_nothing(void)
+{
+    static char before[STATE], after[STATE];
+    himc_performance *p = session_new();
+    write_pushes("drum kettle;", 200);
+    session_do(p, "score " SCORE);
+    write_pushes("gain frequency 2; drum side;", 57);
+    state_of(p, before);
+    TEST_ASSERT_FALSE(session_try(p, "score " SCORE));
+    TEST_ASSERT_EQUAL_STRING(SCORE ": push: one too many, allowed 256", error.text);
+    TEST_ASSERT_EQUAL_STRING(before, state_of(p, after));
+    session_play(p, 1, NULL);
+    write_pushes("", 56);
+    session_do(p, "score " SCORE);
+    TEST_ASSERT_NOT_NULL(strstr(state_of(p, after), "\nat 0 push"));
+    write_pushes("", 1);
+    session_do(p, "score " SCORE);
+    TEST_ASSERT_NULL(strstr(state_of(p, after), "\nat 0 push"));
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_following_score_with_too_many_pushes_changes_nothing);
     RUN_TEST(test_pushes_of_a_score_begin_at_their_beats);
     RUN_TEST(test_a_push_on_the_first_beat_comes_in_each_round);
     RUN_TEST(test_pushes_of_a_take_and_of_the_next_score_are_played_and_told);

@@ -208,9 +208,25 @@ static void test_seek_to_the_beat_of_a_stroke_plays_it(void)
     TEST_ASSERT_TRUE(touch < 1.8);
 }
 
+static void test_strokes_that_make_a_waiting_hand_rest_elsewhere_are_not_exchanged(void)
+{
+    static const int drum[] = {1, 0};
+    add(planner, 40, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_play(planner, 0);
+    advance_to(3);
+    for (int i = 0; i < 2; i++) {
+        himc_planner *fresh = make(120);
+        himc_stroke s = {.beat = 40, .dynamic = 0.3, .nuance = HIMC_LEGATO, .hand = HIMC_LEFT};
+        TEST_ASSERT_TRUE(himc_planner_add(fresh, &s, drum[i], &error));
+        TEST_ASSERT_EQUAL(drum[i] == 0, himc_planner_exchange(planner, fresh));
+        himc_planner_free(fresh);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_strokes_that_make_a_waiting_hand_rest_elsewhere_are_not_exchanged);
     RUN_TEST(test_unit_of_the_grip_then_of_the_spot_then_of_the_speed_is_played);
     RUN_TEST(test_hits_at_once_are_played_one_after_the_other);
     RUN_TEST(test_stroke_added_before_the_present_beat_is_given_up_once);

@@ -97,6 +97,36 @@ static void test_a_hand_rests_over_the_drum_of_its_last_stroke_and_not_crossed(v
     }
 }
 
+// at the start it is there, later it goes there
+static void test_a_hand_waits_over_the_drum_of_its_first_stroke(void)
+{
+    enum { AT_THE_START, AFTER_A_SEEK, LATER, AFTER_ANOTHER_PIECE, CASES };
+    char score[200];
+    for (int when = 0; when < CASES; when++) {
+        himc_performance *p = with_drum(-0.55, 0.7, 0.9);
+        session_do(p, "drum left");
+        session_drum(p, 1, "place 0.55 0.4 0.8");
+        if (when == LATER)
+            session_play(p, 0.1, NULL);
+        if (when == AFTER_ANOTHER_PIECE) {
+            play_four(p, NULL, NULL);
+            session_do(p, "clear");
+        }
+        snprintf(score, sizeof score,
+                 "%sstroke 2 left legato p normal left; stroke 3 left legato p normal kettle;"
+                 "stroke 3 right legato p normal kettle;",
+                 when == AFTER_A_SEEK ? "stroke 1 left legato p normal kettle; seek 2;" : "");
+        session_score(p, "build/rest.txt", score);
+        bool there = when == AT_THE_START || when == AFTER_A_SEEK;
+        session_play(p, there ? 0.01 : 4, NULL);
+        rests_over(p, 1, HIMC_LEFT);
+        rests_over(p, 0, HIMC_RIGHT);
+        if (there)
+            TEST_ASSERT_TRUE(himc_performance_measure(p).peak_rate < 0.5);
+        himc_performance_free(p);
+    }
+}
+
 /// Plays on for 5 s; counts the notes that begin so.
 static int count_notes(himc_performance *p, const char *begin, heard *h)
 {
@@ -180,6 +210,7 @@ int main(void)
     RUN_TEST(test_hands_begin_at_rest_over_a_drum_at_any_height_and_side);
     RUN_TEST(test_piece_on_a_low_or_high_head_is_played_and_ends);
     RUN_TEST(test_a_hand_rests_over_the_drum_of_its_last_stroke_and_not_crossed);
+    RUN_TEST(test_a_hand_waits_over_the_drum_of_its_first_stroke);
     RUN_TEST(test_drum_out_of_reach_is_told_in_one_line_and_its_piece_ends);
     RUN_TEST(test_a_child_gets_a_stool_that_fits);
     RUN_TEST(test_usual_body_and_drum_keep_the_usual_stool);

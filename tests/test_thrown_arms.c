@@ -5,7 +5,7 @@
 #include "performance/performance_state.h"
 
 #define FASTEST \
-    40.0 // (m/s) chosen: a stroke fff has 10; it is 9 to 12 here, without bounds 77 to 85
+    40.0 // (m/s) chosen: a stroke fff has 10; it is 9 to 31 here, without bounds 106 to 115
 #define BLOCK 480
 #define STROKES 16
 
@@ -56,7 +56,7 @@ static void test_arms_that_their_limits_hold_are_not_thrown_about(void)
 
 static void test_weak_arms_are_not_thrown_about(void)
 {
-    double fastest = fastest_tip("strength human", 6);
+    double fastest = fastest_tip("strength human", 109);
     printf("weak arms %.0f m/s\n", fastest);
     TEST_ASSERT_TRUE(fastest < FASTEST);
 }

@@ -125,9 +125,12 @@ static bool end_record(server *s, himc_error *error)
     return good && cli_file_close(&s->file, error) && cli_file_keep(&s->file, error);
 }
 
-/// Statistics of a run.
+/// Statistics of a run. A block that is late but not slow was begun late: the system woke us late,
+/// or the blocks before it were late.
 typedef struct punctuality {
-    long blocks, late;       ///< ended after the next was due
+    long blocks;
+    long late;               ///< ended after the next was due
+    long slow;               ///< took longer to make than they last
     double latest, given_up; ///< (s)
 } punctuality;
 
@@ -137,11 +140,13 @@ static punctuality serve(server *s)
     double period = (double)BLOCK / RATE, due = cli_now();
     while (!stopped) {
         sleep_until(due);
+        double start = cli_now();
         play_block(s);
         due += period;
         double behind = cli_now() - due;
         p.blocks++;
         p.late += behind > 0;
+        p.slow += behind + due - start > period;
         p.latest = fmax(p.latest, behind);
         if (behind > GIVE_UP) {
             p.given_up += behind;
@@ -195,12 +200,13 @@ static int run(const cli_arguments *arguments)
     close_server(&s);
     if (!kept)
         return cli_fail(&cli_serve, "%s", error.text);
-    printf("{\"blocks\": %ld, \"late\": %ld, \"latest_ms\": %.3f, \"given_up_s\": %.3f, "
-           "\"packets\": %ld, \"commands\": %ld, \"malformed\": %ld, \"foreign\": %ld, "
-           "\"refused\": %ld, \"frequent\": %ld, \"overrun\": %ld, \"sent\": %ld, \"unsent\": %ld, "
-           "\"lost\": %ld}\n",
-           p.blocks, p.late, 1e3 * fmax(p.latest, 0), p.given_up, c.packets, c.commands,
-           c.malformed, c.foreign, c.refused, c.frequent, c.overrun, c.sent, c.unsent, c.lost);
+    printf(
+        "{\"blocks\": %ld, \"late\": %ld, \"slow\": %ld, \"latest_ms\": %.3f, \"given_up_s\": %.3f, "
+        "\"packets\": %ld, \"commands\": %ld, \"malformed\": %ld, \"foreign\": %ld, "
+        "\"refused\": %ld, \"frequent\": %ld, \"overrun\": %ld, \"sent\": %ld, \"unsent\": %ld, "
+        "\"lost\": %ld}\n",
+        p.blocks, p.late, p.slow, 1e3 * fmax(p.latest, 0), p.given_up, c.packets, c.commands,
+        c.malformed, c.foreign, c.refused, c.frequent, c.overrun, c.sent, c.unsent, c.lost);
     return cli_finish(&cli_serve);
 }
 

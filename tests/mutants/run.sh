@@ -2,7 +2,7 @@
 # Faults put into the library one at a time, to see that a test notices each (make mutants).
 #   tests/mutants/run.sh [NUMBER...]     of mutants in tests/mutants/table.txt; all without one
 #   tests/mutants/run.sh --check         only whether each stands in its file, exactly once
-# A mutant is one object compiled anew and linked before the library. The tests of its heading run one after the other, in a
+# A mutant is one object compiled anew and linked before the library; of a header, all objects that include it. The tests of its heading run one after the other, in a
 # folder of its own, until one fails: then it is killed, if that test passes without it. What no test notices has survived. JOBS
 # mutants run at a time. The environment has COMPILE, LINK and LIBS of the Makefile. Fails if less than 95 of 100 are killed, or
 # if the table is wrong.
@@ -42,6 +42,23 @@ passes() {
     test -e "$out/passed/$2" || { run "$1" "$PWD/$HIMC_BUILD/tests/$2" && touch "$out/passed/$2"; }
 }
 
+# compiles what FILE is a part of, mutated, in the folder DIR
+compile() {
+    mkdir "$2/objects"
+    case $1 in
+        *.h)
+            header=${1#lib/src/}
+            mkdir -p "$2/include/$(dirname "$header")"
+            mv "$2/source.c" "$2/include/$header"
+            sources=$(grep -rl --include=*.c "\"$header\"" lib/src)
+            ;;
+        *) sources=$2/source.c ;;
+    esac
+    for source in $sources; do
+        $COMPILE -w -iquote "$2/include" -I"$(dirname "$1")" -c "$source" -o "$2/objects/$(basename "$source").o" || return
+    done
+}
+
 # says what became of one mutant: killed, survived, or wrong in the table
 one() {
     dir=$(mktemp -d "$out/$1.XXXXXX") && mkdir -p "$dir/run/build" || exit 1
@@ -51,7 +68,7 @@ one() {
         return
     fi
     read -r file tests <"$dir/heading"
-    if ! $COMPILE -w -I"$(dirname "$file")" -c "$dir/source.c" -o "$dir/source.o" 2>"$dir/log"; then
+    if ! compile "$file" "$dir" 2>"$dir/log"; then
         echo "wrong    $1 $name: does not compile"
         rm -rf "$dir"
         return
@@ -64,7 +81,7 @@ one() {
             test_air | test_air_galerkin) more=$HIMC_BUILD/tools/air/galerkin.o ;;
             *) more= ;;
         esac
-        if ! $LINK $HIMC_BUILD/tests/$test.o $HIMC_BUILD/tests/unity.o "$dir/source.o" $more $HIMC_BUILD/libhimc.a $LIBS -o "$dir/$test"; then
+        if ! $LINK $HIMC_BUILD/tests/$test.o $HIMC_BUILD/tests/unity.o "$dir"/objects/*.o $more $HIMC_BUILD/libhimc.a $LIBS -o "$dir/$test"; then
             echo "wrong    $1 $name: does not link with $test"
             rm -rf "$dir"
             return

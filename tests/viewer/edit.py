@@ -1,4 +1,4 @@
-"""`himc edit`: random changes of a score and of a take; 200 with HIMC_LONG."""
+"""`himc edit`: random changes of a score, also with pushes, and of a take; 300 with HIMC_LONG."""
 
 import json
 import os
@@ -18,6 +18,7 @@ COMPARED = 10 if os.environ.get("HIMC_LONG") else 2  # every so many with playin
 JUMP = 0.35  # (m/s) of a target's velocity beside what its acceleration explains, in 4 ms
 SCORE = "tests/viewer/editable.txt"
 NUANCES = ["legato", "tenuto", "accent", "vertical-accent", "staccato"]
+PUSHED = ["trunk", "head", "left-upper-arm", "right-forearm", "left-hand", "right-stick"]
 folder = tempfile.TemporaryDirectory(prefix="himc-edit-")
 
 
@@ -89,6 +90,19 @@ def random_stroke(piece):
     )
 
 
+def random_push_or_stroke(piece):
+    old = [s["index"] for s in piece.text["statements"] if "push" in s]
+    if random.random() < 0.5:
+        return random_stroke(piece)
+    index = random.choice([piece.text["count"], *old]) if len(old) < 8 else random.choice(old)
+    last = max(s["beat"] for s in piece.text["statements"] if "beat" in s)
+    force = " ".join(f"{random.uniform(-200, 200):.1f}" for _ in range(3))
+    return (
+        f"set {index} at {random.uniform(0, last):.3f} push {random.choice(PUSHED)}"
+        f" {force} {random.uniform(0.02, 0.3):.3f}"
+    )
+
+
 def random_nudge(piece):
     old = [s["index"] for s in piece.text["statements"]]
     index = random.choice([piece.text["count"], *old]) if len(old) < 8 else random.choice(old)
@@ -144,6 +158,10 @@ def edit_at_random(source, change):
 
 def test_scores_changed_at_random_play_as_if_written_so():
     return edit_at_random(SCORE, random_stroke)
+
+
+def test_scores_pushed_at_random_play_as_if_written_so():
+    return edit_at_random(SCORE, random_push_or_stroke)
 
 
 def test_the_last_stroke_is_changed_after_the_end():

@@ -25,7 +25,7 @@
 #define BREATH_PERIOD 4.2    // at rest (s)
 #define FIRST_AFTER 2.0      // a stroke after so long a rest is a first note (s)
 #define LIFT_BEGINS 0.9      // the lift before it begins (s) ...
-#define LIFT_ENDS 0.35       // ... and falls again with the stroke (s)
+#define LIFT_ENDS 0.5        // ... and falls again, as long as the posture takes (posture.h) (s)
 #define LIFT_HEAD 0.22       // (rad)
 #define LIFT_CHEST 0.04      // (rad)
 

@@ -21,11 +21,14 @@
 #define NEAR_ARM 0.06 // D of the two arms (m); chosen: uncrossed ones are 80 mm apart and more
 #define SEEN 0.1 // the arms' gaps are told below this (m); chosen: more than rehearsal.c asks for
 #define NEAR_BODY 0.02 // D of arm and body (m); chosen: usual forearms pass the trunk at 39 mm
-#define FOLDED 0.20    // wrist from shoulder (m); chosen: nearer, its small ways swing the elbow
+// wrist from shoulder (m); chosen: nearer, small ways of the wrist swing the elbow ...
+#define FOLDED 0.20          // ... of arms that avoid something
+#define FOLDED_FREE 0.14     // ... and of free ones, by 60 rad/s
 #define LARGEST_LACK (-0.08) // of crossed parts in the wrong order (m); chosen: all is pushed alike
 #define LEVEL 0.5            // of the vertical: parts beside each other are in no order
 #define DESCENT 40.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second
 #define RETURN_TIME 2.0 // T (s); chosen: long, so that the goal rests 5 mm inside D
+#define AVOIDS 0.05     // goals up to it unfold no arm (rad); chosen: a push of 1 mm makes less
 #define LEAST_GOAL 1e-3 // a smaller goal of a clear body is 0 (rad)
 #define LONGEST_STEP 0.012 // (s); chosen: K dt stays below 1 / |F''|
 #define FASTEST 8.0        // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
@@ -174,21 +177,21 @@ static bool is_active(const himc_avoidance *a)
 {
     bool active = false;
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
-        active = active || a->goal[i] != 0;
+        active = active || fabs(a->goal[i]) > AVOIDS;
     return active;
 }
 
-// arms that avoid something are not folded up
+// arms are not folded up, least of all those that avoid something
 static void unfold(field *f, const himc_capsule capsule[HIMC_SEGMENTS], bool active)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_vec3 way =
             himc_vec3_sub(capsule[HIMC_LEFT_HAND + hand].a, capsule[HIMC_LEFT_UPPER_ARM + hand].a);
-        double gap = himc_vec3_length(way) - FOLDED, lack = NEAR_ARM - gap;
+        double gap = himc_vec3_length(way) - (active ? FOLDED : FOLDED_FREE), lack = NEAR_ARM - gap;
         himc_vec3 to_tip =
             himc_vec3_sub(capsule[HIMC_LEFT_STICK + hand].b, capsule[HIMC_LEFT_UPPER_ARM + hand].a);
         f->clear.folded[hand] = hypot(to_tip.x, to_tip.y);
-        if (lack > 0 && active)
+        if (lack > 0)
             push(f, HIMC_LEFT_HAND + hand, 0, lack / NEAR_ARM, himc_vec3_unit(way));
     }
 }

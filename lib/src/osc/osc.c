@@ -177,6 +177,13 @@ static bool due(double *next, int hz, double t)
     return true;
 }
 
+// with `reset` the time of the samples begins again, and the wall clock goes on
+static void begin_again(osc_host *h)
+{
+    h->offset += h->time;
+    h->time = 0;
+}
+
 static void put_pose(osc_pose *pose, const himc_tick *tick)
 {
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
@@ -195,6 +202,8 @@ void himc_osc_tick(void *object, const himc_tick *tick)
 {
     himc_osc *osc = object;
     int hz = atomic_load_explicit(&osc->subscriptions.pose_hz, memory_order_relaxed);
+    if (tick->time == 0)
+        begin_again(&osc->host);
     if (!due(&osc->host.next_pose, hz, tick->time))
         return;
     osc_state *state = begin(osc, STATE_POSE, tick->time);

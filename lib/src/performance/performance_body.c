@@ -156,22 +156,31 @@ void himc_body_push(performance_body *b, const planned_push *push, double t)
     b->push_end = fmax(b->push_end, t + push->seconds);
 }
 
-bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int count,
-                           push_order order)
+bool himc_body_make_push_room(performance_body *b, int count, himc_error *error)
 {
-    int kept = 0, first = 0;
-    while (first < b->planned_count && b->planned[first].beat < b->pushed_to)
-        first++;
-    if (order == PUSHES_AFTER)
-        kept = b->planned_count - first;
-    if (kept + count > HIMC_PUSHES)
-        return false;
-    memmove(b->planned, b->planned + first, (size_t)kept * sizeof *b->planned);
-    for (int i = 0; i < count; i++)
-        b->planned[kept + i] = list[i];
-    b->planned_count = kept + count;
+    int begun = 0;
+    while (begun < b->planned_count && b->planned[begun].beat < b->pushed_to)
+        begun++;
+    if (b->planned_count + count <= HIMC_PUSHES)
+        return true;
+    if (b->planned_count - begun + count > HIMC_PUSHES)
+        return himc_error_set(error, "push: one too many, allowed %d", HIMC_PUSHES);
+    b->planned_count -= begun;
+    memmove(b->planned, b->planned + begun, (size_t)b->planned_count * sizeof *b->planned);
+    return true;
+}
+
+bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int count,
+                           push_order order, himc_error *error)
+{
+    if (order != PUSHES_AFTER)
+        b->planned_count = 0;
     if (order == PUSHES_ANEW)
         b->pushed_to = -1;
+    if (!himc_body_make_push_room(b, count, error))
+        return false;
+    for (int i = 0; i < count; i++)
+        b->planned[b->planned_count++] = list[i];
     return true;
 }
 

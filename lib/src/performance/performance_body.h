@@ -85,13 +85,16 @@ HIMC_RT void himc_body_push(performance_body *body, const planned_push *push, do
 typedef enum push_order {
     PUSHES_ANEW,    ///< nothing is played: they replace them
     PUSHES_INSTEAD, ///< while it is played: they replace them
-    PUSHES_AFTER    ///< they follow those that have not begun
+    PUSHES_AFTER    ///< they follow them
 } push_order;
 
-/// Plans the pushes of a score (count), sorted by beat. False, and nothing changed, if they are too
-/// many.
+/// Makes room for `count` pushes that follow: if there is none, those that have begun are dropped.
+/// False, with the reason and nothing changed, if that is not enough.
+HIMC_RT bool himc_body_make_push_room(performance_body *body, int count, himc_error *error);
+/// Plans the pushes of a score (count), sorted by beat. False with the reason if there is no room
+/// for them.
 HIMC_RT bool himc_body_plan_pushes(performance_body *body, const planned_push *list, int count,
-                                   push_order order);
+                                   push_order order, himc_error *error);
 /// True if these pushes may take the place of the planned ones: all that differ are to come.
 HIMC_RT bool himc_body_may_exchange_pushes(const performance_body *body, const planned_push *list,
                                            int count);

@@ -71,7 +71,7 @@ static bool do_clear(himc_performance *p, const himc_command *c, himc_error *err
     himc_planner_clear(p->motion->planner);
     himc_text_clear(&p->written.score);
     himc_drums_drop_heads(&p->drums);
-    himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW);
+    himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
     himc_motion_replan(p->motion);
     return true;
 }

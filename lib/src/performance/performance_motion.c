@@ -164,6 +164,15 @@ void himc_motion_seat(performance_motion *m, double height)
     m->posture.skeleton.root.z = height;
 }
 
+bool himc_motion_rests_elsewhere(const performance_motion *m)
+{
+    double far = 0;
+    for (int hand = 0; hand < HIMC_HANDS && !m->track; hand++)
+        far += himc_vec3_length(himc_vec3_sub(himc_planner_target(m->planner, (himc_hand)hand, 0).x,
+                                              m->from.tip[hand].x));
+    return far > 0;
+}
+
 void himc_motion_set_drum(performance_motion *m, int index, const himc_head_frame *frame)
 {
     himc_planner_set_drum(m->planner, index, frame);

@@ -96,6 +96,8 @@ HIMC_RT himc_pose himc_motion_mean_pose(const performance_motion *motion, double
 HIMC_RT void himc_motion_replan(performance_motion *motion);
 /// The stool has this height (m); himc_motion_build then gives it to the postures.
 HIMC_RT void himc_motion_seat(performance_motion *motion, double height);
+/// True if the hands of the planner rest elsewhere at the start than the last setpoints say.
+HIMC_RT bool himc_motion_rests_elsewhere(const performance_motion *motion);
 /// Sets the head frame of drum `index`.
 HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
                                   const himc_head_frame *frame);

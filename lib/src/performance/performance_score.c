@@ -276,9 +276,8 @@ static bool plan_pushes(score_job *j, himc_error *error)
     planned_push list[HIMC_PUSHES];
     int count;
     return pushes_of(j->score, j->path, j->from, list, &count, error) &&
-           (himc_body_plan_pushes(j->performance->body, list, count,
-                                  j->queued ? PUSHES_AFTER : PUSHES_ANEW) ||
-            himc_error_set(error, "%s: push: one too many, allowed %d", j->path, HIMC_PUSHES));
+           himc_body_plan_pushes(j->performance->body, list, count,
+                                 j->queued ? PUSHES_AFTER : PUSHES_ANEW, error);
 }
 
 static bool has_changes(const score_job *j, const char *drum)
@@ -573,6 +572,19 @@ static bool drums_as_tried(score_job *j)
     return same;
 }
 
+// true if strokes and pushes find room behind those of the score that plays
+static bool follows(const score_job *j, himc_error *error)
+{
+    const himc_score *score = j->score;
+    int pushes = 0;
+    for (int i = 0; i < score->change_count; i++)
+        pushes += !score->changes[i].drum[0];
+    return (himc_planner_has_room(j->performance->motion->planner, score->strokes,
+                                  score->stroke_count, error) &&
+            himc_body_make_push_room(j->performance->body, pushes, error)) ||
+           himc_error_prefix(error, "%s", j->path);
+}
+
 static himc_job_state begin(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
@@ -582,11 +594,8 @@ static himc_job_state begin(score_job *j, himc_error *error)
     }
     // while a score is played the next one waits for its end
     j->queued = p->motion->playing && !p->motion->track;
-    if (j->queued && !himc_planner_has_room(p->motion->planner, j->score->strokes,
-                                            j->score->stroke_count, error)) {
-        himc_error_prefix(error, "%s", j->path);
+    if (j->queued && !follows(j, error))
         return HIMC_JOB_FAILED;
-    }
     j->dropped = himc_performance_drop_track(p);
     return HIMC_JOB_DONE;
 }
@@ -762,7 +771,7 @@ bool himc_performance_exchange_strokes(himc_performance *p, const char *text, co
                                   : plan_aside(p, aside, score, error) &&
                                         himc_planner_exchange(p->motion->planner, aside));
     if (good)
-        himc_body_plan_pushes(p->body, list, pushes, PUSHES_INSTEAD);
+        himc_body_plan_pushes(p->body, list, pushes, PUSHES_INSTEAD, error);
     himc_planner_free(aside);
     himc_score_free(score);
     return good;

@@ -275,7 +275,8 @@ void himc_performance_renew_limits(himc_performance *p)
 
 void himc_performance_notice_drums(himc_performance *p)
 {
-    bool noticed[HIMC_DRUMS], changed = false, unseen = p->clock.made == 0;
+    bool noticed[HIMC_DRUMS], unseen = p->clock.made == 0;
+    bool changed = unseen && himc_motion_rests_elsewhere(p->motion);
     for (int i = 0; i < p->drums.count; i++) {
         noticed[i] = himc_drums_noticed(&p->drums, i);
         changed = changed || noticed[i];

@@ -453,7 +453,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_track *dropped = himc_performance_drop_track(p);
     himc_motion_set_track(p->motion, j->track, j->player->pose ? &j->learned : NULL, step_time(p));
     j->track = dropped;
-    himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW);
+    himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
     snprintf(p->written.take, sizeof p->written.take, "%s", j->name);
     himc_command_copy(&p->written.take_command, &j->command);
     himc_performance_renew_limits(p);

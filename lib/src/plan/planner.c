@@ -168,6 +168,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
         himc_planner_rebase(planner, planner->now);
     himc_planner_score_insert(score, at, stroke, drum);
     himc_planner_inserted(planner, stroke->hand, at);
+    himc_planner_rest_again(planner);
     if (score->playing)
         fit_in(planner, stroke->hand, at);
     return true;
@@ -215,6 +216,15 @@ static double last_look(const himc_planner *planner, himc_hand hand)
     return fmin(time, to);
 }
 
+/// True if a hand that has struck nothing waits over the same drum with the strokes of `fresh`.
+static bool rests_the_same(const himc_planner *planner, himc_hand hand, const planner_part *fresh)
+{
+    const planner_score *score = &planner->score;
+    return !planner->begun || planner->hand[hand].struck ||
+           himc_planner_score_first_drum(&score->part[hand], score->beat, -1) ==
+               himc_planner_score_first_drum(fresh, score->beat, -1);
+}
+
 /// True if a hand's plan so far is the same with the strokes of `fresh`.
 static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_part *fresh)
 {
@@ -250,10 +260,12 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
             score->tempi[i].bpm != fresh->tempi[i].bpm)
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand]))
+        if (!rests_the_same(planner, (himc_hand)hand, &fresh->part[hand]) ||
+            (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand])))
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_planner_score_exchange(&score->part[hand], &fresh->part[hand]);
+    himc_planner_rest_again(planner);
     return true;
 }
 
@@ -264,6 +276,7 @@ void himc_planner_clear(himc_planner *planner)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_planner_cut(planner, (himc_hand)hand, t);
         himc_planner_score_clear(&planner->score, (himc_hand)hand);
+        planner->hand[hand].struck = false;
         himc_planner_drop_waiting(planner, (himc_hand)hand);
         himc_planner_detach(planner, (himc_hand)hand);
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
@@ -320,6 +333,7 @@ void himc_planner_seek(himc_planner *planner, double t, double beat)
     if (!isfinite(t) || !isfinite(beat))
         return;
     himc_planner_score_seek(&planner->score, fmax(beat, 0));
+    himc_planner_rest_again(planner);
     if (!planner->score.playing)
         return;
     himc_planner_cut_both(planner, t);

@@ -68,8 +68,8 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
 void himc_planner_free(himc_planner *planner);
 
 /// Drum `index` (0 .. HIMC_DRUMS-1) is at `place` from now on; strokes that have not begun go
-/// there, and a hand rests 85 mm over the head of its last stroke, at first over drum 0. False, and
-/// nothing changed, if one of the values is not allowed.
+/// there, and a hand rests 85 mm over the head of its last stroke, at first over that of the first
+/// one to come, else over drum 0. False, and nothing changed, if one of the values is not allowed.
 HIMC_RT bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place);
 
 #define HIMC_UNITS 256 ///< chosen: five nuances, two hands, and 25 strokes of each

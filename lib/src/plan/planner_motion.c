@@ -377,6 +377,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     planned->goal = h->plan.last;
     planned->small = is_small(planner, s, since);
     h->drum = s->drum;
+    h->struck = true;
     h->targeted = false;
     return PLANNED;
 }

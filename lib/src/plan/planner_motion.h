@@ -66,6 +66,7 @@ typedef struct planner_hand {
     timed_stroke planned[PLANNER_PLANNED]; ///< and the last one that is past
     int planned_count;
     int drum;      ///< of its last stroke
+    bool struck;   ///< has had a stroke since the score was cleared
     bool targeted; ///< it rests at its last live target, not over a drum
     himc_stream stream;
     himc_hand_plan plan;
@@ -158,7 +159,7 @@ static inline himc_vec3 himc_planner_aside(const himc_planner *p, const timed_st
 
 /// Both hands wait at rest.
 HIMC_RT void himc_planner_motion_init(himc_planner *planner);
-/// Drums or reach have changed: the hands rest elsewhere.
+/// Drums, reach or first strokes have changed: the hands rest elsewhere.
 HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,

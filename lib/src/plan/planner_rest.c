@@ -1,4 +1,5 @@
-/// planner_rest.c: where the sticks rest: each over the drum it has struck last, not crossed.
+/// planner_rest.c: where the sticks rest: each over the drum it has struck last, at first over the
+/// one that it will strike first, not crossed.
 #include "plan/planner_motion.h"
 
 // where a tip rests (m); chosen: near enough to look at rest, too high to touch a ringing head; at
@@ -22,10 +23,18 @@ static double azimuth(const himc_head_frame *head)
     return atan2(head->center.y, head->center.x);
 }
 
-/// The drum over which a hand rests: that of its last stroke, but the hands do not rest crossed.
+static int own_drum(const himc_planner *planner, himc_hand hand)
+{
+    const planner_score *score = &planner->score;
+    const planner_hand *h = &planner->hand[hand];
+    return h->struck ? h->drum
+                     : himc_planner_score_first_drum(&score->part[hand], score->beat, h->drum);
+}
+
+/// The drum over which a hand rests: its own, but the hands do not rest crossed.
 static int rest_drum(const himc_planner *planner, himc_hand hand)
 {
-    int left = planner->hand[HIMC_LEFT].drum, right = planner->hand[HIMC_RIGHT].drum;
+    int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
     bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
     return (hand == HIMC_LEFT) != crossed ? left : right;
 }

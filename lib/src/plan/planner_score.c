@@ -172,6 +172,17 @@ int himc_planner_score_common(const planner_part *a, const planner_part *b)
     return i;
 }
 
+static int first_from(const planner_part *part, double beat)
+{
+    return first_after(part, beat - BEAT_ROUNDING, true);
+}
+
+int himc_planner_score_first_drum(const planner_part *part, double beat, int none)
+{
+    int first = first_from(part, beat);
+    return first < part->count ? part->list[first].drum : none;
+}
+
 void himc_planner_score_exchange(planner_part *a, planner_part *b)
 {
     planner_part old = *a;
@@ -254,7 +265,7 @@ void himc_planner_score_start(planner_score *score, double t)
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        int next = first_after(&score->part[hand], score->beat - BEAT_ROUNDING, true);
+        int next = first_from(&score->part[hand], score->beat);
         himc_planner_score_go(score, (himc_hand)hand, next, 0);
     }
 }

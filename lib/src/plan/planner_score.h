@@ -69,6 +69,8 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
                                int drum);
 /// Number of strokes with which both lists begin.
 int himc_planner_score_common(const planner_part *a, const planner_part *b);
+/// Drum of the first stroke from a beat on; `none` without one.
+HIMC_RT int himc_planner_score_first_drum(const planner_part *part, double beat, int none);
 /// Exchanges the lists of strokes, and nothing else; what has been reassigned or given up of the
 /// strokes that are the same is so in both.
 void himc_planner_score_exchange(planner_part *a, planner_part *b);
