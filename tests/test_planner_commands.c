@@ -56,7 +56,7 @@ static void test_fast_strokes_are_smaller_and_one_note_says_so(void)
     for (double t = 0; t < 8; t += 0.01)
         himc_planner_advance(planner, t);
     TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
-    TEST_ASSERT_EQUAL_STRING("stroke at beat 4.5 right: 0.15 s after the last, played 0.073 m high",
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 4.5 right: 0.15 s after the last, played 0.14 m high",
                              note.text);
     TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
 }

@@ -184,6 +184,14 @@ static bool may_pass_on(const himc_planner *planner, himc_hand hand, const timed
            himc_planner_reaches(planner, other_hand(hand), &s->written);
 }
 
+/// Whether the stroke may be left out: a leap to another drum, not one of a roll, where a gap would
+/// be worse than sticks that touch.
+static bool may_leave_out(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
+{
+    return planner->clear.least.gap < 0 &&
+           (s == planner->hand[hand].planned || s[-1].drum != s->drum);
+}
+
 /// The k-th way for the hand's stroke; false if it cannot be tried, or has been.
 static bool make_way(himc_planner *planner, himc_hand hand, int k)
 {
@@ -199,7 +207,7 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
     way.aside *= side_of(planner, hand, s);
     if ((tried->touch == way.touch && k < tried->tried) ||
         !(way.aside != 0 || way.waits || (way.other && may_pass_on(planner, hand, s)) ||
-          (way.leaves && c->least.gap < 0)))
+          (way.leaves && may_leave_out(planner, hand, s))))
         return false;
     c->way = way;
     return true;
@@ -254,7 +262,8 @@ static void say_meet(himc_planner *planner)
         himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
 }
 
-/// Lifts a hand, a little later than found if it cannot begin before t (s); false if it is too late.
+/// Lifts a hand, a little later than found if it cannot begin before t (s); false if it is too
+/// late.
 static bool lift_from(planner_hand *h, const planner_lift *l, double t)
 {
     double begin = fmax(l->begin, t), from = fmax(l->from, begin + lift_time(l));

@@ -1,6 +1,7 @@
 /// rehearsal.c: the gaps of the body along both plans, with trunk, elbows and wrists as they will
-/// have moved by then, at all touches and as often as needed between them. What is tried in place of a plan, a lift or another motion, is walked
-/// through in the same way, from a moment before it begins.
+/// have moved by then, at each touch and as often as needed between touches. What is tried in place
+/// of a plan, a lift or another motion, is walked through in the same way, from a moment before it
+/// begins.
 #include "plan/rehearsal.h"
 #include "plan/planner_motion.h"
 #include "plan/stroke_plan.h"
