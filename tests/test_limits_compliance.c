@@ -313,7 +313,7 @@ static void test_strength_of_75_kg_is_that_of_the_table(void)
     }
 }
 
-// Hill 1938: a muscle that shortens pulls less, none at 20 rad/s; one that is stretched pulls in full
+// Hill 1938: a muscle that shortens pulls less, none at 20 rad/s; a stretched one pulls in full
 static void test_strength_falls_with_the_speed_along_the_torque(void)
 {
     static const double speed[] = {0, 5, 10, 25, -10}, left[] = {8, 6, 4, 0, 8};
