@@ -12,16 +12,21 @@
 static himc_planner *planner;
 static himc_error error;
 
-static inline himc_planner *make(double bpm)
+static inline himc_planner *make_with(const himc_planner_config *config, double bpm)
 {
-    himc_planner_config config = himc_planner_default();
-    himc_planner *p = himc_planner_new(&config, &error);
+    himc_planner *p = himc_planner_new(config, &error);
     himc_tempo_change tempo = {0, bpm};
     TEST_ASSERT_NOT_NULL(p);
     TEST_ASSERT_TRUE(himc_planner_set_tempi(p, &tempo, 1, &error));
     himc_planner_set_drum(p, 0, &(himc_head_frame){{0.75, 0, 0.85}, 0, 0.3});
     himc_planner_set_drum(p, 1, &(himc_head_frame){{0.7, 0.65, 0.8}, 0.15, 0.33});
     return p;
+}
+
+static inline himc_planner *make(double bpm)
+{
+    himc_planner_config config = himc_planner_default();
+    return make_with(&config, bpm);
 }
 
 static inline void add(himc_planner *p, double beat, himc_hand hand, himc_nuance nuance,
