@@ -223,40 +223,6 @@ static void test_strokes_that_make_a_waiting_hand_rest_elsewhere_are_not_exchang
     }
 }
 
-static int walks; // rehearsals that have begun
-
-/// A body that meets itself all the time but at first, and more with each way that is tried.
-static himc_clearance meet_always(const void *motion, const himc_moment *m, himc_rehearsed *r)
-{
-    (void)motion;
-    if (m->after < 0)
-        r->state[0] = ++walks;
-    return (himc_clearance){.sticks = 1,
-                            .body = m->after < 0 ? 1 : -0.01 * r->state[0],
-                            .folded = {1, 1},
-                            .work = 1};
-}
-
-static void test_what_is_tried_in_vain_changes_nothing(void)
-{
-    himc_planner_config config = himc_planner_default();
-    config.rehearse = meet_always;
-    himc_planner *trying = make_with(&config, 120);
-    for (int i = 0; i < 40; i++) {
-        add(planner, 2 + 0.35 * i, (himc_hand)(i % 2), HIMC_LEGATO, 0.5);
-        add(trying, 2 + 0.35 * i, (himc_hand)(i % 2), HIMC_LEGATO, 0.5);
-    }
-    himc_planner_play(planner, 0);
-    himc_planner_play(trying, 0);
-    for (double t = 0; t < 9; t += 4e-3) {
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            same_state(at(planner, (himc_hand)hand, t), at(trying, (himc_hand)hand, t));
-        himc_planner_think(trying, 200);
-    }
-    TEST_ASSERT_TRUE(himc_planner_work(trying) > 10000);
-    himc_planner_free(trying);
-}
-
 int main(void)
 {
     UNITY_BEGIN();
@@ -270,7 +236,6 @@ int main(void)
     RUN_TEST(test_tempi_of_a_score_that_follows_count_from_its_beginning);
     RUN_TEST(test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_so);
     RUN_TEST(test_play_past_the_end_begins_at_beat_0);
-    RUN_TEST(test_what_is_tried_in_vain_changes_nothing);
     RUN_TEST(test_seek_to_the_beat_of_a_stroke_plays_it);
     return UNITY_END();
 }
