@@ -1,4 +1,4 @@
-/// planner_hits.c: strokes that are asked for while they happen.
+/// planner_hits.c: what is asked for while it happens: strokes, and tips led to a place.
 ///
 /// A hit without a time comes as soon as its gesture allows, later if it was asked for in a hurry:
 /// nothing is lost, and nothing is even. A hit with a time of touch, its message plus a constant
@@ -12,6 +12,8 @@
 /// run on one key the hands alternate. Where no hand has time, one without other strokes to come
 /// plays late, by as little as its way there needs; else the hit is given up. Both are counted.
 /// Choosing changes nothing; only the plan of the hand that plays is cut.
+///
+/// A tip is led, by live targets or to lie on a head, while no stroke is near.
 #include "plan/planner_motion.h"
 #include "plan/sticking.h"
 
@@ -29,6 +31,10 @@
 #define LARGEST_DRIFT 0.001  // ... and a larger one is a disturbance
 
 #define ON_SPOT 0.03 // chosen: so short a way is none: a spot scatters as much (m)
+
+// a hand that is led
+#define LIFT_TIME 0.5 // of a hand that has lain on a head, to its rest (s); chosen: without haste
+#define TARGET_STROKE 0.6 // a stroke so near is prepared, live targets are not followed (s)
 
 /// Strokes of a hand next to a time; their times are infinite if there are none.
 typedef struct neighbours {
@@ -239,4 +245,68 @@ bool himc_planner_correct(himc_planner *planner, himc_hand hand, double t,
     himc_planner_changed(planner, t);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     return true;
+}
+
+/// Whether a stroke of the hand is so near that it must be prepared now.
+static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t)
+{
+    const planner_hand *h = &planner->hand[hand];
+    planner_due due;
+    for (int i = 0; i < h->planned_count; i++)
+        if (h->planned[i].goal.time > t && h->planned[i].goal.time < t + TARGET_STROKE)
+            return true;
+    if (h->waiting_count > 0 && h->waiting[0].goal.time < t + TARGET_STROKE)
+        return true;
+    return himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < t + TARGET_STROKE;
+}
+
+void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    if (!isfinite(t) || !himc_vec3_finite(x))
+        return;
+    planner_hand *h = &planner->hand[hand];
+    bool stream = himc_stream_add(&h->stream, t, x);
+    if (stroke_is_near(planner, hand, t))
+        return;
+    himc_planner_cut(planner, hand, t);
+    if (stream && himc_hand_room(&h->plan))
+        himc_stream_follow(&h->stream, &h->plan, t);
+    else
+        himc_hand_reach(&h->plan, x, 0);
+    h->targeted = true;
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+}
+
+/// Whether the sticks meet with one tip there.
+static bool meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    const himc_planner_config *c = &planner->config;
+    himc_rehearsed rehearsed = {{0}};
+    himc_moment m = {.time = t, .after = -1};
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    return c->rehearse && c->rehearse(c->motion, &m, &rehearsed).sticks < 0;
+}
+
+bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
+{
+    const himc_planner_config *c = &planner->config;
+    planner_hand *h = &planner->hand[hand];
+    if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
+        (c->beyond && c->beyond(c->body, hand, x) > PLANNER_UNREACHED) ||
+        meets_at(planner, t, hand, x))
+        return false;
+    himc_planner_cut(planner, hand, t);
+    himc_hand_reach(&h->plan, x, at);
+    h->targeted = true;
+    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    return true;
+}
+
+bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand)
+{
+    bool lifted =
+        himc_planner_lay(planner, t, hand, himc_planner_rest_place(planner, hand), t + LIFT_TIME);
+    planner->hand[hand].targeted = false;
+    return lifted;
 }

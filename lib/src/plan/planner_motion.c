@@ -39,8 +39,6 @@
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
-#define LIFT_TIME 0.5 // of a hand that has lain on a head, to its rest (s); chosen: without haste
-#define TARGET_STROKE 0.6 // a stroke so near is prepared, live targets are not followed (s)
 
 // of the time to the hand's next stroke, at most; chosen: contacts of a double roll are even, and a
 // buzz ends when the other hand has struck
@@ -706,70 +704,6 @@ int himc_planner_last_round(const himc_planner *planner, int round)
             if (planner->hand[hand].planned[i].round > round)
                 round = planner->hand[hand].planned[i].round;
     return round;
-}
-
-/// Whether a stroke of the hand is so near that it must be prepared now.
-static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t)
-{
-    const planner_hand *h = &planner->hand[hand];
-    planner_due due;
-    for (int i = 0; i < h->planned_count; i++)
-        if (h->planned[i].goal.time > t && h->planned[i].goal.time < t + TARGET_STROKE)
-            return true;
-    if (h->waiting_count > 0 && h->waiting[0].goal.time < t + TARGET_STROKE)
-        return true;
-    return himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < t + TARGET_STROKE;
-}
-
-void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
-{
-    if (!isfinite(t) || !himc_vec3_finite(x))
-        return;
-    planner_hand *h = &planner->hand[hand];
-    bool stream = himc_stream_add(&h->stream, t, x);
-    if (stroke_is_near(planner, hand, t))
-        return;
-    himc_planner_cut(planner, hand, t);
-    if (stream && himc_hand_room(&h->plan))
-        himc_stream_follow(&h->stream, &h->plan, t);
-    else
-        himc_hand_reach(&h->plan, x, 0);
-    h->targeted = true;
-    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-}
-
-/// Whether the sticks meet with one tip there.
-static bool meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
-{
-    const himc_planner_config *c = &planner->config;
-    himc_rehearsed rehearsed = {{0}};
-    himc_moment m = {.time = t, .after = -1};
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
-    return c->rehearse && c->rehearse(c->motion, &m, &rehearsed).sticks < 0;
-}
-
-bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
-{
-    const himc_planner_config *c = &planner->config;
-    planner_hand *h = &planner->hand[hand];
-    if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
-        (c->beyond && c->beyond(c->body, hand, x) > PLANNER_UNREACHED) ||
-        meets_at(planner, t, hand, x))
-        return false;
-    himc_planner_cut(planner, hand, t);
-    himc_hand_reach(&h->plan, x, at);
-    h->targeted = true;
-    himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    return true;
-}
-
-bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand)
-{
-    bool lifted =
-        himc_planner_lay(planner, t, hand, himc_planner_rest_place(planner, hand), t + LIFT_TIME);
-    planner->hand[hand].targeted = false;
-    return lifted;
 }
 
 /// Drops the strokes that are past but the last, and the motion before `now`.

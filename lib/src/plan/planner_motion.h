@@ -2,8 +2,7 @@
 ///
 /// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
 /// score, planner_notes.c the notes, planner_motion.c (with planner_clear.c and planner_rest.c) the
-/// hands and the clock, and planner_hits.c
-/// the strokes that are asked for while they happen.
+/// hands and the clock, and planner_hits.c what is asked for while it happens.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
 
