@@ -339,6 +339,28 @@ static void test_reset_without_memory_or_file_changes_nothing(void)
     rmdir("build/gone");
 }
 
+static void test_reset_lets_the_planner_think_as_in_a_new_performance(void)
+{
+    himc_performance_config config = config_of(false);
+    long work[2];
+    for (int again = 0; again < 2; again++) {
+        himc_performance *p = performer(&config);
+        session_drum(p, 0, "place 0.4 0.8 1.3");
+        if (again) {
+            himc_performance_process(p, 800, NULL); // no stick is near a head
+            session_do(p, "reset");
+        }
+        long before = himc_planner_work(p->motion->planner);
+        session_do(p, "stroke 0 left legato f");
+        session_do(p, "play");
+        himc_performance_process(p, 32, NULL);
+        work[again] = himc_planner_work(p->motion->planner) - before;
+        himc_performance_free(p);
+    }
+    TEST_ASSERT_TRUE(work[0] > 0);
+    TEST_ASSERT_EQUAL_INT(work[0], work[1]);
+}
+
 int main(void)
 {
     himc_skeleton body;
@@ -359,6 +381,7 @@ int main(void)
     RUN_TEST(test_reset_undoes_the_place_that_a_take_gave_a_drum);
     RUN_TEST(test_reset_writes_a_recording_first_and_keeps_callbacks_and_events);
     RUN_TEST(test_reset_drops_a_recording_that_has_no_frames_yet);
+    RUN_TEST(test_reset_lets_the_planner_think_as_in_a_new_performance);
     RUN_TEST(test_reset_without_memory_or_file_changes_nothing);
     unlink(TAKE);
     unlink(SCORE);

@@ -61,6 +61,7 @@ void himc_contacts_clear(performance_contacts *c)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         c->hand[hand] = (stick_contact){.touching = false};
+    c->quiet = 0;
 }
 
 void himc_contacts_take_row(performance_contacts *c, himc_hand hand, double *peak, double *impulse)
