@@ -223,6 +223,19 @@ static void test_player_before_and_after_a_take_is_the_same_body(void)
     himc_performance_free(new);
 }
 
+// the take's player is measured, its mass follows from `player`: 15 kg here
+static void test_player_that_is_refused_leaves_the_drum_under_the_take(void)
+{
+    playing(1.5);
+    himc_head_frame before = *himc_drum_head_frame(himc_performance_drum(p, 0));
+    unsigned revision = himc_drum_revision(himc_performance_drum(p, 0));
+    TEST_ASSERT_FALSE(session_try(p, "player 2.2 30"));
+    TEST_ASSERT_EQUAL_MEMORY(&before, himc_drum_head_frame(himc_performance_drum(p, 0)),
+                             sizeof before);
+    TEST_ASSERT_EQUAL_UINT(revision, himc_drum_revision(himc_performance_drum(p, 0)));
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -235,5 +248,6 @@ int main(void)
     RUN_TEST(test_reset_leaves_a_performer_as_just_made);
     RUN_TEST(test_gain_reset_changes_nothing_in_a_new_performance);
     RUN_TEST(test_player_before_and_after_a_take_is_the_same_body);
+    RUN_TEST(test_player_that_is_refused_leaves_the_drum_under_the_take);
     return UNITY_END();
 }

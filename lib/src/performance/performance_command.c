@@ -376,14 +376,6 @@ static bool do_alive(himc_performance *p, const himc_command *c, himc_error *err
     return true;
 }
 
-// the take that is loaded, again, for another player: its lengths stay
-static bool retake(himc_performance *p, himc_error *error)
-{
-    himc_command take;
-    himc_command_copy(&take, &p->written.take_command);
-    return himc_job_carry_out(himc_performance_take_job(p, &take, error), error);
-}
-
 // Height and mass as asked for replace those of a take's player, whether the take comes after or
 // has come before. The usual ones are as if nobody had asked.
 static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
@@ -399,9 +391,8 @@ static bool do_player(himc_performance *p, const himc_command *c, himc_error *er
     memset(s.skeleton.length, 0, sizeof s.skeleton.length);
     if (!p->motion->track || p->written.take_command.count == 0)
         return himc_performance_rebuild(p, &s, error);
-    p->settings = s;
-    himc_drums_move_back(&p->drums, 0);
-    if (retake(p, error))
+    p->settings = s; // the take's lengths stay
+    if (himc_job_carry_out(himc_performance_take_again_job(p, error), error))
         return true;
     p->settings = before;
     return false;

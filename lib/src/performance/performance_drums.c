@@ -184,13 +184,13 @@ bool himc_drums_move(performance_drums *d, int index, himc_vec3 center, himc_err
     return true;
 }
 
-void himc_drums_move_back(performance_drums *d, int index)
+himc_head_frame himc_drums_found(const performance_drums *d, int index)
 {
-    drum_slot *slot = &d->slot[index];
-    if (index >= d->count || !is_where_put(slot))
-        return;
-    himc_drum_stand(slot->drum, slot->found);
-    slot->moved = false;
+    const drum_slot *slot = &d->slot[index];
+    himc_head_frame frame = *himc_drum_head_frame(slot->drum);
+    if (is_where_put(slot))
+        frame.center = slot->found;
+    return frame;
 }
 
 void himc_drums_put_back(performance_drums *d)

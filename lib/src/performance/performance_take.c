@@ -41,6 +41,7 @@ typedef struct take_job {
     himc_command command;
     const char *name; ///< begins notes and errors: of the file
     bool given;       ///< take and player are borrowed
+    bool again;       ///< of the loaded take: the drum counts as not moved by it
     // of the performance, when the job was made
     himc_take_options options;
     himc_skeleton_config body;
@@ -403,6 +404,13 @@ static void adopt_regression(const take_job *j)
                                j->fitted);
 }
 
+// the drum before the take
+static himc_head_frame drum_place(const take_job *j)
+{
+    const performance_drums *drums = &j->performance->drums;
+    return j->again ? himc_drums_found(drums, 0) : *himc_drums_frame(drums, 0);
+}
+
 static void copy_performance(take_job *j)
 {
     const himc_performance *p = j->performance;
@@ -415,7 +423,7 @@ static void copy_performance(take_job *j)
     j->own_regression = has_own_regression(p);
     j->has_drum = p->drums.count > 0;
     if (j->has_drum)
-        j->place = *himc_drums_frame(&p->drums, 0);
+        j->place = drum_place(j);
 }
 
 // true if the drum is that for which the track was made
@@ -424,8 +432,8 @@ static bool drum_as_seen(const take_job *j)
     const himc_performance *p = j->performance;
     if (!j->has_drum)
         return p->drums.count == 0 && j->sample_rate == p->clock.sample_rate;
-    return j->tries == HIMC_JOB_TRIES ||
-           himc_head_frame_equal(himc_drums_frame(&p->drums, 0), &j->place);
+    himc_head_frame now = drum_place(j);
+    return j->tries == HIMC_JOB_TRIES || himc_head_frame_equal(&now, &j->place);
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)
@@ -473,7 +481,7 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-static take_job *take_job_new(himc_performance *p, const char *name, himc_error *error)
+static take_job *take_job_new(himc_performance *p, const char *name, bool again, himc_error *error)
 {
     take_job *j = calloc(1, sizeof *j);
     if (!j) {
@@ -483,14 +491,15 @@ static take_job *take_job_new(himc_performance *p, const char *name, himc_error 
     j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
     j->name = name;
+    j->again = again;
     copy_performance(j);
     return j;
 }
 
-himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
-                                    himc_error *error)
+static himc_job *job_of(himc_performance *p, const himc_command *command, bool again,
+                        himc_error *error)
 {
-    take_job *j = take_job_new(p, command->atom[0].symbol, error);
+    take_job *j = take_job_new(p, command->atom[0].symbol, again, error);
     if (!j)
         return NULL;
     himc_command_copy(&j->command, command);
@@ -498,9 +507,20 @@ himc_job *himc_performance_take_job(himc_performance *p, const himc_command *com
     return &j->job;
 }
 
+himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
+                                    himc_error *error)
+{
+    return job_of(p, command, false, error);
+}
+
+himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error)
+{
+    return job_of(p, &p->written.take_command, true, error);
+}
+
 himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error)
 {
-    take_job *j = take_job_new(p, "take", error);
+    take_job *j = take_job_new(p, "take", false, error);
     return j ? &j->job : NULL;
 }
 
@@ -522,7 +542,7 @@ bool himc_performance_try_take(himc_job *job, const himc_command *command,
 bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_player *player,
                                   const char *name, himc_error *error)
 {
-    take_job *j = player ? take_job_new(p, name, error) : NULL;
+    take_job *j = player ? take_job_new(p, name, false, error) : NULL;
     if (!j)
         return false;
     j->given = true;
