@@ -327,6 +327,14 @@ static void keep_energy(himc_membrane *m, double before)
     himc_bank_find_film(bank);
 }
 
+// The film follows a hard blow step by step; anew it stretches at once, with all its energy.
+static void retune_ringing(himc_membrane *m)
+{
+    double energy = himc_membrane_energy(m);
+    retune(m);
+    keep_energy(m, energy);
+}
+
 // a sound's last sample and the coming one, if no new force acts
 typedef struct sound_pair {
     double now, next;
@@ -593,7 +601,7 @@ void himc_membrane_share(himc_membrane *m, bool shares)
         return;
     sounds before = read_sounds(m);
     m->shares = shares;
-    retune(m);
+    retune_ringing(m);
     declick_from(m, &before, 0, HIMC_OUTPUTS);
 }
 
@@ -631,7 +639,7 @@ bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *er
         s->next = s->now + (s->next - s->now) * (membrane->rate / rate);
     }
     membrane->rate = rate;
-    retune(membrane);
+    retune_ringing(membrane);
     declick_from(membrane, &before, 0, HIMC_OUTPUTS);
     return true;
 }
