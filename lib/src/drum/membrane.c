@@ -15,7 +15,6 @@
 #include "drum/membrane_form.h"
 #include "drum/membrane_state.h"
 
-#include "head/bessel.h"
 #include "drum/membrane_probe.h"
 #include "head/pickup.h"
 #include "head/statistical.h"
@@ -33,8 +32,7 @@ _Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
 // relative; so a point moved to the rim is not outside it in single precision, in which a command
 // can say it
 #define RIM_ROUNDING 1.2e-7
-#define BISECTIONS 60 // halvings of ln T: exact to the last bit of a double
-#define SLACK 1e-6    // rise per tension; chosen: 0.001 cent
+#define SLACK 1e-6 // rise per tension; chosen: 0.001 cent
 // Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as
 // it should whatever its angle w t in one, unless that is near pi, where its velocity would be met
 // at the same phase again and again.
@@ -110,12 +108,6 @@ static bool core_new(core *c, strike_point points[STRIKE_POINTS], const himc_sha
         points[i] = (strike_point){.shape = take(&memory, padded),
                                    .readout = take_readout(&memory, padded)};
     return true;
-}
-
-// volume under a head (m^3): its own, or the usual one for its radius
-static double kettle_of(const himc_head *head)
-{
-    return head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius);
 }
 
 // Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
@@ -290,7 +282,7 @@ static void retune(himc_membrane *m)
     core *c = &m->core;
     keep_pickups_on_head(m);
     himc_modes_set_lugs(c->modes, m->head.uniformity, m->head.uniformity_seed);
-    m->air = himc_air_around(&m->head, kettle_of(&m->head));
+    m->air = himc_membrane_air(&m->head);
     himc_mixture mixture = himc_air_mixture(&m->air);
     himc_modes_mix_as(c->modes, m->head.air ? &mixture : NULL);
     find_oscillators(m);
@@ -327,7 +319,8 @@ static void keep_energy(himc_membrane *m, double before)
     himc_bank_find_film(bank);
 }
 
-// The film follows a hard blow step by step; anew it stretches at once, with all its energy.
+// As it rings, with no more energy. After a hard blow the film stretches step by step; retune lets
+// it stretch at once, which would bring energy that nobody has paid.
 static void retune_ringing(himc_membrane *m)
 {
     double energy = himc_membrane_energy(m);
@@ -543,11 +536,6 @@ bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
     return true;
 }
 
-const himc_shape *himc_membrane_shape(const himc_membrane *membrane)
-{
-    return himc_modes_shape(membrane->core.modes);
-}
-
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
                                himc_error *error)
 {
@@ -759,78 +747,6 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     declick_from(m, &before, 0, HIMC_OUTPUTS);
 }
 
-const himc_head *himc_membrane_head(const himc_membrane *membrane)
-{
-    return &membrane->head;
-}
-
-const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count)
-{
-    *count = membrane->pickup_count;
-    return membrane->pickups;
-}
-
-double himc_membrane_rate(const himc_membrane *membrane)
-{
-    return membrane->rate;
-}
-
-int himc_membrane_modes(const himc_membrane *membrane)
-{
-    return himc_modes_count(membrane->core.modes);
-}
-
-himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
-{
-    if (index >= himc_membrane_modes(membrane))
-        return (himc_mode){0};
-    himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
-    return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
-}
-
-// j_11 of a round head, else the lowest mode's radius times wavenumber
-static double principal_zero(const himc_membrane *membrane)
-{
-    bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
-    return round ? himc_bessel_zero(1, 1)
-                 : himc_modes_get(membrane->core.modes, &membrane->head, 0).zero;
-}
-
-static double principal_of(const himc_head *head, double zero)
-{
-    double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
-    if (!head->air)
-        return bare;
-    himc_air air = himc_air_around(head, kettle_of(head));
-    return bare * himc_air_on(&air, 1, 1, zero).frequency;
-}
-
-double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
-{
-    return principal_of(head, principal_zero(membrane));
-}
-
-double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
-                                 double frequency)
-{
-    himc_head trial = *head;
-    double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
-    double zero = principal_zero(membrane);
-    for (int i = 0; i < BISECTIONS; i++) {
-        trial.tension = exp(0.5 * (low + high));
-        if (principal_of(&trial, zero) < frequency)
-            low = log(trial.tension);
-        else
-            high = log(trial.tension);
-    }
-    return trial.tension;
-}
-
-int himc_membrane_audible(const himc_membrane *membrane)
-{
-    return himc_bank_count(membrane->core.bank);
-}
-
 void himc_membrane_watch(himc_membrane *membrane, double x, double y)
 {
     if (x == membrane->watch_x && y == membrane->watch_y)
@@ -838,57 +754,6 @@ void himc_membrane_watch(himc_membrane *membrane, double x, double y)
     membrane->watch_x = x;
     membrane->watch_y = y;
     find_watched(membrane);
-}
-
-void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
-{
-    himc_bank_state(membrane->core.bank, index, q, v);
-}
-
-// a mode's displacement: that of `modal`, which has `count`, or if that is NULL its own
-static double coordinate(const himc_membrane *membrane, int count, const double *modal, int index)
-{
-    double q, v;
-    if (modal)
-        return index < count ? modal[index] : 0;
-    himc_membrane_state(membrane, index, &q, &v);
-    return q;
-}
-
-// displacements of the bare shapes of order 0, from those of what a kettle makes of them
-static void unmix(const himc_membrane *membrane, int count, const double *modal,
-                  double *displacement)
-{
-    const himc_mixture *mix = himc_modes_mixture(membrane->core.modes);
-    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
-        double sum = 0;
-        for (int n = 0; n < mix->count; n++)
-            sum += mix->part[n][k] * coordinate(membrane, count, modal, mix->index[n]);
-        displacement[mix->index[k]] = sum;
-    }
-}
-
-void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
-                           double *displacement)
-{
-    const himc_modes *modes = membrane->core.modes;
-    double pair[2] = {0, 0};
-    for (int i = 0; i < count; i++) {
-        himc_mode mode = himc_modes_get(modes, &membrane->head, i);
-        displacement[i] = coordinate(membrane, count, modal, i);
-        if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
-            continue;
-        const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
-        bool whole =
-            i + 1 < himc_modes_count(modes) && himc_modes_get(modes, &membrane->head, i + 1).sine;
-        if (!mode.sine) {
-            pair[0] = displacement[i];
-            pair[1] = whole ? coordinate(membrane, count, modal, i + 1) : 0;
-        }
-        displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
-                                    : pair[0] * axis->cosine - pair[1] * axis->sine;
-    }
-    unmix(membrane, count, modal, displacement);
 }
 
 void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)

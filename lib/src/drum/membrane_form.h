@@ -3,7 +3,7 @@
 #ifndef HIMC_MEMBRANE_FORM_H
 #define HIMC_MEMBRANE_FORM_H
 
-#include "drum/shared.h"
+#include "head/shared.h"
 
 /// Rays: what ears (ears.h) need of a head beside its pickups, the sound it sends out in the
 /// direction of the left ear, of the right ear, and of the floor's mirror image, as loud as at 1 m;

@@ -1,11 +1,12 @@
-/// membrane_state.h: the parts of a membrane; shared by membrane.c (how it is made and changed)
-/// and membrane_step.c (how it moves). Calls go from membrane.c to membrane_step.c only.
+/// membrane_state.h: the parts of a membrane; shared by membrane.c (how it is made and changed),
+/// membrane_step.c (how it moves) and membrane_read.c (what it is asked for). Calls go from
+/// membrane.c to the other two only.
 #ifndef HIMC_MEMBRANE_STATE_H
 #define HIMC_MEMBRANE_STATE_H
 
 #include "bank/bank.h"
 #include "drum/membrane_form.h"
-#include "drum/shared.h"
+#include "head/shared.h"
 #include "drum/strike_point.h"
 #include "head/air.h"
 
@@ -130,5 +131,11 @@ HIMC_RT const unit_response *himc_strike_point_response(himc_membrane *m, strike
                                                         himc_step_length length);
 /// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
 HIMC_RT double himc_membrane_film_stiffness(const himc_membrane *m);
+
+/// The air around a head, over its own volume or the usual one for its radius.
+static inline himc_air himc_membrane_air(const himc_head *head)
+{
+    return himc_air_around(head, head->kettle > 0 ? head->kettle : himc_air_kettle(head->radius));
+}
 
 #endif

@@ -60,7 +60,7 @@ bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source sourc
                     himc_error *error);
 /// Moves a drum under a take's strikes, until its owner places it or himc_drums_put_back.
 bool himc_drums_move(performance_drums *drums, int index, himc_vec3 center, himc_error *error);
-/// Its head frame where himc_drums_move, or its automatic place, has found it.
+/// A drum's head frame, with the place it had before himc_drums_move or an automatic place.
 HIMC_RT himc_head_frame himc_drums_found(const performance_drums *drums, int index);
 /// All drums, also those to come, are heard by this listener as long as they are the performance's.
 HIMC_RT void himc_drums_listen(performance_drums *drums, const himc_listener *listener);

@@ -168,8 +168,8 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
 /// The command `take` as a job; NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
-/// The take that is loaded, again, for the player of the settings; its drum is looked for from
-/// where the take found it. NULL without memory.
+/// Loads the take once more, for the player of the settings, as if its drum still stood where the
+/// take found it. NULL without memory.
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
 /// The same for a `nudge` after a take that has been tried.
 bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);

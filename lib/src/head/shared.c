@@ -10,7 +10,7 @@
 ///
 /// One mode of each m and sign: what two of them send out in all directions is orthogonal, so that
 /// a drum alone loses what air.h says, and its modes stay apart.
-#include "drum/shared.h"
+#include "head/shared.h"
 
 #include "head/pickup.h"
 

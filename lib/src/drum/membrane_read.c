@@ -1,0 +1,138 @@
+/// membrane_read.c: what a membrane is asked for: its head, modes and pitch, and the shapes that it
+/// has now. Nothing changes it.
+#include "drum/membrane_probe.h"
+#include "drum/membrane_state.h"
+
+#include "head/bessel.h"
+
+#include <math.h>
+
+#define BISECTIONS 60 // halvings of ln T: exact to the last bit of a double
+
+const himc_shape *himc_membrane_shape(const himc_membrane *membrane)
+{
+    return himc_modes_shape(membrane->core.modes);
+}
+
+const himc_head *himc_membrane_head(const himc_membrane *membrane)
+{
+    return &membrane->head;
+}
+
+const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count)
+{
+    *count = membrane->pickup_count;
+    return membrane->pickups;
+}
+
+double himc_membrane_rate(const himc_membrane *membrane)
+{
+    return membrane->rate;
+}
+
+int himc_membrane_modes(const himc_membrane *membrane)
+{
+    return himc_modes_count(membrane->core.modes);
+}
+
+himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
+{
+    if (index >= himc_membrane_modes(membrane))
+        return (himc_mode){0};
+    himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
+    return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
+}
+
+// j_11 of a round head, else the lowest mode's radius times wavenumber
+static double principal_zero(const himc_membrane *membrane)
+{
+    bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
+    return round ? himc_bessel_zero(1, 1)
+                 : himc_modes_get(membrane->core.modes, &membrane->head, 0).zero;
+}
+
+static double principal_of(const himc_head *head, double zero)
+{
+    double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
+    if (!head->air)
+        return bare;
+    himc_air air = himc_membrane_air(head);
+    return bare * himc_air_on(&air, 1, 1, zero).frequency;
+}
+
+double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
+{
+    return principal_of(head, principal_zero(membrane));
+}
+
+double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
+                                 double frequency)
+{
+    himc_head trial = *head;
+    double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
+    double zero = principal_zero(membrane);
+    for (int i = 0; i < BISECTIONS; i++) {
+        trial.tension = exp(0.5 * (low + high));
+        if (principal_of(&trial, zero) < frequency)
+            low = log(trial.tension);
+        else
+            high = log(trial.tension);
+    }
+    return trial.tension;
+}
+
+int himc_membrane_audible(const himc_membrane *membrane)
+{
+    return himc_bank_count(membrane->core.bank);
+}
+
+void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
+{
+    himc_bank_state(membrane->core.bank, index, q, v);
+}
+
+// a mode's displacement: that of `modal`, which has `count`, or if that is NULL its own
+static double coordinate(const himc_membrane *membrane, int count, const double *modal, int index)
+{
+    double q, v;
+    if (modal)
+        return index < count ? modal[index] : 0;
+    himc_membrane_state(membrane, index, &q, &v);
+    return q;
+}
+
+// displacements of the bare shapes of order 0, from those of what a kettle makes of them
+static void unmix(const himc_membrane *membrane, int count, const double *modal,
+                  double *displacement)
+{
+    const himc_mixture *mix = himc_modes_mixture(membrane->core.modes);
+    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
+        double sum = 0;
+        for (int n = 0; n < mix->count; n++)
+            sum += mix->part[n][k] * coordinate(membrane, count, modal, mix->index[n]);
+        displacement[mix->index[k]] = sum;
+    }
+}
+
+void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
+                           double *displacement)
+{
+    const himc_modes *modes = membrane->core.modes;
+    double pair[2] = {0, 0};
+    for (int i = 0; i < count; i++) {
+        himc_mode mode = himc_modes_get(modes, &membrane->head, i);
+        displacement[i] = coordinate(membrane, count, modal, i);
+        if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
+            continue;
+        const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
+        bool whole =
+            i + 1 < himc_modes_count(modes) && himc_modes_get(modes, &membrane->head, i + 1).sine;
+        if (!mode.sine) {
+            pair[0] = displacement[i];
+            pair[1] = whole ? coordinate(membrane, count, modal, i + 1) : 0;
+        }
+        displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
+                                    : pair[0] * axis->cosine - pair[1] * axis->sine;
+    }
+    unmix(membrane, count, modal, displacement);
+}
