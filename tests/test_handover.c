@@ -219,6 +219,9 @@ static void test_player_before_and_after_a_take_is_the_same_body(void)
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         TEST_ASSERT_EQUAL_DOUBLE(new->body->skeleton.segment[i].length,
                                  p->body->skeleton.segment[i].length);
+    TEST_ASSERT_EQUAL_MEMORY(himc_drum_head_frame(himc_performance_drum(new, 0)),
+                             himc_drum_head_frame(himc_performance_drum(p, 0)),
+                             sizeof(himc_head_frame));
     himc_performance_free(p);
     himc_performance_free(new);
 }
