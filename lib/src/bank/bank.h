@@ -37,7 +37,8 @@ HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, 
                            double rate);
 
 /// Film and the first `count` oscillators, if `from` has them, too, begin with its phase and
-/// energy, as if they had been in use here with its constants before the last himc_bank_set.
+/// energy, as if they had been in use here with its constants before the last himc_bank_set; all
+/// others at rest. Nothing remains of what `bank` did before.
 HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from, int count);
 
 /// The bank has coefficients for two lengths of step.

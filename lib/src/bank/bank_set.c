@@ -197,6 +197,7 @@ void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
         return;
     }
     himc_bank_settle(from);
+    himc_bank_rest(bank); // what it has done before is over
     bank->film.power = from->film.power;
     for (int i = 0; i < count && i < bank->count && i < from->count; i++) {
         double q, v;

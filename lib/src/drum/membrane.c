@@ -730,6 +730,8 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     take_form(made, &was);
     m->revision++;
     himc_bank_set_step(m->core.bank, m->step);
+    for (int i = 0; i < STRIKE_POINTS; i++)
+        m->points[i].used = false; // what they know may be of pickups as they were then
     if (m->core.stale && !m->muted)
         find_outputs(m, 0, HIMC_PICKUPS);
     if (m->watch_x != made->watch_x || m->watch_y != made->watch_y)
@@ -739,6 +741,8 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     if (outline)
         himc_bank_continue(m->core.bank, was.core.bank,
                            himc_modes_common(was.core.modes, m->core.modes));
+    else
+        himc_bank_rest(m->core.bank);
     if (bends) {
         turn_pairs(m, himc_modes_pairs(was.core.modes));
         bend(m, 1);
